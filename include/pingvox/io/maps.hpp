@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <string>
+
+#include "pingvox/io/bytes.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// A map as it was read, and what its file says beside it.
+struct MapFile {
+  Format format = Format::kPvx;
+  OccupancyMap map;
+  std::string made_by;  ///< kPvx: how the map was made, free text; else empty
+};
+
+/// Any map that we read, told by content. On failure nothing is kept. kCorrupt names the place and the reason.
+/// @param memory_limit_bytes  0: none; else kLimit when the tree would pass it
+Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes = 0);
+
+/// Writes a map in any format of maps and clouds. The map stays as it is. kUnsupported when the format cannot hold it
+/// (.bt and .ot: depth 16 only), with the name of one that can.
+Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out);
+
+}  // namespace pingvox

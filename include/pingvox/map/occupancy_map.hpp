@@ -1,0 +1,151 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "pingvox/geometry/key.hpp"
+#include "pingvox/geometry/lattice.hpp"
+#include "pingvox/map/brick_tree.hpp"
+#include "pingvox/map/log_odds.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+class ScanUpdate;
+class Editor;
+
+/// What an inner node says of its children (paper, section 5.3.1).
+enum class Parents {
+  kMax,   ///< the largest log-odds below: careful, a planner that looks at inner nodes misses no obstacle
+  kMean,  ///< the mean log-odds of the children that are known: the least error
+};
+
+/// Whether an update that cannot change a cell is dropped before anything above the cell is touched (paper, section
+/// 5.3). The map is the same either way.
+enum class EarlyDrop { kOn, kOff };
+
+/// When eight equal leaves become one.
+enum class Pruning {
+  kEachUpdate,   ///< at once, and parents are right after each update (paper: "w/ pruning")
+  kWhenSettled,  ///< parents and pruning wait for `synchronize` (paper: "lazy evaluation")
+  kNever,        ///< parents wait for `synchronize`, nothing is joined (paper: "wo/ pruning")
+};
+
+struct MapOptions {
+  double resolution_m = 0.05;  ///< edge of a cell of the finest resolution, > 0
+  int depth = Lattice::kDefaultDepth;
+  Clamp clamp;
+  Thresholds thresholds;  ///< what counts as occupied and as free
+  Parents parents = Parents::kMax;
+  EarlyDrop early_drop = EarlyDrop::kOn;
+  std::size_t memory_limit_bytes = 0;  ///< for what `memory_bytes` counts; 0: none
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// A box of space in the map frame [m]; both corners belong to it.
+struct Box {
+  Eigen::Vector3d min, max;
+};
+
+/// How much a map holds. Cells are of the finest resolution, whatever was pruned; sums that pass 2^64 - 1 stay there.
+struct MapCounts {
+  std::uint64_t leaves = 0, inner = 0;
+  std::uint64_t occupied_cells = 0, free_cells = 0, undecided_cells = 0;
+  std::uint64_t nodes() const { return leaves + inner; }
+};
+
+/// What a scan did: cells of the finest resolution that it voted on.
+struct ApplyReport {
+  std::uint64_t cells_freed = 0, cells_hit = 0;
+};
+
+/// Where space is occupied, free, or not yet seen: an octree of log-odds over a Lattice, after OctoMap (Hornung et al.
+/// 2013). Given the same freed and hit cells it holds what liboctomap's OcTree holds, bit for bit. Its nodes live in
+/// pools over bricks of 4 x 4 x 4 cells (docs/architecture.md). Const functions may run in many threads at once.
+class OccupancyMap {
+ public:
+  static Result<OccupancyMap> make(const MapOptions& options);
+  /// REQUIRES options that validate.
+  explicit OccupancyMap(const MapOptions& options = {});
+
+  const Lattice& lattice() const { return lattice_; }
+  const MapOptions& options() const { return options_; }
+  bool empty() const { return tree_.root.link == detail::Entry::kNone; }
+
+  /// Belief about a cell of the finest resolution; nullopt: never observed, which is not log-odds 0.
+  /// REQUIRES a key below 2^depth in each component.
+  template <KeyWord W>
+  std::optional<LogOdds> at(const BasicKey<W>& key) const;
+  /// The same for the cell that holds a point [m]; nullopt outside of the lattice, too.
+  std::optional<LogOdds> at(const Eigen::Vector3d& point_m) const;
+
+  /// The whole tree to walk over; nullopt when nothing is known.
+  std::optional<NodeView> root() const;
+  /// The node at `depth` that holds `key`, or the leaf above it that stands for it; nullopt when nothing is known there.
+  /// REQUIRES 0 <= depth <= lattice().depth()
+  template <KeyWord W>
+  std::optional<NodeView> node_at(const BasicKey<W>& key, int depth) const;
+
+  /// `at`, judged by options().thresholds; kUnknown where nothing was observed.
+  template <KeyWord W>
+  Occupancy classify(const BasicKey<W>& key) const;
+  Occupancy classify(const Eigen::Vector3d& point_m) const;
+
+  MapCounts counts() const;
+  /// The smallest box around all that is known; nullopt when nothing is.
+  std::optional<Box> bounds() const;
+  /// Bytes of the tree's storage, free room in its pools included.
+  std::size_t memory_bytes() const;
+
+  /// Takes one scan in: each cell it freed or hit gets its evidence once, clamped; then parents are right and the tree
+  /// is pruned. @return kLimit when memory_limit_bytes would be passed: the map is as before then.
+  /// REQUIRES an update made for this lattice's depth.
+  Result<ApplyReport> apply(const ScanUpdate& scan);
+
+  /// Adds another map's log-odds to this one's, clamped, cell by cell; a cell that only one knows keeps its belief.
+  /// @return kBadOption when the lattices differ, kLimit as for `apply`
+  Result<void> merge(const OccupancyMap& other);
+
+  /// For many single updates. REQUIRES no other editor of this map alive.
+  [[nodiscard]] Editor edit(Pruning pruning = Pruning::kWhenSettled);
+
+  /// Forgets everything and gives the storage back.
+  void clear();
+
+ private:
+  friend class Editor;
+  MapOptions options_;
+  Lattice lattice_;
+  detail::BrickTree tree_;
+};
+
+/// Changes single cells. Inner nodes may be stale between `synchronize` calls, as `Pruning` says; leaves never are.
+/// Holds a path into the tree, so neighbouring updates are cheap. Does not look at memory_limit_bytes.
+class Editor {
+ public:
+  Editor(OccupancyMap& map, Pruning pruning);
+  Editor(const Editor&) = delete;
+  Editor& operator=(const Editor&) = delete;
+  ~Editor();  ///< synchronizes: it only reads and frees, so it cannot fail
+
+  /// Adds evidence to one cell of the finest resolution, clamped.
+  template <KeyWord W>
+  void update(const BasicKey<W>& key, LogOdds evidence);
+
+  /// Makes the whole cell at `depth` that holds `key` have this belief, not clamped. For readers.
+  /// REQUIRES a finite belief.
+  template <KeyWord W>
+  void set(const BasicKey<W>& key, int depth, LogOdds belief);
+
+  /// Makes all inner nodes right and, unless Pruning::kNever, joins equal leaves.
+  void synchronize();
+
+ private:
+  OccupancyMap& map_;
+  detail::Cursor cursor_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// End points of rays that were seen from one place: a scan of a laser, a multibeam, or one of OctoMap's scan logs.
+struct PointScan {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< map frame
+  std::vector<Eigen::Vector3d> points_m;               ///< map frame
+};
+
+/// Scans in the order in which they were taken.
+class ScanSource {
+ public:
+  virtual ~ScanSource() = default;
+  /// The next scan; nullopt at the end; an error when nothing more can be read.
+  virtual Result<std::optional<PointScan>> next() = 0;
+  /// Points or scans left out so far because they were damaged.
+  virtual std::size_t skipped() const { return 0; }
+};
+
+}  // namespace pingvox

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// What the sonar heard of one ping in one direction.
+struct Beam {
+  double time_s = 0.0;        ///< on the log's own clock; finite
+  double bearing_rad = 0.0;   ///< sensor frame: 0 ahead (x), counter-clockwise seen from above; in [0, 2 pi)
+  double bin_length_m = 0.0;  ///< > 0
+  std::vector<std::uint8_t> intensities;  ///< bin i covers [i, i + 1) * bin_length_m from the transducer
+};
+
+/// The longest beam that a reader lets through: far above what these sonars do, and small enough that no damaged number
+/// turns into a ray that never ends.
+inline constexpr double kMaxBeamRange_m = 10'000.0;
+
+/// Checks what the comments of Beam promise, and the range. kCorrupt names the broken field. Readers call it on each
+/// beam, so that nobody behind them has to.
+Result<void> validate(const Beam& beam);
+
+/// Any angle [rad] in [0, 2 pi). REQUIRES a finite angle.
+double wrapped_bearing(double angle_rad);
+
+/// Beams in the order in which they were heard: a log, a simulator, later a live device.
+class BeamSource {
+ public:
+  virtual ~BeamSource() = default;
+  /// The next beam; nullopt at the end; an error when nothing more can be read. Damage that can be stepped over is
+  /// stepped over and counted.
+  virtual Result<std::optional<Beam>> next() = 0;
+  /// Beams (or records that should have been one) left out so far because they were damaged.
+  virtual std::size_t skipped() const { return 0; }
+};
+
+}  // namespace pingvox

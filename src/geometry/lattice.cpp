@@ -1,0 +1,24 @@
+#include "pingvox/geometry/lattice.hpp"
+
+#include <fmt/core.h>
+
+namespace pingvox {
+
+Result<Lattice> Lattice::make(double resolution_m, int depth) {
+  // The inverse must be finite too: with a subnormal resolution it is not, and every point would be outside.
+  if (!(resolution_m > 0.0) || !std::isfinite(resolution_m) || !std::isfinite(1.0 / resolution_m)) {
+    return fail(Error::Code::kBadOption, fmt::format("resolution must be a length > 0 m, is {}", resolution_m));
+  }
+  if (depth < 1 || depth > kMaxDepth) {
+    return fail(Error::Code::kBadOption, fmt::format("depth must be in 1..{} levels, is {}", kMaxDepth, depth));
+  }
+  return Lattice(resolution_m, depth);
+}
+
+Lattice::Lattice(double resolution_m, int depth)
+    : resolution_m_(resolution_m), cells_per_m_(1.0 / resolution_m), half_(std::ldexp(1.0, depth - 1)), depth_(depth) {
+  assert(resolution_m > 0.0 && std::isfinite(cells_per_m_));
+  assert(depth >= 1 && depth <= kMaxDepth);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,38 @@
+#include "pingvox/geometry/trajectory.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pingvox {
+
+Trajectory Trajectory::still(const Pose& map_from_body) { return Trajectory({{0.0, map_from_body}}, true); }
+
+Result<Trajectory> Trajectory::make(std::vector<StampedPose> poses) {
+  if (poses.empty()) return fail(Error::Code::kCorrupt, "a trajectory needs at least one pose");
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!std::isfinite(poses[i].time_s) || !poses[i].map_from_body.matrix().allFinite()) {
+      return fail(Error::Code::kCorrupt, fmt::format("pose {} is not finite", i));
+    }
+    if (i > 0 && !(poses[i].time_s > poses[i - 1].time_s)) {
+      return fail(Error::Code::kCorrupt, fmt::format("pose {}: time {} s does not follow {} s", i, poses[i].time_s,
+                                                     poses[i - 1].time_s));
+    }
+  }
+  return Trajectory(std::move(poses), false);
+}
+
+std::optional<Pose> Trajectory::at(double time_s) const {
+  if (still_) return poses_.front().map_from_body;
+  const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_s,
+                                      [](const StampedPose& pose, double t) { return pose.time_s < t; });
+  if (after == poses_.end() || std::isnan(time_s)) return std::nullopt;
+  if (after->time_s == time_s) return after->map_from_body;
+  if (after == poses_.begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  const double share = (time_s - before->time_s) / (after->time_s - before->time_s);
+  return interpolated(before->map_from_body, after->map_from_body, share);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,31 @@
+#include "pingvox/sonar/beam.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace pingvox {
+
+Result<void> validate(const Beam& beam) {
+  const auto corrupt = [](std::string what) { return fail(Error::Code::kCorrupt, std::move(what)); };
+  if (!std::isfinite(beam.time_s)) return corrupt("time is not a finite number");
+  if (!(beam.bearing_rad >= 0.0 && beam.bearing_rad < 2.0 * std::numbers::pi)) {
+    return corrupt(fmt::format("bearing {} rad is not in [0, 2 pi)", beam.bearing_rad));
+  }
+  if (!(beam.bin_length_m > 0.0)) return corrupt(fmt::format("bin length {} m is not > 0", beam.bin_length_m));
+  const double range_m = static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
+  if (!(range_m <= kMaxBeamRange_m)) {
+    return corrupt(fmt::format("range {} m is longer than {} m", range_m, kMaxBeamRange_m));
+  }
+  return {};
+}
+
+double wrapped_bearing(double angle_rad) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const double wrapped = angle_rad - kTurn * std::floor(angle_rad / kTurn);
+  // A tiny negative angle rounds up to a whole turn.
+  return wrapped >= 0.0 && wrapped < kTurn ? wrapped : 0.0;
+}
+
+}  // namespace pingvox
