@@ -6,6 +6,7 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/scan_update.hpp"
+#include "pingvox/map/trace_ray.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
@@ -18,8 +19,6 @@ enum class BeamShape {
   kFan,   ///< its horizontal width, in the plane of the head
   kCone,  ///< width and height, on the sphere: the echo may come from anywhere on an arc
 };
-
-enum class RayAlgorithm { kDda, kBresenham };
 
 /// Where a hit's evidence comes from.
 enum class HitFrom {
@@ -39,7 +38,7 @@ struct BeamModelOptions {
   double height_rad = 35.0 * 3.14159265358979323846 / 180.0;  ///< vertical, full angle; Micron data sheet
   RayAlgorithm ray = RayAlgorithm::kDda;
   HitFrom hit_from = HitFrom::kIntensity;
-  LogOdds hit = LogOdds::from_probability(0.7);   ///< evidence of an echo; with kIntensity of the strongest possible one
+  LogOdds hit = LogOdds::from_probability(0.7);  ///< evidence of an echo; with kIntensity of the strongest possible one
   LogOdds miss = LogOdds::from_probability(0.4);  ///< evidence of sound having passed
   Silent silent = Silent::kNothing;
   double max_range_m = 1e9;  ///< cells farther away are never touched
