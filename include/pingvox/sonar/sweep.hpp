@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -12,26 +14,52 @@ struct Sweep {
   enum class Extent {
     kTurn,    ///< 360 degrees: the last beam is a neighbour of the first
     kSector,  ///< from one end of a sector to the other
-    kCut,     ///< the recording ended (or the head's settings changed) before the sweep was complete
+    kCut,     ///< not complete: the recording ended, beams were lost over a wide angle, the head's settings changed, or
+              ///< a limit of SweepAssembler was reached
   };
   Extent extent = Extent::kCut;
   std::vector<Beam> beams;
 };
 
 /// Cuts a stream of beams into sweeps, whatever the head does: full turns either way, sectors to and fro, a changed
-/// step, lost and doubled beams, beams of different lengths. A sweep of a turning head is complete when it has turned
-/// 360 degrees since its first beam, one of a sector when the head turns back.
+/// step, lost and doubled beams, beams of different lengths.
+///
+/// - A turn is complete when the head has turned 360 degrees since the sweep's first beam; half a step short of it
+///   counts (bearings are rounded, and heads jitter).
+/// - A sector is complete when the head turns back: by more than a third of its step (less is jitter, and no movement
+/// at
+///   all is a doubled beam), or by a jump to the bearing where the pass began (a head that flies back).
+/// - Any other jump, of more than 45 degrees and more than four steps, ends the sweep as kCut: beams were lost or the
+///   head was given a new sector. Smaller gaps are lost beams inside the sweep.
+/// - A bin length that differs from the first beam's by more than 1 % ends it as kCut: one image cannot hold both.
+///   Different numbers of bins stay together.
+/// - kMaxBeams beams, or an image of kMaxPixels, end it as kCut: a head that stands still needs no endless memory.
 class SweepAssembler {
  public:
-  /// Takes the next beam. Returns the sweep that this beam showed to be finished, which does not contain it.
+  /// Twice what the finest head (1/16 gradian) hears in a turn.
+  static constexpr std::size_t kMaxBeams = 12'800;
+  /// Beams times bins of the longest one; a single longer beam is a sweep of its own.
+  static constexpr std::size_t kMaxPixels = std::size_t{1} << 25;
+
+  /// Takes the next beam, which must be valid. Returns the sweep that this beam showed to be finished, which does not
+  /// contain it.
   std::optional<Sweep> add(Beam beam);
   /// Returns what has been gathered since the last sweep (nullopt: nothing) and starts anew. A gathered turn counts as
-  /// kTurn if the head had turned all the way round, else kCut.
+  /// kTurn if the head had turned all the way round, its last step included, else kCut.
   std::optional<Sweep> finish();
 
  private:
+  /// How `beam`, turned by `delta_rad` since the beam before it, ends the gathered sweep; nullopt: it goes on.
+  std::optional<Sweep::Extent> ended_by(const Beam& beam, double delta_rad) const;
+  double usual_step_rad() const;
+  std::optional<Sweep> close(Sweep::Extent extent);
+
   Sweep gathered_;
-  double turned_rad_ = 0.0;  ///< signed angle from the first gathered beam to the last
+  std::size_t longest_ = 0;    ///< bins of the longest gathered beam
+  double turned_rad_ = 0.0;    ///< signed angle from the first gathered beam to the last
+  double furthest_rad_ = 0.0;  ///< the same to the beam furthest from the first; its sign is the direction
+  std::array<double, 2> steps_rad_ = {
+      0.0, 0.0};  ///< sizes of the last two steps ahead, newest first; they outlive the sweep
 };
 
 }  // namespace pingvox

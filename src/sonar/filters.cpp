@@ -1,0 +1,106 @@
+#include "pingvox/sonar/filters.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cassert>
+#include <climits>
+#include <new>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
+
+namespace pingvox {
+namespace {
+
+/// The row of the image that stands `offset` rows behind its first one; nullopt: outside.
+std::optional<std::size_t> row_at(const PolarImage& image, std::ptrdiff_t offset) {
+  const auto rows = static_cast<std::ptrdiff_t>(image.rows());
+  if (image.wrap() == PolarImage::Wrap::kAround) return static_cast<std::size_t>(((offset % rows) + rows) % rows);
+  if (offset < 0 || offset >= rows) return std::nullopt;
+  return static_cast<std::size_t>(offset);
+}
+
+/// Fills the bins that row `n` lacks: from the nearest row within `reach` that has them, beyond that with its last one.
+void fill_up(const PolarImage& image, std::size_t n, std::ptrdiff_t reach, std::span<std::uint8_t> filled) {
+  std::size_t known = image.bins_in(n);
+  for (std::ptrdiff_t distance = 1; distance <= reach && known < image.columns(); ++distance) {
+    for (const std::ptrdiff_t side : {-distance, distance}) {
+      const std::optional<std::size_t> other = row_at(image, static_cast<std::ptrdiff_t>(n) + side);
+      if (!other || image.bins_in(*other) <= known) continue;
+      const std::size_t end = image.bins_in(*other);
+      std::ranges::copy(image.row(*other).subspan(known, end - known),
+                        filled.begin() + static_cast<std::ptrdiff_t>(known));
+      known = end;
+    }
+  }
+  const std::uint8_t last = known > 0 ? filled[known - 1] : std::uint8_t{0};
+  std::ranges::fill(filled.subspan(known), last);
+}
+
+/// The image with `margin` rows more at either end: those across the seam, or the outermost repeated.
+cv::Mat with_margins(const PolarImage& image, int margin) {
+  cv::Mat out(static_cast<int>(image.rows()) + 2 * margin, static_cast<int>(image.columns()), CV_8U);
+  const auto row_of = [&out, &image](int n) { return std::span(out.ptr<std::uint8_t>(n), image.columns()); };
+  for (int n = 0; n < static_cast<int>(image.rows()); ++n) {
+    const auto row = static_cast<std::size_t>(n);
+    std::ranges::copy(image.row(row), row_of(n + margin).begin());
+    if (image.bins_in(row) < image.columns()) fill_up(image, row, margin, row_of(n + margin));
+  }
+  for (int n = 0; n < margin; ++n) {
+    for (const int row : {n, margin + static_cast<int>(image.rows()) + n}) {
+      const std::optional<std::size_t> source = row_at(image, row - margin);
+      const int outermost = row < margin ? margin : margin + static_cast<int>(image.rows()) - 1;
+      const int from = source ? static_cast<int>(*source) + margin : outermost;
+      std::ranges::copy(row_of(from), row_of(row).begin());
+    }
+  }
+  return out;
+}
+
+PolarImage gaussian(const PolarImage& image, const FilterOptions& options) {
+  const int margin = options.kernel / 2;
+  const cv::Mat source = with_margins(image, margin);
+  cv::Mat smooth;
+  cv::GaussianBlur(source, smooth, cv::Size(options.kernel, options.kernel), options.sigma, options.sigma,
+                   cv::BORDER_REPLICATE);
+  PolarImage out = image;
+  for (std::size_t n = 0; n < out.rows(); ++n) {
+    const auto* row = smooth.ptr<std::uint8_t>(static_cast<int>(n) + margin);
+    std::copy_n(row, out.bins_in(n), out.row(n).begin());  // behind a beam's end it stays black
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<void> FilterOptions::validate() const {
+  std::string bad;
+  if (kernel < 1 || kernel > 99 || kernel % 2 == 0) bad += fmt::format(" kernel must be odd, 1..99, is {};", kernel);
+  if (!(sigma > 0.0 && sigma <= 1000.0)) bad += fmt::format(" sigma must be > 0 and <= 1000, is {};", sigma);
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "filter:" + bad);
+}
+
+PolarImage filtered(const PolarImage& image, const FilterOptions& options) {
+  assert(options.validate());
+  const bool fits = image.rows() < INT_MAX / 2 && image.columns() < INT_MAX;  // OpenCV counts in int
+  assert(fits);
+  if (image.rows() == 0 || image.columns() == 0 || !fits) return image;
+  try {
+    switch (options.filter) {
+      case Filter::kNone:
+        return image;
+      case Filter::kGaussian:
+        return gaussian(image, options);
+    }
+  } catch (const cv::Exception&) {
+    // For valid arguments it has only one reason: no memory. Then the same happens as when a vector of ours gets none.
+    throw std::bad_alloc();
+  }
+  return image;
+}
+
+}  // namespace pingvox
