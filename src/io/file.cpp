@@ -90,7 +90,7 @@ using Writer = std::function<Result<void>(std::ostream&)>;
 Result<void> write_to(int fd, std::string_view name, const Writer& write) {
   DescriptorBuffer buffer(fd);
   std::ostream out(&buffer);
-  const Result<void> written = write(out);
+  Result<void> written = write(out);
   out.flush();
   // The cause first: a writer can only say that its stream failed.
   if (buffer.error() != 0) return refused(name, buffer.error());
@@ -184,6 +184,7 @@ Result<FileBytes> read_file(const std::string& path) {
   if (::fstat(fd, &status) != 0) return refused(file.name, errno);
   if (S_ISDIR(status.st_mode)) return refused(file.name, EISDIR);
 
+  const auto too_large = [&] { return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", file.name)); };
   constexpr std::size_t kChunk = std::size_t{1} << 20;
   try {
     // One byte more than the file has, so that its end is seen without growing.
@@ -201,9 +202,10 @@ Result<FileBytes> read_file(const std::string& path) {
       }
     }
   } catch (const std::bad_alloc&) {
+    return too_large();
   } catch (const std::length_error&) {
+    return too_large();
   }
-  return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", file.name));
 }
 
 Result<void> write_file(const std::string& path, const Writer& write) {
