@@ -15,7 +15,7 @@ struct Echo {
   std::size_t first = 0;       ///< bin where it was detected
   std::size_t peak = 0;        ///< its strongest bin (the nearest one of several)
   std::size_t last = 0;        ///< its last bin
-  double range_m = 0.0;        ///< where we take the wall to be, from the transducer: the middle of the peak
+  double range_m = 0.0;        ///< where we take the wall to be, from the transducer
   std::uint8_t intensity = 0;  ///< of the peak, 0..255, as it was detected (after filtering)
 };
 
@@ -26,7 +26,8 @@ enum class Detector {
   /// slanting beam, smoothing): no single difference in the tank recording comes near 70.
   /// A rise, before and after it is detected, goes on across dips and ends where the beam has fallen by more than half
   /// the threshold below its top: speckle stays inside the echo, and a falling edge starts none. The echo runs from its
-  /// first bin to the last one before that fall.
+  /// first bin to the last one before that fall. Its range is the middle of its crest: the mean of its bins, weighted
+  /// with what they stand above half the threshold below the peak.
   kRise,
 };
 

@@ -24,9 +24,10 @@ struct Sweep {
 /// Cuts a stream of beams into sweeps, whatever the head does: full turns either way, sectors to and fro, a changed
 /// step, lost and doubled beams, beams of different lengths.
 ///
-/// - A turn is complete when the head has turned 360 degrees since the sweep's first beam; half a step short of it
+/// - A turn is complete when the head has turned 360 degrees since the sweep's first beam; a quarter of a step short of
+/// it
 ///   counts (bearings are rounded, and heads jitter).
-/// - A sector is complete when the head turns back: by more than a third of its step (less is jitter, and no movement
+/// - A sector is complete when the head turns back: by more than a quarter of its step (less is jitter, and no movement
 /// at
 ///   all is a doubled beam), or by a jump to the bearing where the pass began (a head that flies back).
 /// - Any other jump, of more than 45 degrees and more than four steps, ends the sweep as kCut: beams were lost or the
@@ -51,7 +52,10 @@ class SweepAssembler {
  private:
   /// How `beam`, turned by `delta_rad` since the beam before it, ends the gathered sweep; nullopt: it goes on.
   std::optional<Sweep::Extent> ended_by(const Beam& beam, double delta_rad) const;
-  double usual_step_rad() const;
+  /// Whether the head's first movement, seen from the next one, was none.
+  bool was_jitter(double delta_rad) const;
+  double smaller_step_rad() const;  ///< of the last two: behind a lost beam one looks twice as large
+  double larger_step_rad() const;
   std::optional<Sweep> close(Sweep::Extent extent);
 
   Sweep gathered_;
