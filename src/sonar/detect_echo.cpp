@@ -53,8 +53,8 @@ std::optional<Echo> first_rise(std::span<const std::uint8_t> bins, BinWindow win
   return echo;
 }
 
-/// Middle of the echo's crest [bins]: of its bins, each weighing as much as it stands above half a threshold below the
-/// peak. A single bin of speckle decides which one is the peak, but hardly about this.
+/// Middle of the echo's crest [bins]: of its bins, each weighing as much as it stands above a quarter of the threshold
+/// below the peak. A single bin of speckle decides which one is the peak, but hardly about this.
 double crest_of(std::span<const std::uint8_t> bins, const Echo& echo, int threshold) {
   double weights = 0.0;
   double moment = 0.0;

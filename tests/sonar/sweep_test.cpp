@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 #include <random>
 #include <vector>
 
@@ -26,9 +28,9 @@ struct Cut {
   Extent extent;
   std::size_t beams;
   friend bool operator==(const Cut&, const Cut&) = default;
-  friend void PrintTo(const Cut& cut, std::ostream* out) {
-    constexpr const char* kNames[] = {"turn", "sector", "cut"};
-    *out << kNames[static_cast<int>(cut.extent)] << " of " << cut.beams;
+  friend std::ostream& operator<<(std::ostream& out, const Cut& cut) {
+    constexpr std::array<const char*, 3> kNames = {"turn", "sector", "cut"};
+    return out << kNames.at(static_cast<std::size_t>(cut.extent)) << " of " << cut.beams;
   }
 };
 
@@ -44,6 +46,7 @@ std::vector<Cut> cuts_of(const std::vector<Beam>& beams) {
 
 std::vector<Cut> cuts_of_bearings(const std::vector<double>& degrees) {
   std::vector<Beam> beams;
+  beams.reserve(degrees.size());
   for (const double d : degrees) beams.push_back(beam_at(d));
   return cuts_of(beams);
 }
@@ -51,6 +54,7 @@ std::vector<Cut> cuts_of_bearings(const std::vector<double>& degrees) {
 /// `count` bearings from `start`, `step` apart.
 std::vector<double> run(double start, double step, int count) {
   std::vector<double> degrees;
+  degrees.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) degrees.push_back(start + step * i);
   return degrees;
 }
@@ -190,12 +194,14 @@ TEST(SweepAssembler, GoesOnWhenTheStepChanges) {
 
 TEST(SweepAssembler, KeepsBeamsOfDifferentLengthsTogether) {
   std::vector<Beam> beams;
+  beams.reserve(300);
   for (int i = 0; i < 200; ++i) beams.push_back(beam_at(1.8 * i, i == 70 ? 0 : i == 100 ? 186 : 399));
   EXPECT_THAT(cuts_of(beams), ElementsAre(Cut{Extent::kTurn, 200}));
 }
 
 TEST(SweepAssembler, CutsWhenTheBinLengthChangesButNotForItsRounding) {
   std::vector<Beam> beams;
+  beams.reserve(300);
   for (int i = 0; i < 100; ++i) beams.push_back(beam_at(1.8 * i, 3, i % 2 == 0 ? 8.0 / 397 : 8.0 / 398));
   for (int i = 100; i < 300; ++i) beams.push_back(beam_at(1.8 * i, 3, 0.025));
   EXPECT_THAT(cuts_of(beams), ElementsAre(Cut{Extent::kCut, 100}, Cut{Extent::kTurn, 200}));
