@@ -1,9 +1,17 @@
 # The one place that says how our targets are compiled.
 
-# pingvox_compile_options(TARGET): language level, warnings and sanitizers.
+if(PINGVOX_CLANG_TIDY)
+  find_program(PINGVOX_CLANG_TIDY_PROGRAM "${PINGVOX_CLANG_TIDY}" REQUIRED)
+  # Sources are checked again when the configuration changes: its hash is part of the command.
+  set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS .clang-tidy)
+  file(MD5 "${PROJECT_SOURCE_DIR}/.clang-tidy" tidy_config_hash)
+  set(PINGVOX_CLANG_TIDY_COMMAND "${PINGVOX_CLANG_TIDY_PROGRAM};--quiet;--extra-arg=-DCONFIG_${tidy_config_hash}")
+endif()
+
+# pingvox_compile_options(TARGET): language level, warnings, sanitizers and clang-tidy.
 function(pingvox_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_CLANG_TIDY "${PINGVOX_CLANG_TIDY_COMMAND}")
   target_compile_options(
     ${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast
                       -Woverloaded-virtual $<$<BOOL:${PINGVOX_WARNINGS_AS_ERRORS}>:-Werror>)
@@ -28,10 +36,13 @@ function(pingvox_layer name)
     set(scope PUBLIC)
   else()
     add_library(pingvox_${name} INTERFACE)
+    target_compile_features(pingvox_${name} INTERFACE cxx_std_20)
     set(scope INTERFACE)
   endif()
   add_library(pingvox::${name} ALIAS pingvox_${name})
+  set_target_properties(pingvox_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(pingvox_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(pingvox_${name} ${scope} ${LAYER_DEPENDS})
+  set(PINGVOX_LAYERS ${PINGVOX_LAYERS} pingvox_${name} PARENT_SCOPE)
 endfunction()

@@ -1,6 +1,31 @@
 #include "pingvox/io/format.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "io/byte_reader.hpp"
+#include "io/readers.hpp"
+#include "io/text.hpp"
+
 namespace pingvox {
+namespace {
+
+/// The binary tree of OctoMap's first days: i32 3, f64 resolution, u32 nodes, and two bytes for each inner node.
+bool looks_like_oldest_bt(std::span<const std::uint8_t> bytes) {
+  ByteReader reader(bytes);
+  const auto version = reader.read<std::int32_t>();
+  const auto resolution_m = reader.read<double>();
+  const auto nodes = reader.read<std::uint32_t>();
+  if (!nodes || *version != 3) return false;
+  // Whatever begins with a 3 by chance has no such number here.
+  return std::isfinite(*resolution_m) && *resolution_m >= 1e-6 && *resolution_m <= 1e6 &&
+         reader.left() / 2 <= std::uint64_t{*nodes};
+}
+
+}  // namespace
 
 FormatKind kind_of(Format format) {
   switch (format) {
@@ -22,6 +47,60 @@ FormatKind kind_of(Format format) {
       break;
   }
   return FormatKind::kPicture;
+}
+
+std::string_view name_of(Format format) {
+  switch (format) {
+    case Format::kMat:
+      return "mat";
+    case Format::kCsv:
+      return "csv";
+    case Format::kScanGraph:
+      return "graph";
+    case Format::kScanLog:
+      return "log";
+    case Format::kBt:
+      return "bt";
+    case Format::kOt:
+      return "ot";
+    case Format::kPvx:
+      return "pvx";
+    case Format::kTum:
+      return "tum";
+    case Format::kPly:
+      return "ply";
+    case Format::kPng:
+      break;
+  }
+  return "png";
+}
+
+std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
+  const std::string_view text = text_of(bytes);
+  if (text.starts_with("# Octomap OcTree binary file")) return Format::kBt;
+  if (text.starts_with("# Octomap OcTree file")) return Format::kOt;
+  if (text.starts_with("PINGVOXM")) return Format::kPvx;
+  if (looks_like_mat(bytes)) return Format::kMat;
+  if (looks_like_oldest_bt(bytes)) return Format::kBt;
+  if (looks_like_scan_graph(bytes)) return Format::kScanGraph;
+  if (looks_like_scan_log(bytes)) return Format::kScanLog;
+  if (looks_like_csv(bytes)) return Format::kCsv;
+  if (looks_like_tum(bytes)) return Format::kTum;
+  return std::nullopt;
+}
+
+std::optional<Format> format_for_writing(std::string_view path) {
+  constexpr std::array kSuffixes = {
+      std::pair{std::string_view(".bt"), Format::kBt},   std::pair{std::string_view(".ot"), Format::kOt},
+      std::pair{std::string_view(".pvx"), Format::kPvx}, std::pair{std::string_view(".ply"), Format::kPly},
+      std::pair{std::string_view(".csv"), Format::kCsv}, std::pair{std::string_view(".png"), Format::kPng}};
+  const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+  for (const auto& [suffix, format] : kSuffixes) {
+    if (path.size() < suffix.size()) continue;
+    const std::string_view end = path.substr(path.size() - suffix.size());
+    if (std::equal(end.begin(), end.end(), suffix.begin(), same)) return format;
+  }
+  return std::nullopt;
 }
 
 }  // namespace pingvox

@@ -22,4 +22,9 @@ Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = D
 /// Any log that holds point scans, told by content.
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip);
 
+/// Writes all beams of a source as CSV (docs/formats.md). Numbers are written so that reading gives the same beams to
+/// the last bit.
+/// @return how many there were; the source's error; kIo when `out` fails
+Result<std::size_t> write_csv(BeamSource& beams, std::ostream& out);
+
 }  // namespace pingvox

@@ -16,28 +16,11 @@ namespace pingvox {
 class ScanUpdate;
 class Editor;
 
-/// What an inner node says of its children (paper, section 5.3.1).
-enum class Parents {
-  kMax,   ///< the largest log-odds below: careful, a planner that looks at inner nodes misses no obstacle
-  kMean,  ///< the mean log-odds of the children that are known: the least error
-};
-
-/// Whether an update that cannot change a cell is dropped before anything above the cell is touched (paper, section
-/// 5.3). The map is the same either way.
-enum class EarlyDrop { kOn, kOff };
-
-/// When eight equal leaves become one.
-enum class Pruning {
-  kEachUpdate,   ///< at once, and parents are right after each update (paper: "w/ pruning")
-  kWhenSettled,  ///< parents and pruning wait for `synchronize` (paper: "lazy evaluation")
-  kNever,        ///< parents wait for `synchronize`, nothing is joined (paper: "wo/ pruning")
-};
-
 struct MapOptions {
   double resolution_m = 0.05;  ///< edge of a cell of the finest resolution, > 0
   int depth = Lattice::kDefaultDepth;
-  Clamp clamp;
-  Thresholds thresholds;  ///< what counts as occupied and as free
+  Clamp clamp{};
+  Thresholds thresholds{};  ///< what counts as occupied and as free
   Parents parents = Parents::kMax;
   EarlyDrop early_drop = EarlyDrop::kOn;
   std::size_t memory_limit_bytes = 0;  ///< for what `memory_bytes` counts; 0: none
@@ -84,8 +67,8 @@ class OccupancyMap {
 
   /// The whole tree to walk over; nullopt when nothing is known.
   std::optional<NodeView> root() const;
-  /// The node at `depth` that holds `key`, or the leaf above it that stands for it; nullopt when nothing is known there.
-  /// REQUIRES 0 <= depth <= lattice().depth()
+  /// The node at `depth` that holds `key`, or the leaf above it that stands for it; nullopt when nothing is known
+  /// there. REQUIRES 0 <= depth <= lattice().depth()
   template <KeyWord W>
   std::optional<NodeView> node_at(const BasicKey<W>& key, int depth) const;
 

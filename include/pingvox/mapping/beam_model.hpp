@@ -1,11 +1,18 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
 #include <optional>
+#include <vector>
 
 #include "pingvox/geometry/lattice.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/scan_update.hpp"
+#include "pingvox/map/trace_ray.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
@@ -18,8 +25,6 @@ enum class BeamShape {
   kFan,   ///< its horizontal width, in the plane of the head
   kCone,  ///< width and height, on the sphere: the echo may come from anywhere on an arc
 };
-
-enum class RayAlgorithm { kDda, kBresenham };
 
 /// Where a hit's evidence comes from.
 enum class HitFrom {
@@ -35,17 +40,36 @@ enum class Silent {
 
 struct BeamModelOptions {
   BeamShape shape = BeamShape::kRay;
-  double width_rad = 3.0 * 3.14159265358979323846 / 180.0;    ///< horizontal, full angle; Micron data sheet
-  double height_rad = 35.0 * 3.14159265358979323846 / 180.0;  ///< vertical, full angle; Micron data sheet
+  double width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontal, full angle; Micron data sheet
+  double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, full angle; Micron data sheet
   RayAlgorithm ray = RayAlgorithm::kDda;
   HitFrom hit_from = HitFrom::kIntensity;
-  LogOdds hit = LogOdds::from_probability(0.7);   ///< evidence of an echo; with kIntensity of the strongest possible one
+  LogOdds hit = LogOdds::from_probability(0.7);  ///< evidence of an echo; with kIntensity of the strongest possible one
   LogOdds miss = LogOdds::from_probability(0.4);  ///< evidence of sound having passed
   Silent silent = Silent::kNothing;
-  double max_range_m = 1e9;  ///< cells farther away are never touched
+  double max_range_m = std::numeric_limits<double>::infinity();  ///< cells farther away are never touched
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
+
+/// Evidence of an echo by its strength: half of `hit` for the faintest that a detector lets through, all of it at 255,
+/// linear in between. Monotone, and never more than `hit`.
+LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit);
+
+/// Share of an echo's evidence for a cell of its arc. The arc is `cells_on_arc` cells long and sound came back from at
+/// least one of them, so the evidence is thinned by the root of their number (between 1, as if it came from all, and
+/// 1/n, as if from one), and by the beam pattern: half at the edge of the beam, where the echo is 3 dB weaker.
+/// @param off_axis_rad  angle from the beam's axis, within +-width_rad / 2
+double share_on_arc(double off_axis_rad, double width_rad, double cells_on_arc);
+
+/// Directions (unit, sensor frame) that fill the beam so densely that each cell whose centre lies in the insonified
+/// volume within `range_m` is crossed by one: neighbours are at most resolution / sqrt(2) apart at that range.
+struct BundleRay {
+  Eigen::Vector3d direction;
+  double share = 1.0;  ///< of the echo's evidence, for the cell where the ray ends
+};
+std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
+                                   double resolution_m);
 
 /// Adds to `scan` what one beam says: cells freed up to the echo, cells hit with their share of the evidence.
 /// @param map_from_sensor  the head's pose when the beam was heard

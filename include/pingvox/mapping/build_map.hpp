@@ -35,8 +35,8 @@ struct BuildOptions {
 
 /// What was read and what became of it.
 struct BuildReport {
-  std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
-  std::size_t sweeps = 0;   ///< complete ones (or point scans)
+  std::size_t beams = 0;   ///< mapped, those of incomplete sweeps included
+  std::size_t sweeps = 0;  ///< complete ones (or point scans)
   std::size_t echoes = 0;
   std::size_t skipped = 0;  ///< damaged, outside of the trajectory's time, or outside of the lattice
   std::uint64_t cells_freed = 0, cells_hit = 0;  ///< votes, summed over scans

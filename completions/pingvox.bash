@@ -1,0 +1,83 @@
+# bash completion for pingvox. Needs nothing of the bash-completion package, and uses nothing of it.
+
+# Prints the long options of a command, one a line.
+_pingvox_options() {
+  local options=(--help)
+  case "$1" in
+    "") options+=(--version) ;;
+    map)
+      options+=(--output --config --resolution --depth --poses --mount --min-range --max-range --sound-speed)
+      options+=(--filter --kernel --sigma --detect --threshold)
+      options+=(--beam --beam-width --beam-height --ray --vote --hit --miss --clamp --hit-from --parents --silent)
+      options+=(--threads --memory-limit --strict --json --quiet --progress)
+      ;;
+    info) options+=(--json --strict) ;;
+    compare) options+=(--json) ;;
+    convert) options+=(--output --strict) ;;
+    render) options+=(--output --strict) ;;
+    simulate) options+=(--output --seed) ;;
+  esac
+  printf '%s\n' "${options[@]}"
+}
+
+# Prints the words that an option takes, one a line; nothing when they are no fixed set.
+_pingvox_words() {
+  case "$1" in
+    --filter) printf '%s\n' none mean median gaussian ;;
+    --detect) printf '%s\n' rise level max canny cfar ;;
+    --beam) printf '%s\n' ray fan cone ;;
+    --ray) printf '%s\n' dda bresenham ;;
+    --vote) printf '%s\n' sweep beam ;;
+    --hit-from) printf '%s\n' fixed intensity ;;
+    --parents) printf '%s\n' max mean ;;
+    --silent) printf '%s\n' nothing free ;;
+    --progress) printf '%s\n' auto always never ;;
+  esac
+}
+
+_pingvox() {
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command="" words="" i
+  COMPREPLY=()
+
+  # The first word that is no option is the command.
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    if [[ ${COMP_WORDS[i]} != -* ]]; then
+      command=${COMP_WORDS[i]}
+      break
+    fi
+  done
+
+  # --option=word arrives as three words.
+  if [[ $current == "=" ]]; then
+    current=""
+  elif [[ $previous == "=" ]] && ((COMP_CWORD >= 2)); then
+    previous=${COMP_WORDS[COMP_CWORD - 2]}
+  fi
+  words=$(_pingvox_words "$previous")
+
+  if [[ -z $words ]]; then
+    case "$previous" in
+      --resolution | --depth | --mount | --min-range | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
+        --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed)
+        return # a number: nothing to offer
+        ;;
+    esac
+    if [[ $current == -* ]]; then
+      words=$(_pingvox_options "$command")
+    elif [[ -z $command ]]; then
+      words="map info compare convert render simulate"
+    elif [[ $command == simulate && $previous == simulate ]]; then
+      words="tank"
+    fi
+  fi
+
+  local IFS=$' \t\n'
+  if [[ -n $words ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  else
+    compopt -o filenames
+    mapfile -t COMPREPLY < <(compgen -f -- "$current")
+  fi
+}
+
+complete -F _pingvox pingvox

@@ -1,0 +1,196 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "pingvox/geometry/key.hpp"
+#include "pingvox/map/log_odds.hpp"
+#include "pingvox/map/pool.hpp"
+
+namespace pingvox {
+
+/// What an inner node says of its children (paper, section 5.3.1).
+enum class Parents {
+  kMax,   ///< the largest log-odds below: careful, a planner that looks at inner nodes misses no obstacle
+  kMean,  ///< the mean log-odds of the children that are known: the least error
+};
+
+/// When eight equal leaves become one.
+enum class Pruning {
+  kEachUpdate,   ///< at once, and parents are right after each update (paper: "w/ pruning")
+  kWhenSettled,  ///< parents and pruning wait for `synchronize` (paper: "lazy evaluation")
+  kNever,        ///< parents wait for `synchronize`, nothing is joined (paper: "wo/ pruning")
+};
+
+/// Whether an update that cannot change a cell is dropped before anything above the cell is touched (paper, section
+/// 5.3). The map is the same either way.
+enum class EarlyDrop { kOn, kOff };
+
+namespace detail {
+
+/// A node above the bricks, as its parent holds it.
+struct Entry {
+  static constexpr std::uint32_t kNone = 0;  ///< nothing is known below; value is 0
+  static constexpr std::uint32_t kLeaf = 1;  ///< value holds for the whole cell
+  std::uint32_t link = kNone;                ///< else: index of its Group, or at brick level of its Brick
+  float value = 0.0F;                        ///< of an inner node: what it says of its children
+
+  static Entry leaf(float value) { return {kLeaf, value}; }
+  bool is_none() const { return link == kNone; }
+  bool is_leaf() const { return link == kLeaf; }
+  bool is_inner() const { return link > kLeaf; }
+  friend bool operator==(const Entry&, const Entry&) = default;
+};
+
+/// The eight children of an inner node, in one cache line. Child o is octant o (bit 0 x, bit 1 y, bit 2 z).
+struct alignas(64) Group {
+  std::array<Entry, 8> child;
+};
+
+/// The bottom two levels: 4 x 4 x 4 cells. Cell o * 8 + i is child i of octant o, so that each octant is a byte of the
+/// mask. The value of an unknown cell is 0.
+struct Brick {
+  std::uint64_t known = 0;
+  std::array<float, 64> value{};
+};
+
+/// Number of a cell in its brick.
+template <KeyWord W>
+constexpr int cell_in_brick(const BasicKey<W>& key) {
+  return key.octant(1) * 8 + key.octant(0);
+}
+
+/// The tree's nodes. Groups at depth 0..brick_depth-1, bricks below the entries of brick_depth. A lattice of one level
+/// is kept in octant 0 of a single brick: its tree has one level more than the lattice (`extra_levels`).
+struct BrickTree {
+  explicit BrickTree(int lattice_depth)
+      : levels(lattice_depth < 2 ? 2 : lattice_depth), extra_levels(levels - lattice_depth) {}
+
+  int levels;
+  int extra_levels;
+  /// Whether equal siblings are joined everywhere. Not so after an editor with Pruning::kNever: then the octants of
+  /// bricks are not to be read as joined either.
+  bool pruned = true;
+  Entry root;
+  Pool<Group> groups;
+  Pool<Brick> bricks;
+
+  int brick_depth() const { return levels - 2; }
+  /// Which child to take below a node of `depth` (in the tree's levels).
+  template <KeyWord W>
+  int octant_below(const BasicKey<W>& key, int depth) const {
+    return key.octant(levels - 1 - depth);
+  }
+};
+
+/// What a group says of its children. REQUIRES at least one known child.
+float summary_of(const Group& group, Parents parents);
+/// What an octant of a brick says of its cells. REQUIRES a known cell in it.
+float summary_of_octant(const Brick& brick, int octant, Parents parents);
+/// What a brick says of its octants. REQUIRES a known cell.
+float summary_of(const Brick& brick, Parents parents);
+/// All eight leaves, and equal.
+bool is_uniform(const Group& group);
+/// All cells known, and equal.
+bool is_uniform(const Brick& brick);
+/// All cells of an octant known, and equal.
+bool is_uniform_octant(const Brick& brick, int octant);
+
+/// Frees all that hangs below an entry of `depth`.
+void release_below(BrickTree& tree, Entry entry, int depth);
+/// Recomputes all inner nodes, and joins equal leaves everywhere. Sets `pruned`.
+void prune_all(BrickTree& tree, Parents parents);
+/// Recomputes and returns `a` with the leaves of `b` (of another tree of the same levels) added, clamped.
+Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
+
+/// A place in a tree and the path to it: the one piece of code that changes trees. Moving on settles what it leaves, so
+/// that keys in the tree's order (or near it) cost a few steps each and every parent is recomputed once.
+class Cursor {
+ public:
+  struct Rules {
+    Parents parents = Parents::kMax;
+    Pruning pruning = Pruning::kWhenSettled;
+    EarlyDrop early_drop = EarlyDrop::kOn;
+    Clamp clamp{};
+  };
+
+  Cursor(BrickTree& tree, const Rules& rules);
+
+  /// Adds evidence to one cell.
+  void update(const WideKey& key, LogOdds evidence);
+
+  /// Gives the cells of the brick that holds `key` their evidence: `miss` where a bit of `missed` is set, hits[i] where
+  /// bit i of `hit` is set. REQUIRES missed and hit to be disjoint.
+  void vote(const WideKey& key, std::uint64_t missed, LogOdds miss, std::uint64_t hit, const float* hits);
+
+  /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
+  void set(const WideKey& key, int depth, float value);
+
+  /// Settles the path up to the root and lets go of it.
+  void flush();
+
+  /// Nodes on the path that would have to be made to reach the brick of `key`: used to foresee growth. Moves there.
+  struct Reach {
+    int common_depth;  ///< deepest node shared with the key before (-1: none)
+    int depth;         ///< where the existing path ends
+    bool has_brick;
+  };
+  Reach reach(const WideKey& key);
+
+ private:
+  void move_to(const WideKey& key);
+  Entry& entry_at(int depth);
+  int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
+  void grow_to(int depth);
+  Brick& brick_made();
+  void mark_stale_above(int depth);
+  void settle_brick();
+  void settle_group(int depth);
+  void settle_down_to(int depth);
+  void after_change(int depth);
+
+  BrickTree& tree_;
+  Rules rules_;
+  WideKey key_;
+  int reach_ = 0;  ///< depth of the deepest entry on the path
+  bool brick_stale_ = false;
+  // Group n holds the children of the path's node of depth n; it is stale when one of them changed.
+  std::array<std::uint32_t, kMaxDepth> group_{};
+  std::array<bool, kMaxDepth> stale_{};
+};
+
+}  // namespace detail
+
+/// A node of a const map, to walk over: a small value, valid as long as the map is not changed.
+class NodeView {
+ public:
+  /// Depth below the root of the lattice.
+  int depth() const { return depth_ - tree_->extra_levels; }
+  /// Of an inner node: what it says of its children (Parents).
+  LogOdds belief() const { return LogOdds(value_); }
+  bool is_leaf() const { return kind_ == Kind::kLeaf; }
+  /// Child in octant 0..7 (bit 0 x, bit 1 y, bit 2 z); nullopt: nothing is known there, or this is a leaf.
+  std::optional<NodeView> child(int octant) const;
+
+  /// The node of an entry at `depth` of the tree's levels; nullopt when nothing is known there.
+  static std::optional<NodeView> of(const detail::BrickTree& tree, detail::Entry entry, int depth, Parents parents);
+
+ private:
+  enum class Kind : std::uint8_t { kLeaf, kGroup, kBrick, kOctant };
+  NodeView(const detail::BrickTree& tree, Kind kind, int depth, Parents parents, std::uint32_t index, float value)
+      : tree_(&tree), index_(index), value_(value), depth_(depth), kind_(kind), parents_(parents) {}
+
+  const detail::BrickTree* tree_;
+  std::uint32_t index_;  ///< of the group or brick
+  float value_;
+  int depth_;  ///< in the tree's levels
+  Kind kind_;
+  Parents parents_;
+  std::uint8_t octant_ = 0;  ///< kOctant: which of the brick's
+};
+
+}  // namespace pingvox

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pingvox/geometry/key.hpp"
+#include "pingvox/map/log_odds.hpp"
+
+namespace pingvox {
+
+/// What one scan (a sweep, a beam, a cloud) says: which cells sound passed through and which it came back from. Each
+/// cell has one vote, a hit beats a miss, and of several hits the surest counts. Marks go into bit masks, so
+/// overlapping rays cost nothing and nothing is hashed but one page in 4096 cells.
+class ScanUpdate {
+ public:
+  /// A cube of 16^3 cells: 4^3 bricks of 4^3 cells. Brick o * 8 + i, like cells in a brick, is in the tree's order.
+  static constexpr int kPageBits = 4;
+  struct Page {
+    WideKey lowest;  ///< its lowest cell
+    std::array<std::uint64_t, 64> missed{};
+    std::array<std::uint64_t, 64> hit{};
+    std::array<std::uint32_t, 64> evidence{};  ///< where the hits of a brick have their evidence; valid where hit != 0
+  };
+
+  /// @param miss  evidence for a cell that sound passed through
+  explicit ScanUpdate(LogOdds miss = LogOdds::from_probability(0.4)) : miss_(miss) {}
+
+  /// Number of a cell in its page: brick * 64 + cell in the brick.
+  template <KeyWord W>
+  static constexpr std::size_t cell_in_page(const BasicKey<W>& key) {
+    return static_cast<std::size_t>(((key.octant(3) * 8 + key.octant(2)) * 8 + key.octant(1)) * 8 + key.octant(0));
+  }
+
+  template <KeyWord W>
+  void add_miss(const BasicKey<W>& key) {
+    mark_missed(page_of(key.template as<WideWord>()), cell_in_page(key));
+  }
+  template <KeyWord W>
+  void add_hit(const BasicKey<W>& key, LogOdds evidence) {
+    mark_hit(page_of(key.template as<WideWord>()), cell_in_page(key), evidence);
+  }
+
+  /// For tracers that stay in a page for many cells: its index, made if it is not there.
+  std::uint32_t page_of(const WideKey& key);
+  void mark_missed(std::uint32_t page, std::size_t cell) {
+    pages_[page].missed[cell / 64] |= std::uint64_t{1} << (cell % 64);
+  }
+  void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence);
+
+  LogOdds miss() const { return miss_; }
+  bool empty() const { return used_ == 0; }
+  /// Forgets all marks and keeps the memory for the next scan.
+  void clear();
+
+  /// The pages in the tree's order.
+  std::vector<std::uint32_t> pages_in_order() const;
+  const Page& page(std::uint32_t index) const { return pages_[index]; }
+  /// Evidence of the 64 cells of a brick, valid where its bit of `hit` is set.
+  const float* evidence(const Page& page, std::size_t brick) const { return evidence_[page.evidence[brick]].data(); }
+
+ private:
+  void rehash(std::size_t slots);
+  std::size_t slot_of(const WideKey& lowest) const;
+
+  LogOdds miss_;
+  std::vector<Page> pages_;  ///< the first used_ are in use
+  std::size_t used_ = 0;
+  std::vector<std::array<float, 64>> evidence_;
+  std::size_t evidence_used_ = 0;
+  std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free
+};
+
+}  // namespace pingvox

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+
+#include "pingvox/geometry/lattice.hpp"
+#include "pingvox/map/point_scan.hpp"
+#include "pingvox/map/scan_update.hpp"
+
+namespace pingvox {
+
+enum class RayAlgorithm { kDda, kBresenham };
+
+/// Marks the cells from `from_m` to `to_m` [m, map frame] as missed, the end cell excluded: what `dda` or `bresenham`
+/// walk over.
+/// @return false, and nothing is marked, when an end lies outside of the lattice
+bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
+               RayAlgorithm algorithm, ScanUpdate& scan);
+
+struct PointScanOptions {
+  RayAlgorithm ray = RayAlgorithm::kDda;
+  LogOdds hit = LogOdds::from_probability(0.7);
+  double max_range_m = std::numeric_limits<double>::infinity();  ///< rays farther than this free, and hit nothing
+};
+
+/// Marks each point of a scan as hit and the cells before it as missed: the sets of liboctomap's insertPointCloud.
+/// @return points left out because they, or the scan's origin, lie outside of the lattice
+std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
+                         ScanUpdate& scan);
+
+}  // namespace pingvox

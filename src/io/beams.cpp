@@ -1,0 +1,70 @@
+#include "pingvox/io/beams.hpp"
+
+#include <fmt/core.h>
+
+#include <optional>
+#include <string_view>
+
+#include "io/readers.hpp"
+#include "pingvox/io/format.hpp"
+
+namespace pingvox {
+namespace {
+
+std::string_view described(Format format) {
+  switch (format) {
+    case Format::kMat:
+      return "a MATLAB file of beams";
+    case Format::kCsv:
+      return "a CSV file of beams";
+    case Format::kScanGraph:
+      return "an OctoMap scan graph";
+    case Format::kScanLog:
+      return "an OctoMap scan log";
+    case Format::kBt:
+      return "an OctoMap binary tree";
+    case Format::kOt:
+      return "an OctoMap tree";
+    case Format::kPvx:
+      return "a pingvox map";
+    case Format::kTum:
+      return "a trajectory";
+    case Format::kPly:
+      return "a point cloud";
+    case Format::kPng:
+      break;
+  }
+  return "a picture";
+}
+
+tl::unexpected<Error> not_this(const std::string& name, std::string_view wanted, std::optional<Format> format) {
+  return fail(Error::Code::kUnsupported, format ? fmt::format("{}: not {} (it is {})", name, wanted, described(*format))
+                                                : fmt::format("{}: not {} that we know", name, wanted));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage) {
+  const std::optional<Format> format = format_of(file.view());
+  if (format == Format::kMat) return open_mat(std::move(file), damage);
+  if (format == Format::kCsv) return open_csv(std::move(file), damage);
+  if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
+  return not_this(file.name, "a log of beams", format);
+}
+
+Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage) {
+  const std::optional<Format> format = format_of(file.view());
+  if (format == Format::kScanGraph) return open_scan_graph(std::move(file), damage);
+  if (format == Format::kScanLog) return open_scan_log(std::move(file), damage);
+  if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
+  return not_this(file.name, "a log of scans", format);
+}
+
+Result<void> skipped_or_failed(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
+                               const std::string& reason) {
+  ++skipped;
+  if (damage == Damage::kSkip) return {};
+  return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, reason));
+}
+
+}  // namespace pingvox

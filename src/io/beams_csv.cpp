@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "io/readers.hpp"
+#include "io/text.hpp"
+
+// Beams as text: a first line that names the columns, then a beam in each line (docs/formats.md).
+namespace pingvox {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+enum class Column { kTime, kBearingRad, kBearingDeg, kBearingClockwiseDeg, kBinLength, kIntensities, kOther };
+
+Column column_named(std::string_view name) {
+  if (name == "time_s") return Column::kTime;
+  if (name == "bearing_rad") return Column::kBearingRad;
+  if (name == "bearing_deg") return Column::kBearingDeg;
+  if (name == "bearing_cw_deg") return Column::kBearingClockwiseDeg;
+  if (name == "bin_length_m") return Column::kBinLength;
+  if (name == "intensities" || name == "intensities...") return Column::kIntensities;
+  return Column::kOther;
+}
+
+bool is_bearing(Column c) {
+  return c == Column::kBearingRad || c == Column::kBearingDeg || c == Column::kBearingClockwiseDeg;
+}
+
+std::vector<Column> columns_in(std::string_view header) {
+  std::vector<Column> columns;
+  while (const auto name = cut_field(header, ',')) {
+    // No file of ours has more; a line of nothing but commas is no header.
+    if (columns.size() == 64) break;
+    columns.push_back(column_named(*name));
+  }
+  return columns;
+}
+
+/// Empty, or what is wrong with a header.
+std::string_view problem_of(const std::vector<Column>& columns) {
+  const auto count = [&columns](auto matches) {
+    std::size_t n = 0;
+    for (const Column c : columns) n += matches(c) ? 1 : 0;
+    return n;
+  };
+  const auto count_of = [&count](Column wanted) { return count([wanted](Column c) { return c == wanted; }); };
+  if (count_of(Column::kTime) != 1) return "needs one column time_s";
+  if (count(is_bearing) != 1) return "needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg";
+  if (count_of(Column::kBinLength) != 1) return "needs one column bin_length_m";
+  if (count_of(Column::kIntensities) != 1 || columns.back() != Column::kIntensities) {
+    return "needs the column intensities as its last one";
+  }
+  return {};
+}
+
+double bearing_of(Column column, double number) {
+  if (column == Column::kBearingDeg) number *= kRadPerDeg;
+  if (column == Column::kBearingClockwiseDeg) number *= -kRadPerDeg;
+  // Nothing is done to what is in order, so that what was written is read back to the last bit.
+  return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrapped_bearing(number);
+}
+
+std::optional<std::uint8_t> intensity_in(std::string_view field) {
+  const std::optional<double> number = number_in(field);
+  if (!number || *number < 0.0 || *number > 255.0 || *number != std::floor(*number)) return std::nullopt;
+  return static_cast<std::uint8_t>(*number);
+}
+
+/// One line as a beam, or what is wrong with it.
+tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector<Column>& columns) {
+  Beam beam;
+  for (const Column column : columns) {
+    if (column == Column::kIntensities) break;
+    const auto field = cut_field(line, ',');
+    if (!field) return tl::unexpected(std::string("has too few columns"));
+    if (column == Column::kOther) continue;
+    const std::optional<double> number = number_in(*field);
+    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", field->substr(0, 40)));
+    if (column == Column::kTime) beam.time_s = *number;
+    if (column == Column::kBinLength) beam.bin_length_m = *number;
+    if (is_bearing(column)) beam.bearing_rad = bearing_of(column, *number);
+  }
+  while (const auto field = cut_field(line, ',')) {
+    const std::optional<std::uint8_t> intensity = intensity_in(*field);
+    if (!intensity) {
+      return tl::unexpected(fmt::format("intensity {}, \"{}\", is not a whole number in 0..255",
+                                        beam.intensities.size(), field->substr(0, 40)));
+    }
+    beam.intensities.push_back(*intensity);
+  }
+  if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
+  return beam;
+}
+
+class CsvSource : public BeamSource {
+ public:
+  CsvSource(FileBytes file, Damage damage, Lines lines, std::vector<Column> columns)
+      : file_(std::move(file)), damage_(damage), lines_(lines), columns_(std::move(columns)) {}
+
+  Result<std::optional<Beam>> next() override {
+    while (const auto line = lines_.next_with_content()) {
+      tl::expected<Beam, std::string> beam = beam_in(*line, columns_);
+      if (beam) return std::move(*beam);
+      const auto damaged =
+          skipped_or_failed(damage_, skipped_, file_.name, fmt::format("line {}", lines_.number()), beam.error());
+      if (!damaged) return tl::unexpected(damaged.error());
+    }
+    return std::nullopt;
+  }
+
+  std::size_t skipped() const override { return skipped_; }
+
+ private:
+  FileBytes file_;
+  Damage damage_;
+  Lines lines_;  ///< of file_, whose bytes stay where they are when it is moved
+  std::vector<Column> columns_;
+  std::size_t skipped_ = 0;
+};
+
+}  // namespace
+
+bool looks_like_csv(std::span<const std::uint8_t> bytes) {
+  Lines lines(text_of(bytes));
+  const auto header = lines.next_with_content();
+  if (!header) return false;
+  // One name that we know is enough to be told what is wrong with the others.
+  for (const Column column : columns_in(*header)) {
+    if (column != Column::kOther) return true;
+  }
+  return false;
+}
+
+Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage) {
+  Lines lines(text_of(file.view()));
+  const auto header = lines.next_with_content();
+  if (!header) return fail(Error::Code::kCorrupt, fmt::format("{}: holds no line that names the columns", file.name));
+  std::vector<Column> columns = columns_in(*header);
+  if (const std::string_view problem = problem_of(columns); !problem.empty()) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), problem));
+  }
+  return std::make_unique<CsvSource>(std::move(file), damage, lines, std::move(columns));
+}
+
+Result<std::size_t> write_csv(BeamSource& beams, std::ostream& out) {
+  out << "time_s,bearing_rad,bin_length_m,intensities\n";
+  std::string line;
+  for (std::size_t count = 0;; ++count) {
+    const Result<std::optional<Beam>> beam = beams.next();
+    if (!beam) return tl::unexpected(beam.error());
+    if (!*beam) {
+      if (!out.flush()) return fail(Error::Code::kIo, "the beams could not be written");
+      return count;
+    }
+    line.clear();
+    auto to = std::back_inserter(line);
+    fmt::format_to(to, "{},{},{}", (*beam)->time_s, (*beam)->bearing_rad, (*beam)->bin_length_m);
+    for (const std::uint8_t intensity : (*beam)->intensities) fmt::format_to(to, ",{}", unsigned{intensity});
+    line.push_back('\n');
+    // Not on to the end of a long log when the disk is full.
+    if (!out.write(line.data(), static_cast<std::streamsize>(line.size()))) {
+      return fail(Error::Code::kIo, "the beams could not be written");
+    }
+  }
+}
+
+}  // namespace pingvox

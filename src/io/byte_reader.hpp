@@ -1,0 +1,58 @@
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+namespace pingvox {
+
+/// An arithmetic value from its bytes. REQUIRES sizeof(T) bytes.
+template <class T>
+  requires std::is_arithmetic_v<T>
+T value_from(std::span<const std::uint8_t> bytes, std::endian order) {
+  std::uint8_t raw[sizeof(T)];
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    raw[i] = bytes[order == std::endian::native ? i : sizeof(T) - 1 - i];
+  }
+  T value;
+  std::memcpy(&value, raw, sizeof(T));
+  return value;
+}
+
+/// Reads forward through bytes and never past their end.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::uint8_t> bytes, std::endian order = std::endian::little)
+      : bytes_(bytes), order_(order) {}
+
+  std::size_t position() const { return position_; }
+  std::size_t left() const { return bytes_.size() - position_; }
+
+  /// The next `count` bytes; nullopt, and nothing read, when there are fewer.
+  std::optional<std::span<const std::uint8_t>> take(std::uint64_t count) {
+    if (count > left()) return std::nullopt;
+    const auto taken = bytes_.subspan(position_, static_cast<std::size_t>(count));
+    position_ += taken.size();
+    return taken;
+  }
+
+  /// The next value; nullopt, and nothing read, when the bytes do not suffice.
+  template <class T>
+  std::optional<T> read() {
+    const auto bytes = take(sizeof(T));
+    if (!bytes) return std::nullopt;
+    return value_from<T>(*bytes, order_);
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::endian order_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,233 @@
+#include "pingvox/io/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <streambuf>
+#include <string_view>
+#include <utility>
+
+namespace pingvox {
+namespace {
+
+namespace fs = std::filesystem;
+
+tl::unexpected<Error> refused(std::string_view name, int error) {
+  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::strerror(error)));
+}
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  int get() const { return fd_; }
+  bool valid() const { return fd_ >= 0; }
+  /// 0, or why what was written may be lost (network file systems say so only here).
+  int close() {
+    const int fd = std::exchange(fd_, -1);
+    return fd >= 0 && ::close(fd) != 0 && errno != EINTR ? errno : 0;
+  }
+
+ private:
+  int fd_;
+};
+
+/// A stream's buffer on a file descriptor: std::ofstream gives neither the descriptor, which must be synced, nor the
+/// reason why a write failed.
+class DescriptorBuffer : public std::streambuf {
+ public:
+  explicit DescriptorBuffer(int fd) : fd_(fd) { reset(); }
+
+  /// 0, or the first error of the operating system.
+  int error() const { return error_; }
+
+ protected:
+  int_type overflow(int_type c) override {
+    if (!drain()) return traits_type::eof();
+    if (!traits_type::eq_int_type(c, traits_type::eof())) {
+      *pptr() = traits_type::to_char_type(c);
+      pbump(1);
+    }
+    return traits_type::not_eof(c);
+  }
+  int sync() override { return drain() ? 0 : -1; }
+
+ private:
+  void reset() { setp(buffer_.data(), buffer_.data() + buffer_.size()); }
+
+  bool drain() {
+    const char* from = pbase();
+    while (error_ == 0 && from < pptr()) {
+      const ssize_t written = ::write(fd_, from, static_cast<std::size_t>(pptr() - from));
+      if (written > 0) from += written;
+      if (written < 0 && errno != EINTR) error_ = errno;
+      if (written == 0) error_ = EIO;
+    }
+    reset();
+    return error_ == 0;
+  }
+
+  int fd_;
+  int error_ = 0;
+  std::array<char, 1 << 16> buffer_;
+};
+
+using Writer = std::function<Result<void>(std::ostream&)>;
+
+Result<void> write_to(int fd, std::string_view name, const Writer& write) {
+  DescriptorBuffer buffer(fd);
+  std::ostream out(&buffer);
+  const Result<void> written = write(out);
+  out.flush();
+  // The cause first: a writer can only say that its stream failed.
+  if (buffer.error() != 0) return refused(name, buffer.error());
+  if (!written) return written;
+  if (!out) return fail(Error::Code::kIo, fmt::format("{}: could not be written", name));
+  return {};
+}
+
+/// A file that disappears again unless it is moved to its place.
+class TemporaryFile {
+ public:
+  TemporaryFile() = default;
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!path_.empty()) ::unlink(path_.c_str());
+  }
+
+  /// A descriptor to write to, or -1 with errno.
+  int create_in(const fs::path& folder) {
+    // A name that is taken belongs to somebody else at work, or is what a killed run left.
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+      const fs::path path = folder / fmt::format(".pingvox-{}-{}.tmp", ::getpid(), attempt);
+      const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (fd >= 0) path_ = path;
+      if (fd >= 0 || errno != EEXIST) return fd;
+    }
+    return -1;
+  }
+
+  /// 0, or the reason why the file did not move.
+  int move_to(const fs::path& target) {
+    if (::rename(path_.c_str(), target.c_str()) != 0) return errno;
+    path_.clear();
+    return 0;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// 0, or why the content may not be on disk. What cannot be synced at all (some network and FUSE file systems) is none.
+int sync_to_disk(int fd) {
+  if (::fsync(fd) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP || errno == EROFS) return 0;
+  return errno;
+}
+
+/// Where a chain of symbolic links ends, so that the rename replaces the file and not the link.
+Result<fs::path> end_of_links(const std::string& name) {
+  fs::path path = name;
+  for (int links = 0; links < 40; ++links) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+    const fs::path next = fs::read_symlink(path, error);
+    if (error) return refused(name, error.value());
+    path = next.is_absolute() ? next : path.parent_path() / next;
+  }
+  return refused(name, ELOOP);
+}
+
+Result<void> replace(const fs::path& target, std::optional<mode_t> mode, const std::string& name, const Writer& write) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  TemporaryFile temporary;
+  Descriptor file(temporary.create_in(folder));
+  if (!file.valid()) return refused(name, errno);
+  if (mode && ::fchmod(file.get(), *mode) != 0) return refused(name, errno);
+
+  if (const Result<void> written = write_to(file.get(), name, write); !written) return written;
+  if (const int error = sync_to_disk(file.get())) return refused(name, error);
+  if (const int error = file.close()) return refused(name, error);
+  if (const int error = temporary.move_to(target)) return refused(name, error);
+
+  // The rename is on disk when the folder is. One that we may write but not read cannot be opened: nothing to be done.
+  const Descriptor opened_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened_folder.valid()) return {};
+  if (const int error = sync_to_disk(opened_folder.get())) return refused(name, error);
+  return {};
+}
+
+}  // namespace
+
+Result<FileBytes> read_file(const std::string& path) {
+  const bool standard_input = path == "-";
+  FileBytes file{standard_input ? "standard input" : path, {}};
+
+  Descriptor opened(standard_input ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!standard_input && !opened.valid()) return refused(file.name, errno);
+  const int fd = standard_input ? STDIN_FILENO : opened.get();
+
+  struct stat status = {};
+  if (::fstat(fd, &status) != 0) return refused(file.name, errno);
+  if (S_ISDIR(status.st_mode)) return refused(file.name, EISDIR);
+
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  try {
+    // One byte more than the file has, so that its end is seen without growing.
+    if (S_ISREG(status.st_mode)) file.bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
+    for (std::size_t size = 0;;) {
+      const std::size_t room = file.bytes.capacity() - size;
+      file.bytes.resize(size + (room > 0 ? std::min(room, kChunk) : kChunk));
+      const ssize_t got = ::read(fd, file.bytes.data() + size, file.bytes.size() - size);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) return refused(file.name, errno);
+      size += static_cast<std::size_t>(got);
+      if (got == 0) {
+        file.bytes.resize(size);
+        return file;
+      }
+    }
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", file.name));
+}
+
+Result<void> write_file(const std::string& path, const Writer& write) {
+  if (path == "-") return write_to(STDOUT_FILENO, "standard output", write);
+  if (path.empty()) return fail(Error::Code::kIo, "a file to be written needs a name");
+
+  const Result<fs::path> target = end_of_links(path);
+  if (!target) return tl::unexpected(target.error());
+
+  struct stat status = {};
+  const bool exists = ::stat(target->c_str(), &status) == 0;
+  if (!exists && errno != ENOENT) return refused(path, errno);
+  if (!exists) return replace(*target, std::nullopt, path, write);
+  if (S_ISDIR(status.st_mode)) return refused(path, EISDIR);
+  // A rename would ask for the folder's rights only, and take a write protection for nothing.
+  if (::access(target->c_str(), W_OK) != 0) return refused(path, errno);
+  if (S_ISREG(status.st_mode)) return replace(*target, status.st_mode & 0777, path, write);
+
+  // A device or a pipe is written where it is: a rename would put a file into its place.
+  Descriptor device(::open(target->c_str(), O_WRONLY | O_CLOEXEC));
+  if (!device.valid()) return refused(path, errno);
+  if (const Result<void> written = write_to(device.get(), path, write); !written) return written;
+  if (const int error = device.close()) return refused(path, error);
+  return {};
+}
+
+}  // namespace pingvox

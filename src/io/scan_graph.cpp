@@ -1,0 +1,142 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/byte_reader.hpp"
+#include "io/octomap_pose.hpp"
+#include "io/readers.hpp"
+#include "io/scans.hpp"
+
+// OctoMap's scan graph, as its ScanGraph::writeBinary leaves it on a little-endian machine (docs/formats.md): u32
+// nodes, the nodes, u32 edges, the edges. A node is u32 points, the points, a translation, a rotation, u32 id. Each
+// point, translation and rotation has its own u32 count (3 or 4) in front of its f64 values.
+namespace pingvox {
+namespace {
+
+constexpr std::uint32_t kVectorCount = 3;
+constexpr std::uint32_t kRotationCount = 4;
+constexpr std::size_t kVectorBytes = 4 + 3 * 8;
+constexpr std::size_t kRotationBytes = 4 + 4 * 8;
+constexpr std::size_t kEdgeBytes = 2 * 4 + kVectorBytes + kRotationBytes + 8;
+constexpr std::size_t kRestOfNodeBytes = kVectorBytes + kRotationBytes + 4;
+
+/// The values behind a count that must be N.
+template <std::size_t N>
+std::optional<std::array<float, N>> counted_values(std::span<const std::uint8_t> bytes) {
+  if (value_from<std::uint32_t>(bytes, std::endian::little) != N) return std::nullopt;
+  std::array<float, N> values;
+  for (std::size_t i = 0; i < N; ++i) {
+    values[i] = static_cast<float>(value_from<double>(bytes.subspan(4 + 8 * i), std::endian::little));
+  }
+  return values;
+}
+
+/// Points of the next node; nullopt when the node does not fit into what is left.
+std::optional<std::span<const std::uint8_t>> take_points(ByteReader& reader) {
+  const auto points = reader.read<std::uint32_t>();
+  if (!points || reader.left() < kRestOfNodeBytes) return std::nullopt;
+  const std::uint64_t bytes = std::uint64_t{*points} * kVectorBytes;
+  if (bytes > reader.left() - kRestOfNodeBytes) return std::nullopt;
+  return reader.take(bytes);
+}
+
+class ScanGraphSource : public ScanSource {
+ public:
+  ScanGraphSource(FileBytes file, Damage damage)
+      : file_(std::move(file)), damage_(damage), reader_(file_.view()), nodes_(*reader_.read<std::uint32_t>()) {}
+
+  Result<std::optional<PointScan>> next() override {
+    while (node_ < nodes_) {
+      const std::size_t node = node_++;
+      const auto points = take_points(reader_);
+      const auto translation = counted_values<3>(*reader_.take(kVectorBytes));
+      const auto rotation = counted_values<4>(*reader_.take(kRotationBytes));
+      reader_.take(4);
+
+      const std::string place = fmt::format("scan {}", node);
+      if (!translation || !rotation || !is_rotation(*rotation)) {
+        const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, place, "its pose is damaged");
+        if (!damaged) return tl::unexpected(damaged.error());
+        continue;
+      }
+      ScanBuilder scan({*translation, *rotation});
+      if (!scan.origin_is_finite()) {
+        const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, place, "its pose is not finite");
+        if (!damaged) return tl::unexpected(damaged.error());
+        continue;
+      }
+      const std::size_t count = points->size() / kVectorBytes;
+      scan.reserve(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto point = counted_values<3>(points->subspan(i * kVectorBytes, kVectorBytes));
+        if (point && scan.add(*point)) continue;
+        const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, fmt::format("scan {}, point {}", node, i),
+                                               point ? "is not finite" : "is damaged");
+        if (!damaged) return tl::unexpected(damaged.error());
+      }
+      return std::move(scan).finish();
+    }
+    return std::nullopt;
+  }
+
+  std::size_t skipped() const override { return skipped_; }
+
+ private:
+  FileBytes file_;
+  Damage damage_;
+  ByteReader reader_;
+  std::size_t nodes_;
+  std::size_t node_ = 0;
+  std::size_t skipped_ = 0;
+};
+
+}  // namespace
+
+bool looks_like_scan_graph(std::span<const std::uint8_t> bytes) {
+  ByteReader reader(bytes);
+  const auto nodes = reader.read<std::uint32_t>();
+  if (!nodes) return false;
+  // A graph of nothing: no nodes, no edges.
+  if (*nodes == 0) return bytes.size() == 8 && value_from<std::uint32_t>(bytes.subspan(4), std::endian::little) == 0;
+
+  // There is no magic number, but a count of 3 in front of each vector. Some of them are enough, since a text has no
+  // such bytes; and the end of the file is not asked for, since a file that was cut off is still one of this kind.
+  const auto points = reader.read<std::uint32_t>();
+  if (!points) return false;
+  const std::uint64_t vectors = std::min<std::uint64_t>(std::uint64_t{*points} + 1, 4);
+  for (std::uint64_t i = 0; i < vectors; ++i) {
+    const auto vector = reader.take(kVectorBytes);
+    if (!vector) return i > 0;
+    if (value_from<std::uint32_t>(*vector, std::endian::little) != kVectorCount) return false;
+  }
+  const auto rotation = *points < 4 ? reader.read<std::uint32_t>() : std::nullopt;
+  return !rotation || *rotation == kRotationCount;
+}
+
+Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damage) {
+  const auto corrupt = [&file](std::string_view what) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, what));
+  };
+  // All counts against all bytes, before any of them is believed.
+  ByteReader reader(file.view());
+  const auto nodes = reader.read<std::uint32_t>();
+  if (!nodes) return corrupt("a scan graph of less than four bytes");
+  for (std::uint32_t node = 0; node < *nodes; ++node) {
+    const std::size_t start = reader.position();
+    if (!take_points(reader)) {
+      return corrupt(fmt::format("byte {}: scan {} of {} does not fit into the {} bytes that are left", start, node,
+                                 *nodes, file.bytes.size() - start));
+    }
+    reader.take(kRestOfNodeBytes);
+  }
+  const auto edges = reader.read<std::uint32_t>();
+  if (!edges) return corrupt("cut off before the list of edges");
+  if (std::uint64_t{*edges} * kEdgeBytes != reader.left()) {
+    return corrupt(fmt::format("byte {}: {} edges need {} bytes, {} are left", reader.position(), *edges,
+                               std::uint64_t{*edges} * kEdgeBytes, reader.left()));
+  }
+  return std::make_unique<ScanGraphSource>(std::move(file), damage);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,31 @@
+#include "io/scans.hpp"
+
+#include <cmath>
+
+namespace pingvox {
+namespace {
+
+Eigen::Vector3d widened(const Point3f& p) {
+  return Eigen::Vector3f(p[0], p[1], p[2]).cast<double>();
+}
+
+}  // namespace
+
+bool is_rotation(const std::array<float, 4>& quaternion) {
+  double squares = 0.0;
+  for (const float c : quaternion) squares += static_cast<double>(c) * static_cast<double>(c);
+  return std::fabs(std::sqrt(squares) - 1.0) <= 1e-3;  // false for NaN
+}
+
+ScanBuilder::ScanBuilder(const OctomapPose& pose) : pose_(pose) {
+  scan_.origin_m = widened(pose_.ray_origin());
+}
+
+bool ScanBuilder::add(const Point3f& point) {
+  const Eigen::Vector3d moved = widened(pose_.transform(point));
+  if (!moved.allFinite()) return false;
+  scan_.points_m.push_back(moved);
+  return true;
+}
+
+}  // namespace pingvox

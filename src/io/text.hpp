@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace pingvox {
+
+/// Bytes as characters, without a copy.
+std::string_view text_of(std::span<const std::uint8_t> bytes);
+
+/// The lines of a text, one after the other, without their LF or CR LF. A UTF-8 mark at the start is left out, and the
+/// last line needs no end.
+class Lines {
+ public:
+  explicit Lines(std::string_view text);
+
+  /// nullopt: there are no more.
+  std::optional<std::string_view> next();
+  /// The next one that is neither blank nor a comment (after blanks, `#`).
+  std::optional<std::string_view> next_with_content();
+  /// The number, from 1, of the line that next() gave last.
+  std::size_t number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+/// Without blanks and tabs at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// Cuts the next field off the front of `rest`, up to the separator or the end, and trims it. nullopt: `rest` is used
+/// up (its data() is null then), which an empty last field is not.
+std::optional<std::string_view> cut_field(std::string_view& rest, char separator);
+
+/// Cuts the next word off the front of `rest`: what stands between blanks, tabs and commas. nullopt: none is left.
+std::optional<std::string_view> cut_word(std::string_view& rest);
+
+/// All of `text` as a finite decimal number, rounded once to the type, in any locale. nullopt: it is none.
+std::optional<double> number_in(std::string_view text);
+std::optional<float> float_in(std::string_view text);
+
+}  // namespace pingvox

@@ -1,0 +1,91 @@
+#include "pingvox/io/tum.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/readers.hpp"
+#include "io/text.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::size_t kNumbers = 8;
+
+/// A pose, or what is wrong with the line.
+tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
+  std::array<double, kNumbers> n = {};
+  std::size_t count = 0;
+  for (; const auto word = cut_word(line); ++count) {
+    if (count == kNumbers) return tl::unexpected(std::string("more than 8 numbers"));
+    const std::optional<double> number = number_in(*word);
+    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", word->substr(0, 40)));
+    n[count] = *number;
+  }
+  if (count < kNumbers) return tl::unexpected(fmt::format("{} numbers instead of 8", count));
+
+  const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
+  const double norm = rotation.norm();
+  if (!(std::fabs(norm - 1.0) <= 1e-3)) return tl::unexpected(fmt::format("its quaternion has length {}", norm));
+  StampedPose pose;
+  pose.time_s = n[0];
+  pose.map_from_body.linear() = rotation.normalized().toRotationMatrix();
+  pose.map_from_body.translation() = Eigen::Vector3d(n[1], n[2], n[3]);
+  return pose;
+}
+
+/// With nine decimals, as everybody writes it, or with as many as it needs to be read back.
+std::string time_text(double time_s) {
+  std::string text = fmt::format("{:.9f}", time_s);
+  return number_in(text) == time_s ? text : fmt::format("{}", time_s);
+}
+
+}  // namespace
+
+bool looks_like_tum(std::span<const std::uint8_t> bytes) {
+  Lines lines(text_of(bytes));
+  std::string_view line = lines.next_with_content().value_or("");
+  std::size_t count = 0;
+  while (const auto word = cut_word(line)) {
+    if (++count > kNumbers + 1 || !number_in(*word)) return false;
+  }
+  // One more or less is a trajectory with a damaged first line.
+  return count + 1 >= kNumbers;
+}
+
+Result<Trajectory> read_tum(const FileBytes& file) {
+  Lines lines(text_of(file.view()));
+  const auto corrupt = [&](std::string_view what) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), what));
+  };
+  std::vector<StampedPose> poses;
+  while (const auto line = lines.next_with_content()) {
+    const tl::expected<StampedPose, std::string> pose = pose_in(*line);
+    if (!pose) return corrupt(pose.error());
+    if (!poses.empty() && !(pose->time_s > poses.back().time_s)) {
+      return corrupt(
+          fmt::format("time {} s does not come after {} s of the pose before it", pose->time_s, poses.back().time_s));
+    }
+    poses.push_back(*pose);
+  }
+  if (poses.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: holds no poses", file.name));
+  return Trajectory::make(std::move(poses));
+}
+
+Result<void> write_tum(const Trajectory& trajectory, std::ostream& out) {
+  out << "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& pose : trajectory.poses()) {
+    const Eigen::Vector3d at = pose.map_from_body.translation();
+    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.map_from_body.linear()).normalized();
+    out << fmt::format("{} {} {} {} {} {} {} {}\n", time_text(pose.time_s), at.x(), at.y(), at.z(), q.x(), q.y(), q.z(),
+                       q.w());
+  }
+  if (!out.flush()) return fail(Error::Code::kIo, "the trajectory could not be written");
+  return {};
+}
+
+}  // namespace pingvox

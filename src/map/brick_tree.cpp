@@ -1,0 +1,424 @@
+#include "pingvox/map/brick_tree.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace pingvox {
+namespace detail {
+namespace {
+
+constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
+
+std::uint64_t octant_mask(int octant) {
+  return std::uint64_t{0xFF} << (octant * 8);
+}
+
+int octant_known(const Brick& brick, int octant) {
+  return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
+}
+
+Brick brick_of(Entry entry) {
+  Brick brick;
+  if (entry.is_leaf()) {
+    brick.known = kAllCells;
+    brick.value.fill(entry.value);
+  }
+  return brick;
+}
+
+Group group_of(Entry entry) {
+  Group group;
+  if (entry.is_leaf()) group.child.fill(entry);
+  return group;
+}
+
+/// Belief of a cell after more evidence, as raw floats; `updated_by` has the rule.
+float added(float belief, LogOdds evidence, const Clamp& clamp) {
+  return updated_by(LogOdds(belief), evidence, clamp).value();
+}
+
+float clamped(float value, const Clamp& clamp) {
+  return std::clamp(value, clamp.lowest.value(), clamp.highest.value());
+}
+
+/// Index of the highest bit in which two keys differ. REQUIRES that they do.
+int highest_difference(const WideKey& a, const WideKey& b) {
+  const WideWord difference = (a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z);
+  const auto high = static_cast<std::uint64_t>(difference >> 64);
+  const auto low = static_cast<std::uint64_t>(difference);
+  return high != 0 ? 127 - std::countl_zero(high) : 63 - std::countl_zero(low);
+}
+
+/// What a brick became: itself, or less when it is uniform.
+Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+  const Brick& brick = tree.bricks[index];
+  if (pruning != Pruning::kNever && is_uniform(brick)) {
+    const Entry leaf = Entry::leaf(brick.value[0]);
+    tree.bricks.release(index);
+    return leaf;
+  }
+  return {index, summary_of(brick, parents)};
+}
+
+Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+  const Group& group = tree.groups[index];
+  if (pruning != Pruning::kNever && is_uniform(group)) {
+    const Entry leaf = group.child[0];
+    tree.groups.release(index);
+    return leaf;
+  }
+  return {index, summary_of(group, parents)};
+}
+
+Entry pruned(BrickTree& tree, Entry entry, int depth, Parents parents) {
+  if (!entry.is_inner()) return entry;
+  if (depth == tree.brick_depth()) return settled_brick(tree, entry.link, parents, Pruning::kWhenSettled);
+  for (std::size_t o = 0; o < 8; ++o) {
+    const Entry child = pruned(tree, tree.groups[entry.link].child[o], depth + 1, parents);
+    tree.groups[entry.link].child[o] = child;
+  }
+  return settled_group(tree, entry.link, parents, Pruning::kWhenSettled);
+}
+
+/// Copies what hangs below an entry of another tree into this one, clamped.
+Entry copied(BrickTree& tree, const BrickTree& other, Entry entry, int depth, Parents parents, const Clamp& clamp) {
+  if (entry.is_none()) return entry;
+  if (entry.is_leaf()) return Entry::leaf(clamped(entry.value, clamp));
+  if (depth == tree.brick_depth()) {
+    Brick brick = other.bricks[entry.link];
+    for (std::size_t i = 0; i < 64; ++i) {
+      if ((brick.known >> i) & 1) brick.value[i] = clamped(brick.value[i], clamp);
+    }
+    return settled_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kWhenSettled);
+  }
+  const std::uint32_t index = tree.groups.allocate({});
+  for (std::size_t o = 0; o < 8; ++o) {
+    const Entry child = copied(tree, other, other.groups[entry.link].child[o], depth + 1, parents, clamp);
+    tree.groups[index].child[o] = child;
+  }
+  return settled_group(tree, index, parents, Pruning::kWhenSettled);
+}
+
+Entry merged_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Parents parents, const Clamp& clamp) {
+  const std::uint32_t index = a.is_inner() ? a.link : tree.bricks.allocate(brick_of(a));
+  Brick& into = tree.bricks[index];
+  const Brick from = b.is_leaf() ? brick_of(b) : other.bricks[b.link];
+  for (std::size_t i = 0; i < 64; ++i) {
+    if (!((from.known >> i) & 1)) continue;
+    const bool known = (into.known >> i) & 1;
+    into.value[i] = known ? clamped(into.value[i] + from.value[i], clamp) : clamped(from.value[i], clamp);
+  }
+  into.known |= from.known;
+  return settled_brick(tree, index, parents, Pruning::kWhenSettled);
+}
+
+}  // namespace
+
+float summary_of(const Group& group, Parents parents) {
+  float highest = std::numeric_limits<float>::lowest();
+  double sum = 0.0;
+  int known = 0;
+  for (const Entry& child : group.child) {
+    if (child.is_none()) continue;
+    highest = std::max(highest, child.value);
+    sum += double{child.value};
+    ++known;
+  }
+  assert(known > 0);
+  return parents == Parents::kMax ? highest : static_cast<float>(sum / known);
+}
+
+float summary_of_octant(const Brick& brick, int octant, Parents parents) {
+  const int mask = octant_known(brick, octant);
+  assert(mask != 0);
+  const float* const value = brick.value.data() + octant * 8;
+  float highest = std::numeric_limits<float>::lowest();
+  double sum = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    if (!((mask >> i) & 1)) continue;
+    highest = std::max(highest, value[i]);
+    sum += double{value[i]};
+  }
+  return parents == Parents::kMax ? highest : static_cast<float>(sum / std::popcount(static_cast<unsigned>(mask)));
+}
+
+float summary_of(const Brick& brick, Parents parents) {
+  float highest = std::numeric_limits<float>::lowest();
+  double sum = 0.0;
+  int known = 0;
+  for (int o = 0; o < 8; ++o) {
+    if (octant_known(brick, o) == 0) continue;
+    const float value = summary_of_octant(brick, o, parents);
+    highest = std::max(highest, value);
+    sum += double{value};
+    ++known;
+  }
+  assert(known > 0);
+  return parents == Parents::kMax ? highest : static_cast<float>(sum / known);
+}
+
+bool is_uniform(const Group& group) {
+  return group.child[0].is_leaf() &&
+         std::all_of(group.child.begin(), group.child.end(), [&](const Entry& c) { return c == group.child[0]; });
+}
+
+bool is_uniform(const Brick& brick) {
+  return brick.known == kAllCells &&
+         std::all_of(brick.value.begin(), brick.value.end(), [&](float v) { return v == brick.value[0]; });
+}
+
+bool is_uniform_octant(const Brick& brick, int octant) {
+  const float* const value = brick.value.data() + octant * 8;
+  return octant_known(brick, octant) == 0xFF && std::all_of(value, value + 8, [&](float v) { return v == value[0]; });
+}
+
+void release_below(BrickTree& tree, Entry entry, int depth) {
+  if (!entry.is_inner()) return;
+  if (depth == tree.brick_depth()) {
+    tree.bricks.release(entry.link);
+    return;
+  }
+  for (const Entry& child : Group(tree.groups[entry.link]).child) release_below(tree, child, depth + 1);
+  tree.groups.release(entry.link);
+}
+
+void prune_all(BrickTree& tree, Parents parents) {
+  tree.root = pruned(tree, tree.root, 0, parents);
+  tree.pruned = true;
+}
+
+Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents,
+             const Clamp& clamp) {
+  if (b.is_none()) return a;
+  if (a.is_none()) return copied(tree, other, b, depth, parents, clamp);
+  if (a.is_leaf() && b.is_leaf()) return Entry::leaf(clamped(a.value + b.value, clamp));
+  if (depth == tree.brick_depth()) return merged_brick(tree, a, other, b, parents, clamp);
+  const std::uint32_t index = a.is_inner() ? a.link : tree.groups.allocate(group_of(a));
+  for (std::size_t o = 0; o < 8; ++o) {
+    const Entry from = b.is_leaf() ? b : other.groups[b.link].child[o];
+    const Entry child = merged(tree, tree.groups[index].child[o], other, from, depth + 1, parents, clamp);
+    tree.groups[index].child[o] = child;
+  }
+  return settled_group(tree, index, parents, Pruning::kWhenSettled);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+Cursor::Cursor(BrickTree& tree, const Rules& rules) : tree_(tree), rules_(rules) {}
+
+Entry& Cursor::entry_at(int depth) {
+  if (depth == 0) return tree_.root;
+  const auto above = static_cast<std::size_t>(depth - 1);
+  return tree_.groups[group_[above]].child[static_cast<std::size_t>(octant_at(depth - 1))];
+}
+
+void Cursor::move_to(const WideKey& key) {
+  if (reach_ > 0 || brick_stale_) {
+    const WideKey from{key_.x >> 2, key_.y >> 2, key_.z >> 2}, to{key.x >> 2, key.y >> 2, key.z >> 2};
+    const int common = from == to ? tree_.brick_depth() : tree_.brick_depth() - 1 - highest_difference(from, to);
+    if (common < reach_) {
+      settle_down_to(common + 1);
+      reach_ = std::min(reach_, common);
+    }
+  }
+  key_ = key;
+  Entry entry = entry_at(reach_);
+  while (reach_ < tree_.brick_depth() && entry.is_inner()) {
+    const auto at = static_cast<std::size_t>(reach_);
+    group_[at] = entry.link;
+    stale_[at] = false;
+    ++reach_;
+    entry = tree_.groups[entry.link].child[static_cast<std::size_t>(octant_at(reach_ - 1))];
+  }
+}
+
+void Cursor::grow_to(int depth) {
+  while (reach_ < depth) {
+    const std::uint32_t index = tree_.groups.allocate(group_of(entry_at(reach_)));
+    entry_at(reach_).link = index;
+    mark_stale_above(reach_);
+    const auto at = static_cast<std::size_t>(reach_);
+    group_[at] = index;
+    stale_[at] = true;
+    ++reach_;
+  }
+}
+
+Brick& Cursor::brick_made() {
+  grow_to(tree_.brick_depth());
+  Entry& entry = entry_at(tree_.brick_depth());
+  if (!entry.is_inner()) {
+    entry.link = tree_.bricks.allocate(brick_of(entry));
+    mark_stale_above(reach_);
+  }
+  return tree_.bricks[entry.link];
+}
+
+void Cursor::settle_brick() {
+  if (!brick_stale_) return;
+  brick_stale_ = false;
+  Entry& entry = entry_at(tree_.brick_depth());
+  const Entry now = settled_brick(tree_, entry.link, rules_.parents, rules_.pruning);
+  if (now == entry && rules_.early_drop == EarlyDrop::kOn) return;
+  entry = now;
+  mark_stale_above(reach_);
+}
+
+void Cursor::settle_group(int depth) {
+  const auto at = static_cast<std::size_t>(depth);
+  if (!stale_[at]) return;
+  stale_[at] = false;
+  Entry& entry = entry_at(depth);
+  const Entry now = settled_group(tree_, entry.link, rules_.parents, rules_.pruning);
+  if (now.is_leaf()) reach_ = depth;
+  if (now == entry && rules_.early_drop == EarlyDrop::kOn) return;
+  entry = now;
+  mark_stale_above(depth);
+}
+
+// Makes right all entries of the path from its end up to `depth`; the path stays, as far as it is still there.
+void Cursor::settle_down_to(int depth) {
+  if (reach_ == tree_.brick_depth()) settle_brick();
+  for (int d = reach_ - 1; d >= std::max(depth, 0); --d) settle_group(d);
+}
+
+void Cursor::mark_stale_above(int depth) {
+  if (depth > 0) stale_[static_cast<std::size_t>(depth - 1)] = true;
+}
+
+void Cursor::after_change(int depth) {
+  mark_stale_above(depth);
+  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+}
+
+void Cursor::flush() {
+  settle_down_to(0);
+  reach_ = 0;
+}
+
+void Cursor::update(const WideKey& key, LogOdds evidence) {
+  move_to(key);
+  const auto cell = static_cast<std::size_t>(cell_in_brick(key));
+  const std::uint64_t bit = std::uint64_t{1} << cell;
+  const Entry entry = entry_at(reach_);
+  const bool in_brick = entry.is_inner();
+  const bool known = in_brick ? (tree_.bricks[entry.link].known & bit) != 0 : entry.is_leaf();
+  const float before = in_brick ? tree_.bricks[entry.link].value[cell] : entry.value;
+  const float after = added(before, evidence, rules_.clamp);
+  // What changes nothing is dropped before anything is made or marked. Evidence of nothing makes no cell known.
+  const bool changes = known ? after != before : evidence != LogOdds(0.0F);
+  if (!changes && (rules_.early_drop == EarlyDrop::kOn || !in_brick || !known)) return;
+  Brick& brick = brick_made();
+  brick.known |= bit;
+  brick.value[cell] = after;
+  brick_stale_ = true;
+  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+}
+
+void Cursor::vote(const WideKey& key, std::uint64_t missed, LogOdds miss, std::uint64_t hit, const float* hits) {
+  assert((missed & hit) == 0);
+  move_to(key);
+  const Entry entry = entry_at(reach_);
+  Brick brick = entry.is_inner() ? tree_.bricks[entry.link] : brick_of(entry);
+  bool changed = false;
+  for (std::uint64_t left = missed | hit; left != 0; left &= left - 1) {
+    const auto cell = static_cast<std::size_t>(std::countr_zero(left));
+    const std::uint64_t bit = left & (~left + 1);
+    const LogOdds evidence = (hit & bit) != 0 ? LogOdds(hits[cell]) : miss;
+    if (evidence == LogOdds(0.0F)) continue;
+    const float after = added(brick.value[cell], evidence, rules_.clamp);
+    changed |= after != brick.value[cell] || (brick.known & bit) == 0;
+    brick.value[cell] = after;
+    brick.known |= bit;
+  }
+  if (!changed && (rules_.early_drop == EarlyDrop::kOn || !entry.is_inner())) return;
+  grow_to(tree_.brick_depth());
+  Entry& at_brick = entry_at(tree_.brick_depth());
+  if (at_brick.is_inner()) {
+    tree_.bricks[at_brick.link] = brick;
+  } else if (rules_.pruning != Pruning::kNever && is_uniform(brick)) {
+    at_brick = Entry::leaf(brick.value[0]);
+    after_change(reach_);
+    return;
+  } else {
+    at_brick.link = tree_.bricks.allocate(brick);
+    mark_stale_above(reach_);
+  }
+  brick_stale_ = true;
+  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+}
+
+void Cursor::set(const WideKey& key, int depth, float value) {
+  move_to(key);
+  const int at = std::min(depth, tree_.brick_depth());
+  if (reach_ > at) {
+    // What lies below is thrown away, so there is nothing to settle there.
+    reach_ = at;
+    brick_stale_ = false;
+  }
+  grow_to(at);
+  Entry& entry = entry_at(at);
+  if (depth <= tree_.brick_depth()) {
+    release_below(tree_, entry, at);
+    entry = Entry::leaf(value);
+    brick_stale_ = false;
+    after_change(at);
+    return;
+  }
+  Brick& brick = brick_made();
+  const bool whole_octant = depth == tree_.levels - 1;
+  const int first = whole_octant ? key.octant(1) * 8 : cell_in_brick(key);
+  const int count = whole_octant ? 8 : 1;
+  brick.known |= whole_octant ? octant_mask(key.octant(1)) : std::uint64_t{1} << first;
+  std::fill_n(brick.value.begin() + first, count, value);
+  brick_stale_ = true;
+  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+}
+
+Cursor::Reach Cursor::reach(const WideKey& key) {
+  const WideKey from{key_.x >> 2, key_.y >> 2, key_.z >> 2}, to{key.x >> 2, key.y >> 2, key.z >> 2};
+  const int common = from == to ? tree_.brick_depth() : tree_.brick_depth() - 1 - highest_difference(from, to);
+  move_to(key);
+  return {common, reach_, entry_at(reach_).is_inner()};
+}
+
+}  // namespace detail
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+std::optional<NodeView> NodeView::of(const detail::BrickTree& tree, detail::Entry entry, int depth, Parents parents) {
+  if (entry.is_none()) return std::nullopt;
+  if (entry.is_leaf()) return NodeView(tree, Kind::kLeaf, depth, parents, 0, entry.value);
+  const Kind kind = depth == tree.brick_depth() ? Kind::kBrick : Kind::kGroup;
+  const NodeView node(tree, kind, depth, parents, entry.link, entry.value);
+  // A lattice of one level has its root in octant 0 of the brick.
+  return depth < tree.extra_levels ? node.child(0) : node;
+}
+
+std::optional<NodeView> NodeView::child(int octant) const {
+  assert(octant >= 0 && octant < 8);
+  switch (kind_) {
+    case Kind::kLeaf:
+      return std::nullopt;
+    case Kind::kGroup:
+      return of(*tree_, tree_->groups[index_].child[static_cast<std::size_t>(octant)], depth_ + 1, parents_);
+    case Kind::kBrick: {
+      const detail::Brick& brick = tree_->bricks[index_];
+      if (detail::octant_known(brick, octant) == 0) return std::nullopt;
+      const bool joined = tree_->pruned && detail::is_uniform_octant(brick, octant);
+      NodeView view(*tree_, joined ? Kind::kLeaf : Kind::kOctant, depth_ + 1, parents_, index_,
+                    detail::summary_of_octant(brick, octant, parents_));
+      view.octant_ = static_cast<std::uint8_t>(octant);
+      return view;
+    }
+    case Kind::kOctant: {
+      const detail::Brick& brick = tree_->bricks[index_];
+      const int cell = octant_ * 8 + octant;
+      if (((brick.known >> cell) & 1) == 0) return std::nullopt;
+      return NodeView(*tree_, Kind::kLeaf, depth_ + 1, parents_, 0, brick.value[static_cast<std::size_t>(cell)]);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace pingvox

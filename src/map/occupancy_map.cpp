@@ -1,0 +1,287 @@
+#include "pingvox/map/occupancy_map.hpp"
+
+#include <fmt/core.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/map/scan_update.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t saturated_sum(std::uint64_t a, std::uint64_t b) {
+  return a > kMost - b ? kMost : a + b;
+}
+
+detail::Cursor::Rules rules_of(const MapOptions& options, Pruning pruning) {
+  return {options.parents, pruning, options.early_drop, options.clamp};
+}
+
+void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCounts& counts) {
+  if (!node.is_leaf()) {
+    ++counts.inner;
+    for (int octant = 0; octant < 8; ++octant) {
+      if (const auto child = node.child(octant)) count(*child, depth, thresholds, counts);
+    }
+    return;
+  }
+  ++counts.leaves;
+  const int levels = depth - node.depth();
+  const std::uint64_t cells = levels > 21 ? kMost : std::uint64_t{1} << (3 * levels);
+  switch (classified(node.belief(), thresholds)) {
+    case Occupancy::kOccupied:
+      counts.occupied_cells = saturated_sum(counts.occupied_cells, cells);
+      break;
+    case Occupancy::kFree:
+      counts.free_cells = saturated_sum(counts.free_cells, cells);
+      break;
+    case Occupancy::kUnknown:
+      counts.undecided_cells = saturated_sum(counts.undecided_cells, cells);
+      break;
+  }
+}
+
+/// Calls f(lowest cell of the brick, missed, hit, evidence of hits) for each brick with marks, in the tree's order.
+template <class F>
+void for_each_brick(const ScanUpdate& scan, F&& f) {
+  for (const std::uint32_t index : scan.pages_in_order()) {
+    const ScanUpdate::Page& page = scan.page(index);
+    for (std::size_t brick = 0; brick < page.hit.size(); ++brick) {
+      const std::uint64_t hit = page.hit[brick];
+      const std::uint64_t missed = page.missed[brick] & ~hit;
+      if ((hit | missed) == 0) continue;
+      const auto offset = [&](unsigned axis) {
+        return static_cast<WideWord>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
+      };
+      const WideKey key{page.lowest.x | offset(0), page.lowest.y | offset(1), page.lowest.z | offset(2)};
+      f(key, missed, hit, hit != 0 ? scan.evidence(page, brick) : nullptr);
+    }
+  }
+}
+
+/// An upper bound of what applying a scan makes the tree's storage grow by.
+std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan) {
+  std::size_t bricks = 0, groups = 0;
+  detail::Cursor cursor(tree, {});
+  bool first = true;
+  for_each_brick(scan, [&](const WideKey& key, std::uint64_t, std::uint64_t, const float*) {
+    const detail::Cursor::Reach reach = cursor.reach(key);
+    if (!reach.has_brick) ++bricks;
+    // Groups that the brick before would have made are there already.
+    const int made_to = std::max(reach.depth, first ? 0 : reach.common_depth + 1);
+    if (made_to < tree.brick_depth()) groups += static_cast<std::size_t>(tree.brick_depth() - made_to);
+    first = false;
+  });
+  const auto beyond = [](std::size_t wanted, std::size_t spare) { return wanted > spare ? wanted - spare : 0; };
+  return beyond(bricks, tree.bricks.spare()) * sizeof(detail::Brick) +
+         beyond(groups, tree.groups.spare()) * sizeof(detail::Group);
+}
+
+std::size_t bytes_of(const detail::BrickTree& tree) {
+  return tree.groups.bytes() + tree.bricks.bytes();
+}
+
+}  // namespace
+
+Result<void> MapOptions::validate() const {
+  std::string bad;
+  if (const auto lattice = Lattice::make(resolution_m, depth); !lattice) bad += " " + lattice.error().message + ";";
+  const float low = clamp.lowest.value(), high = clamp.highest.value();
+  if (!(low < 0.0F && high > 0.0F && std::isfinite(low) && std::isfinite(high))) {
+    bad += fmt::format(" clamp must be finite with lowest < 0 < highest log-odds, is {} and {};", low, high);
+  }
+  if (!(thresholds.lower <= thresholds.upper)) {
+    bad += fmt::format(" lower threshold must not exceed the upper one, {} and {} do;", thresholds.lower.value(),
+                       thresholds.upper.value());
+  }
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "map:" + bad);
+}
+
+Result<OccupancyMap> OccupancyMap::make(const MapOptions& options) {
+  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+  return OccupancyMap(options);
+}
+
+OccupancyMap::OccupancyMap(const MapOptions& options)
+    : options_(options), lattice_(options.resolution_m, options.depth), tree_(options.depth) {
+  assert(options.validate());
+}
+
+std::optional<NodeView> OccupancyMap::root() const {
+  return NodeView::of(tree_, tree_.root, 0, options_.parents);
+}
+
+template <KeyWord W>
+std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>& key, int depth) const {
+  assert(depth >= 0 && depth <= lattice_.depth());
+  std::optional<NodeView> node = root();
+  while (node && !node->is_leaf() && node->depth() < depth) {
+    node = node->child(key.octant(lattice_.depth() - 1 - node->depth()));
+  }
+  return node;
+}
+
+template <KeyWord W>
+std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
+  detail::Entry entry = tree_.root;
+  for (int depth = 0; depth < tree_.brick_depth() && entry.is_inner(); ++depth) {
+    entry = tree_.groups[entry.link].child[static_cast<std::size_t>(tree_.octant_below(key, depth))];
+  }
+  if (entry.is_none()) return std::nullopt;
+  if (entry.is_leaf()) return LogOdds(entry.value);
+  const detail::Brick& brick = tree_.bricks[entry.link];
+  const auto cell = static_cast<std::size_t>(detail::cell_in_brick(key));
+  if (((brick.known >> cell) & 1) == 0) return std::nullopt;
+  return LogOdds(brick.value[cell]);
+}
+
+std::optional<LogOdds> OccupancyMap::at(const Eigen::Vector3d& point_m) const {
+  return with_key_word(lattice_.depth(), [&]<KeyWord W>() -> std::optional<LogOdds> {
+    const auto key = lattice_.key_of<W>(point_m);
+    return key ? at(*key) : std::nullopt;
+  });
+}
+
+template <KeyWord W>
+Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
+  const auto belief = at(key);
+  return belief ? classified(*belief, options_.thresholds) : Occupancy::kUnknown;
+}
+
+Occupancy OccupancyMap::classify(const Eigen::Vector3d& point_m) const {
+  const auto belief = at(point_m);
+  return belief ? classified(*belief, options_.thresholds) : Occupancy::kUnknown;
+}
+
+MapCounts OccupancyMap::counts() const {
+  MapCounts counts;
+  if (const auto node = root()) count(*node, lattice_.depth(), options_.thresholds, counts);
+  return counts;
+}
+
+std::optional<Box> OccupancyMap::bounds() const {
+  if (empty()) return std::nullopt;
+  const double inf = std::numeric_limits<double>::infinity();
+  Box box{Eigen::Vector3d::Constant(inf), Eigen::Vector3d::Constant(-inf)};
+  with_key_word(lattice_.depth(), [&]<KeyWord W>() {
+    for_each_leaf<W>(*this, {}, [&](const Leaf<W>& leaf) {
+      const Eigen::Vector3d corner = lattice_.lowest_corner_of(leaf.key, leaf.depth);
+      box.min = box.min.cwiseMin(corner);
+      box.max = box.max.cwiseMax((corner.array() + lattice_.cell_size_m(leaf.depth)).matrix());
+    });
+  });
+  return box;
+}
+
+std::size_t OccupancyMap::memory_bytes() const {
+  return bytes_of(tree_);
+}
+
+Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
+  try {
+    if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
+    if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
+      const std::size_t needed = bytes_of(tree_) + growth_of(tree_, scan);
+      if (needed > limit) {
+        return fail(Error::Code::kLimit,
+                    fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
+      }
+    }
+    ApplyReport report;
+    detail::Cursor cursor(tree_, rules_of(options_, Pruning::kWhenSettled));
+    for_each_brick(scan, [&](const WideKey& key, std::uint64_t missed, std::uint64_t hit, const float* evidence) {
+      cursor.vote(key, missed, scan.miss(), hit, evidence);
+      report.cells_freed += static_cast<std::uint64_t>(std::popcount(missed));
+      report.cells_hit += static_cast<std::uint64_t>(std::popcount(hit));
+    });
+    cursor.flush();
+    return report;
+  } catch (const std::bad_alloc&) {
+    detail::prune_all(tree_, options_.parents);
+    return fail(Error::Code::kLimit, "out of memory: the scan was taken in only in part");
+  }
+}
+
+Result<void> OccupancyMap::merge(const OccupancyMap& other) {
+  if (!(lattice_ == other.lattice_)) {
+    return fail(
+        Error::Code::kBadOption,
+        fmt::format("maps on different lattices cannot be merged: {} m and {} levels, {} m and {} levels",
+                    lattice_.resolution_m(), lattice_.depth(), other.lattice_.resolution_m(), other.lattice_.depth()));
+  }
+  try {
+    detail::BrickTree merged = tree_;
+    merged.root =
+        detail::merged(merged, merged.root, other.tree_, other.tree_.root, 0, options_.parents, options_.clamp);
+    if (!merged.pruned) detail::prune_all(merged, options_.parents);
+    if (const std::size_t limit = options_.memory_limit_bytes; limit > 0 && bytes_of(merged) > limit) {
+      return fail(Error::Code::kLimit,
+                  fmt::format("the merged map needs {} bytes, more than its limit of {}", bytes_of(merged), limit));
+    }
+    tree_ = std::move(merged);
+    return {};
+  } catch (const std::bad_alloc&) {
+    return fail(Error::Code::kLimit, "out of memory: the maps were not merged");
+  }
+}
+
+Editor OccupancyMap::edit(Pruning pruning) {
+  return Editor(*this, pruning);
+}
+
+void OccupancyMap::clear() {
+  tree_ = detail::BrickTree(lattice_.depth());
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+Editor::Editor(OccupancyMap& map, Pruning pruning) : map_(map), cursor_(map.tree_, rules_of(map.options_, pruning)) {
+  if (pruning == Pruning::kNever) {
+    map_.tree_.pruned = false;
+  } else if (!map_.tree_.pruned) {
+    detail::prune_all(map_.tree_, map_.options_.parents);
+  }
+}
+
+Editor::~Editor() {
+  synchronize();
+}
+
+template <KeyWord W>
+void Editor::update(const BasicKey<W>& key, LogOdds evidence) {
+  cursor_.update(key.template as<WideWord>(), evidence);
+}
+
+template <KeyWord W>
+void Editor::set(const BasicKey<W>& key, int depth, LogOdds belief) {
+  assert(depth >= 0 && depth <= map_.lattice_.depth());
+  cursor_.set(key.template as<WideWord>(), depth + map_.tree_.extra_levels, belief.value());
+}
+
+void Editor::synchronize() {
+  cursor_.flush();
+}
+
+// The five widths, compiled once here.
+#define PINGVOX_FOR_KEY_WORD(W)                                                          \
+  template std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>&) const;            \
+  template std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>&, int) const; \
+  template Occupancy OccupancyMap::classify(const BasicKey<W>&) const;                   \
+  template void Editor::update(const BasicKey<W>&, LogOdds);                             \
+  template void Editor::set(const BasicKey<W>&, int, LogOdds);
+PINGVOX_FOR_KEY_WORD(std::uint8_t)
+PINGVOX_FOR_KEY_WORD(std::uint16_t)
+PINGVOX_FOR_KEY_WORD(std::uint32_t)
+PINGVOX_FOR_KEY_WORD(std::uint64_t)
+PINGVOX_FOR_KEY_WORD(WideWord)
+#undef PINGVOX_FOR_KEY_WORD
+
+}  // namespace pingvox

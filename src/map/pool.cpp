@@ -1,0 +1,64 @@
+#include "pingvox/map/pool.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace pingvox::detail {
+namespace {
+
+constexpr std::size_t kPage = 4096;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+std::size_t room_for(std::size_t size, std::size_t had) {
+  if (size > std::numeric_limits<std::size_t>::max() / 4) throw std::bad_alloc();
+  const std::size_t wanted = std::max(size, had + had / 2);
+  return (wanted + kPage - 1) / kPage * kPage;
+}
+
+}  // namespace
+
+#ifdef __linux__
+
+void Arena::grow(std::size_t size) {
+  if (size <= size_) return;
+  const std::size_t room = room_for(size, size_);
+  void* const place = data_ == nullptr ? mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                                       : mremap(data_, size_, room, MREMAP_MAYMOVE);
+  if (place == MAP_FAILED) throw std::bad_alloc();
+  // Only advice: where huge pages are off, nothing is lost but speed.
+  if (room >= kHugePage) madvise(place, room, MADV_HUGEPAGE);
+  data_ = static_cast<std::byte*>(place);
+  size_ = room;
+}
+
+Arena::~Arena() {
+  if (data_ != nullptr) munmap(data_, size_);
+}
+
+#else
+
+void Arena::grow(std::size_t size) {
+  if (size <= size_) return;
+  const std::size_t room = room_for(size, size_);
+  auto* const place = static_cast<std::byte*>(::operator new(room, std::align_val_t{kPage}));
+  if (data_ != nullptr) {
+    std::memcpy(place, data_, size_);
+    ::operator delete(data_, std::align_val_t{kPage});
+  }
+  std::memset(place + size_, 0, room - size_);
+  data_ = place;
+  size_ = room;
+}
+
+Arena::~Arena() {
+  ::operator delete(data_, std::align_val_t{kPage});
+}
+
+#endif
+
+}  // namespace pingvox::detail

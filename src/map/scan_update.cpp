@@ -1,0 +1,96 @@
+#include "pingvox/map/scan_update.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace pingvox {
+namespace {
+
+constexpr std::uint32_t kFree = 0;
+
+std::size_t hashed(const WideKey& key) {
+  // Neighbouring pages must spread: multiply each component by a different odd constant, and take the high bits.
+  const auto mixed = [](WideWord word, std::uint64_t factor) {
+    word >>= ScanUpdate::kPageBits;
+    return (static_cast<std::uint64_t>(word) ^ static_cast<std::uint64_t>(word >> 64)) * factor;
+  };
+  const std::uint64_t sum =
+      mixed(key.x, 0x9E3779B97F4A7C15U) + mixed(key.y, 0xC2B2AE3D27D4EB4FU) + mixed(key.z, 0x165667B19E3779F9U);
+  return static_cast<std::size_t>(sum ^ (sum >> 29));
+}
+
+/// Whether the highest bit of a is below the highest bit of b.
+bool is_lower_in_highest_bit(WideWord a, WideWord b) {
+  return a < b && a < (a ^ b);
+}
+
+/// The tree's order: the axis that differs in the highest bit decides; in a tie z before y before x.
+bool is_before(const WideKey& a, const WideKey& b) {
+  WideWord most = a.z ^ b.z;
+  bool before = a.z < b.z;
+  if (is_lower_in_highest_bit(most, a.y ^ b.y)) {
+    most = a.y ^ b.y;
+    before = a.y < b.y;
+  }
+  if (is_lower_in_highest_bit(most, a.x ^ b.x)) before = a.x < b.x;
+  return before;
+}
+
+}  // namespace
+
+std::size_t ScanUpdate::slot_of(const WideKey& lowest) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = hashed(lowest) & mask;
+  while (slots_[slot] != kFree && pages_[slots_[slot] - 1].lowest != lowest) slot = (slot + 1) & mask;
+  return slot;
+}
+
+void ScanUpdate::rehash(std::size_t slots) {
+  slots_.assign(slots, kFree);
+  for (std::size_t i = 0; i < used_; ++i) slots_[slot_of(pages_[i].lowest)] = static_cast<std::uint32_t>(i + 1);
+}
+
+std::uint32_t ScanUpdate::page_of(const WideKey& key) {
+  if (slots_.size() < 2 * (used_ + 1)) rehash(std::max<std::size_t>(64, 2 * slots_.size()));
+  const auto lowest = [](WideWord word) { return word >> kPageBits << kPageBits; };
+  const WideKey corner{lowest(key.x), lowest(key.y), lowest(key.z)};
+  const std::size_t slot = slot_of(corner);
+  if (slots_[slot] != kFree) return slots_[slot] - 1;
+  if (used_ == pages_.size()) pages_.emplace_back();
+  Page& page = pages_[used_];
+  page.lowest = corner;
+  page.missed.fill(0);
+  page.hit.fill(0);
+  slots_[slot] = static_cast<std::uint32_t>(++used_);
+  return slots_[slot] - 1;
+}
+
+void ScanUpdate::mark_hit(std::uint32_t page_index, std::size_t cell, LogOdds evidence) {
+  Page& page = pages_[page_index];
+  const std::size_t brick = cell / 64;
+  if (page.hit[brick] == 0) {
+    if (evidence_used_ == evidence_.size()) evidence_.emplace_back();
+    page.evidence[brick] = static_cast<std::uint32_t>(evidence_used_++);
+    evidence_[page.evidence[brick]].fill(std::numeric_limits<float>::lowest());
+  }
+  page.hit[brick] |= std::uint64_t{1} << (cell % 64);
+  float& surest = evidence_[page.evidence[brick]][cell % 64];
+  surest = std::max(surest, evidence.value());
+}
+
+void ScanUpdate::clear() {
+  used_ = 0;
+  evidence_used_ = 0;
+  std::fill(slots_.begin(), slots_.end(), kFree);
+}
+
+std::vector<std::uint32_t> ScanUpdate::pages_in_order() const {
+  std::vector<std::uint32_t> order(used_);
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [this](std::uint32_t a, std::uint32_t b) { return is_before(pages_[a].lowest, pages_[b].lowest); });
+  return order;
+}
+
+}  // namespace pingvox

@@ -1,0 +1,79 @@
+#include "pingvox/map/trace_ray.hpp"
+
+#include "pingvox/map/ray_bresenham.hpp"
+#include "pingvox/map/ray_dda.hpp"
+
+namespace pingvox {
+namespace {
+
+/// Marks the cells of a ray, asking for a page only when the ray enters one.
+class Marker {
+ public:
+  explicit Marker(ScanUpdate& scan) : scan_(scan) {}
+
+  template <KeyWord W>
+  void miss(const BasicKey<W>& key) {
+    const BasicKey<W> page{static_cast<W>(key.x >> kBits), static_cast<W>(key.y >> kBits),
+                           static_cast<W>(key.z >> kBits)};
+    if (!inside_ || page.template as<WideWord>() != page_key_) {
+      page_ = scan_.page_of(key.template as<WideWord>());
+      page_key_ = page.template as<WideWord>();
+      inside_ = true;
+    }
+    scan_.mark_missed(page_, ScanUpdate::cell_in_page(key));
+  }
+
+ private:
+  static constexpr int kBits = ScanUpdate::kPageBits;
+  ScanUpdate& scan_;
+  WideKey page_key_;
+  std::uint32_t page_ = 0;
+  bool inside_ = false;
+};
+
+template <KeyWord W>
+bool trace(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, RayAlgorithm algorithm,
+           ScanUpdate& scan) {
+  Marker marker(scan);
+  if (algorithm == RayAlgorithm::kDda) {
+    const auto ray = dda<W>(lattice, from_m, to_m);
+    if (!ray) return false;
+    for (const BasicKey<W> key : *ray) marker.miss(key);
+    return true;
+  }
+  const auto from = lattice.key_of<W>(from_m), to = lattice.key_of<W>(to_m);
+  if (!from || !to) return false;
+  for (const BasicKey<W> key : bresenham(*from, *to)) marker.miss(key);
+  return true;
+}
+
+}  // namespace
+
+bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
+               RayAlgorithm algorithm, ScanUpdate& scan) {
+  return with_key_word(lattice.depth(), [&]<KeyWord W>() { return trace<W>(lattice, from_m, to_m, algorithm, scan); });
+}
+
+std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
+                         ScanUpdate& scan) {
+  std::size_t outside = 0;
+  for (const Eigen::Vector3d& point_m : points.points_m) {
+    const Eigen::Vector3d way_m = point_m - points.origin_m;
+    const double range_m = way_m.norm();
+    if (range_m > options.max_range_m) {
+      const Eigen::Vector3d end_m = points.origin_m + way_m * (options.max_range_m / range_m);
+      if (!trace_ray(lattice, points.origin_m, end_m, options.ray, scan)) ++outside;
+      continue;
+    }
+    const auto end = lattice.key_of<WideWord>(point_m);
+    if (!end) {
+      ++outside;
+      continue;
+    }
+    scan.add_hit(*end, options.hit);
+    if (!trace_ray(lattice, points.origin_m, point_m, options.ray, scan)) ++outside;
+  }
+  return outside;
+}
+
+}  // namespace pingvox

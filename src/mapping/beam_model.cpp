@@ -1,0 +1,109 @@
+#include "pingvox/mapping/beam_model.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pingvox {
+namespace {
+
+/// Angles from -width / 2 to width / 2, both included, at most `apart` from each other; 0 alone when there is no width.
+std::vector<double> spread(double width_rad, double apart_rad) {
+  if (width_rad <= 0.0) return {0.0};
+  const auto gaps = static_cast<std::size_t>(std::max(1.0, std::ceil(width_rad / apart_rad)));
+  std::vector<double> angles(gaps + 1);
+  for (std::size_t i = 0; i <= gaps; ++i) {
+    angles[i] = width_rad * (static_cast<double>(i) / static_cast<double>(gaps) - 0.5);
+  }
+  return angles;
+}
+
+double width_of(const BeamModelOptions& options) {
+  return options.shape == BeamShape::kRay ? 0.0 : options.width_rad;
+}
+
+double height_of(const BeamModelOptions& options) {
+  return options.shape == BeamShape::kCone ? options.height_rad : 0.0;
+}
+
+}  // namespace
+
+Result<void> BeamModelOptions::validate() const {
+  std::string bad;
+  if (!(width_rad > 0.0 && width_rad <= std::numbers::pi)) {
+    bad += fmt::format(" beam width must be in (0, 180] degrees, is {};", width_rad * 180.0 / std::numbers::pi);
+  }
+  if (!(height_rad > 0.0 && height_rad < std::numbers::pi)) {
+    bad += fmt::format(" beam height must be in (0, 180) degrees, is {};", height_rad * 180.0 / std::numbers::pi);
+  }
+  if (!(hit > LogOdds(0.0F)) || !std::isfinite(hit.value())) {
+    bad += fmt::format(" hit must be a probability in (0.5, 1), is {};", hit.probability());
+  }
+  if (!(miss < LogOdds(0.0F)) || !std::isfinite(miss.value())) {
+    bad += fmt::format(" miss must be a probability in (0, 0.5), is {};", miss.probability());
+  }
+  if (!(max_range_m > 0.0)) bad += fmt::format(" max range must be > 0 m, is {};", max_range_m);
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "beam model:" + bad);
+}
+
+LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
+  return LogOdds(hit.value() * 0.5F * (1.0F + static_cast<float>(intensity) / 255.0F));
+}
+
+double share_on_arc(double off_axis_rad, double width_rad, double cells_on_arc) {
+  const double off_axis = width_rad > 0.0 ? 2.0 * off_axis_rad / width_rad : 0.0;
+  return std::exp2(-off_axis * off_axis) / std::sqrt(std::max(1.0, cells_on_arc));
+}
+
+std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
+                                   double resolution_m) {
+  const double width = width_of(options), height = height_of(options);
+  const double apart_rad = resolution_m / (std::numbers::sqrt2 * std::max(range_m, resolution_m));
+  // The echo may come from anywhere along the beam's longer side.
+  const double arc_rad = std::max(width, height);
+  const double cells_on_arc = arc_rad * range_m / resolution_m;
+
+  const std::vector<double> azimuths = spread(width, apart_rad), elevations = spread(height, apart_rad);
+  std::vector<BundleRay> bundle;
+  bundle.reserve(azimuths.size() * elevations.size());
+  for (const double elevation : elevations) {
+    for (const double azimuth : azimuths) {
+      const double bearing = bearing_rad + azimuth;
+      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing), std::cos(elevation) * std::sin(bearing),
+                                      std::sin(elevation));
+      const double off_axis = options.shape == BeamShape::kCone ? elevation : azimuth;
+      bundle.push_back({direction, share_on_arc(off_axis, arc_rad, cells_on_arc)});
+    }
+  }
+  return bundle;
+}
+
+std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, const Beam& beam,
+                       const std::optional<Echo>& echo, const BeamModelOptions& options, ScanUpdate& scan) {
+  if (!echo && options.silent == Silent::kNothing) return 0;
+  const double heard_m = echo ? echo->range_m : static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
+  const bool is_hit = echo && heard_m <= options.max_range_m;
+  const double range_m = std::min(heard_m, options.max_range_m);
+  if (!(range_m > 0.0)) return 0;
+  const LogOdds evidence = echo && options.hit_from == HitFrom::kIntensity
+                               ? evidence_of_intensity(echo->intensity, options.hit)
+                               : options.hit;
+
+  std::size_t outside = 0;
+  const Eigen::Vector3d origin_m = map_from_sensor.translation();
+  for (const BundleRay& ray : beam_bundle(options, beam.bearing_rad, range_m, lattice.resolution_m())) {
+    const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * range_m);
+    if (!trace_ray(lattice, origin_m, end_m, options.ray, scan)) {
+      ++outside;
+    } else if (is_hit) {
+      const auto share = static_cast<float>(ray.share);
+      scan.add_hit(*lattice.key_of<WideWord>(end_m), LogOdds(evidence.value() * share));
+    }
+  }
+  return outside;
+}
+
+}  // namespace pingvox

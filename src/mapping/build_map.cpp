@@ -1,0 +1,156 @@
+#include "pingvox/mapping/build_map.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <utility>
+
+#include "pingvox/map/trace_ray.hpp"
+#include "pingvox/sonar/polar_image.hpp"
+#include "pingvox/sonar/sweep.hpp"
+
+namespace pingvox {
+namespace {
+
+/// Adds the time since the last lap to one stage after the other.
+class Stopwatch {
+ public:
+  void lap(double& stage_s) {
+    const auto now = Clock::now();
+    stage_s += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// The beams of a source, sweep by sweep, with ranges corrected for the true speed of sound.
+class SweepReader {
+ public:
+  SweepReader(BeamSource& source, double sound_speed_ratio) : source_(source), ratio_(sound_speed_ratio) {}
+
+  Result<std::optional<Sweep>> next() {
+    while (!ended_) {
+      Result<std::optional<Beam>> beam = source_.next();
+      if (!beam) return tl::unexpected(std::move(beam.error()));
+      if (!*beam) {
+        ended_ = true;
+        return assembler_.finish();
+      }
+      (*beam)->bin_length_m *= ratio_;
+      if (auto sweep = assembler_.add(std::move(**beam))) return sweep;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  BeamSource& source_;
+  double ratio_;
+  SweepAssembler assembler_;
+  bool ended_ = false;
+};
+
+/// Applies the scan and empties it.
+Result<void> apply(ScanUpdate& scan, OccupancyMap& map, BuildReport& report) {
+  const Result<ApplyReport> applied = map.apply(scan);
+  if (!applied) return tl::unexpected(applied.error());
+  report.cells_freed += applied->cells_freed;
+  report.cells_hit += applied->cells_hit;
+  scan.clear();
+  return {};
+}
+
+}  // namespace
+
+Result<void> BuildOptions::validate() const {
+  std::string bad;
+  for (const Result<void>& part : {filter.validate(), echo.validate(), model.validate()}) {
+    if (!part) bad += (bad.empty() ? "" : "; ") + part.error().message;
+  }
+  if (!body_from_sensor.matrix().allFinite()) bad += (bad.empty() ? "" : "; ") + std::string("mount is not finite");
+  if (!(sound_speed_ratio > 0.1 && sound_speed_ratio < 10.0)) {
+    bad += fmt::format("{}sound speed must be within a tenth and ten times of what the device assumed, is {} times",
+                       bad.empty() ? "" : "; ", sound_speed_ratio);
+  }
+  if (bad.empty()) return {};
+  return fail(Error::Code::kBadOption, bad);
+}
+
+Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_body, const BuildOptions& options,
+                              OccupancyMap& map, const Progress& progress) {
+  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+  SweepReader sweeps(source, options.sound_speed_ratio);
+  ScanUpdate scan(options.model.miss);
+  BuildReport report;
+  std::size_t unplaced = 0;  // beams that the trajectory or the lattice has no place for
+  Stopwatch watch;
+  for (;;) {
+    const Result<std::optional<Sweep>> sweep = sweeps.next();
+    watch.lap(report.seconds.read);
+    if (!sweep) return tl::unexpected(sweep.error());
+    if (!*sweep) break;
+
+    const std::vector<Beam>& beams = (*sweep)->beams;
+    const PolarImage image = filtered(PolarImage(**sweep), options.filter);
+    const std::vector<std::optional<Echo>> echoes = detect_echoes(image, **sweep, options.echo);
+    watch.lap(report.seconds.detect);
+
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      const std::optional<Pose> body = map_from_body.at(beams[i].time_s);  // each beam where it was heard: de-skew
+      if (!body) {
+        ++unplaced;
+        continue;
+      }
+      if (trace_beam(map.lattice(), *body * options.body_from_sensor, beams[i], echoes[i], options.model, scan) > 0) {
+        ++unplaced;
+      }
+      ++report.beams;
+      report.echoes += echoes[i].has_value();
+      if (options.vote == Vote::kPerBeam) {
+        watch.lap(report.seconds.trace);
+        if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
+        watch.lap(report.seconds.apply);
+      }
+    }
+    watch.lap(report.seconds.trace);
+    if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
+    watch.lap(report.seconds.apply);
+
+    report.sweeps += (*sweep)->extent != Sweep::Extent::kCut;
+    report.skipped = source.skipped() + unplaced;
+    if (progress) progress(report);
+  }
+  report.skipped = source.skipped() + unplaced;
+  return report;
+}
+
+Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, OccupancyMap& map,
+                              const Progress& progress) {
+  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+  const PointScanOptions how{options.model.ray, options.model.hit, options.model.max_range_m};
+  ScanUpdate scan(options.model.miss);
+  BuildReport report;
+  std::size_t unplaced = 0;
+  Stopwatch watch;
+  for (;;) {
+    const Result<std::optional<PointScan>> points = source.next();
+    watch.lap(report.seconds.read);
+    if (!points) return tl::unexpected(points.error());
+    if (!*points) break;
+    unplaced += trace_points(map.lattice(), **points, how, scan);
+    watch.lap(report.seconds.trace);
+    if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
+    watch.lap(report.seconds.apply);
+    report.beams += (*points)->points_m.size();
+    report.echoes += (*points)->points_m.size();
+    ++report.sweeps;
+    report.skipped = source.skipped() + unplaced;
+    if (progress) progress(report);
+  }
+  report.skipped = source.skipped() + unplaced;
+  return report;
+}
+
+}  // namespace pingvox
