@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <streambuf>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace pingvox {
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 tl::unexpected<Error> refused(std::string_view name, int error) {
-  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::strerror(error)));
+  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::system_category().message(error)));
 }
 
 /// A file descriptor that closes itself.
