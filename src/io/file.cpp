@@ -219,7 +219,7 @@ Result<void> write_file(const std::string& path, const Writer& write) {
   if (!exists) return replace(*target, std::nullopt, path, write);
   if (S_ISDIR(status.st_mode)) return refused(path, EISDIR);
   // A rename would ask for the folder's rights only, and take a write protection for nothing.
-  if (::access(target->c_str(), W_OK) != 0) return refused(path, errno);
+  if (::faccessat(AT_FDCWD, target->c_str(), W_OK, AT_EACCESS) != 0) return refused(path, errno);
   if (S_ISREG(status.st_mode)) return replace(*target, status.st_mode & 0777, path, write);
 
   // A device or a pipe is written where it is: a rename would put a file into its place.
