@@ -1,0 +1,185 @@
+#include "pingvox/mapping/build_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace pingvox {
+namespace {
+
+constexpr int kBeamsPerTurn = 200;
+constexpr double kBin_m = 0.0125;
+
+/// Turns of a head that hears one clean echo where `range_of(time, bearing)` says; none for a range <= 0.
+class Echoes : public BeamSource {
+ public:
+  Echoes(int beams, std::function<double(double, double)> range_of) : beams_(beams), range_of_(std::move(range_of)) {}
+
+  Result<std::optional<Beam>> next() override {
+    if (fail_at_ == n_) return fail(Error::Code::kIo, "log.csv: line 7: disk fell off");
+    if (n_ == beams_) return std::nullopt;
+    Beam beam;
+    beam.time_s = 0.04 * n_;
+    beam.bearing_rad = 2.0 * std::numbers::pi * (n_ % kBeamsPerTurn) / kBeamsPerTurn;
+    beam.bin_length_m = kBin_m;
+    beam.intensities.assign(400, 5);
+    const double range_m = range_of_(beam.time_s, beam.bearing_rad);
+    if (range_m > 0.0) {
+      const auto bin = static_cast<std::size_t>(range_m / kBin_m);
+      for (std::size_t i = bin; i < bin + 3 && i < beam.intensities.size(); ++i) beam.intensities[i] = 200;
+    }
+    ++n_;
+    return beam;
+  }
+
+  void fail_at(int n) { fail_at_ = n; }
+
+ private:
+  int beams_;
+  std::function<double(double, double)> range_of_;
+  int n_ = 0;
+  int fail_at_ = -1;
+};
+
+BuildOptions clean_options() {
+  BuildOptions options;
+  options.filter.filter = Filter::kNone;
+  options.model.hit_from = HitFrom::kFixed;
+  return options;
+}
+
+TEST(BuildMap, StillSensorInARoundTankMapsItsWall) {
+  Echoes source(2 * kBeamsPerTurn + 7, [](double, double) { return 2.0; });
+  OccupancyMap map;
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), clean_options(), map);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->beams, 407U);
+  EXPECT_EQ(report->echoes, 407U);
+  EXPECT_EQ(report->sweeps, 2U);
+  EXPECT_EQ(report->skipped, 0U);
+  EXPECT_GT(report->cells_freed, 3'000U);
+  for (int degrees = 0; degrees < 360; degrees += 9) {
+    const double bearing = degrees * std::numbers::pi / 180.0;
+    const Eigen::Vector3d way(std::cos(bearing), std::sin(bearing), 0.0);
+    EXPECT_EQ(map.classify(way * 1.5), Occupancy::kFree) << degrees;
+    EXPECT_EQ(map.classify(way * 2.5), Occupancy::kUnknown) << degrees;
+  }
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.01, 0.01, 0.01)), Occupancy::kOccupied);
+}
+
+// Kills one pose for a whole sweep: a vehicle that moves by 1.6 m in a turn would bend the wall.
+TEST(BuildMap, BeamsOfAMovingVehicleArePlacedWhereTheyWereHeard) {
+  constexpr double kSpeed_m_s = 0.2, kWall_m = 3.02;
+  Echoes source(kBeamsPerTurn, [](double time, double bearing) {
+    const double ahead = kWall_m - kSpeed_m_s * time;
+    return std::cos(bearing) > 0.3 ? ahead / std::cos(bearing) : 0.0;
+  });
+  const auto moving =
+      Trajectory::make({{0.0, Pose::Identity()}, {10.0, pose_from_rpy({10.0 * kSpeed_m_s, 0.0, 0.0}, 0.0, 0.0, 0.0)}});
+  ASSERT_TRUE(moving);
+  OccupancyMap map;
+  const auto report = build_map(source, *moving, clean_options(), map);
+  ASSERT_TRUE(report);
+  const auto bounds = map.bounds();
+  ASSERT_TRUE(bounds);
+  EXPECT_NEAR(bounds->max.x(), kWall_m, 0.08);
+  std::size_t walls = 0;
+  for (double y = -2.0; y < 2.0; y += 0.05) {
+    bool found = false;
+    for (double x = kWall_m - 0.05; x < kWall_m + 0.1; x += 0.025) {
+      found |= map.classify(Eigen::Vector3d(x, y + 0.025, 0.01)) == Occupancy::kOccupied;
+    }
+    walls += found;
+    EXPECT_NE(map.classify(Eigen::Vector3d(kWall_m - 0.3, y + 0.025, 0.01)), Occupancy::kOccupied);
+  }
+  EXPECT_GT(walls, 30U);
+}
+
+TEST(BuildMap, MountIsAppliedBetweenBodyAndSensor) {
+  Echoes source(kBeamsPerTurn, [](double, double bearing) { return bearing < 0.01 ? 2.0 : 0.0; });
+  BuildOptions options = clean_options();
+  options.body_from_sensor = pose_from_rpy({1.0, 0.0, -0.5}, 0.0, 0.0, std::numbers::pi / 2);
+  OccupancyMap map;
+  ASSERT_TRUE(build_map(source, Trajectory::still(Pose::Identity()), options, map));
+  EXPECT_EQ(map.classify(Eigen::Vector3d(1.01, 2.01, -0.49)), Occupancy::kOccupied);
+}
+
+TEST(BuildMap, BeamsOutsideOfTheTrajectoryAreLeftOutAndCounted) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
+  const auto known = Trajectory::make({{2.0, Pose::Identity()}, {4.0, Pose::Identity()}});
+  OccupancyMap map;
+  const auto report = build_map(source, *known, clean_options(), map);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->beams, 51U);
+  EXPECT_EQ(report->skipped, 149U);
+}
+
+// In a sweep a hit beats the misses of its neighbours; beam by beam they take turns.
+TEST(BuildMap, VotesPerSweepAndPerBeamDiffer) {
+  // Neighbouring beams alternate between 2 m and 3 m: the far ones pass the near ones' cells.
+  const auto alternating = [](double time, double) { return std::lround(time / 0.04) % 2 == 0 ? 0.9 : 3.0; };
+  BuildOptions options = clean_options();
+  options.model.shape = BeamShape::kFan;
+  OccupancyMap per_sweep, per_beam;
+  Echoes first(kBeamsPerTurn, alternating), second(kBeamsPerTurn, alternating);
+  ASSERT_TRUE(build_map(first, Trajectory::still(Pose::Identity()), options, per_sweep));
+  options.vote = Vote::kPerBeam;
+  ASSERT_TRUE(build_map(second, Trajectory::still(Pose::Identity()), options, per_beam));
+  EXPECT_GT(per_sweep.counts().occupied_cells, per_beam.counts().occupied_cells);
+}
+
+TEST(BuildMap, SoundSpeedScalesRanges) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
+  BuildOptions options = clean_options();
+  options.sound_speed_ratio = 1.1;
+  OccupancyMap map;
+  ASSERT_TRUE(build_map(source, Trajectory::still(Pose::Identity()), options, map));
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.21, 0.01, 0.01)), Occupancy::kOccupied);
+}
+
+TEST(BuildMap, FailingSourceIsReportedAndTheMapKeepsWhatWasApplied) {
+  Echoes source(3 * kBeamsPerTurn, [](double, double) { return 2.0; });
+  source.fail_at(kBeamsPerTurn + 50);
+  OccupancyMap map;
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), clean_options(), map);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().message, "log.csv: line 7: disk fell off");
+  EXPECT_FALSE(map.empty());
+}
+
+TEST(BuildMap, MemoryLimitStopsTheRunWithTheMapBeforeTheScan) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
+  OccupancyMap map({.memory_limit_bytes = 2'000});
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), clean_options(), map);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, Error::Code::kLimit);
+  EXPECT_TRUE(map.empty());
+}
+
+/// One scan of three points.
+class ThreePoints : public ScanSource {
+ public:
+  Result<std::optional<PointScan>> next() override {
+    if (std::exchange(given_, true)) return std::nullopt;
+    return PointScan{{0.05, 0.05, 0.05}, {{1.05, 0.05, 0.05}, {0.05, 2.05, 0.05}, {1e9, 0.0, 0.0}}};
+  }
+
+ private:
+  bool given_ = false;
+};
+
+TEST(BuildMap, PointScansFreeAndHitAndCountWhatLiesOutside) {
+  ThreePoints source;
+  OccupancyMap map({.resolution_m = 0.1});
+  const auto report = build_map(source, clean_options(), map);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->sweeps, 1U);
+  EXPECT_EQ(report->skipped, 1U);
+  EXPECT_EQ(report->cells_hit, 2U);
+  EXPECT_EQ(report->cells_freed, 29U);
+}
+
+}  // namespace
+}  // namespace pingvox
