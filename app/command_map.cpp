@@ -106,7 +106,8 @@ std::string text_of(const Totals& totals, const OccupancyMap& map, const std::st
   const auto& s = report.seconds;
   std::string read = fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes);
   if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
-  return fmt::format("{}\n", on_one_line(output)) + report_line("read", read) + map_text(map, map.counts()) +
+  const std::string name = output == "-" ? "standard output" : on_one_line(output);
+  return name + "\n" + report_line("read", read) + map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
