@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
@@ -15,12 +16,12 @@ namespace pingvox {
 template <class T>
   requires std::is_arithmetic_v<T>
 T value_from(std::span<const std::uint8_t> bytes, std::endian order) {
-  std::uint8_t raw[sizeof(T)];
+  std::array<std::uint8_t, sizeof(T)> raw;
   for (std::size_t i = 0; i < sizeof(T); ++i) {
     raw[i] = bytes[order == std::endian::native ? i : sizeof(T) - 1 - i];
   }
   T value;
-  std::memcpy(&value, raw, sizeof(T));
+  std::memcpy(&value, raw.data(), sizeof(T));
   return value;
 }
 

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <streambuf>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace pingvox {
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 tl::unexpected<Error> refused(std::string_view name, int error) {
-  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::strerror(error)));
+  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::system_category().message(error)));
 }
 
 /// A file descriptor that closes itself.
@@ -90,7 +90,7 @@ using Writer = std::function<Result<void>(std::ostream&)>;
 Result<void> write_to(int fd, std::string_view name, const Writer& write) {
   DescriptorBuffer buffer(fd);
   std::ostream out(&buffer);
-  const Result<void> written = write(out);
+  Result<void> written = write(out);
   out.flush();
   // The cause first: a writer can only say that its stream failed.
   if (buffer.error() != 0) return refused(name, buffer.error());
@@ -184,6 +184,7 @@ Result<FileBytes> read_file(const std::string& path) {
   if (::fstat(fd, &status) != 0) return refused(file.name, errno);
   if (S_ISDIR(status.st_mode)) return refused(file.name, EISDIR);
 
+  const auto too_large = [&] { return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", file.name)); };
   constexpr std::size_t kChunk = std::size_t{1} << 20;
   try {
     // One byte more than the file has, so that its end is seen without growing.
@@ -201,9 +202,10 @@ Result<FileBytes> read_file(const std::string& path) {
       }
     }
   } catch (const std::bad_alloc&) {
+    return too_large();
   } catch (const std::length_error&) {
+    return too_large();
   }
-  return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", file.name));
 }
 
 Result<void> write_file(const std::string& path, const Writer& write) {
@@ -219,7 +221,7 @@ Result<void> write_file(const std::string& path, const Writer& write) {
   if (!exists) return replace(*target, std::nullopt, path, write);
   if (S_ISDIR(status.st_mode)) return refused(path, EISDIR);
   // A rename would ask for the folder's rights only, and take a write protection for nothing.
-  if (::access(target->c_str(), W_OK) != 0) return refused(path, errno);
+  if (::faccessat(AT_FDCWD, target->c_str(), W_OK, AT_EACCESS) != 0) return refused(path, errno);
   if (S_ISREG(status.st_mode)) return replace(*target, status.st_mode & 0777, path, write);
 
   // A device or a pipe is written where it is: a rename would put a file into its place.
