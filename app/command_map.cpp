@@ -9,9 +9,9 @@
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/io/maps.hpp"
 #include "pingvox/io/tum.hpp"
 #include "progress.hpp"
+#include "write_map_file.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -142,7 +142,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       };
       const Result<BuildReport> report = map_log(*log, *trajectory, command.build, *map, progress);
       if (!report) return tl::unexpected(with_name(report.error(), name));
-      if (report->beams == 0 && report->sweeps == 0) {
+      if (report->beams == 0) {
         return fail(Error::Code::kCorrupt,
                     fmt::format("{}: nothing in it could be mapped ({} left out{})", name, report->skipped,
                                 command.poses ? "; do the times of the poses fit?" : ""));
