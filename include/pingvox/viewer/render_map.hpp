@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/viewer/picture.hpp"
+
+namespace pingvox {
+
+/// How colours are chosen: all differ in lightness, so that nobody needs to tell red from green.
+struct MapColours {
+  Rgb unknown{176, 182, 190};
+  Rgb undecided{138, 146, 160};  ///< seen, but between the thresholds
+  Rgb barely_free{226, 234, 244}, surely_free{255, 255, 255};
+  Rgb barely_occupied{74, 96, 168}, surely_occupied{10, 16, 64};
+};
+
+struct MapPictureOptions {
+  std::size_t target_px = 1000;            ///< about as long is the longer side of what is known, 16..3072
+  std::optional<double> min_z_m, max_z_m;  ///< only what overlaps this slab of the map frame
+  MapColours colours{};
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// A map seen from above, x (ahead) up and y (left) to the left: each column of cells has the colour of its surest
+/// belief of being occupied. A cell is a whole number of pixels; where the map is too large for that, a pixel is 2, 4,
+/// 8 ... cells wide and shows the highest of them, so that no wall is lost. Around it a border, a scale bar, a legend,
+/// and a cross at the origin of the map frame if that is in the picture.
+/// REQUIRES valid options
+Picture render_map(const OccupancyMap& map, const MapPictureOptions& options = {});
+
+}  // namespace pingvox

@@ -1,0 +1,169 @@
+#include "pingvox/viewer/render_echoes.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "viewer/label.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::ptrdiff_t kTextScale = 2;
+constexpr std::ptrdiff_t kLeft = 110, kRight = 40, kTop = 24, kBottom = 92, kTick = 8, kGap = 6;
+constexpr std::size_t kMostRows = 2000, kHighEnough = 800;
+constexpr std::ptrdiff_t kMarkWidth = 3;
+constexpr Rgb kPaper{255, 255, 255}, kInk{40, 44, 52};
+
+/// Where beams and ranges are in the picture.
+struct Scale {
+  std::size_t beams = 0;
+  double range_m = 0.0;     ///< of the longest beam
+  std::size_t columns = 0;  ///< pixels
+  std::size_t rows = 0;     ///< of one or more beams each
+  std::size_t row_px = 1;
+
+  std::size_t row_of(std::size_t beam) const { return beam * rows / beams; }
+  std::size_t column_of(double range) const {
+    const double column = range / range_m * static_cast<double>(columns);
+    return static_cast<std::size_t>(std::clamp(column, 0.0, static_cast<double>(columns - 1)));
+  }
+};
+
+Scale scale_of(std::span<const Beam> beams, std::size_t target_px) {
+  Scale scale;
+  scale.beams = beams.size();
+  std::size_t bins = 0;
+  for (const Beam& beam : beams) {
+    scale.range_m = std::max(scale.range_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
+    bins = std::max(bins, beam.intensities.size());
+  }
+  if (bins == 0) return scale;
+  // A whole number of pixels for each bin, as long as all beams are alike.
+  scale.columns = bins <= target_px ? target_px / bins * bins : target_px;
+  scale.rows = std::min(beams.size(), kMostRows);
+  if (beams.size() > kMostRows) {
+    const std::size_t shared = (beams.size() + kMostRows - 1) / kMostRows;
+    scale.rows = (beams.size() + shared - 1) / shared;
+  }
+  scale.row_px = std::clamp<std::size_t>(kHighEnough / scale.rows, 1, 16);
+  return scale;
+}
+
+constexpr int kNothing = -1;
+
+/// The loudest intensity of each pixel, kNothing where no beam reaches.
+std::vector<int> loudest(std::span<const Beam> beams, const Scale& scale) {
+  std::vector<int> pixels(scale.columns * scale.rows, kNothing);
+  for (std::size_t b = 0; b < beams.size(); ++b) {
+    int* const row = pixels.data() + scale.row_of(b) * scale.columns;
+    const Beam& beam = beams[b];
+    for (std::size_t i = 0; i < beam.intensities.size(); ++i) {
+      // By the bins' middles, so that rounding cannot put a border on the wrong side of a pixel.
+      const double pixel_m = scale.range_m / static_cast<double>(scale.columns);
+      const double from = static_cast<double>(i) * beam.bin_length_m / pixel_m;
+      const double to = static_cast<double>(i + 1) * beam.bin_length_m / pixel_m;
+      const auto first = static_cast<std::size_t>(from + 1e-6);
+      const auto last = std::max(first, static_cast<std::size_t>(std::max(to - 1e-6, 0.0)));
+      for (std::size_t x = first; x <= last && x < scale.columns; ++x) {
+        row[x] = std::max(row[x], static_cast<int>(beam.intensities[i]));
+      }
+    }
+  }
+  return pixels;
+}
+
+void draw_axes(Picture& picture, const Scale& scale) {
+  const auto width = static_cast<std::ptrdiff_t>(scale.columns);
+  const auto height = static_cast<std::ptrdiff_t>(scale.rows * scale.row_px);
+  picture.fill(kLeft - 2, kTop - 2, width + 4, 2, kInk);
+  picture.fill(kLeft - 2, kTop + height, width + 4, 2, kInk);
+  picture.fill(kLeft - 2, kTop, 2, height, kInk);
+  picture.fill(kLeft + width, kTop, 2, height, kInk);
+
+  const double step_m = round_length(scale.range_m / 3.0);
+  const std::ptrdiff_t below = kTop + height + 2;
+  for (int n = 0; n * step_m <= scale.range_m * (1.0 + 1e-9); ++n) {
+    const double range_m = n * step_m;
+    const auto x =
+        kLeft + static_cast<std::ptrdiff_t>(std::lround(range_m / scale.range_m * static_cast<double>(width)));
+    picture.fill(x - 1, below, 2, kTick, kInk);
+    const std::string text = length_text(range_m);
+    draw_label(picture, x - label_width(text, kTextScale) / 2 + 1, below + kTick + kGap, text, kTextScale, kInk);
+  }
+  draw_label(picture, kLeft, below + kTick + 2 * kGap + kTextScale * kLetterHeight, "range in m", kTextScale, kInk);
+
+  const auto step = static_cast<std::size_t>(std::max(1.0, round_length(static_cast<double>(scale.beams) / 3.0)));
+  for (std::size_t beam = 0; beam < scale.beams; beam += step) {
+    const auto y = kTop + static_cast<std::ptrdiff_t>(scale.row_of(beam) * scale.row_px);
+    picture.fill(kLeft - 2 - kTick, y, kTick, 2, kInk);
+    const std::string text = std::to_string(beam);
+    draw_label(picture, kLeft - 2 - kTick - kGap - label_width(text, kTextScale), y - 6, text, kTextScale, kInk);
+  }
+  draw_label(picture, kGap, below + kTick + kGap, "beam", kTextScale, kInk);
+}
+
+void draw_legend(Picture& picture, std::ptrdiff_t below, Rgb echo) {
+  const std::string text = "detected echo";
+  const auto x = static_cast<std::ptrdiff_t>(picture.width()) - kRight - label_width(text, kTextScale);
+  const std::ptrdiff_t y = below + kTick + 2 * kGap + kTextScale * kLetterHeight;
+  draw_label(picture, x, y, text, kTextScale, kInk);
+  picture.fill(x - 26, y, 18, 15, Rgb{30, 30, 30});
+  picture.fill(x - 19, y, kMarkWidth + 1, 15, echo);
+}
+
+}  // namespace
+
+Result<void> EchoPictureOptions::validate() const {
+  std::string bad;
+  if (target_px < 16 || target_px > 3072) bad += fmt::format(" target_px must be in 16..3072, is {};", target_px);
+  if (!(gamma > 0.0) || !std::isfinite(gamma)) bad += fmt::format(" gamma must be > 0, is {};", gamma);
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "echo picture:" + bad);
+}
+
+Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,
+                      const EchoPictureOptions& options) {
+  assert(options.validate());
+  assert(echoes.empty() || echoes.size() == beams.size());
+  const Scale scale = scale_of(beams, options.target_px);
+  if (scale.columns == 0) {
+    Picture picture(400, 80, kPaper);
+    draw_label(picture, 24, 30, "nothing was heard", kTextScale, kInk);
+    return picture;
+  }
+  std::array<Rgb, 256> greys;
+  for (std::size_t i = 0; i < greys.size(); ++i) {
+    const auto grey =
+        static_cast<std::uint8_t>(std::lround(255.0 * std::pow(static_cast<double>(i) / 255.0, options.gamma)));
+    greys[i] = {grey, grey, grey};
+  }
+
+  const std::size_t height = scale.rows * scale.row_px;
+  Picture picture(kLeft + scale.columns + kRight, kTop + height + kBottom, kPaper);
+  const auto row_px = static_cast<std::ptrdiff_t>(scale.row_px);
+  const std::vector<int> pixels = loudest(beams, scale);
+  for (std::size_t row = 0; row < scale.rows; ++row) {
+    for (std::size_t column = 0; column < scale.columns; ++column) {
+      const int intensity = pixels[row * scale.columns + column];
+      picture.fill(kLeft + static_cast<std::ptrdiff_t>(column), kTop + static_cast<std::ptrdiff_t>(row) * row_px, 1,
+                   row_px, intensity == kNothing ? options.nothing : greys[static_cast<std::size_t>(intensity)]);
+    }
+  }
+  for (std::size_t b = 0; b < echoes.size(); ++b) {
+    if (!echoes[b]) continue;
+    const auto x = kLeft + static_cast<std::ptrdiff_t>(scale.column_of(echoes[b]->range_m));
+    const auto y = kTop + static_cast<std::ptrdiff_t>(scale.row_of(b)) * row_px;
+    picture.fill(std::max(x - kMarkWidth / 2, kLeft), y, kMarkWidth, row_px, options.echo);
+  }
+  draw_axes(picture, scale);
+  if (!echoes.empty()) draw_legend(picture, kTop + static_cast<std::ptrdiff_t>(height) + 2, options.echo);
+  return picture;
+}
+
+}  // namespace pingvox

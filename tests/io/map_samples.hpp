@@ -1,0 +1,156 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "pingvox/io/maps.hpp"
+#include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+
+// Maps, and their bytes, for the tests of the readers and writers of maps.
+namespace pingvox::samples {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline Bytes bytes_of(std::string_view text) {
+  return {text.begin(), text.end()};
+}
+
+/// From hex digits; anything else between them is left out.
+inline Bytes bytes_of_hex(std::string_view hex) {
+  Bytes bytes;
+  int high = -1;
+  for (const char c : hex) {
+    const int digit = c >= '0' && c <= '9' ? c - '0' : (c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1);
+    if (digit < 0) continue;
+    if (high >= 0) bytes.push_back(static_cast<std::uint8_t>(high * 16 + digit));
+    high = high >= 0 ? -1 : digit;
+  }
+  return bytes;
+}
+
+inline Bytes written(const OccupancyMap& map, Format format, std::string_view made_by = {}) {
+  std::ostringstream out;
+  const auto done = write_map(map, format, made_by, out);
+  EXPECT_TRUE(done) << done.error().message;
+  return bytes_of(out.str());
+}
+
+inline Result<MapFile> read(Bytes bytes, std::size_t memory_limit_bytes = 0) {
+  return read_map(FileBytes{"test file", std::move(bytes)}, memory_limit_bytes);
+}
+
+/// One line for each leaf: two maps hold the same, bit for bit, when these are equal.
+inline std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves_of(const OccupancyMap& map) {
+  std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves;
+  for_each_leaf<WideWord>(map, {}, [&](const Leaf<WideWord>& leaf) {
+    leaves.emplace_back(leaf.key, leaf.depth, std::bit_cast<std::uint32_t>(leaf.belief.value()));
+  });
+  return leaves;
+}
+
+/// A random update of one cell.
+struct Update {
+  WideKey key;
+  float log_odds = 0.0F;
+};
+
+/// Updates around the middle of a lattice: single cells, and cubes of equal ones, so that there is something to join.
+inline std::vector<Update> random_updates(std::mt19937_64& random, int depth, std::size_t count) {
+  const WideWord middle = WideWord{1} << (depth - 1);
+  const WideWord reach = std::min<WideWord>(middle, 20);
+  std::vector<Update> updates;
+  while (updates.size() < count) {
+    const auto word = [&] { return middle - reach + static_cast<WideWord>(random()) % (2 * reach); };
+    const WideKey key{word(), word(), word()};
+    const float log_odds = random() % 2 == 0 ? 0.85F : -0.4F;
+    if (random() % 8 != 0 || depth < 3) {
+      updates.push_back({key, log_odds});
+      continue;
+    }
+    const int edge = random() % 4 == 0 ? 4 : 2;
+    const WideWord mask = ~static_cast<WideWord>(edge - 1);
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      const WideKey cell{(key.x & mask) + static_cast<WideWord>(i % edge),
+                         (key.y & mask) + static_cast<WideWord>(i / edge % edge),
+                         (key.z & mask) + static_cast<WideWord>(i / edge / edge)};
+      updates.push_back({cell, log_odds});
+    }
+  }
+  return updates;
+}
+
+inline OccupancyMap map_of(const std::vector<Update>& updates, const MapOptions& options) {
+  OccupancyMap map(options);
+  Editor editor = map.edit();
+  for (const Update& update : updates) editor.update(update.key, LogOdds(update.log_odds));
+  editor.synchronize();
+  return map;
+}
+
+/// One of the ways in which a file comes to harm.
+inline Bytes mutated(Bytes bytes, std::mt19937_64& random) {
+  const auto place = [&] { return static_cast<std::size_t>(random() % bytes.size()); };
+  for (std::uint64_t times = random() % 3 + 1; times > 0 && !bytes.empty(); --times) {
+    switch (random() % 6) {
+      case 0:
+        bytes[place()] = static_cast<std::uint8_t>(random());
+        break;
+      case 1:
+        bytes[place()] ^= static_cast<std::uint8_t>(1U << (random() % 8));
+        break;
+      case 2:
+        bytes.resize(place());
+        break;
+      case 3:
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(place()), static_cast<std::uint8_t>(random()));
+        break;
+      case 4:
+        bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(place()));
+        break;
+      case 5: {
+        // A number of four bytes as damage likes it: very large, very small, all ones.
+        constexpr std::uint32_t kValues[] = {0, 1, 0x7F, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7F800000, 0x7FC00000};
+        const std::uint32_t value = kValues[random() % std::size(kValues)];
+        const std::size_t at = place();
+        for (std::size_t i = 0; i < 4 && at + i < bytes.size(); ++i) {
+          bytes[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
+        }
+        break;
+      }
+    }
+  }
+  return bytes;
+}
+
+/// What each reader of maps promises about anything at all: an error, or a map that is written and read back equal.
+/// Returns whether it was accepted.
+inline bool is_refused_or_kept(const Bytes& bytes) {
+  const auto first = read(bytes);
+  if (!first) {
+    EXPECT_FALSE(first.error().message.empty());
+    return false;
+  }
+  const auto second = read(written(first->map, first->format, first->made_by));
+  if (!second) {
+    ADD_FAILURE() << second.error().message;
+    return true;
+  }
+  EXPECT_EQ(leaves_of(first->map), leaves_of(second->map));
+  EXPECT_EQ(first->map.lattice(), second->map.lattice());
+  EXPECT_EQ(first->made_by, second->made_by);
+  return true;
+}
+
+}  // namespace pingvox::samples
