@@ -8,6 +8,7 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "write_map_file.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -142,7 +142,7 @@ Result<Enum> value_of(const std::array<Word<Enum>, N>& words, const std::string&
     if (word.word == text) return word.value;
     known.emplace_back(word.word);
   }
-  return off(fmt::format("'{}' is none of {}{}", text, fmt::join(known, ", "), did_you_mean(text, known)));
+  return off(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
 }
 
 template <class Enum, std::size_t N>
@@ -270,7 +270,9 @@ Result<void> check_standard_input(const Words& files) {
 }
 
 tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
-  if (error.code != Error::Code::kBadOption) return tl::unexpected(error);
+  // A message of the library may begin with the same word: the stage that it is about.
+  const bool is_named = error.message.starts_with(table.command + ":");
+  if (error.code != Error::Code::kBadOption || is_named) return tl::unexpected(error);
   return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
 }
 
