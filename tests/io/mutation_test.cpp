@@ -41,7 +41,7 @@ TEST_P(Mutation, KeepsItsPromises) {
   }
   ASSERT_FALSE(seeds.empty());
 
-  constexpr std::size_t kMutants = 4000;
+  constexpr std::size_t kMutants = 10'000;
   for (std::size_t i = 0; i < kMutants; ++i) {
     std::mt19937_64 random(i);
     const auto& seed = seeds[i % seeds.size()];
