@@ -13,8 +13,8 @@ namespace pingvox {
 /// Reads a whole file, or standard input for "-". kIo: not there, no right, a directory; the message names it.
 Result<FileBytes> read_file(const std::string& path);
 
-/// Writes a file beside its name and renames it into place when it is complete and on disk: whatever goes wrong, the old
-/// file stays as it was and nothing is left beside it. "-" writes to standard output.
+/// Writes a file beside its name and renames it into place when it is complete and on disk: whatever goes wrong, the
+/// old file stays as it was and nothing is left beside it. "-" writes to standard output.
 /// @param write  writes the content; its error is passed on
 /// @return kIo when the operating system refuses (no right, disk full)
 Result<void> write_file(const std::string& path, const std::function<Result<void>(std::ostream&)>& write);

@@ -10,16 +10,16 @@ namespace pingvox {
 
 /// The kinds of files that we know.
 enum class Format {
-  kMat,         ///< MATLAB 5: beams
-  kCsv,         ///< beams as text (docs/formats.md)
-  kScanGraph,   ///< OctoMap's binary scan graph: point scans
-  kScanLog,     ///< OctoMap's text form of it, NODE x y z roll pitch yaw: point scans
-  kBt,          ///< OctoMap's binary tree: occupied or free
-  kOt,          ///< OctoMap's tree with log-odds
-  kPvx,         ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
-  kTum,         ///< a trajectory
-  kPly,         ///< points, written only
-  kPng,         ///< pictures, written only
+  kMat,        ///< MATLAB 5: beams
+  kCsv,        ///< beams as text (docs/formats.md)
+  kScanGraph,  ///< OctoMap's binary scan graph: point scans
+  kScanLog,    ///< OctoMap's text form of it, NODE x y z roll pitch yaw: point scans
+  kBt,         ///< OctoMap's binary tree: occupied or free
+  kOt,         ///< OctoMap's tree with log-odds
+  kPvx,        ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
+  kTum,        ///< a trajectory
+  kPly,        ///< points, written only
+  kPng,        ///< pictures, written only
 };
 
 enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kCloud, kPicture };
