@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <streambuf>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace pingvox {
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 tl::unexpected<Error> refused(std::string_view name, int error) {
-  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::strerror(error)));
+  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::system_category().message(error)));
 }
 
 /// A file descriptor that closes itself.
@@ -221,7 +221,7 @@ Result<void> write_file(const std::string& path, const Writer& write) {
   if (!exists) return replace(*target, std::nullopt, path, write);
   if (S_ISDIR(status.st_mode)) return refused(path, EISDIR);
   // A rename would ask for the folder's rights only, and take a write protection for nothing.
-  if (::access(target->c_str(), W_OK) != 0) return refused(path, errno);
+  if (::faccessat(AT_FDCWD, target->c_str(), W_OK, AT_EACCESS) != 0) return refused(path, errno);
   if (S_ISREG(status.st_mode)) return replace(*target, status.st_mode & 0777, path, write);
 
   // A device or a pipe is written where it is: a rename would put a file into its place.

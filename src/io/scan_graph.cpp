@@ -110,8 +110,7 @@ bool looks_like_scan_graph(std::span<const std::uint8_t> bytes) {
     if (!vector) return i > 0;
     if (value_from<std::uint32_t>(*vector, std::endian::little) != kVectorCount) return false;
   }
-  const auto rotation = *points < 4 ? reader.read<std::uint32_t>() : std::nullopt;
-  return !rotation || *rotation == kRotationCount;
+  return true;
 }
 
 Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damage) {

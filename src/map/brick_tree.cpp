@@ -217,8 +217,9 @@ void Cursor::move_to(const WideKey& key) {
     const WideKey from{key_.x >> 2, key_.y >> 2, key_.z >> 2}, to{key.x >> 2, key.y >> 2, key.z >> 2};
     const int common = from == to ? tree_.brick_depth() : tree_.brick_depth() - 1 - highest_difference(from, to);
     if (common < reach_) {
+      // The group below the shared node stays on the path, and with it the knowledge whether it is stale.
       settle_down_to(common + 1);
-      reach_ = std::min(reach_, common);
+      reach_ = common + 1;
     }
   }
   key_ = key;

@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "pingvox/map/brick_tree.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -37,7 +39,36 @@ bool is_before(const WideKey& a, const WideKey& b) {
   return before;
 }
 
+/// Bits of the cells first..last (of 0..3) of a brick's lowest row along an axis.
+constexpr std::uint64_t run_in_brick(int axis, unsigned first, unsigned last) {
+  std::uint64_t bits = 0;
+  for (unsigned i = first; i <= last; ++i) bits |= std::uint64_t{1} << (((i >> 1) * 8U + (i & 1U)) << axis);
+  return bits;
+}
+
 }  // namespace
+
+void ScanUpdate::add_missed_run(const WideKey& first, int axis, std::uint64_t length) {
+  WideKey key = first;
+  WideWord& word = axis == 0 ? key.x : (axis == 1 ? key.y : key.z);
+  // Where a row of bricks begins in a page, and where a row of cells begins in a brick.
+  WideKey across = first;
+  (axis == 0 ? across.x : (axis == 1 ? across.y : across.z)) = 0;
+  const std::size_t brick_row = cell_in_page(across) / 64;
+  const int cell_row = detail::cell_in_brick(across);
+  while (length > 0) {
+    Page& page = pages_[page_of(key)];
+    for (auto in_page = static_cast<unsigned>(word & 15); in_page < 16 && length > 0;) {
+      const unsigned brick = in_page / 4, from = in_page % 4;
+      const auto cells = static_cast<unsigned>(std::min<std::uint64_t>(4 - from, length));
+      const std::size_t brick_along = ((brick >> 1) * 8U + (brick & 1U)) << axis;
+      page.missed[brick_row | brick_along] |= run_in_brick(axis, from, from + cells - 1) << cell_row;
+      in_page += cells;
+      word += cells;
+      length -= cells;
+    }
+  }
+}
 
 std::size_t ScanUpdate::slot_of(const WideKey& lowest) const {
   const std::size_t mask = slots_.size() - 1;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pingvox/mapping/insonified_volume.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -53,8 +55,8 @@ LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
   return LogOdds(hit.value() * 0.5F * (1.0F + static_cast<float>(intensity) / 255.0F));
 }
 
-double share_on_arc(double off_axis_rad, double width_rad, double cells_on_arc) {
-  const double off_axis = width_rad > 0.0 ? 2.0 * off_axis_rad / width_rad : 0.0;
+double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc) {
+  const double off_axis = height_rad > 0.0 ? std::clamp(2.0 * elevation_rad / height_rad, -1.0, 1.0) : 0.0;
   return std::exp2(-off_axis * off_axis) / std::sqrt(std::max(1.0, cells_on_arc));
 }
 
@@ -62,7 +64,6 @@ std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double beari
                                    double resolution_m) {
   const double width = width_of(options), height = height_of(options);
   const double apart_rad = resolution_m / (std::numbers::sqrt2 * std::max(range_m, resolution_m));
-  // The echo may come from anywhere along the beam's longer side.
   const double arc_rad = std::max(width, height);
   const double cells_on_arc = arc_rad * range_m / resolution_m;
 
@@ -74,8 +75,7 @@ std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double beari
       const double bearing = bearing_rad + azimuth;
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing), std::cos(elevation) * std::sin(bearing),
                                       std::sin(elevation));
-      const double off_axis = options.shape == BeamShape::kCone ? elevation : azimuth;
-      bundle.push_back({direction, share_on_arc(off_axis, arc_rad, cells_on_arc)});
+      bundle.push_back({direction, share_on_arc(elevation, height, cells_on_arc)});
     }
   }
   return bundle;
@@ -91,6 +91,20 @@ std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, cons
   const LogOdds evidence = echo && options.hit_from == HitFrom::kIntensity
                                ? evidence_of_intensity(echo->intensity, options.hit)
                                : options.hit;
+
+  const double arc_rad = std::max(width_of(options), height_of(options));
+  const double cells_on_arc = arc_rad * range_m / lattice.resolution_m();
+  if (options.shape != BeamShape::kRay && options.tracing == Tracing::kGeometry) {
+    const InsonifiedVolume volume{map_from_sensor, beam.bearing_rad, width_of(options), height_of(options), range_m};
+    const auto evidence_of = [&](double elevation_rad) {
+      const double share = share_on_arc(elevation_rad, height_of(options), cells_on_arc);
+      return LogOdds(evidence.value() * static_cast<float>(share));
+    };
+    if (is_hit ? trace_volume(lattice, volume, evidence_of, scan) : trace_volume(lattice, volume, nullptr, scan)) {
+      return 0;
+    }
+    // Near the border of the lattice single rays can still be told from those that leave it.
+  }
 
   std::size_t outside = 0;
   const Eigen::Vector3d origin_m = map_from_sensor.translation();

@@ -53,13 +53,26 @@ std::optional<Echo> first_rise(std::span<const std::uint8_t> bins, BinWindow win
   return echo;
 }
 
+/// Middle of the echo's crest [bins]: of its bins, each weighing as much as it stands above a quarter of the threshold
+/// below the peak. A single bin of speckle decides which one is the peak, but hardly about this.
+double crest_of(std::span<const std::uint8_t> bins, const Echo& echo, int threshold) {
+  double weights = 0.0;
+  double moment = 0.0;
+  for (std::size_t i = echo.first; i <= echo.last; ++i) {
+    const double weight = std::max(0, threshold - 4 * (bins[echo.peak] - bins[i]));
+    weights += weight;
+    moment += weight * (static_cast<double>(i) + 0.5);
+  }
+  return moment / weights;
+}
+
 std::vector<std::optional<Echo>> rises(const PolarImage& image, const Sweep& sweep, const EchoOptions& options) {
   std::vector<std::optional<Echo>> echoes(image.rows());
   for (std::size_t n = 0; n < image.rows(); ++n) {
     const double bin_length_m = sweep.beams[n].bin_length_m;
     const std::span<const std::uint8_t> bins = image.row(n).first(image.bins_in(n));
     echoes[n] = first_rise(bins, window_of(bins.size(), bin_length_m, options), options.threshold);
-    if (echoes[n]) echoes[n]->range_m = (static_cast<double>(echoes[n]->peak) + 0.5) * bin_length_m;
+    if (echoes[n]) echoes[n]->range_m = crest_of(bins, *echoes[n], options.threshold) * bin_length_m;
   }
   return echoes;
 }

@@ -14,6 +14,7 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr double kSameBearing_rad = 3e-4;
 constexpr double kJump_rad = 45.0 * kDegree_rad;
 constexpr double kJump_steps = 4.0;
+constexpr double kJitter_steps = 0.25;
 
 /// The shorter way from one bearing to the other, in (-pi, pi].
 double shortest_turn(double from_rad, double to_rad) {
@@ -23,9 +24,18 @@ double shortest_turn(double from_rad, double to_rad) {
 
 }  // namespace
 
-double SweepAssembler::usual_step_rad() const {
-  // The smaller of two: behind one lost beam a step looks twice as large.
+double SweepAssembler::smaller_step_rad() const {
   return steps_rad_[1] > 0.0 ? std::min(steps_rad_[0], steps_rad_[1]) : steps_rad_[0];
+}
+
+double SweepAssembler::larger_step_rad() const {
+  return std::max(steps_rad_[0], steps_rad_[1]);
+}
+
+bool SweepAssembler::was_jitter(double delta_rad) const {
+  // One step from here to the other side of the first beam, and much further than the head had gone on this side.
+  const double turned = std::copysign(1.0, furthest_rad_) * (turned_rad_ + delta_rad);
+  return furthest_rad_ != 0.0 && -turned > std::abs(furthest_rad_) / kJitter_steps;
 }
 
 std::optional<Sweep::Extent> SweepAssembler::ended_by(const Beam& beam, double delta_rad) const {
@@ -35,18 +45,18 @@ std::optional<Sweep::Extent> SweepAssembler::ended_by(const Beam& beam, double d
   if (beams > kMaxBeams || longest > kMaxPixels / beams) return Sweep::Extent::kCut;
   if (std::abs(beam.bin_length_m - first.bin_length_m) > 0.01 * first.bin_length_m) return Sweep::Extent::kCut;
 
-  const double step = usual_step_rad();
-  if (step > 0.0 && std::abs(delta_rad) > std::max(kJump_rad, kJump_steps * step)) {
-    const bool flew_back = std::abs(shortest_turn(first.bearing_rad, beam.bearing_rad)) <= 0.5 * step;
+  const double larger = larger_step_rad();
+  if (larger > 0.0 && std::abs(delta_rad) > std::max(kJump_rad, kJump_steps * larger)) {
+    const bool flew_back = std::abs(shortest_turn(first.bearing_rad, beam.bearing_rad)) <= 0.5 * larger;
     return flew_back ? Sweep::Extent::kSector : Sweep::Extent::kCut;
   }
-  const double direction = std::copysign(1.0, furthest_rad_);
-  const double turned = direction * (turned_rad_ + delta_rad);
+  if (furthest_rad_ == 0.0 || was_jitter(delta_rad)) return std::nullopt;
   const double furthest = std::abs(furthest_rad_);
-  if (furthest > 0.0 && furthest - turned > std::max(kSameBearing_rad, step / 3.0)) return Sweep::Extent::kSector;
-  // A step across a gap must not widen the tolerance, nor may a doubled beam's.
-  const double tolerance = std::max(kSameBearing_rad, 0.5 * std::min(std::abs(delta_rad), step));
-  if (furthest > 0.0 && turned >= kTurn_rad - tolerance) return Sweep::Extent::kTurn;
+  const double turned = std::copysign(1.0, furthest_rad_) * (turned_rad_ + delta_rad);
+  if (furthest - turned > std::max(kSameBearing_rad, kJitter_steps * larger)) return Sweep::Extent::kSector;
+  // A step across a gap must not widen the tolerance.
+  const double tolerance = kJitter_steps * std::min(std::abs(delta_rad), smaller_step_rad());
+  if (turned >= kTurn_rad - std::max(kSameBearing_rad, tolerance)) return Sweep::Extent::kTurn;
   return std::nullopt;
 }
 
@@ -58,6 +68,10 @@ std::optional<Sweep> SweepAssembler::add(Beam beam) {
     if (extent) {
       finished = close(*extent);
     } else {
+      if (was_jitter(delta)) {
+        furthest_rad_ = 0.0;
+        steps_rad_ = {};
+      }
       turned_rad_ += delta;
       const double direction = std::copysign(1.0, furthest_rad_ == 0.0 ? turned_rad_ : furthest_rad_);
       const double advance = direction * (turned_rad_ - furthest_rad_);
@@ -73,9 +87,10 @@ std::optional<Sweep> SweepAssembler::add(Beam beam) {
 }
 
 std::optional<Sweep> SweepAssembler::finish() {
-  const double step = usual_step_rad();
-  const bool around = furthest_rad_ != 0.0 && std::abs(furthest_rad_) + 1.5 * step >= kTurn_rad;
-  steps_rad_[0] = steps_rad_[1] = 0.0;
+  const double step = smaller_step_rad();
+  const double tolerance = std::max(kSameBearing_rad, kJitter_steps * step);
+  const bool around = furthest_rad_ != 0.0 && std::abs(furthest_rad_) + step >= kTurn_rad - tolerance;
+  steps_rad_ = {};
   return close(around ? Sweep::Extent::kTurn : Sweep::Extent::kCut);
 }
 

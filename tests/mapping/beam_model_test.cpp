@@ -65,9 +65,11 @@ void for_each_cell_near(const Lattice& lattice, const Pose& map_from_sensor, dou
   }
 }
 
-// Kills a bundle that is too thin at its far end (holes in the free volume and in the arc), one that is flat instead of
+// Kills a cone with holes (a bundle too thin at its far end, a row that begins too late), one that is flat instead of
 // on the sphere, and one that reaches beyond the beam.
-TEST(BeamModel, ConeTakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
+class Cone : public testing::TestWithParam<Tracing> {};
+
+TEST_P(Cone, TakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
   std::size_t inside = 0, hits = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
@@ -79,6 +81,7 @@ TEST(BeamModel, ConeTakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
     const double bearing = uniform(random, 0, 6), range = uniform(random, 0.7, 2.0);
     BeamModelOptions options;
     options.shape = BeamShape::kCone;
+    options.tracing = GetParam();
     options.width_rad = uniform(random, 1, 12) * kDegree;
     options.height_rad = uniform(random, 10, 50) * kDegree;
     ScanUpdate scan;
@@ -107,6 +110,48 @@ TEST(BeamModel, ConeTakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
   }
   EXPECT_GT(inside, 5'000U);
   EXPECT_GT(hits, 500U);
+}
+
+INSTANTIATE_TEST_SUITE_P(BeamModel, Cone, testing::Values(Tracing::kGeometry, Tracing::kBundle),
+                         [](const auto& tracing) {
+                           return tracing.param == Tracing::kGeometry ? "geometry" : "bundle";
+                         });
+
+// The two ways to trace a cone, held against each other: what a dense bundle of rays marks, geometry marks, alike.
+TEST(BeamModel, GeometryMarksEachCellThatTheBundleMarks) {
+  std::size_t alike = 0, grazed = 0, more = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Lattice lattice(uniform(random, 0.02, 0.08));
+    const Pose map_from_sensor =
+        pose_from_rpy({uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)}, uniform(random, -3, 3),
+                      uniform(random, -1.5, 1.5), uniform(random, -3, 3));
+    BeamModelOptions options;
+    options.shape = seed % 4 == 0 ? BeamShape::kFan : BeamShape::kCone;
+    options.width_rad = uniform(random, 1, 30) * kDegree;
+    options.height_rad = uniform(random, 5, 60) * kDegree;
+    const double bearing = uniform(random, 0, 6), range = uniform(random, 0.1, 1.5);
+    ScanUpdate by_geometry, by_bundle;
+    trace_beam(lattice, map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_geometry);
+    options.tracing = Tracing::kBundle;
+    trace_beam(lattice, map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_bundle);
+    for_each_cell_near(lattice, map_from_sensor, bearing, range, [&](const Key& key, const Polar&) {
+      const Mark geometry = mark_of(by_geometry, key), bundle = mark_of(by_bundle, key);
+      if (geometry == Mark::kNone && bundle == Mark::kNone) return;
+      // Geometry also knows the cells that the far end only clips, between two rays.
+      const bool same = geometry == bundle;
+      alike += same;
+      more += !same && (bundle == Mark::kNone || geometry == Mark::kHit);
+      grazed += !same && !(bundle == Mark::kNone || geometry == Mark::kHit);
+    });
+  }
+  EXPECT_GT(alike, 20'000U);
+  EXPECT_LE(grazed, alike / 10'000);
+  EXPECT_LT(more, alike / 3);
+  RecordProperty("alike", static_cast<int>(alike));
+  RecordProperty("more", static_cast<int>(more));
+  RecordProperty("grazed", static_cast<int>(grazed));
 }
 
 // Kills a fan with gaps between its rays, and one with a height.

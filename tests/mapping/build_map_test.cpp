@@ -122,6 +122,7 @@ TEST(BuildMap, VotesPerSweepAndPerBeamDiffer) {
   const auto alternating = [](double time, double) { return std::lround(time / 0.04) % 2 == 0 ? 0.9 : 3.0; };
   BuildOptions options = clean_options();
   options.model.shape = BeamShape::kFan;
+  options.model.hit = LogOdds::from_probability(0.55);
   OccupancyMap per_sweep, per_beam;
   Echoes first(kBeamsPerTurn, alternating), second(kBeamsPerTurn, alternating);
   ASSERT_TRUE(build_map(first, Trajectory::still(Pose::Identity()), options, per_sweep));

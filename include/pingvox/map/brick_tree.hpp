@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/log_odds.hpp"
@@ -69,6 +70,26 @@ constexpr int cell_in_brick(const BasicKey<W>& key) {
 struct BrickTree {
   explicit BrickTree(int lattice_depth)
       : levels(lattice_depth < 2 ? 2 : lattice_depth), extra_levels(levels - lattice_depth) {}
+  BrickTree(const BrickTree&) = default;
+  BrickTree& operator=(const BrickTree&) = default;
+  /// Leaves an empty tree of the same levels behind.
+  BrickTree(BrickTree&& other) noexcept
+      : levels(other.levels),
+        extra_levels(other.extra_levels),
+        pruned(std::exchange(other.pruned, true)),
+        root(std::exchange(other.root, {})),
+        groups(std::move(other.groups)),
+        bricks(std::move(other.bricks)) {}
+  BrickTree& operator=(BrickTree&& other) noexcept {
+    levels = other.levels;
+    extra_levels = other.extra_levels;
+    pruned = std::exchange(other.pruned, true);
+    root = std::exchange(other.root, {});
+    groups = std::move(other.groups);
+    bricks = std::move(other.bricks);
+    return *this;
+  }
+  ~BrickTree() = default;
 
   int levels;
   int extra_levels;

@@ -42,6 +42,9 @@ class ScanUpdate {
     mark_hit(page_of(key.template as<WideWord>()), cell_in_page(key), evidence);
   }
 
+  /// Marks `length` cells as missed, from `first` upwards along an axis (0 x, 1 y, 2 z).
+  void add_missed_run(const WideKey& first, int axis, std::uint64_t length);
+
   /// For tracers that stay in a page for many cells: its index, made if it is not there.
   std::uint32_t page_of(const WideKey& key);
   void mark_missed(std::uint32_t page, std::size_t cell) {

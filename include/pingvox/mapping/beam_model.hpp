@@ -38,8 +38,15 @@ enum class Silent {
   kFree,     ///< its cells are free up to the end of its bins (or to max_range_m)
 };
 
+/// How fan and cone find the cells that they filled with sound.
+enum class Tracing {
+  kGeometry,  ///< from the volume's closed form (insonified_volume.hpp)
+  kBundle,    ///< by rays as dense as the far end needs: slower, the witness of the first
+};
+
 struct BeamModelOptions {
   BeamShape shape = BeamShape::kRay;
+  Tracing tracing = Tracing::kGeometry;
   double width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontal, full angle; Micron data sheet
   double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, full angle; Micron data sheet
   RayAlgorithm ray = RayAlgorithm::kDda;
@@ -58,9 +65,9 @@ LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit);
 
 /// Share of an echo's evidence for a cell of its arc. The arc is `cells_on_arc` cells long and sound came back from at
 /// least one of them, so the evidence is thinned by the root of their number (between 1, as if it came from all, and
-/// 1/n, as if from one), and by the beam pattern: half at the edge of the beam, where the echo is 3 dB weaker.
-/// @param off_axis_rad  angle from the beam's axis, within +-width_rad / 2
-double share_on_arc(double off_axis_rad, double width_rad, double cells_on_arc);
+/// 1/n, as if from one), and by the vertical beam pattern: half at the edge, where the beam is 3 dB weaker. A cell that
+/// lies on the edge may have its middle beyond it.
+double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc);
 
 /// Directions (unit, sensor frame) that fill the beam so densely that each cell whose centre lies in the insonified
 /// volume within `range_m` is crossed by one: neighbours are at most resolution / sqrt(2) apart at that range.

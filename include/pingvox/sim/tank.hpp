@@ -17,12 +17,12 @@ struct TankOptions {
   std::size_t turns = 5;   ///< 1..10,000
 
   // The scene, in the sensor's frame where not said otherwise.
-  double side_m = 5.0;               ///< of the square, > 0
-  double sensor_x_m = 0.3;           ///< from the tank's centre along its walls; inside
-  double sensor_y_m = -0.25;         ///< the same to the left
+  double side_m = 4.5;               ///< of the square, > 0
+  double sensor_x_m = 0.1;           ///< from the tank's centre along its walls; inside
+  double sensor_y_m = -0.45;         ///< the same to the left
   double sensor_yaw_rad = 0.05;      ///< of the sensor in the tank, counter-clockwise
   double floater_bearing_rad = 1.6;  ///< of its axis
-  double floater_range_m = 1.7;      ///< of its axis; the sensor is outside of it
+  double floater_range_m = 1.8;      ///< of its axis; the sensor is outside of it
   double floater_radius_m = 0.15;    ///< >= 0; 0: no floater
 
   // The head.

@@ -15,7 +15,7 @@ struct Echo {
   std::size_t first = 0;       ///< bin where it was detected
   std::size_t peak = 0;        ///< its strongest bin (the nearest one of several)
   std::size_t last = 0;        ///< its last bin
-  double range_m = 0.0;        ///< where we take the wall to be, from the transducer: the middle of the peak
+  double range_m = 0.0;        ///< where we take the wall to be, from the transducer: the middle of the crest
   std::uint8_t intensity = 0;  ///< of the peak, 0..255, as it was detected (after filtering)
 };
 
@@ -23,10 +23,11 @@ enum class Detector {
   /// Differences of successive bins, as in the paper (section 8.2), summed over a rise: a bin is an echo's first when
   /// the differences from bin to bin, added up since the last valley, reach the threshold. Without noise and smoothing
   /// a wall rises in one step, and the sum is that one difference. A real wall rises over some ten bins (pulse,
-  /// slanting beam, smoothing): no single difference in the tank recording comes near 70.
+  /// slanting beam, smoothing): of the smoothed tank recording no beam has a single difference of 70, few one of 35.
   /// A rise, before and after it is detected, goes on across dips and ends where the beam has fallen by more than half
   /// the threshold below its top: speckle stays inside the echo, and a falling edge starts none. The echo runs from its
-  /// first bin to the last one before that fall.
+  /// first bin to the last one before that fall. Its range is the middle of its crest: the mean of its bins, weighted
+  /// with what they stand above a quarter of the threshold below the peak.
   kRise,
 };
 

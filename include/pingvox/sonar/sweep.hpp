@@ -24,11 +24,10 @@ struct Sweep {
 /// Cuts a stream of beams into sweeps, whatever the head does: full turns either way, sectors to and fro, a changed
 /// step, lost and doubled beams, beams of different lengths.
 ///
-/// - A turn is complete when the head has turned 360 degrees since the sweep's first beam; half a step short of it
-///   counts (bearings are rounded, and heads jitter).
-/// - A sector is complete when the head turns back: by more than a third of its step (less is jitter, and no movement
-/// at
-///   all is a doubled beam), or by a jump to the bearing where the pass began (a head that flies back).
+/// - A turn is complete when the head has turned 360 degrees since the sweep's first beam; up to a quarter of a step
+///   short of it counts (bearings are rounded, and heads jitter).
+/// - A sector is complete when the head turns back by more than a quarter of its step (less is jitter, and no movement
+///   at all is a doubled beam), or jumps to the bearing where the pass began (a head that flies back).
 /// - Any other jump, of more than 45 degrees and more than four steps, ends the sweep as kCut: beams were lost or the
 ///   head was given a new sector. Smaller gaps are lost beams inside the sweep.
 /// - A bin length that differs from the first beam's by more than 1 % ends it as kCut: one image cannot hold both.
@@ -51,15 +50,18 @@ class SweepAssembler {
  private:
   /// How `beam`, turned by `delta_rad` since the beam before it, ends the gathered sweep; nullopt: it goes on.
   std::optional<Sweep::Extent> ended_by(const Beam& beam, double delta_rad) const;
-  double usual_step_rad() const;
+  /// Whether the head's first movement, seen from the next one, was none.
+  bool was_jitter(double delta_rad) const;
+  double smaller_step_rad() const;  ///< of the last two: behind a lost beam one looks twice as large
+  double larger_step_rad() const;
   std::optional<Sweep> close(Sweep::Extent extent);
 
   Sweep gathered_;
   std::size_t longest_ = 0;    ///< bins of the longest gathered beam
   double turned_rad_ = 0.0;    ///< signed angle from the first gathered beam to the last
   double furthest_rad_ = 0.0;  ///< the same to the beam furthest from the first; its sign is the direction
-  std::array<double, 2> steps_rad_ = {
-      0.0, 0.0};  ///< sizes of the last two steps ahead, newest first; they outlive the sweep
+  /// Sizes of the last two steps ahead, newest first. They outlive the sweep.
+  std::array<double, 2> steps_rad_ = {0.0, 0.0};
 };
 
 }  // namespace pingvox

@@ -1,0 +1,69 @@
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "commands.hpp"
+#include "json.hpp"
+#include "map_report.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/map/compare.hpp"
+
+namespace pingvox::app {
+namespace {
+
+Result<MapFile> map_at(const std::string& path) {
+  const Result<FileBytes> file = read_file(path);
+  if (!file) return tl::unexpected(file.error());
+  return read_map(*file);
+}
+
+std::string json_of(const MapComparison& found) {
+  JsonObject json;
+  json.add("cells", found.cells())
+      .add("same", found.same)
+      .add("different", found.different)
+      .add("only_a", found.only_a)
+      .add("only_b", found.only_b)
+      .add("max_log_odds_difference", found.max_log_odds_difference);
+  return json.text() + "\n";
+}
+
+/// Rounded down: one different cell of a million is not 100 %.
+std::string share_text(std::uint64_t part, std::uint64_t whole) {
+  if (part == whole) return "100";
+  return fmt::format("{:.4f}", std::floor(static_cast<double>(part) / static_cast<double>(whole) * 1e6) / 1e4);
+}
+
+std::string text_of(const MapComparison& found, Sameness sameness) {
+  const std::uint64_t cells = found.cells();
+  const char* by = sameness == Sameness::kLogOdds ? "by log-odds" : "by occupied or free";
+  return fmt::format("{} % of {} cells are the same ({})\n", share_text(found.same, cells), cells, by) +
+         report_line("same", fmt::format("{}", found.same)) +
+         report_line("different", fmt::format("{}", found.different)) +
+         report_line("only in A", fmt::format("{}", found.only_a)) +
+         report_line("only in B", fmt::format("{}", found.only_b)) +
+         report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference));
+}
+
+}  // namespace
+
+Result<int> run(const CompareCommand& command, Console& console) {
+  const Result<MapFile> a = map_at(command.a);
+  if (!a) return tl::unexpected(a.error());
+  const Result<MapFile> b = map_at(command.b);
+  if (!b) return tl::unexpected(b.error());
+
+  const bool has_bt = a->format == Format::kBt || b->format == Format::kBt;
+  const Sameness sameness = has_bt ? Sameness::kOccupancy : Sameness::kLogOdds;
+  const Result<MapComparison> found = compare_maps(a->map, b->map, sameness);
+  if (!found) {
+    return fail(found.error().code, fmt::format("{}: {}: {}", command.a, command.b, found.error().message));
+  }
+  const Result<void> told = command.manner.report == Report::kJson ? console.print(json_of(*found))
+                                                                   : console.summarise(text_of(*found, sameness), "");
+  if (!told) return tl::unexpected(told.error());
+  return found->equal() ? 0 : 1;
+}
+
+}  // namespace pingvox::app

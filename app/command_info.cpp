@@ -1,0 +1,230 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "json.hpp"
+#include "map_report.hpp"
+#include "open_log.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/io/tum.hpp"
+#include "pingvox/sonar/sweep.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// A report in both forms.
+struct Told {
+  JsonObject json;
+  std::string text;
+};
+
+std::string headline(const std::string& name, Format format) {
+  return fmt::format("{}: {}\n", on_one_line(name), described(format));
+}
+
+/// Angle that the head covered: a full turn, or all but the widest gap between two bearings.
+double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
+  if (has_turn) return 360.0;
+  if (bearings_rad.empty()) return 0.0;
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+  std::sort(bearings_rad.begin(), bearings_rad.end());
+  double widest = bearings_rad.front() + kTurn_rad - bearings_rad.back();
+  for (std::size_t i = 1; i < bearings_rad.size(); ++i) {
+    widest = std::max(widest, bearings_rad[i] - bearings_rad[i - 1]);
+  }
+  // A bearing is never known better than to a millionth of a degree: rounded, so that 90 is not 90.00000000000001.
+  return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
+}
+
+class BeamSurvey {
+ public:
+  void add(const Beam& beam) {
+    if (beams_++ == 0) first_s_ = last_s_ = beam.time_s;
+    first_s_ = std::min(first_s_, beam.time_s);
+    last_s_ = std::max(last_s_, beam.time_s);
+    fewest_bins_ = std::min(fewest_bins_, beam.intensities.size());
+    most_bins_ = std::max(most_bins_, beam.intensities.size());
+    longest_m_ = std::max(longest_m_, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
+    ++bin_lengths_[beam.bin_length_m];
+    bearings_rad_.push_back(beam.bearing_rad);
+    count(assembler_.add(beam));
+  }
+
+  Told finish(const std::string& name, Format format, std::size_t skipped) {
+    count(assembler_.finish());
+    // Of a log whose settings changed, the bin length of most beams.
+    const auto usual = std::max_element(bin_lengths_.begin(), bin_lengths_.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    const std::size_t fewest = beams_ > 0 ? fewest_bins_ : 0;
+    const double sector = sector_deg(std::move(bearings_rad_), has_turn_);
+    Told told;
+    JsonObject bins;
+    bins.add("min", fewest).add("max", most_bins_);
+    told.json.add("kind", "log")
+        .add("format", name_of(format))
+        .add("beams", beams_)
+        .add("sweeps", sweeps_)
+        .add("bins", bins)
+        .add("bin_length_m", beams_ > 0 ? usual->first : std::numeric_limits<double>::quiet_NaN())
+        .add("duration_s", last_s_ - first_s_)
+        .add("sector_deg", sector)
+        .add("skipped", skipped);
+    told.text = headline(name, format) + report_line("beams", fmt::format("{}, {} complete sweeps", beams_, sweeps_));
+    if (beams_ > 0) {
+      const std::string lengths =
+          bin_lengths_.size() > 1 ? fmt::format(" in most beams ({} lengths)", bin_lengths_.size()) : "";
+      told.text += report_line("bins", fewest == most_bins_ ? fmt::format("{} a beam", fewest)
+                                                            : fmt::format("{} to {} a beam", fewest, most_bins_)) +
+                   report_line("bin length", fmt::format("{:.6g} m{}", usual->first, lengths)) +
+                   report_line("range", fmt::format("{:.6g} m", longest_m_)) +
+                   report_line("sector", fmt::format("{:.6g} degrees", sector)) +
+                   report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", last_s_ - first_s_, first_s_));
+    }
+    if (skipped > 0) told.text += report_line("left out", fmt::format("{} damaged", skipped));
+    return told;
+  }
+
+ private:
+  void count(const std::optional<Sweep>& sweep) {
+    if (!sweep || sweep->extent == Sweep::Extent::kCut) return;
+    ++sweeps_;
+    has_turn_ = has_turn_ || sweep->extent == Sweep::Extent::kTurn;
+  }
+
+  std::size_t beams_ = 0, sweeps_ = 0;
+  std::size_t fewest_bins_ = std::numeric_limits<std::size_t>::max(), most_bins_ = 0;
+  double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
+  bool has_turn_ = false;
+  std::map<double, std::size_t> bin_lengths_;
+  std::vector<double> bearings_rad_;
+  SweepAssembler assembler_;
+};
+
+Result<Told> told_of(BeamSource& source, const std::string& name, Format format) {
+  BeamSurvey survey;
+  for (;;) {
+    const Result<std::optional<Beam>> beam = source.next();
+    if (!beam) return tl::unexpected(beam.error());
+    if (!*beam) return survey.finish(name, format, source.skipped());
+    survey.add(**beam);
+  }
+}
+
+Result<Told> told_of(ScanSource& source, const std::string& name, Format format) {
+  std::size_t scans = 0, points = 0;
+  std::optional<Box> bounds;
+  for (;;) {
+    const Result<std::optional<PointScan>> scan = source.next();
+    if (!scan) return tl::unexpected(scan.error());
+    if (!*scan) break;
+    ++scans;
+    points += (*scan)->points_m.size();
+    for (const Eigen::Vector3d& point : (*scan)->points_m) {
+      if (!bounds) bounds = Box{point, point};
+      bounds->min = bounds->min.cwiseMin(point);
+      bounds->max = bounds->max.cwiseMax(point);
+    }
+  }
+  Told told;
+  told.json.add("kind", "scans")
+      .add("format", name_of(format))
+      .add("scans", scans)
+      .add("points", points)
+      .add("bounds", bounds_json(bounds))
+      .add("skipped", source.skipped());
+  told.text = headline(name, format) + report_line("scans", fmt::format("{} with {} points", scans, points)) +
+              report_line("bounds", bounds_text(bounds));
+  if (source.skipped() > 0) told.text += report_line("left out", fmt::format("{} damaged", source.skipped()));
+  return told;
+}
+
+Result<Told> told_of_log(FileBytes file, Format format, Damage damage) {
+  const std::string name = file.name;
+  const Result<Log> log = open_log(std::move(file), damage);
+  if (!log) return tl::unexpected(log.error());
+  return std::visit([&](const auto& source) { return told_of(*source, name, format); }, *log);
+}
+
+Result<Told> told_of_map(const FileBytes& file) {
+  const Result<MapFile> read = read_map(file);
+  if (!read) return tl::unexpected(read.error());
+  const OccupancyMap& map = read->map;
+  const MapCounts counts = map.counts();
+  Told told;
+  told.json.add("kind", "map")
+      .add("format", name_of(read->format))
+      .add("resolution", map.lattice().resolution_m())
+      .add("depth", map.lattice().depth())
+      .add("nodes", counts.nodes())
+      .add("leaves", counts.leaves)
+      .add("inner", counts.inner)
+      .add("occupied_cells", counts.occupied_cells)
+      .add("free_cells", counts.free_cells)
+      .add("bounds", bounds_json(map.bounds()))
+      .add("memory_bytes", map.memory_bytes());
+  told.text = headline(file.name, read->format) + map_text(map, counts);
+  if (!read->made_by.empty()) told.text += report_line("made by", on_one_line(read->made_by));
+  return told;
+}
+
+Result<Told> told_of_trajectory(const FileBytes& file, Format format) {
+  const Result<Trajectory> trajectory = read_tum(file);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  const std::vector<StampedPose>& poses = trajectory->poses();
+  Box bounds{poses.front().map_from_body.translation(), poses.front().map_from_body.translation()};
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Eigen::Vector3d position = poses[i].map_from_body.translation();
+    length_m += (position - poses[i - 1].map_from_body.translation()).norm();
+    bounds = {bounds.min.cwiseMin(position), bounds.max.cwiseMax(position)};
+  }
+  const double duration_s = poses.back().time_s - poses.front().time_s;
+  Told told;
+  told.json.add("kind", "trajectory")
+      .add("format", name_of(format))
+      .add("poses", poses.size())
+      .add("duration_s", duration_s)
+      .add("length_m", length_m)
+      .add("bounds", bounds_json(bounds));
+  told.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
+              report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", duration_s, poses.front().time_s)) +
+              report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
+  return told;
+}
+
+Result<Told> told_of_file(FileBytes file, Damage damage) {
+  const Result<Format> format = recognised(file);
+  if (!format) return tl::unexpected(format.error());
+  switch (kind_of(*format)) {
+    case FormatKind::kMap:
+      return told_of_map(file);
+    case FormatKind::kTrajectory:
+      return told_of_trajectory(file, *format);
+    default:
+      return told_of_log(std::move(file), *format, damage);
+  }
+}
+
+}  // namespace
+
+Result<int> run(const InfoCommand& command, Console& console) {
+  Result<FileBytes> file = read_file(command.file);
+  if (!file) return tl::unexpected(file.error());
+  const Result<Told> told = told_of_file(std::move(*file), command.damage);
+  if (!told) return tl::unexpected(told.error());
+  const bool json = command.manner.report == Report::kJson;
+  if (const auto printed = console.print(json ? told->json.text() + "\n" : told->text); !printed) {
+    return tl::unexpected(printed.error());
+  }
+  return 0;
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,635 @@
+#include "command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <system_error>
+#include <utility>
+
+#include "option_table.hpp"
+#include "suggest.hpp"
+
+namespace pingvox::app {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+/// What sonar heads assume when they turn times into bin lengths.
+constexpr double kAssumedSoundSpeed_m_s = 1500.0;
+
+tl::unexpected<Error> off(std::string what) {
+  return fail(Error::Code::kBadOption, std::move(what));
+}
+
+// --- Values from text: no locale, nothing left over. ---
+
+template <class Number>
+Result<Number> number_from(std::string_view text) {
+  std::string_view digits = text;
+  if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  constexpr bool kReal = std::is_floating_point_v<Number>;
+  if (error == std::errc::result_out_of_range) return off(fmt::format("'{}' is out of range", text));
+  if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty()) {
+    return off(fmt::format("'{}' is no {}", text, kReal ? "number" : "whole number"));
+  }
+  if constexpr (kReal) {
+    if (std::isnan(value)) return off(fmt::format("'{}' is no number", text));
+  }
+  return value;
+}
+
+template <std::size_t N>
+Result<std::array<double, N>> numbers_from(std::string_view text) {
+  std::array<double, N> values{};
+  std::size_t count = 0;
+  for (std::string_view rest = text;; ++count) {
+    const std::size_t comma = rest.find(',');
+    if (count < N) {
+      const Result<double> value = number_from<double>(rest.substr(0, comma));
+      if (!value) return tl::unexpected(value.error());
+      values[count] = *value;
+    }
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (count + 1 != N) return off(fmt::format("'{}': must be {} numbers with commas between them", text, N));
+  return values;
+}
+
+Result<std::size_t> bytes_from(std::string_view text) {
+  constexpr std::string_view kUnits = "KMGT";
+  std::string_view digits = text;
+  unsigned shift = 0;
+  if (!digits.empty()) {
+    const char unit =
+        digits.back() >= 'a' && digits.back() <= 'z' ? static_cast<char>(digits.back() - 'a' + 'A') : digits.back();
+    if (const std::size_t power = kUnits.find(unit); power != std::string_view::npos) {
+      shift = 10 * (static_cast<unsigned>(power) + 1);
+      digits.remove_suffix(1);
+    }
+  }
+  const Result<std::size_t> count = number_from<std::size_t>(digits);
+  if (!count) return off(fmt::format("'{}' is no number of bytes, as in 512M or 2G", text));
+  if (*count > std::numeric_limits<std::size_t>::max() >> shift) return off(fmt::format("'{}' is out of range", text));
+  return *count << shift;
+}
+
+// --- Options that put a value into its place. ---
+
+Take into(std::string& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    if (text.empty()) return off("is empty");
+    target = text;
+    return {};
+  };
+}
+
+/// A number of any kind; typed in units of `unit`.
+template <class Number>
+Take into_number(Number& target, Number unit = Number{1}) {
+  return [&target, unit](const std::string& text) -> Result<void> {
+    const Result<Number> value = number_from<Number>(text);
+    if (!value) return tl::unexpected(value.error());
+    target = static_cast<Number>(*value * unit);
+    return {};
+  };
+}
+
+Take into_probability(LogOdds& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const Result<double> value = number_from<double>(text);
+    if (!value) return tl::unexpected(value.error());
+    if (!(*value > 0.0 && *value < 1.0)) return off(fmt::format("{} is no probability between 0 and 1", text));
+    target = LogOdds::from_probability(*value);
+    return {};
+  };
+}
+
+template <class Enum>
+struct Word {
+  std::string_view word;
+  Enum value;
+};
+
+template <class Enum, std::size_t N>
+std::string words_of(const std::array<Word<Enum>, N>& words) {
+  std::string out;
+  for (const auto& word : words) out += fmt::format("{}{}", out.empty() ? "" : "|", word.word);
+  return out;
+}
+
+template <class Enum, std::size_t N>
+std::string word_of(const std::array<Word<Enum>, N>& words, Enum value) {
+  for (const auto& word : words) {
+    if (word.value == value) return std::string(word.word);
+  }
+  return {};
+}
+
+template <class Enum, std::size_t N>
+Result<Enum> value_of(const std::array<Word<Enum>, N>& words, const std::string& text) {
+  Words known;
+  for (const auto& word : words) {
+    if (word.word == text) return word.value;
+    known.emplace_back(word.word);
+  }
+  return off(fmt::format("'{}' is none of {}{}", text, fmt::join(known, ", "), did_you_mean(text, known)));
+}
+
+template <class Enum, std::size_t N>
+Option choice(std::string name, const std::array<Word<Enum>, N>& words, std::string help, Enum& target) {
+  const Take take = [&target, &words](const std::string& text) -> Result<void> {
+    const Result<Enum> value = value_of(words, text);
+    if (!value) return tl::unexpected(value.error());
+    target = *value;
+    return {};
+  };
+  return {std::move(name), 0, words_of(words), std::move(help), word_of(words, target), take};
+}
+
+template <class Enum>
+Option flag(std::string name, std::string help, Enum& target, Enum value) {
+  const Take take = [&target, value](const std::string&) -> Result<void> {
+    target = value;
+    return {};
+  };
+  return {std::move(name), 0, "", std::move(help), "", take};
+}
+
+std::string shown(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+constexpr std::array kFilters = {Word<Filter>{"none", Filter::kNone}, Word<Filter>{"gaussian", Filter::kGaussian}};
+constexpr std::array kDetectors = {Word<Detector>{"rise", Detector::kRise}};
+constexpr std::array kShapes = {Word<BeamShape>{"ray", BeamShape::kRay}, Word<BeamShape>{"fan", BeamShape::kFan},
+                                Word<BeamShape>{"cone", BeamShape::kCone}};
+constexpr std::array kRays = {Word<RayAlgorithm>{"dda", RayAlgorithm::kDda},
+                              Word<RayAlgorithm>{"bresenham", RayAlgorithm::kBresenham}};
+constexpr std::array kVotes = {Word<Vote>{"sweep", Vote::kPerSweep}, Word<Vote>{"beam", Vote::kPerBeam}};
+constexpr std::array kHitsFrom = {Word<HitFrom>{"fixed", HitFrom::kFixed},
+                                  Word<HitFrom>{"intensity", HitFrom::kIntensity}};
+constexpr std::array kParents = {Word<Parents>{"max", Parents::kMax}, Word<Parents>{"mean", Parents::kMean}};
+constexpr std::array kSilents = {Word<Silent>{"nothing", Silent::kNothing}, Word<Silent>{"free", Silent::kFree}};
+constexpr std::array kProgress = {Word<ShowProgress>{"auto", ShowProgress::kAuto},
+                                  Word<ShowProgress>{"always", ShowProgress::kAlways},
+                                  Word<ShowProgress>{"never", ShowProgress::kNever}};
+constexpr std::array kMapFormats = {Word<Format>{"bt", Format::kBt}, Word<Format>{"ot", Format::kOt},
+                                    Word<Format>{"pvx", Format::kPvx}, Word<Format>{"ply", Format::kPly}};
+constexpr std::array kLogAndMapFormats = {Word<Format>{"csv", Format::kCsv}, Word<Format>{"bt", Format::kBt},
+                                          Word<Format>{"ot", Format::kOt}, Word<Format>{"pvx", Format::kPvx},
+                                          Word<Format>{"ply", Format::kPly}};
+constexpr std::array kCsvOnly = {Word<Format>{"csv", Format::kCsv}};
+constexpr std::array kPngOnly = {Word<Format>{"png", Format::kPng}};
+
+// --- Groups of options that commands share. ---
+
+Option output_option(std::string& target, std::string help) {
+  return {"--output", 'o', "FILE", std::move(help), "", into(target)};
+}
+
+Option config_option() {
+  // The table reads the file; what is left to take is nothing.
+  return {"--config", 0,
+          "FILE",     "read options from a TOML file, named as here without the dashes; those of the call win",
+          "",         [](const std::string&) -> Result<void> { return {}; }};
+}
+
+Option strict_option(Damage& damage) {
+  return flag("--strict", "stop at the first damage in a log instead of leaving it out", damage, Damage::kFail);
+}
+
+Option json_option(Manner& manner) {
+  return flag("--json", "report as one JSON object on standard output", manner.report, Report::kJson);
+}
+
+Option quiet_option(Manner& manner) {
+  return flag("--quiet", "say nothing but errors", manner.talk, Talk::kQuiet);
+}
+
+OptionTable::Group echo_group(FilterOptions& filter, EchoOptions& echo, const Take& max_range) {
+  return {"Echoes",
+          {{"--min-range", 0, "M", "nearer bins are the head's own ringing, and no evidence", shown(echo.min_range_m),
+            into_number(echo.min_range_m)},
+           {"--max-range", 0, "M", "farther bins and cells are left alone", "none", max_range},
+           choice("--filter", kFilters, "how sweeps are smoothed before echoes are looked for", filter.filter),
+           {"--kernel", 0, "N", "edge of the filter's window in beams and bins, odd", fmt::format("{}", filter.kernel),
+            into_number(filter.kernel)},
+           {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", shown(filter.sigma),
+            into_number(filter.sigma)},
+           choice("--detect", kDetectors, "how echoes are found", echo.detector),
+           {"--threshold", 0, "T", "rise of intensity that makes an echo, 1..255", fmt::format("{}", echo.threshold),
+            into_number(echo.threshold)}}};
+}
+
+// --- Checks that cost no work. ---
+
+/// The format of an output file: as asked for, else by its suffix. Standard output, devices and pipes have no suffix.
+template <std::size_t N>
+Result<Format> output_format(const std::string& path, const std::optional<Format>& asked,
+                             const std::array<Word<Format>, N>& known) {
+  if (path.empty()) return off("-o FILE is missing: where should the result go?");
+  if (asked) return *asked;
+  const std::optional<Format> by_suffix = format_for_writing(path);
+  for (const auto& word : known) {
+    if (word.value == by_suffix) return word.value;
+  }
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  const bool is_nameless = path == "-" || (std::filesystem::exists(status) && std::filesystem::is_other(status));
+  if (is_nameless && !by_suffix) return known.front().value;
+
+  Words suffixes;
+  for (const auto& word : known) suffixes.push_back(fmt::format(".{}", word.word));
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return off(
+      fmt::format("{}: its suffix must be {}{}", path, fmt::join(suffixes, " or "), did_you_mean(ending, suffixes)));
+}
+
+/// What would fail for sure after the work is better said before it.
+Result<void> check_folder_of(const std::string& path) {
+  if (path == "-") return {};
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (folder.empty() || std::filesystem::is_directory(folder, error)) return {};
+  return fail(Error::Code::kIo, fmt::format("{}: there is no folder '{}'", path, folder.string()));
+}
+
+Result<void> check_standard_input(const Words& files) {
+  if (std::count(files.begin(), files.end(), "-") < 2) return {};
+  return off("'-' twice: standard input can be read only once");
+}
+
+tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
+  if (error.code != Error::Code::kBadOption) return tl::unexpected(error);
+  return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
+}
+
+/// What every command does with its table: `done` makes the command when the words are right.
+template <class Done>
+Result<Command> parsed(const OptionTable& table, const Words& words, Done done) {
+  const Result<Parsed> result = parse(table, words);
+  if (!result) return tl::unexpected(result.error());
+  if (*result == Parsed::kHelpWanted) return ShowText{{}, help_of(table)};
+  Result<Command> command = done();
+  if (!command) return in_command(table, command.error());
+  return command;
+}
+
+std::string shell_quoted(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,=+:@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+// --- The commands. ---
+
+Result<Command> map_command(const Words& words) {
+  MapCommand command;
+  std::string output, poses;
+  std::optional<Format> asked_format;
+  int threads = 1;
+  MapOptions& map = command.map;
+  BuildOptions& build = command.build;
+  BeamModelOptions& model = build.model;
+
+  const Take mount = [&](const std::string& text) -> Result<void> {
+    const auto n = numbers_from<6>(text);
+    if (!n) return off(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
+    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); })) {
+      return off(fmt::format("'{}': must be finite", text));
+    }
+    const auto& [x, y, z, roll, pitch, yaw] = *n;
+    build.body_from_sensor = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
+    return {};
+  };
+  const Take clamp = [&](const std::string& text) -> Result<void> {
+    const auto p = numbers_from<2>(text);
+    if (!p) return tl::unexpected(p.error());
+    const auto& [lowest, highest] = *p;
+    if (!(lowest > 0.0 && lowest < highest && highest < 1.0)) {
+      return off(fmt::format("'{}': must be two probabilities between 0 and 1, the smaller one first", text));
+    }
+    map.clamp = {LogOdds::from_probability(lowest), LogOdds::from_probability(highest)};
+    return {};
+  };
+  const Take max_range = [&](const std::string& text) -> Result<void> {
+    const Result<void> taken = into_number(build.echo.max_range_m)(text);
+    model.max_range_m = build.echo.max_range_m;
+    return taken;
+  };
+  const Take sound_speed = [&](const std::string& text) -> Result<void> {
+    const Result<double> speed = number_from<double>(text);
+    if (!speed) return tl::unexpected(speed.error());
+    if (!(*speed > 0.0) || !std::isfinite(*speed)) return off(fmt::format("{} is no speed above 0", text));
+    build.sound_speed_ratio = *speed / kAssumedSoundSpeed_m_s;
+    return {};
+  };
+  const Take thread_count = [&](const std::string& text) -> Result<void> {
+    const Result<void> taken = into_number(threads)(text);
+    if (taken && threads < 1) return off(fmt::format("{} is less than 1", text));
+    return taken;
+  };
+  const Take memory_limit = [&](const std::string& text) -> Result<void> {
+    const Result<std::size_t> bytes = bytes_from(text);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (*bytes == 0) return off("must be more than 0");
+    map.memory_limit_bytes = *bytes;
+    return {};
+  };
+  const Take log = [&](const std::string& text) -> Result<void> {
+    command.logs.push_back(text);
+    return {};
+  };
+  const Take format = [&](const std::string& text) -> Result<void> {
+    const Result<Format> value = value_of(kMapFormats, text);
+    if (!value) return tl::unexpected(value.error());
+    asked_format = *value;
+    return {};
+  };
+
+  const OptionTable table{
+      "map",
+      "Turns sonar logs into a 3D occupancy map: reads the LOGs one after another, finds the echoes of each beam, and\n"
+      "frees and hits the cells that its sound went through and came back from.",
+      {{"LOG", Positional::Count::kMany,
+        "beams (MATLAB 5, CSV) or point scans (OctoMap's .graph and its text form), told by content; - is standard "
+        "input",
+        log}},
+      {{"Output",
+        {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply (points); - is standard output"),
+         {"--format", 0, words_of(kMapFormats), "format of the map, whatever its name", "by suffix, else bt", format},
+         json_option(command.manner),
+         quiet_option(command.manner),
+         choice("--progress", kProgress, "show on standard error how far the work is; auto: on a terminal",
+                command.manner.progress)}},
+       {"Map",
+        {{"--resolution", 0, "M", "edge of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
+         {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot hold 16", fmt::format("{}", map.depth),
+          into_number(map.depth)},
+         {"--hit", 0, "P", "probability that an echo gives a cell", shown(model.hit.probability()),
+          into_probability(model.hit)},
+         {"--miss", 0, "P", "probability that sound passing gives a cell", shown(model.miss.probability()),
+          into_probability(model.miss)},
+         {"--clamp", 0, "P,P", "probabilities beyond which a cell does not go",
+          shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), clamp},
+         choice("--parents", kParents, "what inner nodes say of their children", map.parents),
+         choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", build.vote),
+         {"--memory-limit", 0, "BYTES", "stop when the map would grow past it; also 512M, 2G", "none", memory_limit},
+         {"--threads", 0, "N", "threads that may be used, 1 or more; the result does not depend on it", "1",
+          thread_count}}},
+       {"Sensor",
+        {{"--poses", 0, "FILE", "where the vehicle was, as TUM lines 't x y z qx qy qz qw'", "it stood still",
+          into(poses)},
+         {"--mount", 0, "X,Y,Z,R,P,Y", "the head on the vehicle: metres, then roll, pitch, yaw in degrees",
+          "0,0,0,0,0,0", mount},
+         {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
+          sound_speed},
+         choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
+         {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
+          into_number(model.width_rad, kDegree_rad)},
+         {"--beam-height", 0, "DEG", "vertically, full angle", shown(model.height_rad / kDegree_rad),
+          into_number(model.height_rad, kDegree_rad)},
+         choice("--ray", kRays, "how rays go from cell to cell", model.ray),
+         choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
+         choice("--silent", kSilents, "what a beam without an echo says", model.silent)}},
+       echo_group(build.filter, build.echo, max_range),
+       {"Input", {strict_option(command.damage), config_option()}}},
+      {"pingvox map tank.mat -o tank.bt --beam cone",
+       "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
+       "pingvox map scans.graph -o scans.bt --resolution 0.1 --vote sweep", "pingvox map - -o - < tank.csv > tank.bt"},
+      "Point scans use the options of the map, --ray and --max-range.\n"
+      "Exit status: 0 done, 1 could not be done, 2 the words of the call are off."};
+  return parsed(table, words, [&]() -> Result<Command> {
+    const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
+    if (!output_as) return tl::unexpected(output_as.error());
+    command.format = *output_as;
+    if (const auto valid = map.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = build.validate(); !valid) return tl::unexpected(valid.error());
+    if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {
+      return off(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", output, name_of(*output_as),
+                             Lattice::kDefaultDepth, map.depth));
+    }
+    if (output == "-" && command.manner.report == Report::kJson) {
+      return off("-o - and --json: both want standard output");
+    }
+    if (!poses.empty()) command.poses = poses;
+    Words inputs = command.logs;
+    inputs.push_back(poses);
+    if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
+    if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
+    command.output = output;
+    command.made_by = "pingvox " PINGVOX_VERSION " map";
+    for (const std::string& word : words) command.made_by += " " + shell_quoted(word);
+    return command;
+  });
+}
+
+Result<Command> info_command(const Words& words) {
+  InfoCommand command;
+  const OptionTable table{
+      "info",
+      "Says what a file holds: a log of beams or of point scans, a map, or a trajectory. Told by content, not by name.",
+      {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", into(command.file)}},
+      {{"Options", {json_option(command.manner), strict_option(command.damage)}}},
+      {"pingvox info tank.mat", "pingvox info tank.bt --json"},
+      ""};
+  return parsed(table, words, [&]() -> Result<Command> { return command; });
+}
+
+Result<Command> compare_command(const Words& words) {
+  CompareCommand command;
+  const OptionTable table{"compare",
+                          "Compares two maps cell by cell, at the finest resolution. Cells are the same when their "
+                          "log-odds are; when one of\n"
+                          "the files is a .bt, which holds no log-odds, when both are free or both are occupied.",
+                          {{"A", Positional::Count::kOne, "a map; - is standard input", into(command.a)},
+                           {"B", Positional::Count::kOne, "another of the same resolution and depth", into(command.b)}},
+                          {{"Options", {json_option(command.manner), quiet_option(command.manner)}}},
+                          {"pingvox compare ours.bt theirs.bt", "pingvox compare before.ot after.ot --json"},
+                          "Exit status: 0 the same, 1 different, 2 trouble."};
+  return parsed(table, words, [&]() -> Result<Command> {
+    if (const auto once = check_standard_input({command.a, command.b}); !once) return tl::unexpected(once.error());
+    return command;
+  });
+}
+
+Result<Command> convert_command(const Words& words) {
+  ConvertCommand command;
+  std::optional<Format> asked_format;
+  const Take format = [&](const std::string& text) -> Result<void> {
+    const Result<Format> value = value_of(kLogAndMapFormats, text);
+    if (!value) return tl::unexpected(value.error());
+    asked_format = *value;
+    return {};
+  };
+  const OptionTable table{
+      "convert",
+      "Writes a file in another format: a log of beams as CSV, a map as another map or as a cloud of points.",
+      {{"IN", Positional::Count::kOne, "a log of beams or a map; - is standard input", into(command.input)}},
+      {{"Options",
+        {output_option(command.output,
+                       "what to write: .csv from a log, .bt .ot .pvx .ply from a map; - is standard output"),
+         {"--format", 0, words_of(kLogAndMapFormats), "format of the output, whatever its name", "by suffix, else csv",
+          format},
+         strict_option(command.damage),
+         quiet_option(command.manner)}}},
+      {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.bt -o tank.ply"},
+      ""};
+  return parsed(table, words, [&]() -> Result<Command> {
+    if (format_for_writing(command.output) == Format::kPng) {
+      return off(fmt::format("{}: pictures are drawn by 'pingvox render'", command.output));
+    }
+    const Result<Format> output_as = output_format(command.output, asked_format, kLogAndMapFormats);
+    if (!output_as) return tl::unexpected(output_as.error());
+    command.format = *output_as;
+    if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
+    return command;
+  });
+}
+
+Result<Command> render_command(const Words& words) {
+  RenderCommand command;
+  const Take max_range = into_number(command.echo.max_range_m);
+  const OptionTable table{
+      "render",
+      "Draws a PNG: of a log a sweep in polar coordinates with the echoes that were found in it, of a map the view "
+      "from\n"
+      "above.",
+      {{"FILE", Positional::Count::kOne, "a log of beams or a map; - is standard input", into(command.input)}},
+      {{"Options",
+        {output_option(command.output, "the picture, .png; - is standard output"),
+         {"--sweep", 0, "N", "which sweep of a log to draw, counted from 1", fmt::format("{}", command.sweep),
+          into_number(command.sweep)},
+         strict_option(command.damage),
+         quiet_option(command.manner),
+         config_option()}},
+       echo_group(command.filter, command.echo, max_range)},
+      {"pingvox render tank.mat -o echoes.png --threshold 50", "pingvox render tank.bt -o map.png"},
+      ""};
+  return parsed(table, words, [&]() -> Result<Command> {
+    const Result<Format> output_as = output_format(command.output, std::nullopt, kPngOnly);
+    if (!output_as) return tl::unexpected(output_as.error());
+    if (command.sweep < 1) return off("--sweep: counts from 1");
+    if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
+    return command;
+  });
+}
+
+Result<Command> simulate_command(const Words& words) {
+  SimulateCommand command;
+  TankOptions& tank = command.tank;
+  const Take world = [](const std::string& text) -> Result<void> {
+    const Words known = {"tank"};
+    if (text == known.front()) return {};
+    return off(
+        fmt::format("there is no world '{}', only: {}{}", text, fmt::join(known, ", "), did_you_mean(text, known)));
+  };
+  const OptionTable table{
+      "simulate",
+      "Makes the log of a turning sonar in a world of your choice. The same options give the same bytes.",
+      {{"WORLD", Positional::Count::kOne, "tank: a square tank with a floater in it", world}},
+      {{"Options",
+        {output_option(command.output, "the log, .csv; - is standard output"),
+         {"--seed", 0, "N", "of speckle and noise", fmt::format("{}", tank.seed), into_number(tank.seed)},
+         {"--turns", 0, "N", "how often the head turns round", fmt::format("{}", tank.turns), into_number(tank.turns)},
+         {"--side", 0, "M", "of the square", shown(tank.side_m), into_number(tank.side_m)},
+         {"--beams-per-turn", 0, "N", "directions of the head", fmt::format("{}", tank.beams_per_turn),
+          into_number(tank.beams_per_turn)},
+         {"--bins", 0, "N", "of a beam", fmt::format("{}", tank.bins), into_number(tank.bins)},
+         {"--bin-length", 0, "M", "of a bin", shown(tank.bin_length_m), into_number(tank.bin_length_m)},
+         {"--speckle", 0, "S", "0 none, 1 full fading of each bin", shown(tank.speckle), into_number(tank.speckle)},
+         {"--noise", 0, "N", "mean intensity of the background", shown(tank.noise), into_number(tank.noise)},
+         quiet_option(command.manner),
+         config_option()}}},
+      {"pingvox simulate tank -o tank.csv", "pingvox simulate tank -o - --seed 7 | pingvox map - -o tank.bt"},
+      ""};
+  return parsed(table, words, [&]() -> Result<Command> {
+    const Result<Format> output_as = output_format(command.output, std::nullopt, kCsvOnly);
+    if (!output_as) return tl::unexpected(output_as.error());
+    if (const auto valid = tank.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
+    return command;
+  });
+}
+
+Result<Command> bench_command(const Words& words) {
+  return BenchCommand{{}, words};
+}
+
+Result<Command> view_command(const Words&) {
+  return fail(
+      Error::Code::kUnsupported,
+      "view: not in this version: 'pingvox render MAP -o map.png' draws a map, 'pingvox convert MAP -o map.ply' "
+      "makes a cloud for other viewers");
+}
+
+struct CommandName {
+  std::string_view name, purpose;
+  Result<Command> (*parse)(const Words&);
+};
+
+/// `view` is known, so that nobody is told to have misspelt it, but not offered.
+constexpr std::array kCommands = {
+    CommandName{"map", "logs to a map", &map_command},
+    CommandName{"info", "what a log or a map holds", &info_command},
+    CommandName{"compare", "two maps, cell by cell", &compare_command},
+    CommandName{"convert", "a log to CSV, a map to another format or a cloud", &convert_command},
+    CommandName{"render", "a picture of a log with its echoes, or of a map from above", &render_command},
+    CommandName{"simulate", "the log of a sonar in a world of your choice", &simulate_command},
+    CommandName{"bench", "measurements, when pingvox-bench is installed", &bench_command},
+    CommandName{"view", "", &view_command},
+};
+
+std::string overview() {
+  std::string out = "Usage: pingvox COMMAND [WORD]...\nTurns sonar logs into 3D occupancy maps.\n\nCommands:\n";
+  for (const CommandName& command : kCommands) {
+    if (!command.purpose.empty()) out += fmt::format("  {:<10}{}\n", command.name, command.purpose);
+  }
+  return out +
+         "\n  -h, --help     this text; behind a command, all about it\n"
+         "      --version  the version\n"
+         "\nExamples:\n"
+         "  pingvox simulate tank -o tank.csv\n"
+         "  pingvox map tank.csv -o tank.bt --beam cone\n"
+         "  pingvox render tank.bt -o tank.png\n"
+         "\nExit status: 0 done, 1 could not be done, 2 the words of the call are off.\n";
+}
+
+}  // namespace
+
+Result<Command> parse_command_line(const Words& words) {
+  if (words.empty()) return off("a command is missing (see 'pingvox --help')");
+  const std::string& first = words.front();
+  if (first == "--help" || first == "-h") return ShowText{{}, overview()};
+  if (first == "--version") return ShowText{{}, "pingvox " PINGVOX_VERSION "\n"};
+
+  Words rest(words.begin() + 1, words.end());
+  if (first == "help") {
+    if (rest.empty()) return ShowText{{}, overview()};
+    return parse_command_line({rest.front(), "--help"});
+  }
+  Words known = {"--help", "--version"};
+  for (const CommandName& command : kCommands) {
+    if (command.name == first) return command.parse(rest);
+    if (!command.purpose.empty()) known.emplace_back(command.name);
+  }
+  const std::string kind = first.starts_with("-") ? "option" : "command";
+  const std::string hint = did_you_mean(first, known);
+  return off(fmt::format("unknown {} '{}'{}", kind, first, hint.empty() ? " (see 'pingvox --help')" : hint));
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,167 @@
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "commands.hpp"
+#include "json.hpp"
+#include "map_report.hpp"
+#include "open_log.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/io/tum.hpp"
+#include "progress.hpp"
+
+namespace pingvox::app {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// What all logs together came to.
+struct Totals {
+  BuildReport report;
+  double write_s = 0.0, total_s = 0.0;
+
+  void add(const BuildReport& log) {
+    report.beams += log.beams;
+    report.sweeps += log.sweeps;
+    report.echoes += log.echoes;
+    report.skipped += log.skipped;
+    report.cells_freed += log.cells_freed;
+    report.cells_hit += log.cells_hit;
+    report.seconds.read += log.seconds.read;
+    report.seconds.detect += log.seconds.detect;
+    report.seconds.trace += log.seconds.trace;
+    report.seconds.apply += log.seconds.apply;
+  }
+};
+
+Result<Trajectory> trajectory_of(const MapCommand& command) {
+  if (!command.poses) return Trajectory::still(Pose::Identity());
+  const Result<FileBytes> file = read_file(*command.poses);
+  if (!file) return tl::unexpected(file.error());
+  return read_tum(*file);
+}
+
+Result<BuildReport> map_log(const Log& log, const Trajectory& trajectory, const BuildOptions& options,
+                            OccupancyMap& map, const Progress& progress) {
+  if (const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) {
+    return build_map(**beams, trajectory, options, map, progress);
+  }
+  return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
+}
+
+/// Errors of the map itself name no file.
+Error with_name(Error error, const std::string& name) {
+  if (error.code == Error::Code::kLimit) error.message = fmt::format("{}: {}", name, error.message);
+  return error;
+}
+
+/// Microseconds: what is shorter is noise.
+double rounded(double seconds) {
+  return std::round(seconds * 1e6) / 1e6;
+}
+
+std::string json_of(const Totals& totals, const OccupancyMap& map) {
+  const BuildReport& report = totals.report;
+  const MapCounts counts = map.counts();
+  JsonObject seconds;
+  seconds.add("read", rounded(report.seconds.read))
+      .add("detect", rounded(report.seconds.detect))
+      .add("trace", rounded(report.seconds.trace))
+      .add("apply", rounded(report.seconds.apply))
+      .add("write", rounded(totals.write_s))
+      .add("total", rounded(totals.total_s));
+  JsonObject held;
+  held.add("resolution", map.lattice().resolution_m())
+      .add("depth", map.lattice().depth())
+      .add("leaves", counts.leaves)
+      .add("inner", counts.inner)
+      .add("memory_bytes", map.memory_bytes())
+      .add("occupied_cells", counts.occupied_cells)
+      .add("free_cells", counts.free_cells)
+      .add("bounds", bounds_json(map.bounds()));
+  JsonObject json;
+  json.add("beams", report.beams)
+      .add("sweeps", report.sweeps)
+      .add("echoes", report.echoes)
+      .add("skipped", report.skipped)
+      .add("cells_freed", report.cells_freed)
+      .add("cells_hit", report.cells_hit)
+      .add("seconds", seconds)
+      .add("map", held);
+  return json.text() + "\n";
+}
+
+std::string text_of(const Totals& totals, const OccupancyMap& map, const std::string& output) {
+  const BuildReport& report = totals.report;
+  const auto& s = report.seconds;
+  std::string read = fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes);
+  if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
+  return fmt::format("{}\n", on_one_line(output)) + report_line("read", read) + map_text(map, map.counts()) +
+         report_line("seconds",
+                     fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
+                                 "write + rest",
+                                 totals.total_s, s.read, s.detect, s.trace, s.apply, totals.write_s));
+}
+
+}  // namespace
+
+Result<int> run(const MapCommand& command, Console& console) {
+  const Stopwatch total;
+  Result<OccupancyMap> map = OccupancyMap::make(command.map);
+  if (!map) return tl::unexpected(map.error());
+  const Result<Trajectory> trajectory = trajectory_of(command);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+
+  Totals totals;
+  {
+    ProgressLine line(command.manner);
+    for (std::size_t i = 0; i < command.logs.size(); ++i) {
+      const Stopwatch read;
+      Result<FileBytes> file = read_file(command.logs[i]);
+      if (!file) return tl::unexpected(file.error());
+      const std::string name = file->name;
+      const Result<Log> log = open_log(std::move(*file), command.damage);
+      if (!log) return tl::unexpected(log.error());
+      totals.report.seconds.read += read.seconds();
+
+      const Progress progress = [&](const BuildReport& done) {
+        if (!line.is_due()) return;
+        line.draw(fmt::format("log {} of {}: {} beams, {} sweeps, {:.0f} s, map {}", i + 1, command.logs.size(),
+                              done.beams, done.sweeps, total.seconds(), bytes_text(map->memory_bytes())));
+      };
+      const Result<BuildReport> report = map_log(*log, *trajectory, command.build, *map, progress);
+      if (!report) return tl::unexpected(with_name(report.error(), name));
+      if (report->beams == 0 && report->sweeps == 0) {
+        return fail(Error::Code::kCorrupt,
+                    fmt::format("{}: nothing in it could be mapped ({} left out{})", name, report->skipped,
+                                command.poses ? "; do the times of the poses fit?" : ""));
+      }
+      totals.add(*report);
+    }
+  }
+
+  const Stopwatch write;
+  const Result<void> written = write_file(
+      command.output, [&](std::ostream& out) { return write_map(*map, command.format, command.made_by, out); });
+  if (!written) return tl::unexpected(written.error());
+  totals.write_s = write.seconds();
+  totals.total_s = total.seconds();
+
+  const Result<void> told = command.manner.report == Report::kJson
+                                ? console.print(json_of(totals, *map))
+                                : console.summarise(text_of(totals, *map, command.output), command.output);
+  if (!told) return tl::unexpected(told.error());
+  return 0;
+}
+
+}  // namespace pingvox::app

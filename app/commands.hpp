@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "console.hpp"
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/io/beams.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/mapping/build_map.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sim/tank.hpp"
+
+/// The commands as plain values: what `parse_command_line` makes of the words, and what `run` does. A `run` returns the
+/// exit status of a call that could be done; `main` turns errors into the others.
+namespace pingvox::app {
+
+/// Something to read and nothing to do: --help, --version.
+struct ShowText {
+  Manner manner;
+  std::string text;
+};
+
+struct MapCommand {
+  Manner manner;
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  std::string output;             ///< "-" is standard output
+  Format format = Format::kBt;
+  std::optional<std::string> poses;
+  Damage damage = Damage::kSkip;
+  MapOptions map;
+  BuildOptions build;
+  std::string made_by;  ///< the words of the call, for the file
+};
+
+struct InfoCommand {
+  Manner manner;
+  std::string file;
+  Damage damage = Damage::kSkip;
+};
+
+struct CompareCommand {
+  Manner manner;
+  std::string a, b;
+};
+
+struct ConvertCommand {
+  Manner manner;
+  std::string input, output;
+  Format format = Format::kCsv;
+  Damage damage = Damage::kSkip;
+};
+
+struct RenderCommand {
+  Manner manner;
+  std::string input, output;
+  Damage damage = Damage::kSkip;
+  FilterOptions filter;
+  EchoOptions echo;
+  std::size_t sweep = 1;  ///< which one of a log to draw, counted from 1
+};
+
+struct SimulateCommand {
+  Manner manner;
+  std::string output;
+  TankOptions tank;
+};
+
+/// Starts `pingvox-bench`, a program of its own, with these words.
+struct BenchCommand {
+  Manner manner;
+  std::vector<std::string> words;
+};
+
+using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
+                             SimulateCommand, BenchCommand>;
+
+Result<int> run(const MapCommand& command, Console& console);
+Result<int> run(const InfoCommand& command, Console& console);
+Result<int> run(const CompareCommand& command, Console& console);
+Result<int> run(const ConvertCommand& command, Console& console);
+Result<int> run(const RenderCommand& command, Console& console);
+Result<int> run(const SimulateCommand& command, Console& console);
+Result<int> run(const BenchCommand& command, Console& console);
+
+}  // namespace pingvox::app

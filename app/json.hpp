@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace pingvox::app {
+
+/// A JSON object (RFC 8259) in the making: the one place that writes JSON. Keys come out in the order in which they
+/// were added; strings that are not UTF-8 have the offending bytes replaced, numbers that are not finite become null,
+/// and no locale has a say.
+class JsonObject {
+ public:
+  JsonObject& add(std::string_view key, double value);
+  JsonObject& add(std::string_view key, std::uint64_t value);
+  JsonObject& add(std::string_view key, int value);
+  JsonObject& add(std::string_view key, std::string_view value);
+  JsonObject& add(std::string_view key, const char* value) { return add(key, std::string_view(value)); }
+  JsonObject& add(std::string_view key, const Eigen::Vector3d& value);  ///< [x, y, z]
+  JsonObject& add(std::string_view key, const JsonObject& value);
+  JsonObject& add_null(std::string_view key);
+
+  /// The object on one line, without a line break at its end.
+  std::string text() const { return "{" + members_ + "}"; }
+
+ private:
+  JsonObject& add_text(std::string_view key, std::string_view json);
+  std::string members_;
+};
+
+}  // namespace pingvox::app

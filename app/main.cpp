@@ -1,0 +1,76 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <exception>
+#include <new>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+
+namespace {
+
+using namespace pingvox;
+
+constexpr int kDone = 0, kCouldNotBeDone = 1, kWordsAreOff = 2;
+
+Result<int> run_any(const app::Command& command) {
+  return std::visit(
+      [](const auto& c) -> Result<int> {
+        app::Console console(c.manner);
+        if constexpr (std::is_same_v<std::decay_t<decltype(c)>, app::ShowText>) {
+          if (const auto printed = console.print(c.text); !printed) return tl::unexpected(printed.error());
+          return kDone;
+        } else {
+          return app::run(c, console);
+        }
+      },
+      command);
+}
+
+Result<int> called_with(const std::vector<std::string>& words) {
+  const Result<app::Command> command = app::parse_command_line(words);
+  if (!command) return tl::unexpected(command.error());
+  return run_any(*command);
+}
+
+int status_of(const Error& error, const std::vector<std::string>& words) {
+  // 1 says "different" there.
+  const bool compares = !words.empty() && words.front() == "compare";
+  return error.code == Error::Code::kBadOption || compares ? kWordsAreOff : kCouldNotBeDone;
+}
+
+/// A file that we open must not get the number of a standard stream that our caller closed.
+void keep_standard_streams() {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+    // The wrong way round: using the stream still fails.
+    if (::fcntl(fd, F_GETFD) == -1) ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  keep_standard_streams();
+  // A reader that went away is an error like others, not our death.
+  std::signal(SIGPIPE, SIG_IGN);
+
+  std::vector<std::string> words;
+  Error error{Error::Code::kUnsupported, ""};
+  try {
+    words.assign(argv + (argc > 0 ? 1 : 0), argv + argc);
+    const Result<int> status = called_with(words);
+    if (status) return *status;
+    error = status.error();
+  } catch (const std::bad_alloc&) {
+    error.message = "out of memory";
+  } catch (const std::exception& exception) {
+    error.message = exception.what();
+  }
+  app::complain(error.message);
+  return status_of(error, words);
+}

@@ -1,0 +1,44 @@
+#include "map_report.hpp"
+
+#include <fmt/core.h>
+
+namespace pingvox::app {
+
+JsonObject bounds_json(const std::optional<Box>& bounds) {
+  JsonObject json;
+  if (!bounds) return json.add_null("min").add_null("max");
+  return json.add("min", bounds->min).add("max", bounds->max);
+}
+
+std::string bounds_text(const std::optional<Box>& bounds) {
+  if (!bounds) return "nothing is known";
+  const auto& [min, max] = *bounds;
+  return fmt::format("x {:.6g}..{:.6g}, y {:.6g}..{:.6g}, z {:.6g}..{:.6g} m", min.x(), max.x(), min.y(), max.y(),
+                     min.z(), max.z());
+}
+
+std::string bytes_text(std::size_t bytes) {
+  constexpr double kKilo = 1000.0;
+  const auto size = static_cast<double>(bytes);
+  if (size < kKilo) return fmt::format("{} B", bytes);
+  if (size < kKilo * kKilo) return fmt::format("{:.1f} kB", size / kKilo);
+  if (size < kKilo * kKilo * kKilo) return fmt::format("{:.1f} MB", size / (kKilo * kKilo));
+  return fmt::format("{:.1f} GB", size / (kKilo * kKilo * kKilo));
+}
+
+std::string report_line(std::string_view label, std::string_view value) {
+  return fmt::format("  {:<12}{}\n", label, value);
+}
+
+std::string map_text(const OccupancyMap& map, const MapCounts& counts) {
+  const Lattice& lattice = map.lattice();
+  std::string out = report_line("cells", fmt::format("{} m, {} levels", lattice.resolution_m(), lattice.depth())) +
+                    report_line("occupied", fmt::format("{}", counts.occupied_cells)) +
+                    report_line("free", fmt::format("{}", counts.free_cells));
+  if (counts.undecided_cells > 0) out += report_line("undecided", fmt::format("{}", counts.undecided_cells));
+  return out +
+         report_line("nodes", fmt::format("{} = {} leaves + {} inner", counts.nodes(), counts.leaves, counts.inner)) +
+         report_line("bounds", bounds_text(map.bounds())) + report_line("memory", bytes_text(map.memory_bytes()));
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "json.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+
+namespace pingvox::app {
+
+/// {"min": [x, y, z], "max": [x, y, z]}, with null for both corners when there is no box.
+JsonObject bounds_json(const std::optional<Box>& bounds);
+
+/// "-1.2 -3.4 0 .. 1.2 3.4 0.5 m", or "nothing is known".
+std::string bounds_text(const std::optional<Box>& bounds);
+
+/// A number of bytes for people: "12.3 MB".
+std::string bytes_text(std::size_t bytes);
+
+/// A line of a report for people: the values of all of them stand in one column.
+std::string report_line(std::string_view label, std::string_view value);
+
+/// What a map holds, as lines for people.
+std::string map_text(const OccupancyMap& map, const MapCounts& counts);
+
+}  // namespace pingvox::app

@@ -1,0 +1,48 @@
+#include "open_log.hpp"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+namespace pingvox::app {
+
+Result<Format> recognised(const FileBytes& file) {
+  if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
+  if (const auto format = format_of(file.view())) return *format;
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: is none of the logs, maps and trajectories that pingvox reads", file.name));
+}
+
+std::string described(Format format) {
+  const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
+  switch (kind_of(format)) {
+    case FormatKind::kBeams:
+      return with("a log of beams");
+    case FormatKind::kScans:
+      return with("a log of point scans");
+    case FormatKind::kMap:
+      return with("a map");
+    case FormatKind::kTrajectory:
+      return with("a trajectory");
+    case FormatKind::kCloud:
+      return with("a cloud of points");
+    case FormatKind::kPicture:
+      break;
+  }
+  return with("a picture");
+}
+
+Result<Log> open_log(FileBytes file, Damage damage) {
+  const Result<Format> format = recognised(file);
+  if (!format) return tl::unexpected(format.error());
+  const FormatKind kind = kind_of(*format);
+  if (kind == FormatKind::kBeams) {
+    return open_beams(std::move(file), damage).map([](auto source) { return Log(std::move(source)); });
+  }
+  if (kind == FormatKind::kScans) {
+    return open_scans(std::move(file), damage).map([](auto source) { return Log(std::move(source)); });
+  }
+  return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a log", file.name, described(*format)));
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "pingvox/io/beams.hpp"
+#include "pingvox/io/bytes.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// What a file is, by its content. kUnsupported when it is nothing that we read; the message names it.
+Result<Format> recognised(const FileBytes& file);
+
+/// A format with its kind, for messages: "a map (.bt)".
+std::string described(Format format);
+
+/// A log of either kind.
+using Log = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource>>;
+
+/// Any log, told by content. kUnsupported when the file is none, with what it is.
+Result<Log> open_log(FileBytes file, Damage damage);
+
+}  // namespace pingvox::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+
+#include "pingvox/geometry/lattice.hpp"
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/map/scan_update.hpp"
+
+namespace pingvox {
+
+/// What a beam filled with sound until its echo: a wedge of `width` and `height` about its axis, on the sphere.
+struct InsonifiedVolume {
+  Pose map_from_sensor = Pose::Identity();
+  double bearing_rad = 0.0;
+  double width_rad = 0.0;   ///< horizontal, full angle; 0 is a plane
+  double height_rad = 0.0;  ///< vertical, full angle; 0 is a fan
+  double range_m = 0.0;     ///< > 0
+};
+
+/// Marks the cells that the volume touches: hit where its far end, the sphere of `range_m`, passes through them, missed
+/// before it. By geometry, row by row of cells, instead of by rays: it marks each cell that a ray inside of the volume
+/// would, and none farther from the volume than half a cell's diagonal.
+/// @param evidence_of  evidence of a hit by its elevation [rad] above the plane of the head; nullptr: nothing is hit
+/// @return false, and nothing is marked, when the volume's box reaches out of the lattice
+/// REQUIRES 0 <= width_rad <= pi, 0 <= height_rad < pi
+bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume,
+                  const std::function<LogOdds(double elevation_rad)>& evidence_of, ScanUpdate& scan);
+
+}  // namespace pingvox

@@ -1,0 +1,60 @@
+#include "pingvox/io/maps.hpp"
+
+#include <fmt/core.h>
+
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "io/octomap_bt.hpp"
+#include "io/octomap_ot.hpp"
+#include "io/ply.hpp"
+#include "io/pvx.hpp"
+
+namespace pingvox {
+namespace {
+
+Result<MapFile> map_file(Format format, Result<OccupancyMap> map) {
+  if (!map) return tl::unexpected(std::move(map).error());
+  return MapFile{format, *std::move(map), {}};
+}
+
+}  // namespace
+
+Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes) {
+  const std::optional<Format> format = format_of(file.view());
+  try {
+    if (format == Format::kBt) return map_file(*format, read_bt(file, memory_limit_bytes));
+    if (format == Format::kOt) return map_file(*format, read_ot(file, memory_limit_bytes));
+    if (format == Format::kPvx) return read_pvx(file, memory_limit_bytes);
+  } catch (const std::bad_alloc&) {
+    return fail(Error::Code::kLimit, fmt::format("{}: out of memory: the map was not read", file.name));
+  }
+  const std::string what =
+      format ? fmt::format("a file of the kind '{}'", name_of(*format)) : "of no kind that we know";
+  return fail(Error::Code::kUnsupported, fmt::format("{}: not a map (.bt, .ot or .pvx) but {}", file.name, what));
+}
+
+Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out) {
+  switch (format) {
+    case Format::kBt:
+      return write_bt(map, out);
+    case Format::kOt:
+      return write_ot(map, out);
+    case Format::kPvx:
+      return write_pvx(map, made_by, out);
+    case Format::kPly:
+      return write_ply(map, out);
+    case Format::kMat:
+    case Format::kCsv:
+    case Format::kScanGraph:
+    case Format::kScanLog:
+    case Format::kTum:
+    case Format::kPng:
+      break;
+  }
+  return fail(Error::Code::kUnsupported,
+              fmt::format("a map cannot be written as .{}: .bt, .ot, .pvx and .ply can hold it", name_of(format)));
+}
+
+}  // namespace pingvox

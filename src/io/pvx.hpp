@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <string_view>
+
+#include "pingvox/io/bytes.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Our own format: a map of any depth with its log-odds, its options and how it was made. kUnsupported: written by a
+/// later version; kCorrupt: any damage.
+Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes);
+
+Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, std::ostream& out);
+
+}  // namespace pingvox

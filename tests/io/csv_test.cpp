@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <locale>
+#include <numbers>
+#include <random>
+#include <sstream>
+
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Everything<Beam> read_csv(std::string_view text, Damage damage = Damage::kSkip) {
+  return all_beams({"log.csv", bytes_of(text)}, damage);
+}
+
+TEST(Csv, ReadsColumnsInAnyOrderByTheirNames) {
+  const auto all = read_csv(
+      "# a tank\n"
+      "gain,bin_length_m,bearing_rad,time_s,intensities\n"
+      "7,0.5,1.25,10,0,43,255\n"
+      "\n"
+      "8, 0.25 ,\t2.5 , 11 , 1\n"
+      "# the end\n"
+      "x,0.25,2.5,12\n",
+      Damage::kFail);
+  EXPECT_EQ(all.error, "");
+  ASSERT_EQ(all.items.size(), 3U);
+  EXPECT_EQ(all.items[0].time_s, 10.0);
+  EXPECT_EQ(all.items[0].bearing_rad, 1.25);
+  EXPECT_EQ(all.items[0].bin_length_m, 0.5);
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(0, 43, 255));
+  EXPECT_THAT(all.items[1].intensities, ElementsAre(1));
+  EXPECT_TRUE(all.items[2].intensities.empty());  // a ping without bins is a ping
+}
+
+TEST(Csv, ReadsBearingsOfEachSenseAndUnit) {
+  const auto bearing = [](std::string_view column, std::string_view value) {
+    const auto all = read_csv("time_s," + std::string(column) + ",bin_length_m,intensities...\n0," +
+                              std::string(value) + ",0.1,1\n");
+    return all.items.size() == 1 ? all.items[0].bearing_rad : -1.0;
+  };
+  EXPECT_EQ(bearing("bearing_rad", "0.5"), 0.5);
+  EXPECT_NEAR(bearing("bearing_rad", "-0.5"), 2.0 * std::numbers::pi - 0.5, 1e-15);
+  EXPECT_NEAR(bearing("bearing_deg", "90"), 0.5 * std::numbers::pi, 1e-15);
+  EXPECT_NEAR(bearing("bearing_cw_deg", "90"), 1.5 * std::numbers::pi, 1e-15);
+  EXPECT_EQ(bearing("bearing_cw_deg", "0"), 0.0);
+  EXPECT_EQ(bearing("bearing_deg", "360"), 0.0);
+}
+
+TEST(Csv, TakesLineEndsMarksAndNumbersAsOtherProgramsWriteThem) {
+  const auto all = read_csv(
+      "\xef\xbb\xbf"
+      "time_s,bearing_rad,bin_length_m,intensities\r\n"
+      "\r\n"
+      "+1.0e+00,1.000000000000000000e+00,1e-1,4.300e+01,0.0\r\n"
+      "2,1,0.1,9",
+      Damage::kFail);
+  EXPECT_EQ(all.error, "");
+  ASSERT_EQ(all.items.size(), 2U);
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(43, 0));
+  EXPECT_THAT(all.items[1].intensities, ElementsAre(9));
+}
+
+TEST(Csv, LeavesDamagedLinesOutAndNamesTheFirstWhenAsked) {
+  const std::string text =
+      "time_s,bearing_rad,bin_length_m,intensities\n"
+      "1,1,0.1,5\n"
+      "2,1,0.1,256\n"
+      "3,1,0.1,-1\n"
+      "4,1,0.1,1.5\n"
+      "5,1,0.1,\n"
+      "6,1,0.1,1,\n"
+      "7,1\n"
+      "8,nan,0.1,5\n"
+      "inf,1,0.1,5\n"
+      "1e999,1,0.1,5\n"
+      "9,1,0,5\n"
+      "10,1,-0.1,5\n"
+      "11,1,1e5,5\n"
+      "12,0x1,0.1,5\n"
+      "13,1;0,0.1,5\n"
+      "14,,0.1,5\n"
+      "15,1,0.1,5\n";
+  const auto all = read_csv(text);
+  EXPECT_EQ(all.error, "");
+  EXPECT_EQ(all.skipped, 15U);
+  ASSERT_EQ(all.items.size(), 2U);
+  EXPECT_EQ(all.items[1].time_s, 15.0);
+
+  const auto strict = read_csv(text, Damage::kFail);
+  EXPECT_EQ(strict.items.size(), 1U);
+  EXPECT_EQ(strict.error, "log.csv: line 3: intensity 0, \"256\", is not a whole number in 0..255");
+}
+
+TEST(Csv, SaysWhichColumnIsMissing) {
+  EXPECT_EQ(read_csv("time_s,bin_length_m,intensities\n").error,
+            "log.csv: line 1: needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg");
+  EXPECT_THAT(read_csv("#\n\nbearing_rad,bin_length_m,intensities\n").error,
+              HasSubstr("line 3: needs one column time_s"));
+  EXPECT_THAT(read_csv("time_s,bearing_rad,intensities\n").error, HasSubstr("bin_length_m"));
+  EXPECT_THAT(read_csv("time_s,bearing_rad,bin_length_m\n").error, HasSubstr("intensities"));
+  EXPECT_THAT(read_csv("time_s,bearing_rad,intensities,bin_length_m\n").error, HasSubstr("intensities"));
+  EXPECT_THAT(read_csv("time_s,bearing_rad,bearing_deg,bin_length_m,intensities\n").error, HasSubstr("bearing"));
+}
+
+TEST(Csv, ReadsBackWhatItWroteToTheLastBit) {
+  std::size_t checked = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto share = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    std::vector<Beam> beams(50);
+    for (Beam& beam : beams) {
+      beam.time_s = (share() - 0.5) * std::pow(10.0, static_cast<double>(random() % 20) - 8.0);
+      beam.bearing_rad = share() * 2.0 * std::numbers::pi;
+      beam.bin_length_m = share() * std::pow(10.0, -static_cast<double>(random() % 8)) + 1e-300;
+      beam.intensities.resize(random() % 500);
+      for (auto& intensity : beam.intensities) intensity = static_cast<std::uint8_t>(random());
+    }
+    beams[0].bearing_rad = std::nextafter(2.0 * std::numbers::pi, 0.0);
+    beams[1].time_s = 5e-324;
+    BeamsInMemory source(beams);
+    std::stringstream text;
+    ASSERT_EQ(write_csv(source, text), beams.size());
+    const auto all = read_csv(text.str(), Damage::kFail);
+    EXPECT_EQ(all.error, "");
+    ASSERT_EQ(all.items.size(), beams.size());
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      EXPECT_TRUE(same(all.items[i], beams[i])) << i;
+      ++checked;
+    }
+  }
+  EXPECT_EQ(checked, 1000U);
+}
+
+class DecimalComma : public std::numpunct<char> {
+ protected:
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(Csv, ReadsAndWritesTheSameInALocaleWithADecimalComma) {
+  const std::string csv = "time_s,bearing_rad,bin_length_m,intensities\n1234.5,1,0.25,3\n";
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  const auto all = read_csv(csv);
+  BeamsInMemory source(all.items);
+  std::stringstream text;
+  EXPECT_TRUE(write_csv(source, text));
+  std::locale::global(before);
+  EXPECT_EQ(text.str(), csv);
+}
+
+TEST(Csv, SaysWhenItCouldNotBeWritten) {
+  BeamsInMemory source({Beam{1.0, 1.0, 0.1, {1}}});
+  std::stringstream text;
+  text.setstate(std::ios::badbit);
+  const auto written = write_csv(source, text);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Error::Code::kIo);
+}
+
+}  // namespace
+}  // namespace pingvox

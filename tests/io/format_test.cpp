@@ -1,0 +1,96 @@
+#include "pingvox/io/format.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "support/logs.hpp"
+#include "support/mat5_writer.hpp"
+
+namespace pingvox {
+namespace {
+
+std::optional<Format> format_of_text(std::string_view text) {
+  return format_of(bytes_of(text));
+}
+
+TEST(Format, IsToldByContent) {
+  EXPECT_EQ(format_of_text("# Octomap OcTree binary file\nid OcTree\n"), Format::kBt);
+  EXPECT_EQ(format_of_text("# Octomap OcTree file of mine\n"), Format::kOt);
+  EXPECT_EQ(format_of_text("PINGVOXM..."), Format::kPvx);
+  EXPECT_EQ(format_of_text("# beams\n\ntime_s,bearing_rad,bin_length_m,intensities\n"), Format::kCsv);
+  EXPECT_EQ(format_of_text("# scans\nNODE 1 2 3 4 5 6\n"), Format::kScanLog);
+  EXPECT_EQ(format_of_text("# poses\n1.5 1 2 3 0 0 0 1\n"), Format::kTum);
+  EXPECT_EQ(format_of_text("1.5,1,2,3,0,0,0,1\r\n"), Format::kTum);
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    const auto file = mat5_writer::file({}, order);
+    EXPECT_EQ(format_of(file), Format::kMat);
+  }
+  EXPECT_EQ(format_of(from_hex("00000000 00000000")), Format::kScanGraph);
+}
+
+TEST(Format, KnowsTheOldestBinaryTree) {
+  // i32 3, f64 0.1, u32 9 nodes; a root of eight leaves.
+  const auto bytes = from_hex("03000000 9a9999999999b93f 09000000 aaaa");
+  EXPECT_EQ(format_of(bytes), Format::kBt);
+}
+
+TEST(Format, TellsAGraphOfThreeScansFromTheOldestTree) {
+  std::vector<std::uint8_t> bytes = from_hex("03000000 01000000 03000000");
+  bytes.resize(bytes.size() + 24 + 28 + 36 + 4);
+  bytes[36] = 3;
+  bytes[64] = 4;
+  EXPECT_EQ(format_of(bytes), Format::kScanGraph);
+}
+
+TEST(Format, IsNothingForNothing) {
+  EXPECT_EQ(format_of({}), std::nullopt);
+  for (int byte = 0; byte < 256; ++byte) {
+    const std::uint8_t bytes[] = {static_cast<std::uint8_t>(byte)};
+    EXPECT_EQ(format_of(bytes), std::nullopt) << byte;
+  }
+  EXPECT_EQ(format_of_text("\n\n\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("# only a comment"), std::nullopt);
+  EXPECT_EQ(format_of_text("hello, world\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("1 2 3\n4 5 6\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("NODELIST\n"), std::nullopt);
+}
+
+TEST(Format, IsNothingForNoise) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 10'000; ++i) {
+    std::vector<std::uint8_t> bytes(random() % 300);
+    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    EXPECT_EQ(format_of(bytes), std::nullopt) << i;
+  }
+}
+
+TEST(Format, OfAFileToBeWrittenIsItsSuffix) {
+  EXPECT_EQ(format_for_writing("a/b.c/map.bt"), Format::kBt);
+  EXPECT_EQ(format_for_writing("map.OT"), Format::kOt);
+  EXPECT_EQ(format_for_writing("map.pvx"), Format::kPvx);
+  EXPECT_EQ(format_for_writing("map.ply"), Format::kPly);
+  EXPECT_EQ(format_for_writing("log.csv"), Format::kCsv);
+  EXPECT_EQ(format_for_writing("picture.png"), Format::kPng);
+  EXPECT_EQ(format_for_writing("log.mat"), std::nullopt);
+  EXPECT_EQ(format_for_writing("bt"), std::nullopt);
+  EXPECT_EQ(format_for_writing("-"), std::nullopt);
+  EXPECT_EQ(format_for_writing(""), std::nullopt);
+}
+
+TEST(Open, SaysWhatAFileIsInstead) {
+  const auto beams = open_beams({"tank.mat", bytes_of("# Octomap OcTree binary file\n")});
+  ASSERT_FALSE(beams);
+  EXPECT_EQ(beams.error().code, Error::Code::kUnsupported);
+  EXPECT_EQ(beams.error().message, "tank.mat: not a log of beams (it is an OctoMap binary tree)");
+  EXPECT_EQ(open_scans({"a", bytes_of("1 0 0 0 0 0 0 1\n")}).error().message,
+            "a: not a log of scans (it is a trajectory)");
+  EXPECT_EQ(open_beams({"a", bytes_of("GIF89a")}).error().message, "a: not a log of beams that we know");
+  EXPECT_EQ(open_beams({"a", {}}).error().message, "a: is empty");
+  EXPECT_EQ(open_scans({"a", {}}).error().message, "a: is empty");
+}
+
+}  // namespace
+}  // namespace pingvox

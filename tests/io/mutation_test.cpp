@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fuzz/bodies/beams.hpp"
+#include "fuzz/bodies/scans.hpp"
+#include "fuzz/bodies/tum.hpp"
+#include "pingvox/io/file.hpp"
+#include "support/mutants.hpp"
+
+// Each fuzz body on its corpus and on some thousand damaged copies of it.
+namespace pingvox {
+namespace {
+
+struct Reader {
+  const char* name;  ///< of its folder in fuzz/corpus
+  void (*body)(std::span<const std::uint8_t>);
+};
+
+class Mutation : public testing::TestWithParam<Reader> {};
+
+TEST_P(Mutation, KeepsItsPromises) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(PINGVOX_FUZZ_CORPUS "/") + GetParam().name)) {
+    paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<std::vector<std::uint8_t>> seeds;
+  for (const auto& path : paths) {
+    SCOPED_TRACE(path);
+    auto file = read_file(path.string());
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_NO_THROW(GetParam().body(file->view()));
+    seeds.push_back(std::move(file->bytes));
+  }
+  ASSERT_FALSE(seeds.empty());
+
+  constexpr std::size_t kMutants = 4000;
+  for (std::size_t i = 0; i < kMutants; ++i) {
+    std::mt19937_64 random(i);
+    const auto& seed = seeds[i % seeds.size()];
+    const auto bytes = mutant(seed, seeds[random() % seeds.size()], random);
+    EXPECT_NO_THROW(GetParam().body(bytes)) << "mutant " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
+                         testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
+                                         Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
+                                         Reader{"tum", fuzz::tum}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+}  // namespace
+}  // namespace pingvox
