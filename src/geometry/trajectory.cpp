@@ -7,7 +7,9 @@
 
 namespace pingvox {
 
-Trajectory Trajectory::still(const Pose& map_from_body) { return Trajectory({{0.0, map_from_body}}, true); }
+Trajectory Trajectory::still(const Pose& map_from_body) {
+  return Trajectory({{0.0, map_from_body}}, true);
+}
 
 Result<Trajectory> Trajectory::make(std::vector<StampedPose> poses) {
   if (poses.empty()) return fail(Error::Code::kCorrupt, "a trajectory needs at least one pose");
@@ -16,8 +18,8 @@ Result<Trajectory> Trajectory::make(std::vector<StampedPose> poses) {
       return fail(Error::Code::kCorrupt, fmt::format("pose {} is not finite", i));
     }
     if (i > 0 && !(poses[i].time_s > poses[i - 1].time_s)) {
-      return fail(Error::Code::kCorrupt, fmt::format("pose {}: time {} s does not follow {} s", i, poses[i].time_s,
-                                                     poses[i - 1].time_s));
+      return fail(Error::Code::kCorrupt,
+                  fmt::format("pose {}: time {} s does not follow {} s", i, poses[i].time_s, poses[i - 1].time_s));
     }
   }
   return Trajectory(std::move(poses), false);

@@ -36,8 +36,8 @@ struct Clamp {
 
 /// Where `belief` already is as sure as the clamp allows in the direction of `evidence`, or `evidence` says nothing.
 constexpr bool is_unchanged_by(LogOdds belief, LogOdds evidence, const Clamp& clamp) {
-  return (evidence >= LogOdds(0.0F) && belief >= clamp.highest) || (evidence <= LogOdds(0.0F) && belief <= clamp.lowest) ||
-         evidence == LogOdds(0.0F);
+  return (evidence >= LogOdds(0.0F) && belief >= clamp.highest) ||
+         (evidence <= LogOdds(0.0F) && belief <= clamp.lowest) || evidence == LogOdds(0.0F);
 }
 
 /// Belief after one more piece of independent evidence: add, then clamp (paper, equation 1 in log-odds).
