@@ -152,8 +152,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   }
 
   const Stopwatch write;
-  const Result<void> written = write_file(
-      command.output, [&](std::ostream& out) { return write_map(*map, command.format, command.made_by, out); });
+  const Result<void> written = write_map_file(command.output, *map, command.format, command.made_by);
   if (!written) return tl::unexpected(written.error());
   totals.write_s = write.seconds();
   totals.total_s = total.seconds();
