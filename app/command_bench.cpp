@@ -28,8 +28,9 @@ Result<int> run(const BenchCommand& command, Console&) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  // An ignored signal would stay ignored in the new program.
+  // Ignored signals would stay ignored in the new program.
   std::signal(SIGPIPE, SIG_DFL);
+  std::signal(SIGXFSZ, SIG_DFL);
   ::execv(program.c_str(), argv.data());
   return fail(Error::Code::kIo, fmt::format("{}: {}", program, std::strerror(errno)));
 }

@@ -8,6 +8,7 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "write_map_file.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -40,8 +41,7 @@ Result<std::string> convert_log(FileBytes file, const ConvertCommand& command) {
 Result<std::string> convert_map(const FileBytes& file, const ConvertCommand& command) {
   const Result<MapFile> read = read_map(file);
   if (!read) return tl::unexpected(read.error());
-  const Result<void> written = write_file(
-      command.output, [&](std::ostream& out) { return write_map(read->map, command.format, read->made_by, out); });
+  const Result<void> written = write_map_file(command.output, read->map, command.format, read->made_by);
   if (!written) return tl::unexpected(written.error());
   const MapCounts counts = read->map.counts();
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);

@@ -104,6 +104,16 @@ Take into_number(Number& target, Number unit = Number{1}) {
   };
 }
 
+template <class Number>
+Take into_optional(std::optional<Number>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const Result<Number> value = number_from<Number>(text);
+    if (!value) return tl::unexpected(value.error());
+    target = *value;
+    return {};
+  };
+}
+
 Take into_probability(LogOdds& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<double> value = number_from<double>(text);
@@ -142,7 +152,7 @@ Result<Enum> value_of(const std::array<Word<Enum>, N>& words, const std::string&
     if (word.word == text) return word.value;
     known.emplace_back(word.word);
   }
-  return off(fmt::format("'{}' is none of {}{}", text, fmt::join(known, ", "), did_you_mean(text, known)));
+  return off(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
 }
 
 template <class Enum, std::size_t N>
@@ -216,11 +226,24 @@ Option quiet_option(Manner& manner) {
   return flag("--quiet", "say nothing but errors", manner.talk, Talk::kQuiet);
 }
 
-OptionTable::Group echo_group(FilterOptions& filter, EchoOptions& echo, const Take& max_range) {
+Take into_sound_speed_ratio(double& ratio) {
+  return [&ratio](const std::string& text) -> Result<void> {
+    const Result<double> speed = number_from<double>(text);
+    if (!speed) return tl::unexpected(speed.error());
+    if (!(*speed > 0.0) || !std::isfinite(*speed)) return off(fmt::format("{} is no speed above 0", text));
+    ratio = *speed / kAssumedSoundSpeed_m_s;
+    return {};
+  };
+}
+
+OptionTable::Group echo_group(FilterOptions& filter, EchoOptions& echo, double& sound_speed_ratio,
+                              const Take& max_range) {
   return {"Echoes",
           {{"--min-range", 0, "M", "nearer bins are the head's own ringing, and no evidence", shown(echo.min_range_m),
             into_number(echo.min_range_m)},
            {"--max-range", 0, "M", "farther bins and cells are left alone", "none", max_range},
+           {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
+            into_sound_speed_ratio(sound_speed_ratio)},
            choice("--filter", kFilters, "how sweeps are smoothed before echoes are looked for", filter.filter),
            {"--kernel", 0, "N", "edge of the filter's window in beams and bins, odd", fmt::format("{}", filter.kernel),
             into_number(filter.kernel)},
@@ -270,7 +293,9 @@ Result<void> check_standard_input(const Words& files) {
 }
 
 tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
-  if (error.code != Error::Code::kBadOption) return tl::unexpected(error);
+  // A message of the library may begin with the same word: the stage that it is about.
+  const bool is_named = error.message.starts_with(table.command + ":");
+  if (error.code != Error::Code::kBadOption || is_named) return tl::unexpected(error);
   return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
 }
 
@@ -328,13 +353,6 @@ Result<Command> map_command(const Words& words) {
     const Result<void> taken = into_number(build.echo.max_range_m)(text);
     model.max_range_m = build.echo.max_range_m;
     return taken;
-  };
-  const Take sound_speed = [&](const std::string& text) -> Result<void> {
-    const Result<double> speed = number_from<double>(text);
-    if (!speed) return tl::unexpected(speed.error());
-    if (!(*speed > 0.0) || !std::isfinite(*speed)) return off(fmt::format("{} is no speed above 0", text));
-    build.sound_speed_ratio = *speed / kAssumedSoundSpeed_m_s;
-    return {};
   };
   const Take thread_count = [&](const std::string& text) -> Result<void> {
     const Result<void> taken = into_number(threads)(text);
@@ -394,8 +412,6 @@ Result<Command> map_command(const Words& words) {
           into(poses)},
          {"--mount", 0, "X,Y,Z,R,P,Y", "the head on the vehicle: metres, then roll, pitch, yaw in degrees",
           "0,0,0,0,0,0", mount},
-         {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
-          sound_speed},
          choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
          {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
           into_number(model.width_rad, kDegree_rad)},
@@ -404,7 +420,7 @@ Result<Command> map_command(const Words& words) {
          choice("--ray", kRays, "how rays go from cell to cell", model.ray),
          choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
          choice("--silent", kSilents, "what a beam without an echo says", model.silent)}},
-       echo_group(build.filter, build.echo, max_range),
+       echo_group(build.filter, build.echo, build.sound_speed_ratio, max_range),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt --beam cone",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
@@ -501,27 +517,33 @@ Result<Command> convert_command(const Words& words) {
 
 Result<Command> render_command(const Words& words) {
   RenderCommand command;
+  std::size_t size_px = command.map_picture.target_px;
   const Take max_range = into_number(command.echo.max_range_m);
   const OptionTable table{
       "render",
-      "Draws a PNG: of a log a sweep in polar coordinates with the echoes that were found in it, of a map the view "
-      "from\n"
-      "above.",
+      "Draws a PNG: of a log of beams what was heard, in polar coordinates and with a mark on each echo; of a map\n"
+      "the view from above.",
       {{"FILE", Positional::Count::kOne, "a log of beams or a map; - is standard input", into(command.input)}},
       {{"Options",
         {output_option(command.output, "the picture, .png; - is standard output"),
-         {"--sweep", 0, "N", "which sweep of a log to draw, counted from 1", fmt::format("{}", command.sweep),
-          into_number(command.sweep)},
+         {"--size", 0, "PX", "about as long is the longer side of the picture", fmt::format("{}", size_px),
+          into_number(size_px)},
+         {"--sweep", 0, "N", "of a log, draw only this sweep, counted from 1", "all", into_optional(command.sweep)},
+         {"--min-z", 0, "M", "of a map, draw nothing below", "none", into_optional(command.map_picture.min_z_m)},
+         {"--max-z", 0, "M", "of a map, draw nothing above", "none", into_optional(command.map_picture.max_z_m)},
          strict_option(command.damage),
          quiet_option(command.manner),
          config_option()}},
-       echo_group(command.filter, command.echo, max_range)},
-      {"pingvox render tank.mat -o echoes.png --threshold 50", "pingvox render tank.bt -o map.png"},
+       echo_group(command.filter, command.echo, command.sound_speed_ratio, max_range)},
+      {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50", "pingvox render tank.bt -o map.png"},
       ""};
   return parsed(table, words, [&]() -> Result<Command> {
     const Result<Format> output_as = output_format(command.output, std::nullopt, kPngOnly);
     if (!output_as) return tl::unexpected(output_as.error());
-    if (command.sweep < 1) return off("--sweep: counts from 1");
+    if (command.sweep == 0U) return off("--sweep: counts from 1");
+    command.map_picture.target_px = command.echo_picture.target_px = size_px;
+    if (const auto valid = command.map_picture.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = command.echo_picture.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());

@@ -9,9 +9,9 @@
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/io/maps.hpp"
 #include "pingvox/io/tum.hpp"
 #include "progress.hpp"
+#include "write_map_file.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -106,7 +106,8 @@ std::string text_of(const Totals& totals, const OccupancyMap& map, const std::st
   const auto& s = report.seconds;
   std::string read = fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes);
   if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
-  return fmt::format("{}\n", on_one_line(output)) + report_line("read", read) + map_text(map, map.counts()) +
+  const std::string name = output == "-" ? "standard output" : on_one_line(output);
+  return name + "\n" + report_line("read", read) + map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
@@ -141,7 +142,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       };
       const Result<BuildReport> report = map_log(*log, *trajectory, command.build, *map, progress);
       if (!report) return tl::unexpected(with_name(report.error(), name));
-      if (report->beams == 0 && report->sweeps == 0) {
+      if (report->beams == 0) {
         return fail(Error::Code::kCorrupt,
                     fmt::format("{}: nothing in it could be mapped ({} left out{})", name, report->skipped,
                                 command.poses ? "; do the times of the poses fit?" : ""));
@@ -151,8 +152,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   }
 
   const Stopwatch write;
-  const Result<void> written = write_file(
-      command.output, [&](std::ostream& out) { return write_map(*map, command.format, command.made_by, out); });
+  const Result<void> written = write_map_file(command.output, *map, command.format, command.made_by);
   if (!written) return tl::unexpected(written.error());
   totals.write_s = write.seconds();
   totals.total_s = total.seconds();

@@ -13,6 +13,8 @@
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/tank.hpp"
+#include "pingvox/viewer/render_echoes.hpp"
+#include "pingvox/viewer/render_map.hpp"
 
 /// The commands as plain values: what `parse_command_line` makes of the words, and what `run` does. A `run` returns the
 /// exit status of a call that could be done; `main` turns errors into the others.
@@ -60,7 +62,10 @@ struct RenderCommand {
   Damage damage = Damage::kSkip;
   FilterOptions filter;
   EchoOptions echo;
-  std::size_t sweep = 1;  ///< which one of a log to draw, counted from 1
+  double sound_speed_ratio = 1.0;
+  std::optional<std::size_t> sweep;  ///< which one of a log to draw, counted from 1; nullopt: all
+  EchoPictureOptions echo_picture;
+  MapPictureOptions map_picture;
 };
 
 struct SimulateCommand {

@@ -56,8 +56,9 @@ void keep_standard_streams() {
 
 int main(int argc, char** argv) {
   keep_standard_streams();
-  // A reader that went away is an error like others, not our death.
+  // A reader that went away and a file that grew too large are errors like others, not our death.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 
   std::vector<std::string> words;
   Error error{Error::Code::kUnsupported, ""};

@@ -145,7 +145,8 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& w
   }
   for (const Positional& positional : table.positionals) {
     CLI::Option* parsed = app.add_option(positional.name, keep);
-    if (positional.count == Positional::Count::kMany) parsed->expected(1, CLI::detail::expected_max_vector_size);
+    if (positional.count == Positional::Count::kMany)
+      parsed->expected(-1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     found.push_back({nullptr, &positional, parsed});
   }
   const CLI::Option* help = app.add_flag("-h,--help");

@@ -6,16 +6,21 @@ _pingvox_options() {
   case "$1" in
     "") options+=(--version) ;;
     map)
-      options+=(--output --config --resolution --depth --poses --mount --min-range --max-range --sound-speed)
+      options+=(--output --format --config --resolution --depth --poses --mount --min-range --max-range --sound-speed)
       options+=(--filter --kernel --sigma --detect --threshold)
       options+=(--beam --beam-width --beam-height --ray --vote --hit --miss --clamp --hit-from --parents --silent)
       options+=(--threads --memory-limit --strict --json --quiet --progress)
       ;;
     info) options+=(--json --strict) ;;
-    compare) options+=(--json) ;;
-    convert) options+=(--output --strict) ;;
-    render) options+=(--output --strict) ;;
-    simulate) options+=(--output --seed) ;;
+    compare) options+=(--json --quiet) ;;
+    convert) options+=(--output --format --strict --quiet) ;;
+    render)
+      options+=(--output --size --sweep --min-z --max-z --config --strict --quiet)
+      options+=(--min-range --max-range --sound-speed --filter --kernel --sigma --detect --threshold)
+      ;;
+    simulate)
+      options+=(--output --config --quiet --seed --turns --side --beams-per-turn --bins --bin-length --speckle --noise)
+      ;;
   esac
   printf '%s\n' "${options[@]}"
 }
@@ -23,14 +28,15 @@ _pingvox_options() {
 # Prints the words that an option takes, one a line; nothing when they are no fixed set.
 _pingvox_words() {
   case "$1" in
-    --filter) printf '%s\n' none mean median gaussian ;;
-    --detect) printf '%s\n' rise level max canny cfar ;;
+    --filter) printf '%s\n' none gaussian ;;
+    --detect) printf '%s\n' rise ;;
     --beam) printf '%s\n' ray fan cone ;;
     --ray) printf '%s\n' dda bresenham ;;
     --vote) printf '%s\n' sweep beam ;;
     --hit-from) printf '%s\n' fixed intensity ;;
     --parents) printf '%s\n' max mean ;;
     --silent) printf '%s\n' nothing free ;;
+    --format) printf '%s\n' csv bt ot pvx ply ;;
     --progress) printf '%s\n' auto always never ;;
   esac
 }
@@ -58,7 +64,8 @@ _pingvox() {
   if [[ -z $words ]]; then
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
-        --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed)
+        --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | \
+        --side | --beams-per-turn | --bins | --bin-length | --speckle | --noise | --size | --sweep | --min-z | --max-z)
         return # a number: nothing to offer
         ;;
     esac

@@ -48,14 +48,14 @@ inline bool same(const Beam& a, const Beam& b) {
 
 /// Any bytes as a log of beams: what is read is valid, a strict read is the start of a lenient one, and CSV gives all
 /// of it back.
-inline void beams(std::span<const std::uint8_t> bytes) {
+inline std::size_t beams(std::span<const std::uint8_t> bytes) {
   const BeamsRead lenient = beams_in(bytes, Damage::kSkip);
   const BeamsRead strict = beams_in(bytes, Damage::kFail);
   require(strict.beams.size() <= lenient.beams.size(), "a strict read gives no more");
   for (std::size_t i = 0; i < strict.beams.size(); ++i) {
     require(same(strict.beams[i], lenient.beams[i]), "a strict read gives the same");
   }
-  if (lenient.beams.empty()) return;
+  if (lenient.beams.empty()) return 0;
 
   class Again : public BeamSource {
    public:
@@ -77,6 +77,7 @@ inline void beams(std::span<const std::uint8_t> bytes) {
   for (std::size_t i = 0; i < back.beams.size(); ++i) {
     require(same(back.beams[i], lenient.beams[i]), "what is read is what was written");
   }
+  return lenient.beams.size();
 }
 
 }  // namespace pingvox::fuzz

@@ -35,7 +35,8 @@ inline std::vector<PointScan> scans_in(std::span<const std::uint8_t> bytes, Dama
 }
 
 /// Any bytes as a log of scans: what is read is finite, and a strict read is the start of a lenient one.
-inline void scans(std::span<const std::uint8_t> bytes) {
+/// @return scans read
+inline std::size_t scans(std::span<const std::uint8_t> bytes) {
   const std::vector<PointScan> lenient = scans_in(bytes, Damage::kSkip);
   const std::vector<PointScan> strict = scans_in(bytes, Damage::kFail);
   require(strict.size() <= lenient.size(), "a strict read gives no more");
@@ -43,6 +44,7 @@ inline void scans(std::span<const std::uint8_t> bytes) {
     require(strict[i].origin_m == lenient[i].origin_m && strict[i].points_m == lenient[i].points_m,
             "a strict read gives the same");
   }
+  return lenient.size();
 }
 
 }  // namespace pingvox::fuzz

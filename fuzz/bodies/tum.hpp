@@ -11,9 +11,13 @@
 namespace pingvox::fuzz {
 
 /// Any bytes as a trajectory: what is read holds rigid poses, and is written and read back.
-inline void tum(std::span<const std::uint8_t> bytes) {
+/// @return poses read
+inline std::size_t tum(std::span<const std::uint8_t> bytes) {
   const auto read = read_tum({"fuzzed", {bytes.begin(), bytes.end()}});
-  if (!read) return require(read.error().message.starts_with("fuzzed"), "an error names the file");
+  if (!read) {
+    require(read.error().message.starts_with("fuzzed"), "an error names the file");
+    return 0;
+  }
   for (const StampedPose& pose : read->poses()) {
     const Eigen::Matrix3d rotation = pose.map_from_body.linear();
     require((rotation * rotation.transpose()).isIdentity(1e-9) && rotation.determinant() > 0.0, "rotations are such");
@@ -29,6 +33,7 @@ inline void tum(std::span<const std::uint8_t> bytes) {
             "what is read is what was written");
     require(a.map_from_body.linear().isApprox(b.map_from_body.linear(), 1e-12), "rotations come back");
   }
+  return back->poses().size();
 }
 
 }  // namespace pingvox::fuzz

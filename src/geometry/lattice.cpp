@@ -12,6 +12,10 @@ Result<Lattice> Lattice::make(double resolution_m, int depth) {
   if (depth < 1 || depth > kMaxDepth) {
     return fail(Error::Code::kBadOption, fmt::format("depth must be in 1..{} levels, is {}", kMaxDepth, depth));
   }
+  if (!std::isfinite(std::ldexp(resolution_m, depth))) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("{} levels of cells of {} m are larger than any number", depth, resolution_m));
+  }
   return Lattice(resolution_m, depth);
 }
 
@@ -19,6 +23,7 @@ Lattice::Lattice(double resolution_m, int depth)
     : resolution_m_(resolution_m), cells_per_m_(1.0 / resolution_m), half_(std::ldexp(1.0, depth - 1)), depth_(depth) {
   assert(resolution_m > 0.0 && std::isfinite(cells_per_m_));
   assert(depth >= 1 && depth <= kMaxDepth);
+  assert(std::isfinite(std::ldexp(resolution_m, depth)));
 }
 
 }  // namespace pingvox

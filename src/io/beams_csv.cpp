@@ -82,7 +82,7 @@ tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector
     if (!field) return tl::unexpected(std::string("has too few columns"));
     if (column == Column::kOther) continue;
     const std::optional<double> number = number_in(*field);
-    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", field->substr(0, 40)));
+    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", printable(*field)));
     if (column == Column::kTime) beam.time_s = *number;
     if (column == Column::kBinLength) beam.bin_length_m = *number;
     if (is_bearing(column)) beam.bearing_rad = bearing_of(column, *number);
@@ -91,7 +91,7 @@ tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector
     const std::optional<std::uint8_t> intensity = intensity_in(*field);
     if (!intensity) {
       return tl::unexpected(fmt::format("intensity {}, \"{}\", is not a whole number in 0..255",
-                                        beam.intensities.size(), field->substr(0, 40)));
+                                        beam.intensities.size(), printable(*field)));
     }
     beam.intensities.push_back(*intensity);
   }

@@ -19,7 +19,7 @@ bool looks_like_oldest_bt(std::span<const std::uint8_t> bytes) {
   const auto version = reader.read<std::int32_t>();
   const auto resolution_m = reader.read<double>();
   const auto nodes = reader.read<std::uint32_t>();
-  if (!nodes || *version != 3) return false;
+  if (!version || !resolution_m || !nodes || *version != 3) return false;
   // Whatever begins with a 3 by chance has no such number here.
   return std::isfinite(*resolution_m) && *resolution_m >= 1e-6 && *resolution_m <= 1e6 &&
          reader.left() / 2 <= std::uint64_t{*nodes};

@@ -183,7 +183,7 @@ int version_of(std::span<const std::uint8_t> bytes) {
 /// The name of the variable that a matrix element begins, as far as `bytes` go.
 std::optional<std::string> name_in(std::span<const std::uint8_t> bytes, std::endian order) {
   ByteReader reader(bytes, order);
-  reader.take(kTagBytes);
+  if (!reader.take(kTagBytes)) return std::nullopt;
   const auto head = take_matrix_head(reader, order);
   if (!head) return std::nullopt;
   return std::string(head->name);
@@ -225,7 +225,7 @@ Result<std::vector<std::uint8_t>> find_variable(const FileBytes& file, std::endi
       }
     }
     if (!name) continue;
-    if (++count <= 8) others += fmt::format("{}{}", count == 1 ? "" : ", ", name->substr(0, 63));
+    if (++count <= 8) others += fmt::format("{}{}", count == 1 ? "" : ", ", printable(*name));
     if (count == 9) others += ", ...";
   }
   return fail(Error::Code::kUnsupported,

@@ -50,8 +50,8 @@ class ScanGraphSource : public ScanSource {
     while (node_ < nodes_) {
       const std::size_t node = node_++;
       const auto points = take_points(reader_);
-      const auto translation = counted_values<3>(*reader_.take(kVectorBytes));
-      const auto rotation = counted_values<4>(*reader_.take(kRotationBytes));
+      const auto translation = counted_values<kVectorCount>(*reader_.take(kVectorBytes));
+      const auto rotation = counted_values<kRotationCount>(*reader_.take(kRotationBytes));
       reader_.take(4);
 
       const std::string place = fmt::format("scan {}", node);
@@ -69,7 +69,7 @@ class ScanGraphSource : public ScanSource {
       const std::size_t count = points->size() / kVectorBytes;
       scan.reserve(count);
       for (std::size_t i = 0; i < count; ++i) {
-        const auto point = counted_values<3>(points->subspan(i * kVectorBytes, kVectorBytes));
+        const auto point = counted_values<kVectorCount>(points->subspan(i * kVectorBytes, kVectorBytes));
         if (point && scan.add(*point)) continue;
         const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, fmt::format("scan {}, point {}", node, i),
                                                point ? "is not finite" : "is damaged");

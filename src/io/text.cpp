@@ -78,6 +78,15 @@ std::optional<std::string_view> cut_word(std::string_view& rest) {
   return word;
 }
 
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::string shown(text.substr(0, kMost));
+  for (char& c : shown) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return text.size() > kMost ? shown + "..." : shown;
+}
+
 std::optional<double> number_in(std::string_view text) {
   return parsed<double>(text);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace pingvox {
@@ -38,6 +39,9 @@ std::optional<std::string_view> cut_field(std::string_view& rest, char separator
 
 /// Cuts the next word off the front of `rest`: what stands between blanks, tabs and commas. nullopt: none is left.
 std::optional<std::string_view> cut_word(std::string_view& rest);
+
+/// The beginning of something from a file, for a message: nothing in it breaks the line or speaks to the terminal.
+std::string printable(std::string_view text);
 
 /// All of `text` as a finite decimal number, rounded once to the type, in any locale. nullopt: it is none.
 std::optional<double> number_in(std::string_view text);

@@ -23,7 +23,7 @@ tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
   for (; const auto word = cut_word(line); ++count) {
     if (count == kNumbers) return tl::unexpected(std::string("more than 8 numbers"));
     const std::optional<double> number = number_in(*word);
-    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", word->substr(0, 40)));
+    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", printable(*word)));
     n[count] = *number;
   }
   if (count < kNumbers) return tl::unexpected(fmt::format("{} numbers instead of 8", count));

@@ -17,15 +17,6 @@ int octant_known(const Brick& brick, int octant) {
   return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
 }
 
-Brick brick_of(Entry entry) {
-  Brick brick;
-  if (entry.is_leaf()) {
-    brick.known = kAllCells;
-    brick.value.fill(entry.value);
-  }
-  return brick;
-}
-
 Group group_of(Entry entry) {
   Group group;
   if (entry.is_leaf()) group.child.fill(entry);
@@ -77,6 +68,12 @@ Entry pruned(BrickTree& tree, Entry entry, int depth, Parents parents) {
     const Entry child = pruned(tree, tree.groups[entry.link].child[o], depth + 1, parents);
     tree.groups[entry.link].child[o] = child;
   }
+  // Only where memory ran out between making a group and making what it is for.
+  const Group& group = tree.groups[entry.link];
+  if (std::all_of(group.child.begin(), group.child.end(), [](const Entry& child) { return child.is_none(); })) {
+    tree.groups.release(entry.link);
+    return {};
+  }
   return settled_group(tree, entry.link, parents, Pruning::kWhenSettled);
 }
 
@@ -113,6 +110,39 @@ Entry merged_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Pa
 }
 
 }  // namespace
+
+int BrickTree::common_depth(const WideKey& a, const WideKey& b) const {
+  const WideKey from{a.x >> 2, a.y >> 2, a.z >> 2}, to{b.x >> 2, b.y >> 2, b.z >> 2};
+  if (from == to) return brick_depth();
+  const int depth = brick_depth() - 1 - highest_difference(from, to);
+  assert(depth >= 0);  // else a key lies outside of the lattice
+  return depth;
+}
+
+Brick brick_of(Entry entry) {
+  Brick brick;
+  if (entry.is_leaf()) {
+    brick.known = kAllCells;
+    brick.value.fill(entry.value);
+  }
+  return brick;
+}
+
+bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
+  assert((votes.missed & votes.hit) == 0);
+  bool changed = false;
+  for (std::uint64_t left = votes.missed | votes.hit; left != 0; left &= left - 1) {
+    const auto cell = static_cast<std::size_t>(std::countr_zero(left));
+    const std::uint64_t bit = left & (~left + 1);
+    const LogOdds evidence = (votes.hit & bit) != 0 ? LogOdds(votes.hits[cell]) : votes.miss;
+    if (evidence == LogOdds(0.0F)) continue;
+    const float after = added(brick.value[cell], evidence, clamp);
+    changed |= after != brick.value[cell] || (brick.known & bit) == 0;
+    brick.value[cell] = after;
+    brick.known |= bit;
+  }
+  return changed;
+}
 
 float summary_of(const Group& group, Parents parents) {
   float highest = std::numeric_limits<float>::lowest();
@@ -214,8 +244,7 @@ Entry& Cursor::entry_at(int depth) {
 
 void Cursor::move_to(const WideKey& key) {
   if (reach_ > 0 || brick_stale_) {
-    const WideKey from{key_.x >> 2, key_.y >> 2, key_.z >> 2}, to{key.x >> 2, key.y >> 2, key.z >> 2};
-    const int common = from == to ? tree_.brick_depth() : tree_.brick_depth() - 1 - highest_difference(from, to);
+    const int common = tree_.common_depth(key_, key);
     if (common < reach_) {
       // The group below the shared node stays on the path, and with it the knowledge whether it is stale.
       settle_down_to(common + 1);
@@ -316,22 +345,11 @@ void Cursor::update(const WideKey& key, LogOdds evidence) {
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
 }
 
-void Cursor::vote(const WideKey& key, std::uint64_t missed, LogOdds miss, std::uint64_t hit, const float* hits) {
-  assert((missed & hit) == 0);
+void Cursor::vote(const WideKey& key, const Votes& votes) {
   move_to(key);
   const Entry entry = entry_at(reach_);
   Brick brick = entry.is_inner() ? tree_.bricks[entry.link] : brick_of(entry);
-  bool changed = false;
-  for (std::uint64_t left = missed | hit; left != 0; left &= left - 1) {
-    const auto cell = static_cast<std::size_t>(std::countr_zero(left));
-    const std::uint64_t bit = left & (~left + 1);
-    const LogOdds evidence = (hit & bit) != 0 ? LogOdds(hits[cell]) : miss;
-    if (evidence == LogOdds(0.0F)) continue;
-    const float after = added(brick.value[cell], evidence, rules_.clamp);
-    changed |= after != brick.value[cell] || (brick.known & bit) == 0;
-    brick.value[cell] = after;
-    brick.known |= bit;
-  }
+  const bool changed = add(votes, rules_.clamp, brick);
   if (!changed && (rules_.early_drop == EarlyDrop::kOn || !entry.is_inner())) return;
   grow_to(tree_.brick_depth());
   Entry& at_brick = entry_at(tree_.brick_depth());
@@ -377,10 +395,8 @@ void Cursor::set(const WideKey& key, int depth, float value) {
 }
 
 Cursor::Reach Cursor::reach(const WideKey& key) {
-  const WideKey from{key_.x >> 2, key_.y >> 2, key_.z >> 2}, to{key.x >> 2, key.y >> 2, key.z >> 2};
-  const int common = from == to ? tree_.brick_depth() : tree_.brick_depth() - 1 - highest_difference(from, to);
   move_to(key);
-  return {common, reach_, entry_at(reach_).is_inner()};
+  return {reach_, entry_at(reach_)};
 }
 
 }  // namespace detail

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -47,7 +48,7 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   }
 }
 
-/// Calls f(lowest cell of the brick, missed, hit, evidence of hits) for each brick with marks, in the tree's order.
+/// Calls f(lowest cell of the brick, its votes) for each brick with marks, in the tree's order.
 template <class F>
 void for_each_brick(const ScanUpdate& scan, F&& f) {
   for (const std::uint32_t index : scan.pages_in_order()) {
@@ -60,23 +61,27 @@ void for_each_brick(const ScanUpdate& scan, F&& f) {
         return static_cast<WideWord>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
       };
       const WideKey key{page.lowest.x | offset(0), page.lowest.y | offset(1), page.lowest.z | offset(2)};
-      f(key, missed, hit, hit != 0 ? scan.evidence(page, brick) : nullptr);
+      f(key, detail::Votes{missed, scan.miss(), hit, hit != 0 ? scan.evidence(page, brick) : nullptr});
     }
   }
 }
 
-/// An upper bound of what applying a scan makes the tree's storage grow by.
-std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan) {
+/// An upper bound of what applying a scan makes the tree's storage grow by. Bricks that it leaves as they are need
+/// nothing: a map at its limit still takes in what it knows already.
+std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
   std::size_t bricks = 0, groups = 0;
   detail::Cursor cursor(tree, {});
-  bool first = true;
-  for_each_brick(scan, [&](const WideKey& key, std::uint64_t, std::uint64_t, const float*) {
+  std::optional<WideKey> made;
+  for_each_brick(scan, [&](const WideKey& key, const detail::Votes& votes) {
     const detail::Cursor::Reach reach = cursor.reach(key);
-    if (!reach.has_brick) ++bricks;
-    // Groups that the brick before would have made are there already.
-    const int made_to = std::max(reach.depth, first ? 0 : reach.common_depth + 1);
-    if (made_to < tree.brick_depth()) groups += static_cast<std::size_t>(tree.brick_depth() - made_to);
-    first = false;
+    if (reach.end.is_inner()) return;
+    detail::Brick brick = detail::brick_of(reach.end);
+    if (!detail::add(votes, clamp, brick)) return;
+    if (!detail::is_uniform(brick)) ++bricks;
+    // Groups that the brick made before needs are counted already.
+    const int from = std::max(reach.depth, made ? tree.common_depth(*made, key) + 1 : 0);
+    if (from < tree.brick_depth()) groups += static_cast<std::size_t>(tree.brick_depth() - from);
+    made = key;
   });
   const auto beyond = [](std::size_t wanted, std::size_t spare) { return wanted > spare ? wanted - spare : 0; };
   return beyond(bricks, tree.bricks.spare()) * sizeof(detail::Brick) +
@@ -189,7 +194,7 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
   try {
     if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
-      const std::size_t needed = bytes_of(tree_) + growth_of(tree_, scan);
+      const std::size_t needed = bytes_of(tree_) + growth_of(tree_, scan, options_.clamp);
       if (needed > limit) {
         return fail(Error::Code::kLimit,
                     fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
@@ -197,10 +202,10 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
     }
     ApplyReport report;
     detail::Cursor cursor(tree_, rules_of(options_, Pruning::kWhenSettled));
-    for_each_brick(scan, [&](const WideKey& key, std::uint64_t missed, std::uint64_t hit, const float* evidence) {
-      cursor.vote(key, missed, scan.miss(), hit, evidence);
-      report.cells_freed += static_cast<std::uint64_t>(std::popcount(missed));
-      report.cells_hit += static_cast<std::uint64_t>(std::popcount(hit));
+    for_each_brick(scan, [&](const WideKey& key, const detail::Votes& votes) {
+      cursor.vote(key, votes);
+      report.cells_freed += static_cast<std::uint64_t>(std::popcount(votes.missed));
+      report.cells_hit += static_cast<std::uint64_t>(std::popcount(votes.hit));
     });
     cursor.flush();
     return report;

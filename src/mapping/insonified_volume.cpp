@@ -27,13 +27,14 @@ struct HalfSpace {
   double reach;
 };
 
-/// Where a row of cells along `axis` lies, and which of its cells are meant: [first, last].
+/// Cells first..last along an axis.
 struct Run {
   std::int64_t first, last;
   bool empty() const { return first > last; }
 };
 
-/// A convex piece of the volume, and the map axis that its rows run along.
+/// A convex piece of the volume. Its rows of cells run along the map axis nearest to the head's own up, because a beam
+/// is tall and thin: so there are few of them.
 class Piece {
  public:
   Piece(const Pose& map_from_sensor, double bearing_rad, double width_rad, double height_rad, double range,
@@ -51,8 +52,13 @@ class Piece {
     faces_ = {HalfSpace(ahead), HalfSpace(std::sin(half_width) * ahead - std::cos(half_width) * left),
               HalfSpace(std::sin(half_width) * ahead + std::cos(half_width) * left),
               HalfSpace((slope * ahead - up).normalized()), HalfSpace((slope * ahead + up).normalized())};
-    ahead.cwiseAbs().maxCoeff(&axis_);
-    is_forward_ = ahead[axis_] > 0.0;
+
+    const Vector& tall = height_rad >= width_rad ? up : ahead;
+    const Vector& deep = height_rad >= width_rad ? ahead : left;
+    tall.cwiseAbs().maxCoeff(&along_);
+    const int one = (along_ + 1) % 3, other = (along_ + 2) % 3;
+    outer_ = std::abs(deep[one]) >= std::abs(deep[other]) ? one : other;
+    middle_ = outer_ == one ? other : one;
 
     // The box around the sensor and the far end. Between samples the sphere bulges by no more than `bulge`.
     constexpr int kSamples = 8;
@@ -70,73 +76,90 @@ class Piece {
     box_max_.array() += bulge;
   }
 
-  int axis() const { return axis_; }
   const Vector& box_min() const { return box_min_; }
   const Vector& box_max() const { return box_max_; }
-  std::int64_t first_cell(int axis) const { return cell_at(box_min_[axis], axis); }
-  std::int64_t last_cell(int axis) const { return cell_at(box_max_[axis], axis); }
-  /// Middle of a cell along one axis.
-  double middle(std::int64_t cell, int axis) const { return static_cast<double>(cell) + 0.5 - in_cell_[axis]; }
 
-  struct Row {
-    Run all;  ///< cells that the piece touches
-    Run far;  ///< those of them that the sphere of its far end passes through
-  };
+  /// Calls f(first cell, axis, number of cells) for each row of cells that the piece touches.
+  template <class F>
+  void for_each_row(F&& f) const {
+    Vector at = Vector::Zero();
+    std::array<std::int64_t, 3> cell{};
+    const Run outer = cells_between(box_min_[outer_], box_max_[outer_], outer_);
+    for (std::int64_t i = outer.first; i <= outer.last; ++i) {
+      cell[index(outer_)] = i;
+      at[outer_] = middle_of(i, outer_);
+      at[middle_] = 0.0;
+      const Run middle = touched(middle_, at, along_);
+      for (std::int64_t j = middle.first; j <= middle.last; ++j) {
+        cell[index(middle_)] = j;
+        at[middle_] = middle_of(j, middle_);
+        const Run row = in_sphere(at, touched(along_, at, -1));
+        if (row.empty()) continue;
+        cell[index(along_)] = row.first;
+        f(cell, along_, static_cast<std::uint64_t>(row.last - row.first + 1));
+      }
+    }
+  }
 
-  /// The row through `at`, whose component along axis() does not matter.
-  Row row(Vector at) const {
-    constexpr Run kNothing{0, -1};
-    at[axis_] = 0.0;
-    double low = box_min_[axis_], high = box_max_[axis_];
+  Vector middle_of(const std::array<std::int64_t, 3>& cell) const {
+    return {middle_of(cell[0], 0), middle_of(cell[1], 1), middle_of(cell[2], 2)};
+  }
+
+  /// Whether some part of a cell lies at the range of the echo or beyond.
+  bool reaches_far_end(const Vector& middle) const {
+    return (middle.cwiseAbs().array() + (0.5 + kGrazing)).matrix().squaredNorm() >= range_ * range_;
+  }
+
+ private:
+  static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
+  double middle_of(std::int64_t cell, int axis) const { return static_cast<double>(cell) + 0.5 - in_cell_[axis]; }
+  /// Cells along an axis with their middles between two places.
+  Run cells_between(double low, double high, int axis) const {
+    return {static_cast<std::int64_t>(std::ceil(low - 0.5 + in_cell_[axis])),
+            static_cast<std::int64_t>(std::floor(high - 0.5 + in_cell_[axis]))};
+  }
+
+  /// Cells of the line along `axis` through `at` (whose component along it must be 0) that touch all half-spaces; with
+  /// an `open` axis (else -1): that do so somewhere along that one, too.
+  Run touched(int axis, const Vector& at, int open) const {
+    double low = box_min_[axis], high = box_max_[axis];
     for (const HalfSpace& face : faces_) {
-      const double needed = -face.reach - face.normal.dot(at);
-      const double slope = face.normal[axis_];
+      double needed = -face.reach - face.normal.dot(with_zero(at, axis, open));
+      if (open >= 0) needed -= std::max(face.normal[open] * box_min_[open], face.normal[open] * box_max_[open]);
+      const double slope = face.normal[axis];
       if (slope > 0.0) {
         low = std::max(low, needed / slope);
       } else if (slope < 0.0) {
         high = std::min(high, needed / slope);
       } else if (needed > 0.0) {
-        return {kNothing, kNothing};
+        return {0, -1};
       }
     }
-    // Nearest and farthest points of the row's cells from the sensor, across the row.
-    double nearest = 0.0, farthest = 0.0;
-    for (int other = 0; other < 3; ++other) {
-      if (other == axis_) continue;
-      const double off = std::abs(at[other]);
-      nearest += std::pow(std::max(0.0, off - 0.5), 2);
-      farthest += std::pow(off + 0.5, 2);
-    }
-    const double left = range_ * range_ - nearest;
-    if (left < 0.0) return {kNothing, kNothing};
-    const double leaves = std::sqrt(left) + kGrazing;
-    const double enters = std::sqrt(std::max(0.0, range_ * range_ - farthest)) - kGrazing;
-    low = std::max(low, -leaves - 0.5);
-    high = std::min(high, leaves + 0.5);
-    if (low > high) return {kNothing, kNothing};
-    const Run all{first_middle_from(low), last_middle_to(high)};
-    const Run far = is_forward_ ? Run{std::max(all.first, first_middle_from(enters - 0.5)), all.last}
-                                : Run{all.first, std::min(all.last, last_middle_to(0.5 - enters))};
-    return {all, far};
+    // Outside of the box nothing is meant, and huge numbers are no cells.
+    return low > high ? Run{0, -1} : cells_between(low, high, axis);
   }
 
- private:
-  std::int64_t cell_at(double place, int axis) const {
-    return static_cast<std::int64_t>(std::floor(place + in_cell_[axis]));
+  static Vector with_zero(Vector at, int axis, int other) {
+    at[axis] = 0.0;
+    if (other >= 0) at[other] = 0.0;
+    return at;
   }
-  std::int64_t first_middle_from(double place) const {
-    return static_cast<std::int64_t>(std::ceil(place - 0.5 + in_cell_[axis_]));
-  }
-  std::int64_t last_middle_to(double place) const {
-    return static_cast<std::int64_t>(std::floor(place - 0.5 + in_cell_[axis_]));
+
+  /// What of a row along along_ the sphere touches.
+  Run in_sphere(const Vector& at, Run row) const {
+    const double outer = std::max(0.0, std::abs(at[outer_]) - 0.5), middle = std::max(0.0, std::abs(at[middle_]) - 0.5);
+    const double left = range_ * range_ - outer * outer - middle * middle;
+    if (left < 0.0 || row.empty()) return {0, -1};
+    const double reach = std::sqrt(left) + 0.5 + kGrazing;
+    const Run sphere = cells_between(-reach, reach, along_);
+    return {std::max(row.first, sphere.first), std::min(row.last, sphere.last)};
   }
 
   double range_;
   Vector in_cell_;  ///< the sensor in its cell, each component in [0, 1)
   std::array<HalfSpace, 5> faces_{HalfSpace(Vector::Zero()), HalfSpace(Vector::Zero()), HalfSpace(Vector::Zero()),
                                   HalfSpace(Vector::Zero()), HalfSpace(Vector::Zero())};
-  int axis_ = 0;
-  bool is_forward_ = true;
+  int outer_ = 0, middle_ = 1, along_ = 2;  ///< map axes: of layers, of rows in them, of rows' cells
   Vector box_min_, box_max_;
 };
 
@@ -172,28 +195,20 @@ bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume,
   }
 
   for (const Piece& piece : pieces) {
-    const int along = piece.axis(), a = (along + 1) % 3, b = (along + 2) % 3;
-    const auto index = [](int axis) { return static_cast<std::size_t>(axis); };
-    std::array<std::int64_t, 3> cell{};
-    Vector middle = Vector::Zero();
-    for (cell[index(a)] = piece.first_cell(a); cell[index(a)] <= piece.last_cell(a); ++cell[index(a)]) {
-      middle[a] = piece.middle(cell[index(a)], a);
-      for (cell[index(b)] = piece.first_cell(b); cell[index(b)] <= piece.last_cell(b); ++cell[index(b)]) {
-        middle[b] = piece.middle(cell[index(b)], b);
-        const Piece::Row row = piece.row(middle);
-        if (row.all.empty()) continue;
-        cell[index(along)] = row.all.first;
-        const auto length = static_cast<std::uint64_t>(row.all.last - row.all.first + 1);
-        scan.add_missed_run(moved(*origin_key, cell), along, length);
-        if (!evidence_of) continue;
-        for (std::int64_t i = row.far.first; i <= row.far.last; ++i) {
-          cell[index(along)] = i;
-          middle[along] = piece.middle(i, along);
-          const double elevation = std::asin(std::clamp(up.dot(middle.normalized()), -1.0, 1.0));
-          scan.add_hit(moved(*origin_key, cell), evidence_of(elevation));
-        }
+    piece.for_each_row([&](std::array<std::int64_t, 3> cell, int axis, std::uint64_t length) {
+      scan.add_missed_run(moved(*origin_key, cell), axis, length);
+      const Vector first = piece.middle_of(cell);
+      Vector last = first;
+      last[axis] += static_cast<double>(length - 1);
+      // The farthest cell of a row is at one of its ends.
+      if (!evidence_of || !(piece.reaches_far_end(first) || piece.reaches_far_end(last))) return;
+      for (std::uint64_t i = 0; i < length; ++i, ++cell[static_cast<std::size_t>(axis)]) {
+        const Vector middle = piece.middle_of(cell);
+        if (!piece.reaches_far_end(middle)) continue;
+        const double elevation = std::asin(std::clamp(up.dot(middle.normalized()), -1.0, 1.0));
+        scan.add_hit(moved(*origin_key, cell), evidence_of(elevation));
       }
-    }
+    });
   }
   return true;
 }

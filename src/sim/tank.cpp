@@ -158,7 +158,7 @@ double next_normal(std::uint64_t& state) {
     const std::uint64_t bits = next_random(state);
     for (unsigned part = 0; part < 64; part += 16) sum += static_cast<std::int64_t>((bits >> part) & 0xffffU);
   }
-  return static_cast<double>(sum - 6 * 65535) / 65536.0;
+  return static_cast<double>(sum - std::int64_t{6} * 65535) / 65536.0;
 }
 
 /// A Rayleigh number of mean 1: the amplitude of many small echoes that add up at random.

@@ -71,8 +71,9 @@ std::vector<std::optional<Echo>> rises(const PolarImage& image, const Sweep& swe
   for (std::size_t n = 0; n < image.rows(); ++n) {
     const double bin_length_m = sweep.beams[n].bin_length_m;
     const std::span<const std::uint8_t> bins = image.row(n).first(image.bins_in(n));
-    echoes[n] = first_rise(bins, window_of(bins.size(), bin_length_m, options), options.threshold);
-    if (echoes[n]) echoes[n]->range_m = crest_of(bins, *echoes[n], options.threshold) * bin_length_m;
+    std::optional<Echo> echo = first_rise(bins, window_of(bins.size(), bin_length_m, options), options.threshold);
+    if (echo) echo->range_m = crest_of(bins, *echo, options.threshold) * bin_length_m;
+    echoes[n] = echo;
   }
   return echoes;
 }

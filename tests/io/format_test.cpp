@@ -58,6 +58,18 @@ TEST(Format, IsNothingForNothing) {
   EXPECT_EQ(format_of_text("NODELIST\n"), std::nullopt);
 }
 
+TEST(Format, IsToldWithoutReadingPastTheEndOfWhatBeginsLikeAKind) {
+  for (const std::string_view hex :
+       {"03000000 9a9999999999b93f 09000000 aaaa", "01000000 01000000 03000000 00000000", "03000000 ffffffff ffffff"}) {
+    const auto bytes = from_hex(hex);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      EXPECT_EQ(format_of(std::span(bytes).first(size)),
+                bytes[4] == 0x9a && size >= 16 ? std::optional(Format::kBt) : std::nullopt)
+          << size;
+    }
+  }
+}
+
 TEST(Format, IsNothingForNoise) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 10'000; ++i) {

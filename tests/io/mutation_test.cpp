@@ -19,8 +19,8 @@ namespace pingvox {
 namespace {
 
 struct Reader {
-  const char* name;  ///< of its folder in fuzz/corpus
-  void (*body)(std::span<const std::uint8_t>);
+  const char* name;                                    ///< of its folder in fuzz/corpus
+  std::size_t (*body)(std::span<const std::uint8_t>);  ///< throws at a broken promise; what it could read
 };
 
 class Mutation : public testing::TestWithParam<Reader> {};
@@ -42,13 +42,16 @@ TEST_P(Mutation, KeepsItsPromises) {
   }
   ASSERT_FALSE(seeds.empty());
 
-  constexpr std::size_t kMutants = 4000;
+  std::size_t readable = 0;
+  constexpr std::size_t kMutants = 10'000;
   for (std::size_t i = 0; i < kMutants; ++i) {
     std::mt19937_64 random(i);
     const auto& seed = seeds[i % seeds.size()];
     const auto bytes = mutant(seed, seeds[random() % seeds.size()], random);
-    EXPECT_NO_THROW(GetParam().body(bytes)) << "mutant " << i;
+    EXPECT_NO_THROW(readable += GetParam().body(bytes) > 0 ? 1 : 0) << "mutant " << i;
   }
+  // What is refused at the door tests the door only.
+  EXPECT_GT(readable, kMutants / 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Readers, Mutation,

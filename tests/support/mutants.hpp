@@ -9,12 +9,12 @@
 namespace pingvox {
 
 /// A damaged copy of a seed: flipped bits, changed bytes, numbers that look like lengths, pieces lost, doubled or taken
-/// from another seed, an end that is missing. One to four such accidents, told by the generator.
+/// from another seed, an end that is missing. Mostly one such accident, at most four.
 inline std::vector<std::uint8_t> mutant(std::vector<std::uint8_t> bytes, const std::vector<std::uint8_t>& other,
                                         std::mt19937_64& random) {
   const auto below = [&random](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random() % n); };
   const auto at = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
-  for (std::size_t accidents = 1 + below(4); accidents > 0; --accidents) {
+  for (std::size_t accidents = 1 + below(1 + below(4)); accidents > 0; --accidents) {
     if (bytes.empty()) break;
     const std::size_t place = below(bytes.size());
     const std::size_t length = std::min(1 + below(64), bytes.size() - place);

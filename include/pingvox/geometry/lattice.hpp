@@ -18,7 +18,7 @@ class Lattice {
 
   /// @param resolution_m  edge of a cell of the finest resolution [m], > 0 and finite
   /// @param depth         levels below the root, 1..kMaxDepth
-  /// @return kBadOption when one of the two is out of its range
+  /// @return kBadOption when one of the two is out of its range, or the lattice's edge is not finite
   static Result<Lattice> make(double resolution_m, int depth = kDefaultDepth);
 
   /// REQUIRES what `make` checks.

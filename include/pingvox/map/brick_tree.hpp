@@ -101,6 +101,8 @@ struct BrickTree {
   Pool<Brick> bricks;
 
   int brick_depth() const { return levels - 2; }
+  /// Depth of the deepest node, brick_depth at most, that holds both keys.
+  int common_depth(const WideKey& a, const WideKey& b) const;
   /// Which child to take below a node of `depth` (in the tree's levels).
   template <KeyWord W>
   int octant_below(const BasicKey<W>& key, int depth) const {
@@ -120,6 +122,20 @@ bool is_uniform(const Group& group);
 bool is_uniform(const Brick& brick);
 /// All cells of an octant known, and equal.
 bool is_uniform_octant(const Brick& brick, int octant);
+
+/// Evidence for the cells of one brick: `miss` where a bit of `missed` is set, hits[i] where bit i of `hit` is set.
+/// REQUIRES missed and hit to be disjoint.
+struct Votes {
+  std::uint64_t missed = 0;
+  LogOdds miss;
+  std::uint64_t hit = 0;
+  const float* hits = nullptr;
+};
+/// Adds evidence to a brick. @return whether anything changed
+bool add(const Votes& votes, const Clamp& clamp, Brick& brick);
+
+/// A brick that stands for an entry without one: of an unknown or a joined cell.
+Brick brick_of(Entry entry);
 
 /// Frees all that hangs below an entry of `depth`.
 void release_below(BrickTree& tree, Entry entry, int depth);
@@ -144,9 +160,8 @@ class Cursor {
   /// Adds evidence to one cell.
   void update(const WideKey& key, LogOdds evidence);
 
-  /// Gives the cells of the brick that holds `key` their evidence: `miss` where a bit of `missed` is set, hits[i] where
-  /// bit i of `hit` is set. REQUIRES missed and hit to be disjoint.
-  void vote(const WideKey& key, std::uint64_t missed, LogOdds miss, std::uint64_t hit, const float* hits);
+  /// Adds evidence to the cells of the brick that holds `key`.
+  void vote(const WideKey& key, const Votes& votes);
 
   /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
   void set(const WideKey& key, int depth, float value);
@@ -154,11 +169,10 @@ class Cursor {
   /// Settles the path up to the root and lets go of it.
   void flush();
 
-  /// Nodes on the path that would have to be made to reach the brick of `key`: used to foresee growth. Moves there.
+  /// Where the path to the brick of `key` ends: used to foresee growth. Moves there.
   struct Reach {
-    int common_depth;  ///< deepest node shared with the key before (-1: none)
-    int depth;         ///< where the existing path ends
-    bool has_brick;
+    int depth;  ///< of the deepest entry
+    Entry end;  ///< inner: the brick is there
   };
   Reach reach(const WideKey& key);
 

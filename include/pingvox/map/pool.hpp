@@ -99,7 +99,7 @@ class Pool {
   /// Records that `allocate` would hand out without growing.
   std::size_t spare() const { return free_count_; }
   /// Bytes of records that were ever handed out: what the pool really takes.
-  std::size_t bytes() const { return used_ == kFirst ? 0 : used_ * sizeof(T); }
+  std::size_t bytes() const { return (used_ - kFirst) * sizeof(T); }
 
  private:
   Arena arena_;

@@ -13,8 +13,9 @@
 namespace pingvox {
 
 /// The order in which a segment crosses the faces between cells (Amanatides & Woo 1987), on integers: crossings of an
-/// axis lie at first + n * apart along the segment, in units of 2^-62 of its length, and each axis has a known number
-/// of them. So no rounding can miss the end or run past it, which is what goes wrong in the paper's figures 11 and 12.
+/// axis lie at first + n * apart along the segment, and each axis has a known number of them. So no rounding can miss
+/// the end or run past it, which is what goes wrong in the paper's figures 11 and 12. They are compared in units of
+/// 2^-62 of the segment's length and added up in units of 2^-126: in the coarser ones a long ray would drift.
 class FaceCrossings {
  public:
   /// @param from, to  ends of the segment in cells (metres times cells per metre)
@@ -30,7 +31,8 @@ class FaceCrossings {
       if (left_[i] == 0) continue;
       const double to_face = ahead_[i] ? first_cell + 1.0 - from[axis] : from[axis] - first_cell;
       next_[i] = static_cast<std::uint64_t>(std::ldexp(to_face / std::abs(along), 62));
-      apart_[i] = static_cast<std::uint64_t>(std::ldexp(1.0 / std::abs(along), 62));
+      // A segment with one crossing may be so short that its inverse is no number.
+      if (left_[i] > 1) apart_[i] = static_cast<WideWord>(std::ldexp(1.0 / std::abs(along), 126));
     }
   }
 
@@ -43,20 +45,29 @@ class FaceCrossings {
   }
   /// Whether the key component grows along an axis.
   bool is_ahead(std::size_t axis) const { return ahead_[axis]; }
-  /// Crosses the next face, which must be that of `axis`.
+  /// Crosses the next face, which must be that of `axis`. REQUIRES left() > 0.
   void cross(std::size_t axis) {
     --total_;
-    next_[axis] = --left_[axis] == 0 ? kNever : next_[axis] + apart_[axis];
+    const WideWord place = (static_cast<WideWord>(next_[axis]) << 64 | below_next_[axis]) + apart_[axis];
+    below_next_[axis] = static_cast<std::uint64_t>(place);
+    next_[axis] = --left_[axis] == 0 ? kNever : static_cast<std::uint64_t>(place >> 64);
   }
   /// Where the next face lies along the segment, 0..1. REQUIRES left() > 0.
   double share_at_next() const { return std::ldexp(static_cast<double>(next_[next_axis()]), -62); }
 
  private:
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
-  std::array<std::uint64_t, 3> next_{kNever, kNever, kNever}, apart_{}, left_{};
+  std::array<std::uint64_t, 3> next_{kNever, kNever, kNever}, below_next_{}, left_{};
+  std::array<WideWord, 3> apart_{};
   std::array<bool, 3> ahead_{};
   std::uint64_t total_ = 0;
 };
+
+/// Component of a key along an axis 0..2.
+template <KeyWord W>
+constexpr W& component(BasicKey<W>& key, std::size_t axis) {
+  return axis == 0 ? key.x : (axis == 1 ? key.y : key.z);
+}
 
 /// Walks the cells that a segment crosses, face by face.
 template <KeyWord W>
@@ -67,7 +78,7 @@ class DdaStepper {
   bool done() const { return crossings_.left() == 0; }
   void step() {
     const std::size_t axis = crossings_.next_axis();
-    W& word = axis == 0 ? key_.x : (axis == 1 ? key_.y : key_.z);
+    W& word = component(key_, axis);
     word = static_cast<W>(crossings_.is_ahead(axis) ? word + 1 : word - 1);
     crossings_.cross(axis);
   }

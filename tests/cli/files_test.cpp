@@ -1,0 +1,207 @@
+// Files that are not what they should be, and places that cannot be written.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include "call.hpp"
+
+namespace pingvox::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// A call of each command that reads `file`.
+std::vector<Words> readers_of(const std::string& file) {
+  return {{"map", file, "-o", "out.bt"},     {"info", file},
+          {"info", file, "--json"},          {"convert", file, "-o", "out.csv"},
+          {"convert", file, "-o", "out.ot"}, {"render", file, "-o", "out.png"},
+          {"compare", file, "good.ot"},      {"compare", "good.ot", file}};
+}
+
+/// Commands report trouble with a file by 1, compare by 2.
+int trouble(const Words& words) {
+  return words.front() == "compare" ? 2 : 1;
+}
+
+void make_good_map(const Workplace& here) {
+  here.simulate_tank();
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "good.ot", "--quiet"}).status, 0);
+}
+
+TEST(Files, WhatCannotBeReadIsOneLineAndNoOutput) {
+  const Workplace here;
+  make_good_map(here);
+  here.write("empty", "");
+  here.write("noise", std::string("\x01\x02\xFE\0\xFFno format begins like this", 32));
+  here.write("prose.txt", "Dear diary,\ntoday the sonar heard nothing.\n");
+  here.write("line\nbreak", "");
+  fs::create_directory(here.folder() / "folder");
+  const auto files_before = here.files();
+  std::size_t calls = 0;
+  for (const std::string file : {"missing", "empty", "noise", "prose.txt", "folder", "line\nbreak", "missing/file"}) {
+    for (const Words& words : readers_of(file)) {
+      SCOPED_TRACE(::testing::PrintToString(words));
+      const std::string name = file == "line\nbreak" ? "line?break" : file;
+      expect_complaint(here.call(words), trouble(words), {name});
+      ++calls;
+    }
+  }
+  EXPECT_EQ(calls, 56U);
+  EXPECT_EQ(here.files(), files_before);
+}
+
+TEST(Files, TheWrongKindIsNamed) {
+  const Workplace here;
+  make_good_map(here);
+  here.write("poses.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
+  const auto files_before = here.files();
+  expect_complaint(here.call({"map", "good.ot", "-o", "out.bt"}), 1, {"good.ot", "a map", "not a log"});
+  expect_complaint(here.call({"map", "poses.txt", "-o", "out.bt"}), 1, {"poses.txt", "a trajectory", "not a log"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1, {"good.ot"});
+  expect_complaint(here.call({"compare", "tank.csv", "good.ot"}), 2, {"tank.csv"});
+  expect_complaint(here.call({"convert", "tank.csv", "-o", "out.bt"}), 2, {"tank.csv", "pingvox map"});
+  expect_complaint(here.call({"convert", "good.ot", "-o", "out.csv"}), 2, {"good.ot", "a map"});
+  expect_complaint(here.call({"render", "poses.txt", "-o", "out.png"}), 1, {"poses.txt", "a trajectory"});
+  EXPECT_EQ(here.files(), files_before);
+}
+
+TEST(Files, TruncatedMapsAreRefusedAndTruncatedLogsReadAsFarAsTheyGo) {
+  const Workplace here;
+  make_good_map(here);
+  ASSERT_EQ(here.call({"convert", "good.ot", "-o", "good.bt", "--quiet"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "good.ot", "-o", "good.pvx", "--quiet"}).status, 0);
+  for (const std::string name : {"good.ot", "good.bt", "good.pvx"}) {
+    const std::string whole = here.read(name);
+    for (const std::size_t size : {std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
+      SCOPED_TRACE(name + " cut to " + std::to_string(size));
+      here.write("cut", whole.substr(0, size));
+      expect_complaint(here.call({"info", "cut"}), 1, {"cut"});
+      expect_complaint(here.call({"compare", "cut", "good.ot"}), 2, {"cut"});
+    }
+  }
+
+  const std::string log = here.read("tank.csv");
+  const std::size_t line = log.find('\n', log.size() / 2) + 1;
+  here.write("cut.csv", log.substr(0, line + 3));
+  const Outcome skipped = here.call({"info", "cut.csv", "--json"});
+  EXPECT_EQ(skipped.status, 0) << skipped.err;
+  EXPECT_THAT(skipped.out, ::testing::HasSubstr("\"skipped\": 1}"));
+  expect_complaint(here.call({"info", "cut.csv", "--strict"}), 1, {"cut.csv", "line"});
+  expect_complaint(here.call({"map", "cut.csv", "-o", "out.bt", "--strict"}), 1, {"cut.csv", "line"});
+  EXPECT_FALSE(here.has("out.bt"));
+}
+
+TEST(Files, FlippedBytesNeverEndTheProgramOtherwiseThanByAWord) {
+  const Workplace here;
+  make_good_map(here);
+  ASSERT_EQ(here.call({"convert", "good.ot", "-o", "good.bt", "--quiet"}).status, 0);
+  std::mt19937_64 random(5);
+  for (int round = 0; round < 60; ++round) {
+    SCOPED_TRACE(round);
+    const std::string name = round % 3 == 0 ? "tank.csv" : (round % 3 == 1 ? "good.ot" : "good.bt");
+    std::string bytes = here.read(name);
+    for (int i = 0; i < 5; ++i)
+      bytes[random() % std::min<std::size_t>(bytes.size(), 3000)] = static_cast<char>(random());
+    here.write("mutant", bytes);
+    const Outcome outcome = here.call({"info", "mutant", "--json"});
+    if (outcome.status == 0) {
+      EXPECT_EQ(outcome.err, "");
+    } else {
+      expect_complaint(outcome, 1, {"mutant"});
+    }
+  }
+}
+
+TEST(Files, ALogInWhichNothingCanBeMappedIsNoMap) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("late.txt", "1e6 0 0 0 0 0 0 1\n2e6 1 0 0 0 0 0 1\n");
+  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "late.txt"}), 1, {"tank.csv", "poses"});
+  EXPECT_FALSE(here.has("out.bt"));
+}
+
+TEST(Output, AFailedCallKeepsTheOldFile) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("out.bt", "old");
+  here.write("out.csv", "old");
+  here.write("empty", "");
+  fs::create_directory(here.folder() / "folder.bt");
+  const auto files_before = here.files();
+
+  expect_complaint(here.call({"map", "empty", "-o", "out.bt"}), 1, {"empty"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--memory-limit", "10K"}), 1, {"limit"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "no/such/folder/out.bt"}), 1, {"no/such/folder"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "folder.bt"}), 1, {"folder.bt"});
+  // A disk that is full in the middle of the file.
+  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt"}, {.file_bytes = 500}), 1, {"out.bt"});
+  expect_complaint(here.call({"convert", "tank.csv", "-o", "out.csv"}, {.file_bytes = 50'000}), 1, {"out.csv"});
+  EXPECT_EQ(here.read("out.bt"), "old");
+  EXPECT_EQ(here.read("out.csv"), "old");
+  EXPECT_EQ(here.files(), files_before);
+}
+
+TEST(Output, AFolderWithoutTheRightToWriteIsNamed) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const Workplace here;
+  here.simulate_tank();
+  fs::create_directory(here.folder() / "locked");
+  fs::permissions(here.folder() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+  expect_complaint(here.call({"map", "tank.csv", "-o", "locked/out.bt"}), 1, {"locked/out.bt", "ermission"});
+}
+
+TEST(Output, AFullDiskOrAReaderThatWentAwayIsOneLine) {
+  const Workplace here;
+  make_good_map(here);
+  const std::vector<Words> calls = {{"map", "tank.csv", "-o", "-"},
+                                    {"map", "tank.csv", "-o", "a.bt", "--json"},
+                                    {"info", "tank.csv", "--json"},
+                                    {"info", "good.ot"},
+                                    {"compare", "good.ot", "good.ot"},
+                                    {"convert", "tank.csv", "-o", "-"},
+                                    {"simulate", "tank", "-o", "-"},
+                                    {"--help"},
+                                    {"map", "--help"},
+                                    {"--version"},
+                                    {"render", "good.ot", "-o", "-"}};
+  for (const Words& words : calls) {
+    SCOPED_TRACE(::testing::PrintToString(words));
+    expect_complaint(here.call(words, {.out_path = "/dev/full"}), trouble(words), {"standard output", "No space"});
+    expect_complaint(here.call(words, {.out_is_broken_pipe = true}), trouble(words), {"standard output", "pipe"});
+    expect_complaint(here.call(words, {.out_is_closed = true}), trouble(words), {"standard output"});
+  }
+  expect_complaint(here.call({"map", "tank.csv", "-o", "/dev/full"}), 1, {"/dev/full", "No space"});
+}
+
+TEST(Output, KilledWhileWritingLeavesTheOldFile) {
+  const Workplace here;
+  here.write("log.csv", "old");
+  int killed_while_writing = 0;
+  for (int attempt = 0; attempt < 20 && killed_while_writing < 3; ++attempt) {
+    const pid_t child = here.start({"simulate", "tank", "-o", "log.csv", "--turns", "3000", "--quiet"});
+    // Written beside its name: when that file is there and has bytes, the write is on its way.
+    bool is_writing = false;
+    for (int poll = 0; poll < 20'000 && !is_writing; ++poll) {
+      for (const auto& entry : fs::directory_iterator(here.folder())) {
+        std::error_code error;
+        if (entry.path().filename() != "log.csv" && entry.file_size(error) > 0 && !error) is_writing = true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ::kill(child, SIGKILL);
+    if (status_of(child) == 128 + SIGKILL && is_writing) ++killed_while_writing;
+    ASSERT_EQ(here.read("log.csv"), "old");
+  }
+  EXPECT_EQ(killed_while_writing, 3);
+}
+
+}  // namespace
+}  // namespace pingvox::test

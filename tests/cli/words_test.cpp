@@ -1,0 +1,191 @@
+// What the program makes of right and wrong words.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+
+#include "call.hpp"
+#include "suggest.hpp"
+
+namespace pingvox::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
+  struct Case {
+    Words words;
+    Words texts;
+  };
+  const std::vector<Case> cases = {
+      {{}, {"a command is missing", "--help"}},
+      {{"mpa"}, {"unknown command 'mpa'", "did you mean 'map'?"}},
+      {{"cnvert", "a"}, {"did you mean 'convert'?"}},
+      {{"xyzzy"}, {"unknown command 'xyzzy'", "--help"}},
+      {{"--versoin"}, {"unknown option", "did you mean '--version'?"}},
+      {{"map"}, {"map: LOG is missing"}},
+      {{"map", "log.csv"}, {"map: -o FILE is missing"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolutoin", "0.1"}, {"'--resolutoin'", "did you mean '--resolution'?"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolutoin=0.1"}, {"'--resolutoin'", "did you mean '--resolution'?"}},
+      {{"map", "log.csv", "-o", "m.bt", "--res", "0.1"}, {"'--res'", "did you mean '--resolution'?"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolution"}, {"--resolution", "needs a value"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolution", "abc"}, {"--resolution", "'abc' is no number"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolution", "0,1"}, {"--resolution", "'0,1' is no number"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolution", "-1"}, {"resolution", "-1"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolution", "nan"}, {"resolution", "nan"}},
+      {{"map", "log.csv", "-o", "m.bt", "--depth", "0"}, {"depth"}},
+      {{"map", "log.csv", "-o", "m.bt", "--depth", "1e1"}, {"--depth", "'1e1' is no whole number"}},
+      {{"map", "log.csv", "-o", "m.bt", "--depth", "99999999999"}, {"--depth", "out of range"}},
+      {{"map", "log.csv", "-o", "m.bt", "--depth", "17"}, {"m.bt", "16 levels", ".pvx"}},
+      {{"map", "log.csv", "-o", "m.bt", "--beam", "cnoe"}, {"ray or fan or cone", "did you mean 'cone'?"}},
+      {{"map", "log.csv", "-o", "m.bt", "--vote", "sweeps"}, {"did you mean 'sweep'?"}},
+      {{"map", "log.csv", "-o", "m.bt", "--filter", "median"}, {"--filter", "none or gaussian"}},
+      {{"map", "log.csv", "-o", "m.bt", "--detect", "canny"}, {"--detect", "rise"}},
+      {{"map", "log.csv", "-o", "m.bt", "--hit", "0"}, {"--hit", "probability"}},
+      {{"map", "log.csv", "-o", "m.bt", "--hit", "0.3"}, {"hit"}},
+      {{"map", "log.csv", "-o", "m.bt", "--miss", "0.9"}, {"miss"}},
+      {{"map", "log.csv", "-o", "m.bt", "--clamp", "0.9,0.1"}, {"--clamp"}},
+      {{"map", "log.csv", "-o", "m.bt", "--clamp", "0.1"}, {"--clamp", "2 numbers"}},
+      {{"map", "log.csv", "-o", "m.bt", "--mount", "1,2,3"}, {"--mount", "6 numbers"}},
+      {{"map", "log.csv", "-o", "m.bt", "--mount", "1,2,3,4,5,inf"}, {"--mount", "finite"}},
+      {{"map", "log.csv", "-o", "m.bt", "--sound-speed", "0"}, {"--sound-speed"}},
+      {{"map", "log.csv", "-o", "m.bt", "--threads", "0"}, {"--threads"}},
+      {{"map", "log.csv", "-o", "m.bt", "--kernel", "4"}, {"kernel"}},
+      {{"map", "log.csv", "-o", "m.bt", "--threshold", "0"}, {"threshold"}},
+      {{"map", "log.csv", "-o", "m.bt", "--memory-limit", "2X"}, {"--memory-limit", "512M"}},
+      {{"map", "log.csv", "-o", "m.bt", "--memory-limit", "99999999999G"}, {"--memory-limit", "out of range"}},
+      {{"map", "log.csv", "-o", "m.bt", "--json=maybe"}, {"--json"}},
+      {{"map", "log.csv", "-o", "m.btt"}, {"m.btt", ".bt", "did you mean '.bt'?"}},
+      {{"map", "log.csv", "-o", "m.png"}, {"m.png", ".pvx"}},
+      {{"map", "log.csv", "-o", "m"}, {"m: its suffix"}},
+      {{"map", "log.csv", "-o", "-", "--json"}, {"standard output"}},
+      {{"map", "-", "-", "-o", "m.bt"}, {"standard input"}},
+      {{"map", "-", "--poses", "-", "-o", "m.bt"}, {"standard input"}},
+      {{"info"}, {"info: FILE is missing"}},
+      {{"info", "a", "b"}, {"one word too many: 'b'"}},
+      {{"info", "--jsn", "a"}, {"did you mean '--json'?"}},
+      {{"compare", "a.bt"}, {"compare: B is missing"}},
+      {{"compare", "-", "-"}, {"standard input"}},
+      {{"convert", "a.csv"}, {"convert: -o FILE is missing"}},
+      {{"convert", "a.csv", "-o", "a.png"}, {"pingvox render"}},
+      {{"convert", "a.csv", "-o", "a.cvs"}, {"did you mean '.csv'?"}},
+      {{"render", "a.csv", "-o", "a.jpg"}, {".png"}},
+      {{"render", "a.csv", "-o", "a.png", "--threshold", "1000"}, {"threshold"}},
+      {{"simulate", "-o", "a.csv"}, {"WORLD is missing"}},
+      {{"simulate", "tnak", "-o", "a.csv"}, {"'tnak'", "did you mean 'tank'?"}},
+      {{"simulate", "tank"}, {"-o FILE is missing"}},
+      {{"simulate", "tank", "-o", "a.csv", "--seed", "-1"}, {"--seed"}},
+      {{"simulate", "tank", "-o", "a.csv", "--turns", "0"}, {"turns"}},
+  };
+  const Workplace here;
+  for (const Case& c : cases) {
+    SCOPED_TRACE(::testing::PrintToString(c.words));
+    expect_complaint(here.call(c.words), 2, c.texts);
+  }
+  EXPECT_THAT(here.files(), ::testing::IsEmpty());
+}
+
+TEST(Words, EachCommandExplainsItselfWithExamples) {
+  const Workplace here;
+  for (const std::string command : {"map", "info", "compare", "convert", "render", "simulate"}) {
+    SCOPED_TRACE(command);
+    const Outcome outcome = here.call({command, "--help"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(outcome.out, HasSubstr("Usage: pingvox " + command));
+    EXPECT_THAT(outcome.out, HasSubstr("Examples:\n  pingvox " + command));
+    EXPECT_EQ(here.call({"help", command}).out, outcome.out);
+    EXPECT_THAT(here.call({"--help"}).out, HasSubstr("\n  " + command + " "));
+  }
+}
+
+TEST(Words, VersionIsOneLine) {
+  const Outcome outcome = Workplace().call({"--version"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(std::regex_match(outcome.out, std::regex("pingvox [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << outcome.out;
+}
+
+TEST(Words, TheViewerOfLaterVersionsIsNoSpellingMistake) {
+  expect_complaint(Workplace().call({"view", "a.bt"}), 1, {"not in this version", "pingvox render"});
+}
+
+/// All long options in a text.
+std::set<std::string> options_in(const std::string& text) {
+  const std::regex option("--[a-z][a-z-]*");
+  return {std::sregex_token_iterator(text.begin(), text.end(), option), {}};
+}
+
+TEST(Words, TheManPageKnowsEveryOptionOfTheHelp) {
+  const Workplace here;
+  std::filesystem::copy_file(PINGVOX_SOURCE_DIR "/docs/man/pingvox.1", here.folder() / "page");
+  const std::string page = std::regex_replace(here.read("page"), std::regex("\\\\-"), "-");
+  const std::set<std::string> described = options_in(page);
+  std::size_t checked = 0;
+  for (const std::string command : {"", "map", "info", "compare", "convert", "render", "simulate"}) {
+    const Outcome help = here.call(command.empty() ? Words{"--help"} : Words{command, "--help"});
+    for (const std::string& option : options_in(help.out)) {
+      EXPECT_TRUE(described.contains(option)) << command << " " << option;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 50U);
+}
+
+TEST(Config, GivesWhatTheCallDoesNotSay) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("tank.toml",
+             "# a comment\nresolution = 0.2\nbeam = \"fan\"\nclamp = [0.12, 0.97]\nmin_range = 0.8\njson = true\n");
+  const Outcome by_file = here.call({"map", "tank.csv", "-o", "a.bt", "--config", "tank.toml"});
+  EXPECT_EQ(by_file.status, 0) << by_file.err;
+  EXPECT_THAT(by_file.out, HasSubstr("\"resolution\": 0.2"));
+  const Outcome by_words = here.call({"map", "tank.csv", "-o", "b.bt", "--resolution", "0.2", "--beam", "fan",
+                                      "--clamp", "0.12,0.97", "--min-range", "0.8"});
+  EXPECT_EQ(by_words.status, 0) << by_words.err;
+  EXPECT_EQ(here.read("a.bt"), here.read("b.bt"));
+  const Outcome both = here.call({"map", "tank.csv", "-o", "c.bt", "--config", "tank.toml", "--resolution", "0.1"});
+  EXPECT_THAT(both.out, HasSubstr("\"resolution\": 0.1"));
+}
+
+TEST(Config, WrongWordsInItAreNamedWithTheFile) {
+  struct Case {
+    std::string content;
+    Words texts;
+  };
+  const std::vector<Case> cases = {
+      {"resolutoin = 0.1\n", {"c.toml", "'resolutoin'", "did you mean '--resolution'?"}},
+      {"resolution = \"abc\"\n", {"c.toml", "resolution", "'abc' is no number"}},
+      {"beam = \"cnoe\"\n", {"c.toml", "did you mean 'cone'?"}},
+      {"[map]\nresolution = 0.1\n", {"c.toml", "section"}},
+      {"config = \"c.toml\"\n", {"c.toml", "'config'"}},
+      {"json = 7\n", {"c.toml", "json", "true or false"}},
+      {std::string("\x7f\x45\x4c\x46\0\1\2\xff = 3\n", 13), {"c.toml"}},
+  };
+  const Workplace here;
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.content);
+    here.write("c.toml", c.content);
+    expect_complaint(here.call({"map", "log.csv", "-o", "m.bt", "--config", "c.toml"}), 2, c.texts);
+  }
+  expect_complaint(here.call({"map", "log.csv", "-o", "m.bt", "--config", "no.toml"}), 1, {"no.toml"});
+}
+
+TEST(NearestWord, IsTheOneThatWasMeantOrNone) {
+  using app::nearest_word;
+  const Words words = {"--resolution", "--min-range", "--max-range", "--ray", "map", "none"};
+  EXPECT_EQ(nearest_word("--resoluton", words), "--resolution");
+  EXPECT_EQ(nearest_word("--reslution", words), "--resolution");
+  EXPECT_EQ(nearest_word("--min_range", words), "--min-range");
+  EXPECT_EQ(nearest_word("-ray", words), "--ray");
+  EXPECT_EQ(nearest_word("amp", words), "map");
+  EXPECT_EQ(nearest_word("--reso", words), "--resolution");
+  EXPECT_EQ(nearest_word("gaussian", words), std::nullopt);
+  EXPECT_EQ(nearest_word("", words), std::nullopt);
+  EXPECT_EQ(nearest_word(std::string(100'000, 'a'), words), std::nullopt);
+}
+
+}  // namespace
+}  // namespace pingvox::test
