@@ -1,26 +1,176 @@
 #include <fmt/core.h>
 
+#include <cmath>
+#include <filesystem>
+#include <ostream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
 #include "commands.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/mesh.hpp"
+#include "pingvox/io/tum.hpp"
+#include "world_map.hpp"
+#include "write_map_file.hpp"
 
 namespace pingvox::app {
+namespace {
+
+/// Hands a simulator's beams on and keeps what is true of each.
+class Witness final : public BeamSource {
+ public:
+  struct Sent {
+    double bearing_rad;  ///< as the log has it
+    SonarSimulator::Ping ping;
+  };
+
+  explicit Witness(SonarSimulator& simulator) : simulator_(simulator) {}
+
+  Result<std::optional<Beam>> next() override {
+    auto beam = simulator_.next();
+    if (beam && *beam) sent_.push_back({(*beam)->bearing_rad, simulator_.ping()});
+    return beam;
+  }
+  const std::vector<Sent>& sent() const { return sent_; }
+
+ private:
+  SonarSimulator& simulator_;
+  std::vector<Sent> sent_;
+};
+
+Result<Scene> scene_of(const SimulateCommand& command) {
+  if (command.world == "tank") return tank_scene(command.tank);
+  if (command.world == "harbour") return harbour_scene({});
+  if (command.world == "seabed") return seabed_scene({});
+  if (command.world == "cave") return cave_scene({});
+  const Result<FileBytes> file = read_file(command.world);
+  if (!file) return tl::unexpected(file.error());
+  Result<TriangleMesh> mesh = read_mesh(*file);
+  if (!mesh) return tl::unexpected(mesh.error());
+  Result<Scene> scene = mesh_scene(std::move(*mesh));
+  if (!scene) return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file->name, scene.error().message));
+  return scene;
+}
+
+struct Journey {
+  Trajectory way;
+  std::size_t turns = 5;
+};
+
+Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, const SonarOptions& sonar) {
+  constexpr std::size_t kMostTurns = 10'000;
+  const double turn_s = static_cast<double>(sonar.beams_per_turn) / sonar.beams_per_s;
+  const auto turns_in = [&](double seconds) {
+    return static_cast<std::size_t>(std::clamp(std::ceil(seconds / turn_s), 1.0, static_cast<double>(kMostTurns)));
+  };
+  if (command.poses) {
+    const Result<FileBytes> file = read_file(*command.poses);
+    if (!file) return tl::unexpected(file.error());
+    Result<Trajectory> way = read_tum(*file);
+    if (!way) return tl::unexpected(way.error());
+    const double duration = way->poses().back().time_s - way->poses().front().time_s;
+    // Both ends count: a beam is sent at the last pose, too.
+    return Journey{*std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
+  }
+  const Route* route = scene.route(command.motion);
+  if (!route) return Journey{Trajectory::still(Pose::Identity()), command.turns.value_or(5)};
+  const std::size_t turns = command.turns.value_or(turns_in(length_m(*route) / command.travel.speed_m_s));
+  const double duration = static_cast<double>(turns) * turn_s;
+  constexpr double kMostPoses = 1e6;
+  if (duration / command.travel.pose_every_s > kMostPoses) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("simulate: {} turns take {:.0f} s: too long for a way of ours", turns, duration));
+  }
+  return Journey{travelled(*route, duration, command.travel), turns};
+}
+
+Result<void> write_trajectory(const std::string& path, const Trajectory& trajectory) {
+  return write_file(path, [&](std::ostream& out) { return write_tum(trajectory, out); });
+}
+
+std::string text_of(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6f}", *value) : std::string();
+}
+
+Result<void> write_ranges(const std::string& path, const SonarSimulator& simulator,
+                          const std::vector<Witness::Sent>& sent, const SonarOptions& sonar) {
+  return write_file(path, [&](std::ostream& out) -> Result<void> {
+    out << "time_s,bearing_rad,true_bearing_rad,axis_range_m,cone_range_m\n";
+    for (const auto& [bearing_rad, ping] : sent) {
+      const TrueRange range = true_range(simulator.world(), ping.map_from_sensor, ping.bearing_rad, sonar);
+      out << fmt::format("{},{},{},{},{}\n", ping.time_s, bearing_rad, ping.bearing_rad, text_of(range.axis_m),
+                         text_of(range.cone_m));
+    }
+    if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: could not be written", path));
+    return {};
+  });
+}
+
+Result<void> write_truth(const SimulateCommand& command, const Scene& scene, const Trajectory& way,
+                         const SonarSimulator& simulator, const Witness& witness, const SonarOptions& sonar) {
+  const std::filesystem::path folder = *command.truth;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fail(Error::Code::kIo, fmt::format("{}: {}", *command.truth, error.message()));
+  const auto in_folder = [&folder](const char* name) { return (folder / name).string(); };
+
+  // Where the vehicle is, there is water, in whatever box a mesh stands.
+  Eigen::AlignedBox3d water = scene.water_m;
+  for (const StampedPose& pose : way.poses()) water.extend(pose.map_from_body.translation());
+  const Eigen::Vector3d start = way.poses().front().map_from_body.translation();
+  const Result<OccupancyMap> map = world_map(scene.world, water, start, command.truth_resolution_m);
+  if (!map) return tl::unexpected(map.error());
+
+  if (auto written = write_trajectory(in_folder("poses.tum"), way); !written) return written;
+  if (auto written = write_ranges(in_folder("ranges.csv"), simulator, witness.sent(), sonar); !written) return written;
+  auto written = write_file(in_folder("world.ply"), [&](std::ostream& out) {
+    return write_mesh_ply(scene.world.mesh(0.1 * command.truth_resolution_m), out);
+  });
+  if (!written) return written;
+  return write_map_file(in_folder("world.bt"), *map, Format::kBt, "");
+}
+
+}  // namespace
 
 Result<int> run(const SimulateCommand& command, Console& console) {
-  TankSimulator simulator(command.tank);
+  const Result<Scene> scene = scene_of(command);
+  if (!scene) return tl::unexpected(scene.error());
+  SonarOptions sonar = command.sonar;
+  const double range = command.range_m.value_or(scene->sonar_range_m);
+  sonar.bin_length_m = command.bin_length_m.value_or(range / static_cast<double>(sonar.bins));
+  if (const auto valid = sonar.validate(); !valid) return tl::unexpected(valid.error());
+  const Result<Journey> journey = journey_of(command, *scene, sonar);
+  if (!journey) return tl::unexpected(journey.error());
+
+  SonarSimulator simulator(scene->world, journey->way, sonar, journey->turns);
+  Witness witness(simulator);
+  BeamSource& source = command.truth ? static_cast<BeamSource&>(witness) : simulator;
   std::size_t beams = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
-    const Result<std::size_t> count = write_csv(simulator, out);
+    const Result<std::size_t> count = write_csv(source, out);
     if (!count) return tl::unexpected(count.error());
     beams = *count;
     return {};
   });
   if (!written) return tl::unexpected(written.error());
-  const auto told =
-      console.summarise(fmt::format("{}: {} beams of a tank, {} turns, seed {}\n", on_one_line(command.output), beams,
-                                    command.tank.turns, command.tank.seed),
-                        command.output);
-  if (!told) return tl::unexpected(told.error());
+
+  std::string told = fmt::format("{}: {} beams of {}, {:.6g} m of range, seed {}\n", on_one_line(command.output), beams,
+                                 on_one_line(command.world), sonar.range_m(), sonar.seed);
+  if (journey->way.poses().size() > 1) {
+    const std::string companion = std::filesystem::path(command.output).replace_extension(".tum").string();
+    const auto reports = write_trajectory(companion, reported(journey->way, command.drift));
+    if (!reports) return tl::unexpected(reports.error());
+    told += fmt::format("{}: {} poses, as reported\n", on_one_line(companion), journey->way.poses().size());
+  }
+  if (command.truth) {
+    const auto truth = write_truth(command, *scene, journey->way, simulator, witness, sonar);
+    if (!truth) return tl::unexpected(truth.error());
+    told += fmt::format("{}: what is true\n", on_one_line(*command.truth));
+  }
+  const auto said = console.summarise(told, command.output);
+  if (!said) return tl::unexpected(said.error());
   return 0;
 }
 

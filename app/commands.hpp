@@ -12,7 +12,10 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/sim/scene.hpp"
+#include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
+#include "pingvox/sim/vehicle.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
 
@@ -71,7 +74,18 @@ struct RenderCommand {
 struct SimulateCommand {
   Manner manner;
   std::string output;
+  std::string world;  ///< tank, harbour, seabed, cave, or the file of a mesh
   TankOptions tank;
+  SonarOptions sonar;
+  std::optional<double> range_m;       ///< to set the bins to; nullopt: as the world asks for, or as sonar says
+  std::optional<double> bin_length_m;  ///< the same by the length of a bin
+  Motion motion = Motion::kStill;
+  std::optional<std::string> poses;  ///< the way instead of a built-in one
+  TravelOptions travel;
+  DriftOptions drift;
+  std::optional<std::size_t> turns;  ///< nullopt: as many as the way takes
+  std::optional<std::string> truth;  ///< the folder to write it to
+  double truth_resolution_m = 0.05;
 };
 
 /// Starts `pingvox-bench`, a program of its own, with these words.

@@ -1,0 +1,177 @@
+#include "world_map.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace pingvox::app {
+namespace {
+
+using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
+using Eigen::Vector3d;
+using Triangle = std::array<Vector3d, 3>;
+
+constexpr std::int64_t kMostCells = std::int64_t{1} << 28;
+constexpr int kBrick = 4;  ///< edge, in cells, of what the map stores as one when it is uniform
+
+/// Whether a triangle and a box have a point in common: no axis keeps them apart (Akenine-Moeller 2001).
+bool touches(const Triangle& triangle, const Vector3d& centre, const Vector3d& half) {
+  const Triangle t = {triangle[0] - centre, triangle[1] - centre, triangle[2] - centre};
+  const auto is_apart = [&](const Vector3d& axis) {
+    const auto [low, high] = std::minmax({t[0].dot(axis), t[1].dot(axis), t[2].dot(axis)});
+    const double reach = axis.cwiseAbs().dot(half);
+    return low > reach || high < -reach;
+  };
+  const Triangle edges = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+  if (is_apart(edges[0].cross(edges[1]))) return false;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Vector3d unit = Vector3d::Unit(axis);
+    if (is_apart(unit)) return false;
+    for (const Vector3d& edge : edges) {
+      if (is_apart(unit.cross(edge))) return false;
+    }
+  }
+  return true;
+}
+
+/// The cells of a box of space, each of them empty, water or a surface.
+class Grid {
+ public:
+  enum class Kind : std::uint8_t { kUnknown, kWater, kSurface };
+
+  Grid(const Cell& low, const Cell& size, double resolution_m)
+      : low_(low), size_(size), resolution_m_(resolution_m), kinds_(static_cast<std::size_t>(size.prod())) {}
+
+  const Cell& low() const { return low_; }
+  const Cell& size() const { return size_; }
+  bool holds(const Cell& c) const { return (c.array() >= 0).all() && (c.array() < size_.array()).all(); }
+  Kind& at(const Cell& c) { return kinds_[static_cast<std::size_t>(c.x() + size_.x() * (c.y() + size_.y() * c.z()))]; }
+
+  void draw(const Triangle& triangle) {
+    Eigen::AlignedBox3d box(triangle[0]);
+    box.extend(triangle[1]);
+    box.extend(triangle[2]);
+    // One cell more to each side: `touches` decides.
+    const Cell first = ((box.min() / resolution_m_).array().floor().cast<std::int64_t>() - 1).matrix() - low_;
+    const Cell last = ((box.max() / resolution_m_).array().floor().cast<std::int64_t>() + 1).matrix() - low_;
+    draw(triangle, first.cwiseMax(Cell::Zero()), last.cwiseMin(size_ - Cell::Ones()));
+  }
+
+  /// Makes water of all that is connected with a cell by faces. REQUIRES a cell of the grid.
+  void flood(const Cell& from) {
+    if (at(from) != Kind::kUnknown) return;
+    at(from) = Kind::kWater;
+    std::vector<Cell> waiting = {from};
+    while (!waiting.empty()) {
+      const Cell cell = waiting.back();
+      waiting.pop_back();
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        for (const std::int64_t step : {-1, 1}) {
+          Cell next = cell;
+          next[axis] += step;
+          if (!holds(next) || at(next) != Kind::kUnknown) continue;
+          at(next) = Kind::kWater;
+          waiting.push_back(next);
+        }
+      }
+    }
+  }
+
+ private:
+  /// Halves the range of cells until one is left: most of a large triangle's box is far from it.
+  void draw(const Triangle& triangle, const Cell& first, const Cell& last) {
+    if ((first.array() > last.array()).any()) return;
+    // A face belongs to the cell above it. So does what rounding puts a hair below it.
+    const Vector3d low = (low_ + first).cast<double>() * resolution_m_ - Vector3d::Constant(1e-9);
+    const Vector3d half = 0.5 * resolution_m_ * (last - first + Cell::Ones()).cast<double>();
+    if (!touches(triangle, low + half, half - Vector3d::Constant(1e-12))) return;
+    Eigen::Index axis = 0;
+    const std::int64_t longest = (last - first).maxCoeff(&axis);
+    if (longest == 0) {
+      at(first) = Kind::kSurface;
+      return;
+    }
+    Cell middle = last;
+    middle[axis] = first[axis] + longest / 2;
+    draw(triangle, first, middle);
+    Cell behind = first;
+    behind[axis] = middle[axis] + 1;
+    draw(triangle, behind, last);
+  }
+
+  Cell low_, size_;
+  double resolution_m_;
+  std::vector<Kind> kinds_;
+};
+
+}  // namespace
+
+Result<OccupancyMap> world_map(const World& world, const Eigen::AlignedBox3d& water_m, const Vector3d& inside_m,
+                               double resolution_m) {
+  OccupancyMap map(MapOptions{.resolution_m = resolution_m});
+  // Whole bricks, with room for the surfaces that are the border.
+  const Vector3d first = ((water_m.min() / resolution_m).array() - 1.0).floor() / kBrick;
+  const Vector3d last = ((water_m.max() / resolution_m).array() + 1.0).floor() / kBrick;
+  const double cells = ((last - first).array() * kBrick + 2.0 * kBrick).prod();
+  if (!(cells <= static_cast<double>(kMostCells))) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("the world's map would have {:.3g} cells, more than {}: a coarser --resolution than {} m "
+                            "makes fewer",
+                            cells, kMostCells, resolution_m));
+  }
+  const Cell low = first.array().floor().cast<std::int64_t>() * kBrick;
+  const Cell size = ((last.array().floor() - first.array().floor()).cast<std::int64_t>() + 1) * kBrick;
+  const Lattice& lattice = map.lattice();
+  const auto centre_of = [&](const Cell& c) -> Vector3d {
+    return ((low + c).cast<double>().array() + 0.5) * resolution_m;
+  };
+  if (!lattice.key_of(centre_of(Cell::Zero())) || !lattice.key_of(centre_of(size - Cell::Ones()))) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("the world reaches out of a map with cells of {} m: a coarser --resolution holds it",
+                            resolution_m));
+  }
+
+  Grid grid(low, size, resolution_m);
+  const TriangleMesh mesh = world.mesh(0.1 * resolution_m);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    grid.draw({mesh.vertices_m[a], mesh.vertices_m[b], mesh.vertices_m[c]});
+  }
+  const Cell start = (inside_m / resolution_m).array().floor().cast<std::int64_t>().matrix() - low;
+  if (grid.holds(start)) grid.flood(start);
+
+  Editor editor = map.edit();
+  const auto belief_of = [&](Grid::Kind kind) {
+    return kind == Grid::Kind::kSurface ? map.options().clamp.highest : map.options().clamp.lowest;
+  };
+  const Cell bricks = size / kBrick;
+  for (std::int64_t n = 0; n < bricks.prod(); ++n) {
+    const Cell brick(n % bricks.x(), n / bricks.x() % bricks.y(), n / bricks.x() / bricks.y());
+    const Cell corner = brick * kBrick;
+    bool is_uniform = true;
+    const auto for_each_cell = [&](const auto& visit) {
+      for (std::int64_t i = 0; i < kBrick * kBrick * kBrick; ++i) {
+        visit(Cell(corner + Cell(i % kBrick, i / kBrick % kBrick, i / kBrick / kBrick)));
+      }
+    };
+    const Grid::Kind kind = grid.at(corner);
+    for_each_cell([&](const Cell& cell) { is_uniform = is_uniform && grid.at(cell) == kind; });
+    if (is_uniform) {
+      if (kind == Grid::Kind::kUnknown) continue;
+      editor.set(*lattice.key_of(centre_of(corner)), lattice.depth() - 2, belief_of(kind));
+      continue;
+    }
+    for_each_cell([&](const Cell& cell) {
+      if (grid.at(cell) == Grid::Kind::kUnknown) return;
+      editor.set(*lattice.key_of(centre_of(cell)), lattice.depth(), belief_of(grid.at(cell)));
+    });
+  }
+  editor.synchronize();
+  return map;
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,427 @@
+#include "pingvox/io/mesh.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "io/byte_reader.hpp"
+#include "io/byte_writer.hpp"
+#include "io/text.hpp"
+
+namespace pingvox {
+namespace {
+
+using Eigen::Vector3d;
+using Bytes = std::span<const std::uint8_t>;
+
+tl::unexpected<Error> corrupt(const std::string& file, std::string_view place, std::string_view what) {
+  return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, what));
+}
+
+/// All of `text` as a whole number without a sign.
+std::optional<std::uint64_t> count_in(std::string_view text) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (text.empty() || stop != end || error != std::errc{}) return std::nullopt;
+  return value;
+}
+
+/// A face, as a fan of triangles around its first corner.
+/// @return what is wrong with it
+std::optional<std::string> add_face(const std::vector<std::uint64_t>& corners, TriangleMesh& mesh) {
+  if (corners.size() < 3) return fmt::format("a face of {} corners", corners.size());
+  for (const std::uint64_t corner : corners) {
+    if (corner >= mesh.vertices_m.size()) {
+      return fmt::format("corner {} of {} vertices", corner, mesh.vertices_m.size());
+    }
+  }
+  const auto at = [&corners](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) mesh.triangles.push_back({at(0), at(i), at(i + 1)});
+  return std::nullopt;
+}
+
+/// Indices are of 32 bits.
+bool is_full(const TriangleMesh& mesh) {
+  return mesh.vertices_m.size() > std::numeric_limits<std::uint32_t>::max() - 3;
+}
+
+// --- Text: words in any number of lines.
+
+class Words {
+ public:
+  explicit Words(Lines lines) : lines_(std::move(lines)) {}
+
+  std::optional<std::string_view> next() {
+    for (;;) {
+      if (const auto word = cut_word(line_)) {
+        if (!word->starts_with('#')) return word;
+      }
+      const auto line = lines_.next_with_content();
+      if (!line) return std::nullopt;
+      line_ = *line;
+    }
+  }
+  std::string place() const { return fmt::format("line {}", lines_.number()); }
+
+  std::optional<Vector3d> point() {
+    Vector3d point;
+    for (double& value : point) {
+      const auto word = next();
+      const auto number = word ? number_in(*word) : std::nullopt;
+      if (!number) return std::nullopt;
+      value = *number;
+    }
+    return point;
+  }
+  /// The rest of the line does not matter.
+  void drop_line() { line_ = {}; }
+
+ private:
+  Lines lines_;
+  std::string_view line_;
+};
+
+Result<TriangleMesh> read_off(const FileBytes& file) {
+  Words words{Lines(text_of(file.view()))};
+  std::string_view first = words.next().value_or("");
+  // Some write the counts into the same line: OFF8 6 0 is not among them.
+  if (first != "OFF") return corrupt(file.name, words.place(), fmt::format("'{}' instead of OFF", printable(first)));
+  std::array<std::uint64_t, 3> counts{};
+  for (std::uint64_t& count : counts) {
+    const auto word = words.next();
+    const auto number = word ? count_in(*word) : std::nullopt;
+    if (!number) return corrupt(file.name, words.place(), "the numbers of vertices, faces and edges are missing");
+    count = *number;
+  }
+  TriangleMesh mesh;
+  for (std::uint64_t n = 0; n < counts[0]; ++n) {
+    const auto point = words.point();
+    if (!point || is_full(mesh)) return corrupt(file.name, words.place(), fmt::format("vertex {} is broken", n));
+    words.drop_line();
+    mesh.vertices_m.push_back(*point);
+  }
+  std::vector<std::uint64_t> corners;
+  for (std::uint64_t n = 0; n < counts[1]; ++n) {
+    const auto word = words.next();
+    const auto count = word ? count_in(*word) : std::nullopt;
+    if (!count) return corrupt(file.name, words.place(), fmt::format("face {} is missing", n));
+    corners.clear();
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      const auto index_word = words.next();
+      const auto index = index_word ? count_in(*index_word) : std::nullopt;
+      if (!index) return corrupt(file.name, words.place(), fmt::format("face {} is broken", n));
+      corners.push_back(*index);
+    }
+    if (const auto wrong = add_face(corners, mesh)) return corrupt(file.name, words.place(), *wrong);
+    words.drop_line();
+  }
+  return mesh;
+}
+
+Result<TriangleMesh> read_stl_text(const FileBytes& file) {
+  Words words{Lines(text_of(file.view()))};
+  TriangleMesh mesh;
+  std::size_t corners = 0;
+  words.next();
+  words.drop_line();  // solid, and its name
+  while (const auto word = words.next()) {
+    if (*word == "vertex") {
+      const auto point = words.point();
+      if (!point || is_full(mesh)) return corrupt(file.name, words.place(), "a vertex is broken");
+      mesh.vertices_m.push_back(*point);
+      ++corners;
+    } else if (*word == "endloop") {
+      if (corners != 3) return corrupt(file.name, words.place(), fmt::format("a facet of {} corners", corners));
+      const auto end = static_cast<std::uint32_t>(mesh.vertices_m.size());
+      mesh.triangles.push_back({end - 3, end - 2, end - 1});
+      corners = 0;
+    } else if (*word == "facet" || *word == "solid" || *word == "endsolid") {
+      words.drop_line();  // a normal, a name
+    } else if (*word != "outer" && *word != "loop" && *word != "endfacet") {
+      return corrupt(file.name, words.place(), fmt::format("'{}' belongs in no STL file", printable(*word)));
+    }
+  }
+  if (corners != 0) return corrupt(file.name, words.place(), "the file ends within a facet");
+  return mesh;
+}
+
+// --- Binary STL: 80 bytes of anything, the number of facets, 50 bytes each.
+
+constexpr std::size_t kStlHead = 80, kStlFacet = 50;
+
+bool is_binary_stl(Bytes bytes) {
+  if (bytes.size() < kStlHead + 4) return false;
+  const auto count = value_from<std::uint32_t>(bytes.subspan(kStlHead, 4), std::endian::little);
+  return bytes.size() - kStlHead - 4 == std::uint64_t{count} * kStlFacet;
+}
+
+Result<TriangleMesh> read_stl_binary(const FileBytes& file) {
+  ByteReader reader(file.view());
+  reader.take(kStlHead + 4);
+  TriangleMesh mesh;
+  while (reader.left() >= kStlFacet) {
+    const std::size_t at = reader.position();
+    reader.take(12);  // the normal
+    for (int corner = 0; corner < 3; ++corner) {
+      Vector3d point;
+      for (double& value : point) value = static_cast<double>(reader.read<float>().value_or(0.0F));
+      if (!point.allFinite() || is_full(mesh)) return corrupt(file.name, fmt::format("byte {}", at), "a broken facet");
+      mesh.vertices_m.push_back(point);
+    }
+    reader.take(2);  // attributes
+    const auto end = static_cast<std::uint32_t>(mesh.vertices_m.size());
+    mesh.triangles.push_back({end - 3, end - 2, end - 1});
+  }
+  return mesh;
+}
+
+// --- PLY.
+
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+
+std::optional<PlyType> ply_type(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames = {{{"char", PlyType::kInt8},
+                                                                            {"int8", PlyType::kInt8},
+                                                                            {"uchar", PlyType::kUint8},
+                                                                            {"uint8", PlyType::kUint8},
+                                                                            {"short", PlyType::kInt16},
+                                                                            {"int16", PlyType::kInt16},
+                                                                            {"ushort", PlyType::kUint16},
+                                                                            {"uint16", PlyType::kUint16},
+                                                                            {"int", PlyType::kInt32},
+                                                                            {"int32", PlyType::kInt32},
+                                                                            {"uint", PlyType::kUint32},
+                                                                            {"uint32", PlyType::kUint32},
+                                                                            {"float", PlyType::kFloat},
+                                                                            {"float32", PlyType::kFloat},
+                                                                            {"double", PlyType::kDouble},
+                                                                            {"float64", PlyType::kDouble}}};
+  for (const auto& [known, type] : kNames) {
+    if (known == name) return type;
+  }
+  return std::nullopt;
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::kFloat;
+  std::optional<PlyType> list_count;  ///< a list, whose length is of this type
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+enum class PlyFormat { kText, kLittle, kBig };
+
+struct PlyHeader {
+  std::optional<PlyFormat> format;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;   ///< bytes
+  std::size_t lines = 0;  ///< of text
+};
+
+Result<PlyHeader> read_ply_header(const FileBytes& file) {
+  const std::string_view text = text_of(file.view());
+  PlyHeader header;
+  while (header.size < text.size()) {
+    const std::size_t end = text.find('\n', header.size);
+    if (end == std::string_view::npos) break;
+    std::string_view line = text.substr(header.size, end - header.size);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    header.size = end + 1;
+    ++header.lines;
+    const auto off = [&](std::string_view what) {
+      return corrupt(file.name, fmt::format("line {}", header.lines), fmt::format("'{}': {}", printable(line), what));
+    };
+    std::string_view rest = line;
+    const std::string_view word = cut_word(rest).value_or("");
+    if (word == "end_header") {
+      if (!header.format) return off("the format was not said");
+      return header;
+    }
+    if (word == "format") {
+      const std::string_view name = cut_word(rest).value_or("");
+      if (name == "ascii") header.format = PlyFormat::kText;
+      if (name == "binary_little_endian") header.format = PlyFormat::kLittle;
+      if (name == "binary_big_endian") header.format = PlyFormat::kBig;
+      if (!header.format) return off("an unknown format");
+    } else if (word == "element") {
+      const std::string_view name = cut_word(rest).value_or("");
+      const auto count = count_in(cut_word(rest).value_or(""));
+      if (name.empty() || !count) return off("an element needs a name and a number");
+      header.elements.push_back({std::string(name), *count, {}});
+    } else if (word == "property") {
+      if (header.elements.empty()) return off("a property before any element");
+      PlyProperty property;
+      std::optional<PlyType> type;
+      std::string_view type_name = cut_word(rest).value_or("");
+      if (type_name == "list") {
+        property.list_count = ply_type(cut_word(rest).value_or(""));
+        if (!property.list_count || *property.list_count == PlyType::kFloat ||
+            *property.list_count == PlyType::kDouble) {
+          return off("a list needs a whole number for its length");
+        }
+        type_name = cut_word(rest).value_or("");
+      }
+      type = ply_type(type_name);
+      property.name = std::string(cut_word(rest).value_or(""));
+      if (!type || property.name.empty()) return off("an unknown type, or no name");
+      property.type = *type;
+      header.elements.back().properties.push_back(std::move(property));
+    }
+  }
+  return corrupt(file.name, fmt::format("line {}", header.lines), "the header has no end");
+}
+
+/// The values of a PLY file one after the other, from text or bytes.
+class PlyValues {
+ public:
+  PlyValues(Bytes bytes, const PlyHeader& header)
+      : is_text_(header.format == PlyFormat::kText),
+        words_(Lines(is_text_ ? text_of(bytes.subspan(header.size)) : std::string_view())),
+        reader_(bytes.subspan(header.size), header.format == PlyFormat::kBig ? std::endian::big : std::endian::little) {
+  }
+
+  std::optional<double> next(PlyType type) {
+    if (is_text_) {
+      const auto word = words_.next();
+      return word ? number_in(*word) : std::nullopt;
+    }
+    switch (type) {
+      case PlyType::kInt8:
+        return read<std::int8_t>();
+      case PlyType::kUint8:
+        return read<std::uint8_t>();
+      case PlyType::kInt16:
+        return read<std::int16_t>();
+      case PlyType::kUint16:
+        return read<std::uint16_t>();
+      case PlyType::kInt32:
+        return read<std::int32_t>();
+      case PlyType::kUint32:
+        return read<std::uint32_t>();
+      case PlyType::kFloat:
+        return read<float>();
+      case PlyType::kDouble:
+        return read<double>();
+    }
+    return std::nullopt;
+  }
+  /// The same as a whole number from 0 to 2^32 - 1.
+  std::optional<std::uint64_t> next_count(PlyType type) {
+    const auto value = next(type);
+    if (!value || !(*value >= 0.0 && *value < 0x1p32) || *value != std::floor(*value)) return std::nullopt;
+    return static_cast<std::uint64_t>(*value);
+  }
+
+ private:
+  template <class T>
+  std::optional<double> read() {
+    const auto value = reader_.read<T>();
+    if (!value) return std::nullopt;
+    return static_cast<double>(*value);
+  }
+
+  bool is_text_;
+  Words words_;
+  ByteReader reader_;
+};
+
+Result<TriangleMesh> read_ply(const FileBytes& file) {
+  const Result<PlyHeader> header = read_ply_header(file);
+  if (!header) return tl::unexpected(header.error());
+  PlyValues values(file.view(), *header);
+  TriangleMesh mesh;
+  std::vector<std::uint64_t> corners;
+  for (const PlyElement& element : header->elements) {
+    const bool is_vertex = element.name == "vertex";
+    const bool is_face = element.name == "face";
+    if (element.properties.empty()) continue;  // takes no bytes, however many there are
+    for (std::uint64_t n = 0; n < element.count; ++n) {
+      const auto off = [&](std::string_view what) {
+        return corrupt(file.name, fmt::format("{} {}", printable(element.name), n), what);
+      };
+      Vector3d point = Vector3d::Zero();
+      for (const PlyProperty& property : element.properties) {
+        if (property.list_count) {
+          const auto count = values.next_count(*property.list_count);
+          if (!count) return off("a length is missing or broken");
+          const bool is_corners = is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
+          corners.clear();
+          for (std::uint64_t i = 0; i < *count; ++i) {
+            const auto value = values.next(property.type);
+            if (!value) return off("the list ends early");
+            if (!is_corners) continue;
+            if (!(*value >= 0.0 && *value < 0x1p32)) return off("a corner that does not exist");
+            corners.push_back(static_cast<std::uint64_t>(*value));
+          }
+          if (!is_corners) continue;
+          if (const auto wrong = add_face(corners, mesh)) return off(*wrong);
+          continue;
+        }
+        const auto value = values.next(property.type);
+        if (!value) return off("a value is missing or broken");
+        if (property.name == "x") point.x() = *value;
+        if (property.name == "y") point.y() = *value;
+        if (property.name == "z") point.z() = *value;
+      }
+      if (!is_vertex) continue;
+      if (!point.allFinite() || is_full(mesh)) return off("its place is not finite");
+      mesh.vertices_m.push_back(point);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Result<TriangleMesh> read_mesh(const FileBytes& file) {
+  const std::string_view text = text_of(file.view());
+  const auto read = [&]() -> Result<TriangleMesh> {
+    if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) return read_ply(file);
+    if (is_binary_stl(file.view())) return read_stl_binary(file);
+    if (text.starts_with("solid")) return read_stl_text(file);
+    Lines lines(text);
+    if (lines.next_with_content().value_or("").starts_with("OFF")) return read_off(file);
+    return fail(Error::Code::kUnsupported, fmt::format("{}: is no mesh that we know: OFF, PLY or STL", file.name));
+  };
+  Result<TriangleMesh> mesh = read();
+  if (mesh && mesh->triangles.empty()) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: holds no triangle", file.name));
+  }
+  return mesh;
+}
+
+Result<void> write_mesh_ply(const TriangleMesh& mesh, std::ostream& out) {
+  ByteWriter writer(out);
+  writer.put(
+      fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\n"
+                  "property double y\nproperty double z\nelement face {}\n"
+                  "property list uchar uint vertex_indices\nend_header\n",
+                  mesh.vertices_m.size(), mesh.triangles.size()));
+  for (const Vector3d& vertex : mesh.vertices_m) {
+    for (const double value : vertex) writer.put(value);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    writer.put(std::uint8_t{3});
+    for (const std::uint32_t corner : triangle) writer.put(corner);
+  }
+  return writer.finish();
+}
+
+}  // namespace pingvox

@@ -1,0 +1,139 @@
+#include "pingvox/sim/vehicle.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "pingvox/sim/random.hpp"
+
+namespace pingvox {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A route's curve by points close to each other, and how far each is from the start.
+struct Curve {
+  std::vector<Vector3d> points_m;
+  std::vector<double> lengths_m;
+};
+
+/// Catmull and Rom 1974: through all waypoints, in each in the direction from the one before to the one behind.
+Curve curve_of(const Route& route) {
+  constexpr int kPerLeg = 32;
+  const auto& w = route.waypoints_m;
+  const bool is_round = route.end == Route::End::kStarts;
+  const auto count = static_cast<std::ptrdiff_t>(w.size());
+  const auto waypoint = [&](std::ptrdiff_t i) -> const Vector3d& {
+    return w[static_cast<std::size_t>(is_round ? (i + count) % count : std::clamp<std::ptrdiff_t>(i, 0, count - 1))];
+  };
+  Curve curve{{w.front()}, {0.0}};
+  for (std::ptrdiff_t leg = 0; leg < (is_round ? count : count - 1); ++leg) {
+    const Vector3d &before = waypoint(leg - 1), &from = waypoint(leg), &to = waypoint(leg + 1),
+                   &behind = waypoint(leg + 2);
+    for (int step = 1; step <= kPerLeg; ++step) {
+      const double t = static_cast<double>(step) / kPerLeg;
+      const Vector3d point =
+          0.5 * (2.0 * from + t * (to - before) + t * t * (2.0 * before - 5.0 * from + 4.0 * to - behind) +
+                 t * t * t * (3.0 * from - before - 3.0 * to + behind));
+      curve.lengths_m.push_back(curve.lengths_m.back() + (point - curve.points_m.back()).norm());
+      curve.points_m.push_back(point);
+    }
+  }
+  return curve;
+}
+
+Eigen::Matrix3d turned(double yaw_rad) {
+  return Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
+}
+
+}  // namespace
+
+Result<void> TravelOptions::validate() const {
+  std::string bad;
+  if (!(speed_m_s > 0.0 && speed_m_s <= 100.0)) {
+    bad += fmt::format(" speed_m_s must be > 0 and at most 100, is {};", speed_m_s);
+  }
+  if (!(pose_every_s > 0.0 && pose_every_s <= 3600.0)) {
+    bad += fmt::format(" pose_every_s must be > 0 and at most 3600, is {};", pose_every_s);
+  }
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "vehicle:" + bad);
+}
+
+double length_m(const Route& route) {
+  return curve_of(route).lengths_m.back();
+}
+
+Trajectory travelled(const Route& route, double duration_s, const TravelOptions& options) {
+  assert(options.validate() && route.waypoints_m.size() >= 2);
+  const Curve curve = curve_of(route);
+  const double whole = curve.lengths_m.back();
+  std::vector<StampedPose> poses;
+  for (std::size_t n = 0; poses.empty() || poses.back().time_s < duration_s; ++n) {
+    const double time = static_cast<double>(n) * options.pose_every_s;
+    const double gone = time * options.speed_m_s;
+    const double along = route.end == Route::End::kStarts ? std::fmod(gone, whole) : std::min(gone, whole);
+    const auto behind = std::upper_bound(curve.lengths_m.begin() + 1, curve.lengths_m.end() - 1, along);
+    const auto i = static_cast<std::size_t>(std::distance(curve.lengths_m.begin(), behind));
+    const Vector3d step = curve.points_m[i] - curve.points_m[i - 1];
+    const double share = (along - curve.lengths_m[i - 1]) / step.norm();
+    StampedPose pose{.time_s = time, .map_from_body = Pose::Identity()};
+    pose.map_from_body.translation() = curve.points_m[i - 1] + share * step;
+    pose.map_from_body.linear() = turned(std::atan2(step.y(), step.x()));
+    poses.push_back(pose);
+  }
+  auto trajectory = Trajectory::make(std::move(poses));
+  assert(trajectory);
+  return *std::move(trajectory);
+}
+
+Result<void> DriftOptions::validate() const {
+  std::string bad;
+  if (!(position_m >= 0.0 && position_m <= 1000.0)) {
+    bad += fmt::format(" position_m must be 0..1000, is {};", position_m);
+  }
+  if (!(heading_rad >= 0.0 && heading_rad <= 10.0)) {
+    bad += fmt::format(" heading_rad must be 0..10, is {};", heading_rad);
+  }
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "drift:" + bad);
+}
+
+Trajectory reported(const Trajectory& truth, const DriftOptions& options) {
+  assert(options.validate());
+  const std::vector<StampedPose>& all = truth.poses();
+  if (all.size() < 2) return truth;
+  Random random(options.seed);
+  std::vector<StampedPose> poses;
+  double heading_error = 0.0;
+  Vector3d position = all.front().map_from_body.translation();
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const Pose& now = all[n].map_from_body;
+    if (n > 0) {
+      const double share = std::sqrt((all[n].time_s - all[n - 1].time_s) / 60.0);
+      const Vector3d step = now.translation() - all[n - 1].map_from_body.translation();
+      position += turned(heading_error) * step;
+      // One after the other: compilers order arguments as they like.
+      const double x = random.normal();
+      const double y = random.normal();
+      position += share * options.position_m * Vector3d(x, y, 0.0);
+      heading_error += share * options.heading_rad * random.normal();
+    }
+    StampedPose pose{.time_s = all[n].time_s, .map_from_body = Pose::Identity()};
+    pose.map_from_body.translation() = Vector3d(position.x(), position.y(), now.translation().z());
+    pose.map_from_body.linear() = turned(heading_error) * now.linear();
+    poses.push_back(pose);
+  }
+  auto trajectory = Trajectory::make(std::move(poses));
+  assert(trajectory);
+  return *std::move(trajectory);
+}
+
+}  // namespace pingvox
