@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace pingvox::app {
@@ -47,9 +46,6 @@ class Grid {
   Grid(const Cell& low, const Cell& size, double resolution_m)
       : low_(low), size_(size), resolution_m_(resolution_m), kinds_(static_cast<std::size_t>(size.prod())) {}
 
-  const Cell& low() const { return low_; }
-  const Cell& size() const { return size_; }
-  bool holds(const Cell& c) const { return (c.array() >= 0).all() && (c.array() < size_.array()).all(); }
   Kind& at(const Cell& c) { return kinds_[static_cast<std::size_t>(c.x() + size_.x() * (c.y() + size_.y() * c.z()))]; }
 
   void draw(const Triangle& triangle) {
@@ -62,21 +58,28 @@ class Grid {
     draw(triangle, first.cwiseMax(Cell::Zero()), last.cwiseMin(size_ - Cell::Ones()));
   }
 
-  /// Makes water of all that is connected with a cell by faces. REQUIRES a cell of the grid.
-  void flood(const Cell& from) {
-    if (at(from) != Kind::kUnknown) return;
-    at(from) = Kind::kWater;
+  /// Makes water of all that is connected with a cell by faces, within the range of cells from `first` to `last`.
+  /// REQUIRES a range of cells of the grid.
+  void flood(const Cell& from, const Cell& first, const Cell& last) {
+    const auto is_open = [&](const Cell& c) {
+      return (c.array() >= first.array()).all() && (c.array() <= last.array()).all() && at(c) == Kind::kUnknown;
+    };
     std::vector<Cell> waiting = {from};
     while (!waiting.empty()) {
-      const Cell cell = waiting.back();
+      Cell cell = waiting.back();
       waiting.pop_back();
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        for (const std::int64_t step : {-1, 1}) {
-          Cell next = cell;
-          next[axis] += step;
-          if (!holds(next) || at(next) != Kind::kUnknown) continue;
-          at(next) = Kind::kWater;
-          waiting.push_back(next);
+      if (!is_open(cell)) continue;
+      // A whole row at once, and of the rows beside it the first cell of each open stretch.
+      while (is_open(cell - Cell::UnitX())) --cell.x();
+      std::array<bool, 4> is_stretch{};
+      for (; is_open(cell); ++cell.x()) {
+        at(cell) = Kind::kWater;
+        const std::array<Cell, 4> beside = {cell - Cell::UnitY(), cell + Cell::UnitY(), cell - Cell::UnitZ(),
+                                            cell + Cell::UnitZ()};
+        for (std::size_t side = 0; side < beside.size(); ++side) {
+          const bool is_now = is_open(beside[side]);
+          if (is_now && !is_stretch[side]) waiting.push_back(beside[side]);
+          is_stretch[side] = is_now;
         }
       }
     }
@@ -141,8 +144,13 @@ Result<OccupancyMap> world_map(const World& world, const Eigen::AlignedBox3d& wa
   for (const auto& [a, b, c] : mesh.triangles) {
     grid.draw({mesh.vertices_m[a], mesh.vertices_m[b], mesh.vertices_m[c]});
   }
-  const Cell start = (inside_m / resolution_m).array().floor().cast<std::int64_t>().matrix() - low;
-  if (grid.holds(start)) grid.flood(start);
+  // Cells with their middle in the water: a hair's breadth of one that reaches over the edge is no way around a wall.
+  const auto cell_of = [&](const Vector3d& cells_from_zero) -> Cell {
+    return cells_from_zero.array().floor().cast<std::int64_t>().matrix() - low;
+  };
+  const Vector3d half = Vector3d::Constant(0.5);
+  grid.flood(cell_of(inside_m / resolution_m), cell_of(water_m.min() / resolution_m + half),
+             cell_of(water_m.max() / resolution_m - half));
 
   Editor editor = map.edit();
   const auto belief_of = [&](Grid::Kind kind) {

@@ -227,7 +227,7 @@ Scene harbour_scene(const HarbourOptions& o) {
   scene.line = {{{low.x(), 0.0, 0.0}, {high.x(), 0.0, 0.0}}, Route::End::kStays};
   scene.lawn_mower = lanes(low, high, 3);
   scene.loop = round(low, high);
-  scene.sonar_range_m = 12.0;
+  scene.sonar_range_m = 10.0;
   return scene;
 }
 
@@ -288,7 +288,7 @@ Scene seabed_scene(const SeabedOptions& o) {
   scene.line = {{{-8.0, 2.0, 0.0}, {8.0, 2.0, 0.0}}, Route::End::kStays};
   scene.lawn_mower = lanes({-8.0, -6.0, 0.0}, {8.0, 6.0, 0.0}, 4);
   scene.loop = round({-8.5, -6.5, 0.0}, {8.5, 6.5, 0.0});
-  scene.sonar_range_m = 10.0;
+  scene.sonar_range_m = 8.0;
   return scene;
 }
 

@@ -16,13 +16,14 @@ using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
 
-/// Clean intensities are kept in whole steps of 1 / kScale and the noise is made of whole numbers and square roots, so
+/// Amplitudes are kept in whole steps of 1 / kScale and the noise is made of whole numbers and square roots, so
 /// that the last bit of a machine's exp() or cos() does not decide about a byte.
 constexpr double kScale = 256.0;
 
-/// Of a wall of scatter 1 that fills the whole beam at the range of one bin. No wall does.
-constexpr double kFullIntensity = 215.0;
-constexpr double kRingingIntensity = 150.0;
+/// Amplitude, of 255 that can be shown, of a wall of scatter 1 that fills the whole beam at the range of one bin. No
+/// wall does. This, the ringing and the default options are such that a tank sounds like that of the paper's recording.
+constexpr double kFullAmplitude = 150.0;
+constexpr double kRingingAmplitude = 50.0;
 /// How fast the ringing dies away where it ends.
 constexpr double kRingingDecay_m = 0.02;
 constexpr double kPulse_bins = 1.5;  ///< standard deviation of the received pulse
@@ -161,8 +162,8 @@ std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_s
   const std::vector<double> energies = heard(cells, o.bins);
   std::vector<std::uint32_t> clean(o.bins);
   for (std::size_t bin = 0; bin < o.bins; ++bin) {
-    const double intensity = std::min(kFullIntensity * std::sqrt(energies[bin] / all), 1e6);
-    clean[bin] = static_cast<std::uint32_t>(std::lround(kScale * intensity));
+    const double heard_here = std::min(kFullAmplitude * std::sqrt(energies[bin] / all), 1e6);
+    clean[bin] = static_cast<std::uint32_t>(std::lround(kScale * heard_here));
   }
   return clean;
 }
@@ -187,6 +188,7 @@ Result<void> SonarOptions::validate() const {
   check(bearing_step_rad >= 0.0 && bearing_step_rad <= 1.0, "bearing_step_rad", "0..1", bearing_step_rad);
   check(ringing_m >= 0.0 && ringing_m <= 10'000.0, "ringing_m", "0..10000", ringing_m);
   share(gain, "gain");
+  check(compression >= 0.1 && compression <= 1.0, "compression", "0.1..1", compression);
   check(absorption_db_per_m >= 0.0 && absorption_db_per_m <= 10.0, "absorption_db_per_m", "0..10", absorption_db_per_m);
   share(speckle, "speckle");
   check(noise >= 0.0 && noise <= 255.0, "noise", "0..255", noise);
@@ -259,9 +261,13 @@ SonarSimulator::SonarSimulator(World world, Trajectory map_from_sensor, const So
       noise_(options.seed),
       dropouts_(~options.seed) {
   assert(options.validate());
+  for (int intensity = 1; intensity <= 255; ++intensity) {
+    const double amplitude = 255.0 * std::pow(intensity / 255.0, 1.0 / options.compression);
+    levels_.push_back(static_cast<std::uint32_t>(std::lround(kScale * amplitude)));
+  }
   for (std::size_t bin = 0; bin < options.bins; ++bin) {
     const double middle_m = (static_cast<double>(bin) + 0.5) * options.bin_length_m;
-    const double ringing = kRingingIntensity * std::exp(-std::max(middle_m - options.ringing_m, 0.0) / kRingingDecay_m);
+    const double ringing = kRingingAmplitude * std::exp(-std::max(middle_m - options.ringing_m, 0.0) / kRingingDecay_m);
     ringing_.push_back(static_cast<std::uint32_t>(std::lround(options.ringing_m > 0.0 ? kScale * ringing : 0.0)));
     // Part of the noise comes in before the gain and is raised with it. Longer pulses are heard in a narrower band: as
     // many times less noise as there is more of the echo.
@@ -297,7 +303,8 @@ Result<std::optional<Beam>> SonarSimulator::next() {
       const double fading = 1.0 + options_.speckle * (noise_.rayleigh() - 1.0);
       const double noise = noise_.rayleigh() * background_[bin];
       const double echo = ringing_[bin] + (is_silent ? 0.0 : static_cast<double>(clean.intensities[bin]));
-      beam.intensities.push_back(static_cast<std::uint8_t>(std::min((echo * fading + noise) / kScale, 255.0)));
+      const auto highest = std::upper_bound(levels_.begin(), levels_.end(), echo * fading + noise);
+      beam.intensities.push_back(static_cast<std::uint8_t>(highest - levels_.begin()));
     }
     ++sent_;
     return beam;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <iterator>
@@ -22,26 +23,39 @@ struct Curve {
   std::vector<double> lengths_m;
 };
 
-/// Catmull and Rom 1974: through all waypoints, in each in the direction from the one before to the one behind.
+/// Through all waypoints, as a centripetal Catmull-Rom curve (Yuksel, Schaefer, Keyser 2011): it makes no loops, and
+/// stays near the straight way where legs of different lengths meet.
 Curve curve_of(const Route& route) {
   constexpr int kPerLeg = 32;
   const auto& w = route.waypoints_m;
   const bool is_round = route.end == Route::End::kStarts;
   const auto count = static_cast<std::ptrdiff_t>(w.size());
-  const auto waypoint = [&](std::ptrdiff_t i) -> const Vector3d& {
-    return w[static_cast<std::size_t>(is_round ? (i + count) % count : std::clamp<std::ptrdiff_t>(i, 0, count - 1))];
+  const auto waypoint = [&](std::ptrdiff_t i) -> Vector3d {
+    if (is_round) return w[static_cast<std::size_t>((i + count) % count)];
+    // Before the first and behind the last leg it would go on straight.
+    if (i < 0) return 2.0 * w[0] - w[1];
+    if (i >= count) return 2.0 * w[w.size() - 1] - w[w.size() - 2];
+    return w[static_cast<std::size_t>(i)];
   };
   Curve curve{{w.front()}, {0.0}};
   for (std::ptrdiff_t leg = 0; leg < (is_round ? count : count - 1); ++leg) {
-    const Vector3d &before = waypoint(leg - 1), &from = waypoint(leg), &to = waypoint(leg + 1),
-                   &behind = waypoint(leg + 2);
+    const std::array<Vector3d, 4> p = {waypoint(leg - 1), waypoint(leg), waypoint(leg + 1), waypoint(leg + 2)};
+    std::array<double, 4> knot{};
+    for (std::size_t i = 1; i < 4; ++i) knot[i] = knot[i - 1] + std::sqrt((p[i] - p[i - 1]).norm());
     for (int step = 1; step <= kPerLeg; ++step) {
-      const double t = static_cast<double>(step) / kPerLeg;
-      const Vector3d point =
-          0.5 * (2.0 * from + t * (to - before) + t * t * (2.0 * before - 5.0 * from + 4.0 * to - behind) +
-                 t * t * t * (3.0 * from - before - 3.0 * to + behind));
-      curve.lengths_m.push_back(curve.lengths_m.back() + (point - curve.points_m.back()).norm());
-      curve.points_m.push_back(point);
+      const double t = knot[1] + (knot[2] - knot[1]) * step / kPerLeg;
+      // Barry and Goldman 1988: the curve as straight lines between straight lines.
+      std::array<Vector3d, 4> q = p;
+      for (std::size_t level = 1; level < 4; ++level) {
+        for (std::size_t i = 0; i + level < 4; ++i) {
+          // The last level spans the leg itself.
+          const double from = level == 3 ? knot[1] : knot[i];
+          const double to = level == 3 ? knot[2] : knot[i + level];
+          q[i] = ((to - t) * q[i] + (t - from) * q[i + 1]) / (to - from);
+        }
+      }
+      curve.lengths_m.push_back(curve.lengths_m.back() + (q[0] - curve.points_m.back()).norm());
+      curve.points_m.push_back(q[0]);
     }
   }
   return curve;

@@ -203,7 +203,8 @@ TriangleMesh mesh_of(const Cylinder& c, double tolerance) {
 }
 
 TriangleMesh mesh_of(const Ellipsoid& e, double tolerance) {
-  const std::size_t pieces = pieces_of(e.radii_m.maxCoeff(), tolerance);
+  // Half of the tolerance for either of the two directions in which it is round.
+  const std::size_t pieces = pieces_of(e.radii_m.maxCoeff(), 0.5 * tolerance);
   const std::size_t rows = pieces / 2;
   std::vector<Vector3d> vertices;
   for (std::size_t row = 0; row <= rows; ++row) {

@@ -9,6 +9,7 @@
 
 #include "fuzz/bodies/beams.hpp"
 #include "fuzz/bodies/maps.hpp"
+#include "fuzz/bodies/mesh.hpp"
 #include "fuzz/bodies/scans.hpp"
 #include "fuzz/bodies/tum.hpp"
 #include "pingvox/io/file.hpp"
@@ -57,8 +58,8 @@ TEST_P(Mutation, KeepsItsPromises) {
 INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
                          testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
                                          Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
-                                         Reader{"tum", fuzz::tum}, Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps},
-                                         Reader{"pvx", fuzz::pvx}),
+                                         Reader{"mesh", fuzz::mesh}, Reader{"tum", fuzz::tum}, Reader{"bt", fuzz::maps},
+                                         Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -57,8 +57,8 @@ Scene harbour_scene(const HarbourOptions& options);
 /// A bottom that rises to the left, with ripples and boulders, some as tall as the vehicle's depth.
 struct SeabedOptions {
   double side_m = 24.0;       ///< of the square, 20..200
-  double depth_m = 2.4;       ///< of the bottom below the vehicle at the origin, 1.5..50
-  double slope = 0.1;         ///< rise over way, -0.1..0.1
+  double depth_m = 1.8;       ///< of the bottom below the vehicle at the origin, 1.5..50
+  double slope = 0.05;        ///< rise over way, -0.1..0.1
   double ripples = 1.0;       ///< 0: smooth; at most 2
   std::size_t boulders = 40;  ///< beside the six tall ones; at most 1000
 

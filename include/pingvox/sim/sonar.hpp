@@ -30,11 +30,14 @@ struct SonarOptions {
   double bearing_step_rad = 2.0 * std::numbers::pi / 6400.0;  ///< to which it rounds reported bearings; 0: it does not
   double ringing_m = 0.45;  ///< the head's own reflection fills the bins up to here; >= 0
   double gain = 1.0;        ///< share of the loss with range that the receiver makes up for, 0..1
+  double compression =
+      0.6;  ///< exponent by which amplitudes are shown as 8 bits: 1 linear; less brings out the faint; 0.1..1
 
   // The water.
   double absorption_db_per_m = 0.2;  ///< one way; 0..10
-  double speckle = 0.25;             ///< 0: none; 1: full Rayleigh fading of each bin
-  double noise = 5.0;      ///< mean background next to the head in bins of 1.25 cm [intensity]; the gain raises it
+  double speckle = 0.4;              ///< 0: none; 1: full Rayleigh fading of each bin
+  double noise = 1.5;  ///< mean background next to the head in bins of 1.25 cm, as an amplitude (255: the highest that
+                       ///< can be shown); the gain raises it; 0..255
   double multipath = 1.0;  ///< share of what surfaces mirror that goes on; 0: no second echoes
   double silent = 0.002;   ///< share of beams in which nothing but ringing and noise is heard (bubbles); 0..1
   double lost = 0.0;       ///< share of beams that never arrive in the log; less than 1
@@ -90,6 +93,7 @@ class SonarSimulator final : public BeamSource {
   std::vector<Clean> clean_;               ///< by direction
   std::vector<std::uint32_t> ringing_;     ///< of each bin
   std::vector<std::uint32_t> background_;  ///< mean noise of each bin
+  std::vector<std::uint32_t> levels_;      ///< the least amplitude of each intensity from 1 on
   Random noise_, dropouts_;                ///< apart, so that a dropout does not change the noise of other beams
   std::size_t sent_ = 0;
   Ping ping_;

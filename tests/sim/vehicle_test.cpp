@@ -1,0 +1,119 @@
+#include "pingvox/sim/vehicle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace pingvox {
+namespace {
+
+using Eigen::Vector3d;
+
+double yaw_of(const Pose& pose) {
+  return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0));
+}
+
+TEST(Travelled, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
+  const Route route{{{0.0, 0.0, -1.0}, {4.0, 0.0, -1.0}, {4.0, 4.0, -2.0}}, Route::End::kStays};
+  const Trajectory way = travelled(route, 60.0, {.speed_m_s = 0.5, .pose_every_s = 0.1});
+  EXPECT_EQ(way.poses().front().time_s, 0.0);
+  EXPECT_GE(way.poses().back().time_s, 60.0);
+  for (const Vector3d& waypoint : route.waypoints_m) {
+    double nearest = 1e9;
+    for (const auto& pose : way.poses()) {
+      nearest = std::min(nearest, (pose.map_from_body.translation() - waypoint).norm());
+    }
+    EXPECT_LT(nearest, 0.06) << waypoint.transpose();
+  }
+  const double arrived_s = length_m(route) / 0.5;
+  std::size_t steps = 0;
+  for (std::size_t n = 1; n < way.poses().size(); ++n) {
+    const Vector3d step = way.poses()[n].map_from_body.translation() - way.poses()[n - 1].map_from_body.translation();
+    if (way.poses()[n].time_s < arrived_s) {
+      EXPECT_NEAR(step.norm(), 0.05, 0.003);
+      const double error =
+          std::remainder(std::atan2(step.y(), step.x()) - yaw_of(way.poses()[n].map_from_body), 2.0 * std::numbers::pi);
+      EXPECT_NEAR(error, 0.0, 0.2);
+      ++steps;
+    }
+  }
+  EXPECT_GT(steps, 150U);
+  EXPECT_TRUE(way.poses().back().map_from_body.translation().isApprox(route.waypoints_m.back())) << "it stays";
+}
+
+TEST(Travelled, GoesRoundAndRound) {
+  const Route route{{{0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, {4.0, 4.0, 0.0}, {0.0, 4.0, 0.0}}, Route::End::kStarts};
+  const double round_s = length_m(route) / 0.5;
+  const Trajectory way = travelled(route, 3.0 * round_s, {.speed_m_s = 0.5});
+  for (const double time : {1.0, 7.0, 20.0}) {
+    const Pose first = *way.at(time);
+    const Pose later = *way.at(time + 2.0 * round_s);
+    EXPECT_LT((first.translation() - later.translation()).norm(), 0.02) << time;
+  }
+}
+
+TEST(Reported, IsTheTruthWithoutDrift) {
+  const Route route{{{0.0, 0.0, 0.0}, {4.0, 1.0, 0.0}, {4.0, 4.0, -1.0}}, Route::End::kStays};
+  const Trajectory truth = travelled(route, 40.0, {});
+  const Trajectory told = reported(truth, {});
+  ASSERT_EQ(told.poses().size(), truth.poses().size());
+  for (std::size_t n = 0; n < truth.poses().size(); ++n) {
+    EXPECT_TRUE(told.poses()[n].map_from_body.isApprox(truth.poses()[n].map_from_body, 1e-12)) << n;
+  }
+}
+
+TEST(Reported, StraysAsFarAsOrdered) {
+  // Standing still for a minute: the walk's end has the deviation that was asked for, along x and y and in heading.
+  std::vector<StampedPose> poses;
+  for (int n = 0; n <= 240; ++n) poses.push_back({0.25 * n, Pose(Eigen::Translation3d(1.0, 2.0, 3.0))});
+  const Trajectory truth = *Trajectory::make(poses);
+  double xx = 0.0, yy = 0.0, hh = 0.0, sum = 0.0;
+  constexpr int kWalks = 400;
+  for (int seed = 0; seed < kWalks; ++seed) {
+    const Trajectory told =
+        reported(truth, {.seed = static_cast<std::uint64_t>(seed), .position_m = 0.5, .heading_rad = 0.1});
+    EXPECT_TRUE(told.poses().front().map_from_body.isApprox(truth.poses().front().map_from_body)) << "it starts true";
+    const Vector3d off = told.poses().back().map_from_body.translation() - Vector3d(1.0, 2.0, 3.0);
+    const double heading = yaw_of(told.poses().back().map_from_body);
+    EXPECT_EQ(off.z(), 0.0) << "depth is measured";
+    xx += off.x() * off.x() / kWalks;
+    yy += off.y() * off.y() / kWalks;
+    hh += heading * heading / kWalks;
+    sum += off.x() / kWalks;
+  }
+  // Deviations of 400 walks are known to 3.5 %: four of these.
+  EXPECT_NEAR(std::sqrt(xx), 0.5, 0.07);
+  EXPECT_NEAR(std::sqrt(yy), 0.5, 0.07);
+  EXPECT_NEAR(std::sqrt(hh), 0.1, 0.014);
+  EXPECT_NEAR(sum, 0.0, 0.1) << "to no side";
+}
+
+TEST(Reported, AWrongHeadingTurnsTheWayOn) {
+  const Route route{{{0.0, 0.0, 0.0}, {30.0, 0.0, 0.0}}, Route::End::kStays};
+  const Trajectory truth = travelled(route, 60.0, {.speed_m_s = 0.5});
+  const Trajectory told = reported(truth, {.seed = 3, .heading_rad = 0.3});
+  const Pose end = told.poses().back().map_from_body;
+  EXPECT_GT(std::abs(end.translation().y()), 0.2);
+  // Each step is as long as the true one.
+  for (std::size_t n = 1; n < told.poses().size(); ++n) {
+    const auto step = [n](const Trajectory& way) {
+      return (way.poses()[n].map_from_body.translation() - way.poses()[n - 1].map_from_body.translation()).norm();
+    };
+    EXPECT_NEAR(step(told), step(truth), 1e-9);
+  }
+}
+
+TEST(Options, OfVehiclesNameEveryBrokenField) {
+  EXPECT_TRUE(TravelOptions{}.validate());
+  EXPECT_TRUE(DriftOptions{}.validate());
+  const std::string travel = TravelOptions{.speed_m_s = 0.0, .pose_every_s = -1.0}.validate().error().message;
+  EXPECT_NE(travel.find("speed_m_s"), std::string::npos);
+  EXPECT_NE(travel.find("pose_every_s"), std::string::npos);
+  const std::string drift = DriftOptions{.position_m = -1.0, .heading_rad = 11.0}.validate().error().message;
+  EXPECT_NE(drift.find("position_m"), std::string::npos);
+  EXPECT_NE(drift.find("heading_rad"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pingvox
