@@ -27,7 +27,7 @@ _pingvox_options() {
   printf '%s\n' "${options[@]}"
 }
 
-# Prints the words that an option takes, one a line; nothing when they are no fixed set.
+# _pingvox_words OPTION COMMAND: prints the words that an option takes, one a line; nothing when they are no fixed set.
 _pingvox_words() {
   case "$1" in
     --filter) printf '%s\n' none gaussian ;;
@@ -38,7 +38,10 @@ _pingvox_words() {
     --hit-from) printf '%s\n' fixed intensity ;;
     --parents) printf '%s\n' max mean ;;
     --silent) printf '%s\n' nothing free ;;
-    --format) printf '%s\n' csv bt ot pvx ply ;;
+    --format)
+      [[ $2 != convert ]] || echo csv
+      printf '%s\n' bt ot pvx ply
+      ;;
     --progress) printf '%s\n' auto always never ;;
   esac
 }

@@ -72,7 +72,7 @@ if [[ -n $program ]]; then
       same "$command $option" "$(_pingvox_words "$option" "$command")" "$words"
     done
   done
-  same "commands" "$(_pingvox_commands)" "$("$program" --help | sed -nE 's/^ {2,}([a-z]+) .*/\1/p')"
+  same "commands" "$(_pingvox_commands)" "$("$program" --help | sed -nE '/^Commands:/,/^$/s/^ {2,}([a-z]+) .*/\1/p')"
 fi
 
 echo "$cases cases, $failures failures"
