@@ -139,8 +139,7 @@ bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
   bool changed = false;
   const bool is_miss_negative = votes.miss < LogOdds(0.0F);
   if (is_miss_negative && votes.missed != 0) {
-    changed =
-        add_misses(brick, votes.missed, votes.miss.value(), clamp.lowest.value()) || (votes.missed & ~brick.known) != 0;
+    changed = add_misses(brick, votes.missed, votes.miss.value(), clamp) || (votes.missed & ~brick.known) != 0;
     brick.known |= votes.missed;
   }
   for (std::uint64_t left = is_miss_negative ? votes.hit : votes.missed | votes.hit; left != 0; left &= left - 1) {

@@ -49,7 +49,7 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
       changed |= after != plain.value[i];
       plain.value[i] = after;
     }
-    EXPECT_EQ(add_misses(brick, missed, -0.4F, kClamp.lowest.value()), changed);
+    EXPECT_EQ(add_misses(brick, missed, -0.4F, kClamp), changed);
     EXPECT_EQ(brick.value, plain.value);
     unchanged += !changed;
   }

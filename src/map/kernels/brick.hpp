@@ -33,15 +33,17 @@ inline bool any_of(FourMasks lanes) {
 
 /// for each cell of `missed`: value = updated_by(value, miss, clamp). REQUIRES miss < 0 and unknown cells to be 0.
 /// @return whether a value changed
-inline bool add_misses(Brick& brick, std::uint64_t missed, float miss, float lowest) {
+inline bool add_misses(Brick& brick, std::uint64_t missed, float miss, const Clamp& clamp) {
+  const float lowest = clamp.lowest.value(), highest = clamp.highest.value();
   FourMasks changed{};
   for (std::size_t first = 0; first < 64; first += 4) {
     const std::uint64_t cells = missed >> first;
     if ((cells & 0xF) == 0) continue;
     const Four before = four_at(brick, first);
     const Four sum = before + miss;
-    const Four clamped = sum < lowest ? Four{} + lowest : sum;
-    // What is at the clamp, or was set beyond it, stays.
+    const Four from_below = sum < lowest ? Four{} + lowest : sum;
+    const Four clamped = from_below > highest ? Four{} + highest : from_below;
+    // What is at the lower clamp, or was set below it, stays.
     const Four after = (lanes_of(cells) & (before > lowest)) != 0 ? clamped : before;
     changed |= after != before;
     std::memcpy(brick.value.data() + first, &after, sizeof after);
