@@ -26,12 +26,14 @@ inline std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves_in(const Occu
 }
 
 /// Any bytes as a map: what is read takes memory in proportion, and is written and read back equal.
-inline void maps(std::span<const std::uint8_t> bytes) {
+/// @return how many maps were read
+inline std::size_t maps(std::span<const std::uint8_t> bytes) {
   const auto read = read_map({"fuzzed", {bytes.begin(), bytes.end()}});
   if (!read) {
     const std::string& message = read.error().message;
-    return require(message.starts_with("fuzzed") && message.find('\n') == std::string::npos,
-                   "an error is one line and names the file");
+    require(message.starts_with("fuzzed") && message.find('\n') == std::string::npos,
+            "an error is one line and names the file");
+    return 0;
   }
   // A brick for each inner node of two bytes is the most that there can be.
   require(read->map.memory_bytes() <= 4096 + bytes.size() / 2 * sizeof(detail::Brick), "memory is in proportion");
@@ -48,17 +50,18 @@ inline void maps(std::span<const std::uint8_t> bytes) {
               a.thresholds.lower == b.thresholds.lower && a.thresholds.upper == b.thresholds.upper,
           "the options come back");
   require(leaves_in(read->map) == leaves_in(back->map), "each leaf comes back");
+  return 1;
 }
 
 /// The same, and once more with a checksum that fits: else nothing behind it is ever reached.
-inline void pvx(std::span<const std::uint8_t> bytes) {
-  maps(bytes);
-  if (bytes.size() < 4) return;
+inline std::size_t pvx(std::span<const std::uint8_t> bytes) {
+  const std::size_t unsealed = maps(bytes);
+  if (bytes.size() < 4) return unsealed;
   std::vector<std::uint8_t> sealed(bytes.begin(), bytes.end());
   const std::size_t end = sealed.size() - 4;
   const auto crc = static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), sealed.data(), end));
   for (std::size_t i = 0; i < 4; ++i) sealed[end + i] = static_cast<std::uint8_t>(crc >> (8 * i));
-  maps(sealed);
+  return unsealed + maps(sealed);
 }
 
 }  // namespace pingvox::fuzz

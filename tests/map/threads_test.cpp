@@ -51,4 +51,32 @@ TEST(Threads, ManyReadersOfOneMapAgree) {
   EXPECT_GT(expected, 10'000U);
 }
 
+OccupancyMap random_map() {
+  OccupancyMap map({.resolution_m = 0.05});
+  std::mt19937_64 random(3);
+  Editor editor = map.edit();
+  for (int i = 0; i < 20'000; ++i) {
+    const auto word = [&] { return static_cast<std::uint16_t>(32768 - 40 + random() % 80); };
+    editor.update(Key{word(), word(), word()}, LogOdds::from_probability(random() % 2 == 0 ? 0.7 : 0.4));
+  }
+  editor.synchronize();
+  return map;
+}
+
+// Something static that all maps share (liboctomap's users know such) would be seen here.
+TEST(Threads, MapsOfTheirOwnCanBeWrittenAtOnce) {
+  const MapCounts alone = random_map().counts();
+  ASSERT_GT(alone.leaves, 10'000U);
+  std::atomic<int> alike = 0;
+  std::vector<std::thread> writers;
+  for (int i = 0; i < 4; ++i) {
+    writers.emplace_back([&] {
+      const MapCounts mine = random_map().counts();
+      if (mine.leaves == alone.leaves && mine.inner == alone.inner) ++alike;
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(alike, 4);
+}
+
 }  // namespace
