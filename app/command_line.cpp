@@ -626,7 +626,7 @@ Result<Command> simulate_command(const Words& words) {
           into_number(sonar.noise)},
          {"--multipath", 0, "S", "share of what surfaces mirror that goes on, 0..1", shown(sonar.multipath),
           into_number(sonar.multipath)},
-         {"--silent", 0, "S", "share of beams in which nothing is heard but noise", shown(sonar.silent),
+         {"--bubbles", 0, "S", "share of beams in which nothing is heard but noise", shown(sonar.silent),
           into_number(sonar.silent)},
          {"--lost", 0, "S", "share of beams that are missing in the log", shown(sonar.lost), into_number(sonar.lost)},
          config_option()}}},

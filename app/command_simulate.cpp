@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <system_error>
 #include <utility>
@@ -108,7 +110,14 @@ Result<void> write_ranges(const std::string& path, const SonarSimulator& simulat
   });
 }
 
-Result<void> write_truth(const SimulateCommand& command, const Scene& scene, const Trajectory& way,
+Result<OccupancyMap> true_map(const Scene& scene, const Trajectory& way, double resolution_m) {
+  // Where the vehicle is, there is water, in whatever box a mesh stands.
+  Eigen::AlignedBox3d water = scene.water_m;
+  for (const StampedPose& pose : way.poses()) water.extend(pose.map_from_body.translation());
+  return world_map(scene.world, water, way.poses().front().map_from_body.translation(), resolution_m);
+}
+
+Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map, const Trajectory& way,
                          const SonarSimulator& simulator, const Witness& witness, const SonarOptions& sonar) {
   const std::filesystem::path folder = *command.truth;
   std::error_code error;
@@ -116,20 +125,13 @@ Result<void> write_truth(const SimulateCommand& command, const Scene& scene, con
   if (error) return fail(Error::Code::kIo, fmt::format("{}: {}", *command.truth, error.message()));
   const auto in_folder = [&folder](const char* name) { return (folder / name).string(); };
 
-  // Where the vehicle is, there is water, in whatever box a mesh stands.
-  Eigen::AlignedBox3d water = scene.water_m;
-  for (const StampedPose& pose : way.poses()) water.extend(pose.map_from_body.translation());
-  const Eigen::Vector3d start = way.poses().front().map_from_body.translation();
-  const Result<OccupancyMap> map = world_map(scene.world, water, start, command.truth_resolution_m);
-  if (!map) return tl::unexpected(map.error());
-
   if (auto written = write_trajectory(in_folder("poses.tum"), way); !written) return written;
   if (auto written = write_ranges(in_folder("ranges.csv"), simulator, witness.sent(), sonar); !written) return written;
   auto written = write_file(in_folder("world.ply"), [&](std::ostream& out) {
-    return write_mesh_ply(scene.world.mesh(0.1 * command.truth_resolution_m), out);
+    return write_mesh_ply(simulator.world().mesh(0.1 * command.truth_resolution_m), out);
   });
   if (!written) return written;
-  return write_map_file(in_folder("world.bt"), *map, Format::kBt, "");
+  return write_map_file(in_folder("world.bt"), map, Format::kBt, "");
 }
 
 }  // namespace
@@ -143,6 +145,14 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   if (const auto valid = sonar.validate(); !valid) return tl::unexpected(valid.error());
   const Result<Journey> journey = journey_of(command, *scene, sonar);
   if (!journey) return tl::unexpected(journey.error());
+
+  // What can fail comes before the work.
+  std::optional<OccupancyMap> map;
+  if (command.truth) {
+    Result<OccupancyMap> made = true_map(*scene, journey->way, command.truth_resolution_m);
+    if (!made) return tl::unexpected(made.error());
+    map = *std::move(made);
+  }
 
   SonarSimulator simulator(scene->world, journey->way, sonar, journey->turns);
   Witness witness(simulator);
@@ -164,8 +174,8 @@ Result<int> run(const SimulateCommand& command, Console& console) {
     if (!reports) return tl::unexpected(reports.error());
     told += fmt::format("{}: {} poses, as reported\n", on_one_line(companion), journey->way.poses().size());
   }
-  if (command.truth) {
-    const auto truth = write_truth(command, *scene, journey->way, simulator, witness, sonar);
+  if (map) {
+    const auto truth = write_truth(command, *map, journey->way, simulator, witness, sonar);
     if (!truth) return tl::unexpected(truth.error());
     told += fmt::format("{}: what is true\n", on_one_line(*command.truth));
   }

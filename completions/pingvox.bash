@@ -21,7 +21,9 @@ _pingvox_options() {
       options+=(--min-range --max-range --sound-speed --filter --kernel --sigma --detect --threshold)
       ;;
     simulate)
-      options+=(--output --seed --turns --side --beams-per-turn --bins --bin-length --speckle --noise --quiet --config)
+      options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --speed --turns --drift)
+      options+=(--heading-drift --seed --range --bins --bin-length --beams-per-turn --beam-width --beam-height)
+      options+=(--side-lobes --gain --compression --absorption --ringing --speckle --noise --multipath --bubbles --lost)
       ;;
   esac
   printf '%s\n' "${options[@]}"
@@ -38,6 +40,7 @@ _pingvox_words() {
     --hit-from) printf '%s\n' fixed intensity ;;
     --parents) printf '%s\n' max mean ;;
     --silent) printf '%s\n' nothing free ;;
+    --trajectory) printf '%s\n' still line lawn-mower loop ;;
     --format)
       [[ $2 != convert ]] || echo csv
       printf '%s\n' bt ot pvx ply
@@ -70,7 +73,8 @@ _pingvox() {
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
-        --beams-per-turn | --bins | --bin-length | --speckle | --noise | --size | --sweep | --min-z | --max-z)
+        --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
+        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --min-z | --max-z)
         return # a number: nothing to offer
         ;;
     esac
@@ -79,7 +83,9 @@ _pingvox() {
     elif [[ -z $command ]]; then
       words=$(_pingvox_commands)
     elif [[ $command == simulate && $previous == simulate ]]; then
-      words="tank"
+      words="tank harbour seabed cave"
+      # What begins no world's name is the file of a mesh.
+      [[ -n $(compgen -W "$words" -- "$current") ]] || words=""
     fi
   fi
 

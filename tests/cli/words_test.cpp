@@ -80,6 +80,12 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"simulate", "tank"}, {"-o FILE is missing"}},
       {{"simulate", "tank", "-o", "a.csv", "--seed", "-1"}, {"--seed"}},
       {{"simulate", "tank", "-o", "a.csv", "--turns", "0"}, {"turns"}},
+      {{"simulate", "tank", "-o", "a.csv", "--speckle", "2"}, {"speckle"}},
+      {{"simulate", "tank", "-o", "a.csv", "--range", "5", "--bin-length", "0.01"}, {"--range and --bin-length"}},
+      {{"simulate", "tank", "-o", "a.csv", "--poses", "a.tum", "--trajectory", "loop"}, {"--poses and --trajectory"}},
+      {{"simulate", "harbour", "-o", "-", "--trajectory", "loop"}, {"-o -"}},
+      {{"simulate", "harbour", "-o", "a.csv", "--trajectory", "lop"}, {"did you mean 'loop'?"}},
+      {{"simulate", "harbour", "-o", "a.csv", "--drift", "-1"}, {"position_m"}},
   };
   const Workplace here;
   for (const Case& c : cases) {
