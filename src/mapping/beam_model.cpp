@@ -81,6 +81,12 @@ std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double beari
   return bundle;
 }
 
+double cells_in_beam(const BeamModelOptions& options, double range_m, double resolution_m) {
+  const double range = std::min(range_m, options.max_range_m) / resolution_m;
+  const double width = std::max(1.0, width_of(options) * range), height = std::max(1.0, height_of(options) * range);
+  return range * width * height / 3.0;
+}
+
 std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, const Beam& beam,
                        const std::optional<Echo>& echo, const BeamModelOptions& options, ScanUpdate& scan) {
   if (!echo && options.silent == Silent::kNothing) return 0;

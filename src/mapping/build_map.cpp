@@ -52,6 +52,19 @@ class SweepReader {
   bool ended_ = false;
 };
 
+/// Refuses cells so small that a single beam would take all memory.
+Result<void> check_size(const Beam& beam, const std::optional<Echo>& echo, const BeamModelOptions& model,
+                        const Lattice& lattice) {
+  const double range_m = echo ? echo->range_m : static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
+  const double cells = cells_in_beam(model, range_m, lattice.resolution_m());
+  if (cells <= kMostCellsInBeam) return {};
+  return fail(
+      Error::Code::kLimit,
+      fmt::format("a beam of {:.3g} m at {} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
+                  "a shorter maximum range or a thinner beam would do",
+                  range_m, beam.time_s, cells, lattice.resolution_m(), kMostCellsInBeam));
+}
+
 /// Applies the scan and empties it.
 Result<void> apply(ScanUpdate& scan, OccupancyMap& map, BuildReport& report) {
   const Result<ApplyReport> applied = map.apply(scan);
@@ -102,6 +115,9 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
       if (!body) {
         ++unplaced;
         continue;
+      }
+      if (const auto fits = check_size(beams[i], echoes[i], options.model, map.lattice()); !fits) {
+        return tl::unexpected(fits.error());
       }
       if (trace_beam(map.lattice(), *body * options.body_from_sensor, beams[i], echoes[i], options.model, scan) > 0) {
         ++unplaced;

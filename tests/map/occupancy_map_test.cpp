@@ -12,7 +12,7 @@ class OccupancyMapAtDepth : public testing::TestWithParam<int> {};
 
 TEST_P(OccupancyMapAtDepth, AnswersLikeTheOracleAfterRandomOperations) {
   std::size_t compared = 0, joined = 0;
-  const std::uint64_t seeds = GetParam() <= 3 ? 60 : (GetParam() <= 17 ? 12 : 5);
+  const std::uint64_t seeds = GetParam() <= 3 ? 60 : (GetParam() <= 17 ? 8 : 4);
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     SCOPED_TRACE(seed);
     test::Duel duel(GetParam(), seed);

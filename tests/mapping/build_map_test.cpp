@@ -159,6 +159,18 @@ TEST(BuildMap, MemoryLimitStopsTheRunWithTheMapBeforeTheScan) {
   EXPECT_TRUE(map.empty());
 }
 
+// Kills a run that takes all memory because of one wrong word.
+TEST(BuildMap, CellsTooSmallForTheBeamAreRefused) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
+  BuildOptions options = clean_options();
+  options.model.shape = BeamShape::kCone;
+  OccupancyMap map({.resolution_m = 1e-6, .depth = 32});
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, Error::Code::kLimit);
+  EXPECT_NE(report.error().message.find("larger cells"), std::string::npos);
+}
+
 /// One scan of three points.
 class ThreePoints : public ScanSource {
  public:

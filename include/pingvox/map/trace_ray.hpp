@@ -25,7 +25,8 @@ struct PointScanOptions {
 };
 
 /// Marks each point of a scan as hit and the cells before it as missed: the sets of liboctomap's insertPointCloud.
-/// @return points left out because they, or the scan's origin, lie outside of the lattice
+/// @return points that lie outside of the lattice, or whose ray does because the origin is; a point inside is hit also
+/// then
 std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
                          ScanUpdate& scan);
 

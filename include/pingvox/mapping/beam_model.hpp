@@ -78,6 +78,12 @@ struct BundleRay {
 std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
                                    double resolution_m);
 
+/// About how many cells a beam fills with sound up to a range [m].
+double cells_in_beam(const BeamModelOptions& options, double range_m, double resolution_m);
+
+/// The most that `build_map` takes for one beam: such a scan needs some hundred megabytes.
+inline constexpr double kMostCellsInBeam = 3e8;
+
 /// Adds to `scan` what one beam says: cells freed up to the echo, cells hit with their share of the evidence.
 /// @param map_from_sensor  the head's pose when the beam was heard
 /// @return the number of rays left out because an end of them lies outside of the lattice
