@@ -350,12 +350,12 @@ Result<Command> map_command(const Words& words) {
     return {};
   };
   const Take max_range = [&](const std::string& text) -> Result<void> {
-    const Result<void> taken = into_number(build.echo.max_range_m)(text);
+    Result<void> taken = into_number(build.echo.max_range_m)(text);
     model.max_range_m = build.echo.max_range_m;
     return taken;
   };
   const Take thread_count = [&](const std::string& text) -> Result<void> {
-    const Result<void> taken = into_number(threads)(text);
+    Result<void> taken = into_number(threads)(text);
     if (taken && threads < 1) return off(fmt::format("{} is less than 1", text));
     return taken;
   };

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "commands.hpp"
@@ -57,6 +58,10 @@ Result<BuildReport> map_log(const Log& log, const Trajectory& trajectory, const 
     return build_map(**beams, trajectory, options, map, progress);
   }
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
+}
+
+std::optional<double> share_read(const Log& log) {
+  return std::visit([](const auto& source) { return source->share_read(); }, log);
 }
 
 /// Errors of the map itself name no file.
@@ -125,7 +130,7 @@ Result<int> run(const MapCommand& command, Console& console) {
 
   Totals totals;
   {
-    ProgressLine line(command.manner);
+    ProgressBar bar(command.manner);
     for (std::size_t i = 0; i < command.logs.size(); ++i) {
       const Stopwatch read;
       Result<FileBytes> file = read_file(command.logs[i]);
@@ -136,9 +141,12 @@ Result<int> run(const MapCommand& command, Console& console) {
       totals.report.seconds.read += read.seconds();
 
       const Progress progress = [&](const BuildReport& done) {
-        if (!line.is_due()) return;
-        line.draw(fmt::format("log {} of {}: {} beams, {} sweeps, {:.0f} s, map {}", i + 1, command.logs.size(),
-                              done.beams, done.sweeps, total.seconds(), bytes_text(map->memory_bytes())));
+        if (!bar.is_due()) return;
+        // Logs count the same: how long the later ones are is not known yet.
+        std::optional<double> share = share_read(*log);
+        if (share) share = (static_cast<double>(i) + *share) / static_cast<double>(command.logs.size());
+        bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
+                                    bytes_text(map->memory_bytes())));
       };
       const Result<BuildReport> report = map_log(*log, *trajectory, command.build, *map, progress);
       if (!report) return tl::unexpected(with_name(report.error(), name));

@@ -1,14 +1,19 @@
 #include "progress.hpp"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <string>
 
 namespace pingvox::app {
 namespace {
 
 constexpr std::chrono::milliseconds kInterval{100};
 constexpr std::size_t kWidth = 79;
+constexpr std::size_t kBarWidth = 30;
 
 bool is_wanted(const Manner& manner) {
   if (manner.talk == Talk::kQuiet || manner.progress == ShowProgress::kNever) return false;
@@ -17,9 +22,9 @@ bool is_wanted(const Manner& manner) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(const Manner& manner) : shown_(is_wanted(manner)), next_(Clock::now() + kInterval) {}
+ProgressBar::ProgressBar(const Manner& manner) : shown_(is_wanted(manner)), next_(Clock::now() + kInterval) {}
 
-bool ProgressLine::is_due() {
+bool ProgressBar::is_due() {
   if (!shown_) return false;
   const auto now = Clock::now();
   if (now < next_) return false;
@@ -27,15 +32,22 @@ bool ProgressLine::is_due() {
   return true;
 }
 
-void ProgressLine::draw(std::string_view text) {
+void ProgressBar::draw(std::optional<double> share, std::string_view text) {
   if (!shown_) return;
   drawn_ = true;
-  const std::string line = "\r\x1b[K" + on_one_line(text.substr(0, kWidth));
-  std::fwrite(line.data(), 1, line.size(), stderr);
+  std::string line;
+  if (share) {
+    const double clamped = std::clamp(*share, 0.0, 1.0);
+    const auto full = static_cast<std::size_t>(clamped * kBarWidth);
+    line = fmt::format("[{}{}] {:3.0f} %  ", std::string(full, '#'), std::string(kBarWidth - full, '.'),
+                       std::floor(clamped * 100.0));
+  }
+  line = on_one_line((line + std::string(text)).substr(0, kWidth));
+  fmt::print(stderr, "\r\x1b[K{}", line);
   std::fflush(stderr);
 }
 
-void ProgressLine::clear() {
+void ProgressBar::clear() {
   if (!drawn_) return;
   drawn_ = false;
   std::fputs("\r\x1b[K", stderr);

@@ -1,28 +1,27 @@
 #pragma once
 
 #include <chrono>
-#include <string>
+#include <optional>
 #include <string_view>
 
 #include "console.hpp"
 
 namespace pingvox::app {
 
-/// A line on standard error that says how far the work is, drawn over itself ten times a second. It is there only on a
+/// A bar on standard error that says how far the work is, drawn over itself ten times a second. It is there only on a
 /// terminal (or when asked for), and gone when the work is done.
-class ProgressLine {
+class ProgressBar {
  public:
-  explicit ProgressLine(const Manner& manner);
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-  ~ProgressLine() { clear(); }
+  explicit ProgressBar(const Manner& manner);
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  ~ProgressBar() { clear(); }
 
-  bool is_shown() const { return shown_; }
   /// Whether it is time to draw again: ask before making up a text.
   bool is_due();
-  /// Draws the text, cut to a terminal's usual width.
-  void draw(std::string_view text);
-  /// Takes the line away.
+  /// Draws a bar (without one, when nobody knows the share) and the text, cut to a terminal's usual width.
+  void draw(std::optional<double> share, std::string_view text);
+  /// Takes the bar away.
   void clear();
 
  private:

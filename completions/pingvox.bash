@@ -1,31 +1,33 @@
 # bash completion for pingvox. Needs nothing of the bash-completion package, and uses nothing of it.
 
+_pingvox_commands() { printf '%s\n' map info compare convert render simulate bench; }
+
 # Prints the long options of a command, one a line.
 _pingvox_options() {
   local options=(--help)
   case "$1" in
     "") options+=(--version) ;;
     map)
-      options+=(--output --format --config --resolution --depth --poses --mount --min-range --max-range --sound-speed)
-      options+=(--filter --kernel --sigma --detect --threshold)
-      options+=(--beam --beam-width --beam-height --ray --vote --hit --miss --clamp --hit-from --parents --silent)
-      options+=(--threads --memory-limit --strict --json --quiet --progress)
+      options+=(--output --format --json --quiet --progress --strict --config)
+      options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
+      options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
+      options+=(--min-range --max-range --sound-speed --filter --kernel --sigma --detect --threshold)
       ;;
     info) options+=(--json --strict) ;;
     compare) options+=(--json --quiet) ;;
     convert) options+=(--output --format --strict --quiet) ;;
     render)
-      options+=(--output --size --sweep --min-z --max-z --config --strict --quiet)
+      options+=(--output --size --sweep --min-z --max-z --strict --quiet --config)
       options+=(--min-range --max-range --sound-speed --filter --kernel --sigma --detect --threshold)
       ;;
     simulate)
-      options+=(--output --config --quiet --seed --turns --side --beams-per-turn --bins --bin-length --speckle --noise)
+      options+=(--output --seed --turns --side --beams-per-turn --bins --bin-length --speckle --noise --quiet --config)
       ;;
   esac
   printf '%s\n' "${options[@]}"
 }
 
-# Prints the words that an option takes, one a line; nothing when they are no fixed set.
+# _pingvox_words OPTION COMMAND: prints the words that an option takes, one a line; nothing when they are no fixed set.
 _pingvox_words() {
   case "$1" in
     --filter) printf '%s\n' none gaussian ;;
@@ -36,7 +38,10 @@ _pingvox_words() {
     --hit-from) printf '%s\n' fixed intensity ;;
     --parents) printf '%s\n' max mean ;;
     --silent) printf '%s\n' nothing free ;;
-    --format) printf '%s\n' csv bt ot pvx ply ;;
+    --format)
+      [[ $2 != convert ]] || echo csv
+      printf '%s\n' bt ot pvx ply
+      ;;
     --progress) printf '%s\n' auto always never ;;
   esac
 }
@@ -59,20 +64,20 @@ _pingvox() {
   elif [[ $previous == "=" ]] && ((COMP_CWORD >= 2)); then
     previous=${COMP_WORDS[COMP_CWORD - 2]}
   fi
-  words=$(_pingvox_words "$previous")
+  words=$(_pingvox_words "$previous" "$command")
 
   if [[ -z $words ]]; then
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
-        --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | \
-        --side | --beams-per-turn | --bins | --bin-length | --speckle | --noise | --size | --sweep | --min-z | --max-z)
+        --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
+        --beams-per-turn | --bins | --bin-length | --speckle | --noise | --size | --sweep | --min-z | --max-z)
         return # a number: nothing to offer
         ;;
     esac
     if [[ $current == -* ]]; then
       words=$(_pingvox_options "$command")
     elif [[ -z $command ]]; then
-      words="map info compare convert render simulate"
+      words=$(_pingvox_commands)
     elif [[ $command == simulate && $previous == simulate ]]; then
       words="tank"
     fi

@@ -116,6 +116,7 @@ class CsvSource : public BeamSource {
   }
 
   std::size_t skipped() const override { return skipped_; }
+  std::optional<double> share_read() const override { return share_without(lines_.left(), file_.bytes.size()); }
 
  private:
   FileBytes file_;

@@ -52,7 +52,11 @@ tl::expected<Beam, std::string> beam_in(const std::array<std::optional<mat5::Num
 class MatSource : public BeamSource {
  public:
   MatSource(std::string name, Damage damage, mat5::StructArray records, std::array<std::size_t, kFieldCount> places)
-      : name_(std::move(name)), damage_(damage), records_(std::move(records)), places_(places) {}
+      : name_(std::move(name)),
+        damage_(damage),
+        records_(std::move(records)),
+        beams_(records_.elements_left()),
+        places_(places) {}
 
   Result<std::optional<Beam>> next() override {
     while (const auto record = records_.next()) {
@@ -69,11 +73,13 @@ class MatSource : public BeamSource {
   }
 
   std::size_t skipped() const override { return skipped_; }
+  std::optional<double> share_read() const override { return share_without(records_.elements_left(), beams_); }
 
  private:
   std::string name_;
   Damage damage_;
   mat5::StructArray records_;
+  std::uint64_t beams_;  ///< that there were at the start
   std::array<std::size_t, kFieldCount> places_;
   std::size_t record_ = 0;  ///< from 1, as MATLAB counts
   std::size_t skipped_ = 0;

@@ -48,6 +48,7 @@ class StructArray {
   /// The next element, an array for each field: nullopt for one that is no real numeric array or does not fit its own
   /// dimensions. nullopt after the last element.
   std::optional<std::vector<std::optional<NumericArray>>> next();
+  std::uint64_t elements_left() const { return elements_left_; }
 
  private:
   StructArray(std::vector<std::uint8_t> bytes, std::endian order) : bytes_(std::move(bytes)), order_(order) {}

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,5 +28,10 @@ bool looks_like_tum(std::span<const std::uint8_t> bytes);
 /// What happened to a damaged piece of a log: nothing (it is counted) or, with Damage::kFail, the error.
 Result<void> skipped_or_failed(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
                                const std::string& reason);
+
+/// What share_read() says when `left` of `all` have not been read.
+inline double share_without(std::uint64_t left, std::uint64_t all) {
+  return all > 0 ? 1.0 - static_cast<double>(left) / static_cast<double>(all) : 1.0;
+}
 
 }  // namespace pingvox

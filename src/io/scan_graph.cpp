@@ -81,6 +81,7 @@ class ScanGraphSource : public ScanSource {
   }
 
   std::size_t skipped() const override { return skipped_; }
+  std::optional<double> share_read() const override { return share_without(reader_.left(), file_.bytes.size()); }
 
  private:
   FileBytes file_;

@@ -88,6 +88,7 @@ class ScanLogSource : public ScanSource {
   }
 
   std::size_t skipped() const override { return skipped_; }
+  std::optional<double> share_read() const override { return share_without(lines_.left(), file_.bytes.size()); }
 
  private:
   /// To the next line that says anything.

@@ -24,6 +24,8 @@ class Lines {
   std::optional<std::string_view> next_with_content();
   /// The number, from 1, of the line that next() gave last.
   std::size_t number() const { return number_; }
+  /// Characters behind that line.
+  std::size_t left() const { return rest_.size(); }
 
  private:
   std::string_view rest_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "map/kernels/brick.hpp"
+
 namespace pingvox {
 namespace detail {
 namespace {
@@ -32,12 +34,13 @@ float clamped(float value, const Clamp& clamp) {
   return std::clamp(value, clamp.lowest.value(), clamp.highest.value());
 }
 
-/// Index of the highest bit in which two keys differ. REQUIRES that they do.
-int highest_difference(const WideKey& a, const WideKey& b) {
-  const WideWord difference = (a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z);
-  const auto high = static_cast<std::uint64_t>(difference >> 64);
-  const auto low = static_cast<std::uint64_t>(difference);
-  return high != 0 ? 127 - std::countl_zero(high) : 63 - std::countl_zero(low);
+/// Index of the highest bit that is set. REQUIRES that one is.
+int highest_bit(std::uint64_t word) {
+  return 63 - std::countl_zero(word);
+}
+int highest_bit(WideWord word) {
+  const auto high = static_cast<std::uint64_t>(word >> 64);
+  return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<std::uint64_t>(word));
 }
 
 /// What a brick became: itself, or less when it is uniform.
@@ -111,13 +114,16 @@ Entry merged_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Pa
 
 }  // namespace
 
-int BrickTree::common_depth(const WideKey& a, const WideKey& b) const {
-  const WideKey from{a.x >> 2, a.y >> 2, a.z >> 2}, to{b.x >> 2, b.y >> 2, b.z >> 2};
-  if (from == to) return brick_depth();
-  const int depth = brick_depth() - 1 - highest_difference(from, to);
+template <KeyWord W>
+int BrickTree::common_depth(const BasicKey<W>& a, const BasicKey<W>& b) const {
+  const W difference = ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) >> 2;
+  if (difference == 0) return brick_depth();
+  const int depth = brick_depth() - 1 - highest_bit(difference);
   assert(depth >= 0);  // else a key lies outside of the lattice
   return depth;
 }
+template int BrickTree::common_depth(const BasicKey<std::uint64_t>&, const BasicKey<std::uint64_t>&) const;
+template int BrickTree::common_depth(const BasicKey<WideWord>&, const BasicKey<WideWord>&) const;
 
 Brick brick_of(Entry entry) {
   Brick brick;
@@ -131,7 +137,13 @@ Brick brick_of(Entry entry) {
 bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
   assert((votes.missed & votes.hit) == 0);
   bool changed = false;
-  for (std::uint64_t left = votes.missed | votes.hit; left != 0; left &= left - 1) {
+  const bool is_miss_negative = votes.miss < LogOdds(0.0F);
+  if (is_miss_negative && votes.missed != 0) {
+    changed =
+        add_misses(brick, votes.missed, votes.miss.value(), clamp.lowest.value()) || (votes.missed & ~brick.known) != 0;
+    brick.known |= votes.missed;
+  }
+  for (std::uint64_t left = is_miss_negative ? votes.hit : votes.missed | votes.hit; left != 0; left &= left - 1) {
     const auto cell = static_cast<std::size_t>(std::countr_zero(left));
     const std::uint64_t bit = left & (~left + 1);
     const LogOdds evidence = (votes.hit & bit) != 0 ? LogOdds(votes.hits[cell]) : votes.miss;
@@ -173,18 +185,16 @@ float summary_of_octant(const Brick& brick, int octant, Parents parents) {
 }
 
 float summary_of(const Brick& brick, Parents parents) {
-  float highest = std::numeric_limits<float>::lowest();
+  assert(brick.known != 0);
+  if (parents == Parents::kMax) return highest_of(brick);
   double sum = 0.0;
   int known = 0;
   for (int o = 0; o < 8; ++o) {
     if (octant_known(brick, o) == 0) continue;
-    const float value = summary_of_octant(brick, o, parents);
-    highest = std::max(highest, value);
-    sum += double{value};
+    sum += double{summary_of_octant(brick, o, parents)};
     ++known;
   }
-  assert(known > 0);
-  return parents == Parents::kMax ? highest : static_cast<float>(sum / known);
+  return static_cast<float>(sum / known);
 }
 
 bool is_uniform(const Group& group) {
@@ -193,8 +203,7 @@ bool is_uniform(const Group& group) {
 }
 
 bool is_uniform(const Brick& brick) {
-  return brick.known == kAllCells &&
-         std::all_of(brick.value.begin(), brick.value.end(), [&](float v) { return v == brick.value[0]; });
+  return brick.known == kAllCells && are_equal(brick);
 }
 
 bool is_uniform_octant(const Brick& brick, int octant) {
@@ -234,16 +243,23 @@ Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int dept
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-Cursor::Cursor(BrickTree& tree, const Rules& rules) : tree_(tree), rules_(rules) {}
+template <KeyWord W>
+Cursor<W>::Cursor(BrickTree& tree, const CursorRules& rules) : tree_(tree), rules_(rules) {}
 
-Entry& Cursor::entry_at(int depth) {
+template <KeyWord W>
+Entry& Cursor<W>::entry_at(int depth) {
   if (depth == 0) return tree_.root;
   const auto above = static_cast<std::size_t>(depth - 1);
   return tree_.groups[group_[above]].child[static_cast<std::size_t>(octant_at(depth - 1))];
 }
 
-void Cursor::move_to(const WideKey& key) {
-  if (reach_ > 0 || brick_stale_) {
+template <KeyWord W>
+void Cursor<W>::move_to(const BasicKey<W>& key) {
+  if (is_placed_) {
+    if ((((key_.x ^ key.x) | (key_.y ^ key.y) | (key_.z ^ key.z)) >> 2) == 0) {
+      key_ = key;
+      return;
+    }
     const int common = tree_.common_depth(key_, key);
     if (common < reach_) {
       // The group below the shared node stays on the path, and with it the knowledge whether it is stale.
@@ -251,6 +267,7 @@ void Cursor::move_to(const WideKey& key) {
       reach_ = common + 1;
     }
   }
+  is_placed_ = true;
   key_ = key;
   Entry entry = entry_at(reach_);
   while (reach_ < tree_.brick_depth() && entry.is_inner()) {
@@ -260,9 +277,11 @@ void Cursor::move_to(const WideKey& key) {
     ++reach_;
     entry = tree_.groups[entry.link].child[static_cast<std::size_t>(octant_at(reach_ - 1))];
   }
+  brick_ = entry.is_inner() ? entry.link : Entry::kNone;
 }
 
-void Cursor::grow_to(int depth) {
+template <KeyWord W>
+void Cursor<W>::grow_to(int depth) {
   while (reach_ < depth) {
     const std::uint32_t index = tree_.groups.allocate(group_of(entry_at(reach_)));
     entry_at(reach_).link = index;
@@ -274,27 +293,39 @@ void Cursor::grow_to(int depth) {
   }
 }
 
-Brick& Cursor::brick_made() {
-  grow_to(tree_.brick_depth());
-  Entry& entry = entry_at(tree_.brick_depth());
-  if (!entry.is_inner()) {
-    entry.link = tree_.bricks.allocate(brick_of(entry));
+template <KeyWord W>
+Brick& Cursor<W>::brick_made() {
+  if (brick_ == Entry::kNone) {
+    grow_to(tree_.brick_depth());
+    Entry& entry = entry_at(tree_.brick_depth());
+    brick_ = tree_.bricks.allocate(brick_of(entry));
+    entry.link = brick_;
     mark_stale_above(reach_);
   }
-  return tree_.bricks[entry.link];
+  return tree_.bricks[brick_];
 }
 
-void Cursor::settle_brick() {
+template <KeyWord W>
+void Cursor<W>::settle_brick() {
   if (!brick_stale_) return;
   brick_stale_ = false;
   Entry& entry = entry_at(tree_.brick_depth());
-  const Entry now = settled_brick(tree_, entry.link, rules_.parents, rules_.pruning);
+  Entry now = entry;
+  if (rules_.pruning != Pruning::kNever && is_uniform(tree_.bricks[entry.link])) {
+    now = Entry::leaf(tree_.bricks[entry.link].value[0]);
+    tree_.bricks.release(entry.link);
+    brick_ = Entry::kNone;
+  } else if (brick_summary_ == Summary::kStale) {
+    now.value = summary_of(tree_.bricks[entry.link], rules_.parents);
+  }
+  brick_summary_ = Summary::kRight;
   if (now == entry && rules_.early_drop == EarlyDrop::kOn) return;
   entry = now;
   mark_stale_above(reach_);
 }
 
-void Cursor::settle_group(int depth) {
+template <KeyWord W>
+void Cursor<W>::settle_group(int depth) {
   const auto at = static_cast<std::size_t>(depth);
   if (!stale_[at]) return;
   stale_[at] = false;
@@ -307,80 +338,121 @@ void Cursor::settle_group(int depth) {
 }
 
 // Makes right all entries of the path from its end up to `depth`; the path stays, as far as it is still there.
-void Cursor::settle_down_to(int depth) {
+template <KeyWord W>
+void Cursor<W>::settle_down_to(int depth) {
   if (reach_ == tree_.brick_depth()) settle_brick();
-  for (int d = reach_ - 1; d >= std::max(depth, 0); --d) settle_group(d);
+  for (int d = reach_ - 1; d >= std::max(depth, 0); --d) {
+    // With all above settled after each update, nothing is stale above what is not.
+    if (rules_.pruning == Pruning::kEachUpdate && !stale_[static_cast<std::size_t>(d)]) break;
+    settle_group(d);
+  }
 }
 
-void Cursor::mark_stale_above(int depth) {
+template <KeyWord W>
+void Cursor<W>::mark_stale_above(int depth) {
   if (depth > 0) stale_[static_cast<std::size_t>(depth - 1)] = true;
 }
 
-void Cursor::after_change(int depth) {
+template <KeyWord W>
+void Cursor<W>::after_change(int depth) {
   mark_stale_above(depth);
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
 }
 
-void Cursor::flush() {
-  settle_down_to(0);
-  reach_ = 0;
+template <KeyWord W>
+void Cursor<W>::forget_brick() {
+  brick_ = Entry::kNone;
+  brick_stale_ = false;
+  brick_summary_ = Summary::kRight;
 }
 
-void Cursor::update(const WideKey& key, LogOdds evidence) {
+template <KeyWord W>
+void Cursor<W>::brick_changed() {
+  brick_stale_ = true;
+  brick_summary_ = Summary::kStale;
+  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+}
+
+template <KeyWord W>
+void Cursor<W>::flush() {
+  settle_down_to(0);
+  reach_ = 0;
+  is_placed_ = false;
+}
+
+template <KeyWord W>
+void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
   move_to(key);
   const auto cell = static_cast<std::size_t>(cell_in_brick(key));
   const std::uint64_t bit = std::uint64_t{1} << cell;
-  const Entry entry = entry_at(reach_);
-  const bool in_brick = entry.is_inner();
-  const bool known = in_brick ? (tree_.bricks[entry.link].known & bit) != 0 : entry.is_leaf();
-  const float before = in_brick ? tree_.bricks[entry.link].value[cell] : entry.value;
+  const bool in_brick = brick_ != Entry::kNone;
+  const Entry end = in_brick ? Entry{} : entry_at(reach_);
+  const bool known = in_brick ? (tree_.bricks[brick_].known & bit) != 0 : end.is_leaf();
+  const float before = in_brick ? tree_.bricks[brick_].value[cell] : end.value;
   const float after = added(before, evidence, rules_.clamp);
   // What changes nothing is dropped before anything is made or marked. Evidence of nothing makes no cell known.
   const bool changes = known ? after != before : evidence != LogOdds(0.0F);
   if (!changes && (rules_.early_drop == EarlyDrop::kOn || !in_brick || !known)) return;
   Brick& brick = brick_made();
+  const bool is_first = brick.known == 0;
   brick.known |= bit;
   brick.value[cell] = after;
   brick_stale_ = true;
+  // A maximum that grows, or loses none of its cells, needs no look at the other cells.
+  Entry& at_brick = entry_at(tree_.brick_depth());
+  const bool keeps_maximum =
+      rules_.parents == Parents::kMax && !is_first && (!known || after >= before || before < at_brick.value);
+  if (keeps_maximum && brick_summary_ == Summary::kRight) {
+    if (after > at_brick.value) {
+      at_brick.value = after;
+      mark_stale_above(reach_);
+    }
+  } else {
+    brick_summary_ = Summary::kStale;
+  }
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
 }
 
-void Cursor::vote(const WideKey& key, const Votes& votes) {
+template <KeyWord W>
+void Cursor<W>::vote(const BasicKey<W>& key, const Votes& votes) {
   move_to(key);
   const Entry entry = entry_at(reach_);
-  Brick brick = entry.is_inner() ? tree_.bricks[entry.link] : brick_of(entry);
-  const bool changed = add(votes, rules_.clamp, brick);
-  if (!changed && (rules_.early_drop == EarlyDrop::kOn || !entry.is_inner())) return;
+  if (entry.is_inner()) {
+    const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]);
+    if (!changed && rules_.early_drop == EarlyDrop::kOn) return;
+    brick_changed();
+    return;
+  }
+  Brick brick = brick_of(entry);
+  if (!add(votes, rules_.clamp, brick)) return;
   grow_to(tree_.brick_depth());
   Entry& at_brick = entry_at(tree_.brick_depth());
-  if (at_brick.is_inner()) {
-    tree_.bricks[at_brick.link] = brick;
-  } else if (rules_.pruning != Pruning::kNever && is_uniform(brick)) {
+  if (rules_.pruning != Pruning::kNever && is_uniform(brick)) {
     at_brick = Entry::leaf(brick.value[0]);
     after_change(reach_);
     return;
-  } else {
-    at_brick.link = tree_.bricks.allocate(brick);
-    mark_stale_above(reach_);
   }
-  brick_stale_ = true;
-  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+  brick_ = tree_.bricks.allocate(brick);
+  at_brick.link = brick_;
+  mark_stale_above(reach_);
+  brick_changed();
 }
 
-void Cursor::set(const WideKey& key, int depth, float value) {
+template <KeyWord W>
+void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
   move_to(key);
   const int at = std::min(depth, tree_.brick_depth());
   if (reach_ > at) {
     // What lies below is thrown away, so there is nothing to settle there.
     reach_ = at;
-    brick_stale_ = false;
+    forget_brick();
   }
   grow_to(at);
   Entry& entry = entry_at(at);
   if (depth <= tree_.brick_depth()) {
     release_below(tree_, entry, at);
     entry = Entry::leaf(value);
-    brick_stale_ = false;
+    forget_brick();
     after_change(at);
     return;
   }
@@ -390,14 +462,17 @@ void Cursor::set(const WideKey& key, int depth, float value) {
   const int count = whole_octant ? 8 : 1;
   brick.known |= whole_octant ? octant_mask(key.octant(1)) : std::uint64_t{1} << first;
   std::fill_n(brick.value.begin() + first, count, value);
-  brick_stale_ = true;
-  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+  brick_changed();
 }
 
-Cursor::Reach Cursor::reach(const WideKey& key) {
+template <KeyWord W>
+typename Cursor<W>::Reach Cursor<W>::reach(const BasicKey<W>& key) {
   move_to(key);
   return {reach_, entry_at(reach_)};
 }
+
+template class Cursor<std::uint64_t>;
+template class Cursor<WideWord>;
 
 }  // namespace detail
 

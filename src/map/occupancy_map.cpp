@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <variant>
 
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -20,7 +21,7 @@ std::uint64_t saturated_sum(std::uint64_t a, std::uint64_t b) {
   return a > kMost - b ? kMost : a + b;
 }
 
-detail::Cursor::Rules rules_of(const MapOptions& options, Pruning pruning) {
+detail::CursorRules rules_of(const MapOptions& options, Pruning pruning) {
   return {options.parents, pruning, options.early_drop, options.clamp};
 }
 
@@ -48,8 +49,20 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   }
 }
 
-/// Calls f(lowest cell of the brick, its votes) for each brick with marks, in the tree's order.
+/// Calls f.operator()<W>() with the width of the cursor that a lattice of `depth` needs.
 template <class F>
+auto with_cursor_word(int depth, F&& f) {
+  return depth <= kLevelsOf<std::uint64_t> ? f.template operator()<std::uint64_t>() : f.template operator()<WideWord>();
+}
+
+std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor_in(detail::BrickTree& tree,
+                                                                                const detail::CursorRules& rules) {
+  if (tree.levels <= kLevelsOf<std::uint64_t>) return detail::Cursor<std::uint64_t>(tree, rules);
+  return detail::Cursor<WideWord>(tree, rules);
+}
+
+/// Calls f(lowest cell of the brick, its votes) for each brick with marks, in the tree's order.
+template <KeyWord W, class F>
 void for_each_brick(const ScanUpdate& scan, F&& f) {
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
@@ -58,9 +71,10 @@ void for_each_brick(const ScanUpdate& scan, F&& f) {
       const std::uint64_t missed = page.missed[brick] & ~hit;
       if ((hit | missed) == 0) continue;
       const auto offset = [&](unsigned axis) {
-        return static_cast<WideWord>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
+        return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
       };
-      const WideKey key{page.lowest.x | offset(0), page.lowest.y | offset(1), page.lowest.z | offset(2)};
+      const auto lowest = page.lowest.as<W>();
+      const BasicKey<W> key{lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
       f(key, detail::Votes{missed, scan.miss(), hit, hit != 0 ? scan.evidence(page, brick) : nullptr});
     }
   }
@@ -68,12 +82,13 @@ void for_each_brick(const ScanUpdate& scan, F&& f) {
 
 /// An upper bound of what applying a scan makes the tree's storage grow by. Bricks that it leaves as they are need
 /// nothing: a map at its limit still takes in what it knows already.
+template <KeyWord W>
 std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
   std::size_t bricks = 0, groups = 0;
-  detail::Cursor cursor(tree, {});
-  std::optional<WideKey> made;
-  for_each_brick(scan, [&](const WideKey& key, const detail::Votes& votes) {
-    const detail::Cursor::Reach reach = cursor.reach(key);
+  detail::Cursor<W> cursor(tree, {});
+  std::optional<BasicKey<W>> made;
+  for_each_brick<W>(scan, [&](const BasicKey<W>& key, const detail::Votes& votes) {
+    const auto reach = cursor.reach(key);
     if (reach.end.is_inner()) return;
     detail::Brick brick = detail::brick_of(reach.end);
     if (!detail::add(votes, clamp, brick)) return;
@@ -86,6 +101,19 @@ std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Cla
   const auto beyond = [](std::size_t wanted, std::size_t spare) { return wanted > spare ? wanted - spare : 0; };
   return beyond(bricks, tree.bricks.spare()) * sizeof(detail::Brick) +
          beyond(groups, tree.groups.spare()) * sizeof(detail::Group);
+}
+
+template <KeyWord W>
+ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
+  ApplyReport report;
+  detail::Cursor<W> cursor(tree, rules);
+  for_each_brick<W>(scan, [&](const BasicKey<W>& key, const detail::Votes& votes) {
+    cursor.vote(key, votes);
+    report.cells_freed += static_cast<std::uint64_t>(std::popcount(votes.missed));
+    report.cells_hit += static_cast<std::uint64_t>(std::popcount(votes.hit));
+  });
+  cursor.flush();
+  return report;
 }
 
 std::size_t bytes_of(const detail::BrickTree& tree) {
@@ -194,21 +222,16 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
   try {
     if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
-      const std::size_t needed = bytes_of(tree_) + growth_of(tree_, scan, options_.clamp);
+      const std::size_t needed = bytes_of(tree_) + with_cursor_word(tree_.levels, [&]<KeyWord W>() {
+                                   return growth_of<W>(tree_, scan, options_.clamp);
+                                 });
       if (needed > limit) {
         return fail(Error::Code::kLimit,
                     fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
       }
     }
-    ApplyReport report;
-    detail::Cursor cursor(tree_, rules_of(options_, Pruning::kWhenSettled));
-    for_each_brick(scan, [&](const WideKey& key, const detail::Votes& votes) {
-      cursor.vote(key, votes);
-      report.cells_freed += static_cast<std::uint64_t>(std::popcount(votes.missed));
-      report.cells_hit += static_cast<std::uint64_t>(std::popcount(votes.hit));
-    });
-    cursor.flush();
-    return report;
+    const detail::CursorRules rules = rules_of(options_, Pruning::kWhenSettled);
+    return with_cursor_word(tree_.levels, [&]<KeyWord W>() { return applied<W>(tree_, rules, scan); });
   } catch (const std::bad_alloc&) {
     detail::prune_all(tree_, options_.parents);
     return fail(Error::Code::kLimit, "out of memory: the scan was taken in only in part");
@@ -248,7 +271,8 @@ void OccupancyMap::clear() {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-Editor::Editor(OccupancyMap& map, Pruning pruning) : map_(map), cursor_(map.tree_, rules_of(map.options_, pruning)) {
+Editor::Editor(OccupancyMap& map, Pruning pruning)
+    : map_(map), cursor_(cursor_in(map.tree_, rules_of(map.options_, pruning))) {
   if (pruning == Pruning::kNever) {
     map_.tree_.pruned = false;
   } else if (!map_.tree_.pruned) {
@@ -262,17 +286,26 @@ Editor::~Editor() {
 
 template <KeyWord W>
 void Editor::update(const BasicKey<W>& key, LogOdds evidence) {
-  cursor_.update(key.template as<WideWord>(), evidence);
+  if (auto* const cursor = std::get_if<detail::Cursor<std::uint64_t>>(&cursor_)) {
+    cursor->update(key.template as<std::uint64_t>(), evidence);
+  } else {
+    std::get<detail::Cursor<WideWord>>(cursor_).update(key.template as<WideWord>(), evidence);
+  }
 }
 
 template <KeyWord W>
 void Editor::set(const BasicKey<W>& key, int depth, LogOdds belief) {
   assert(depth >= 0 && depth <= map_.lattice_.depth());
-  cursor_.set(key.template as<WideWord>(), depth + map_.tree_.extra_levels, belief.value());
+  const int tree_depth = depth + map_.tree_.extra_levels;
+  if (auto* const cursor = std::get_if<detail::Cursor<std::uint64_t>>(&cursor_)) {
+    cursor->set(key.template as<std::uint64_t>(), tree_depth, belief.value());
+  } else {
+    std::get<detail::Cursor<WideWord>>(cursor_).set(key.template as<WideWord>(), tree_depth, belief.value());
+  }
 }
 
 void Editor::synchronize() {
-  cursor_.flush();
+  std::visit([](auto& cursor) { cursor.flush(); }, cursor_);
 }
 
 // The five widths, compiled once here.

@@ -63,10 +63,11 @@ std::vector<int> loudest(std::span<const Beam> beams, const Scale& scale) {
     int* const row = pixels.data() + scale.row_of(b) * scale.columns;
     const Beam& beam = beams[b];
     for (std::size_t i = 0; i < beam.intensities.size(); ++i) {
-      // By the bins' middles, so that rounding cannot put a border on the wrong side of a pixel.
-      const double pixel_m = scale.range_m / static_cast<double>(scale.columns);
-      const double from = static_cast<double>(i) * beam.bin_length_m / pixel_m;
-      const double to = static_cast<double>(i + 1) * beam.bin_length_m / pixel_m;
+      const auto edge = [&](std::size_t bin) {
+        return static_cast<double>(bin) * beam.bin_length_m / scale.range_m * static_cast<double>(scale.columns);
+      };
+      // Rounding must not put a bin's edge on the other side of a pixel's.
+      const double from = edge(i), to = edge(i + 1);
       const auto first = static_cast<std::size_t>(from + 1e-6);
       const auto last = std::max(first, static_cast<std::size_t>(std::max(to - 1e-6, 0.0)));
       for (std::size_t x = first; x <= last && x < scale.columns; ++x) {
@@ -87,7 +88,7 @@ void draw_axes(Picture& picture, const Scale& scale) {
 
   const double step_m = round_length(scale.range_m / 3.0);
   const std::ptrdiff_t below = kTop + height + 2;
-  for (int n = 0; n * step_m <= scale.range_m * (1.0 + 1e-9); ++n) {
+  for (int n = 0; n < 10 && n * step_m <= scale.range_m * (1.0 + 1e-9); ++n) {
     const double range_m = n * step_m;
     const auto x =
         kLeft + static_cast<std::ptrdiff_t>(std::lround(range_m / scale.range_m * static_cast<double>(width)));

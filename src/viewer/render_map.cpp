@@ -158,14 +158,18 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
 
 void draw_footer(Picture& picture, std::ptrdiff_t top, double metres_per_pixel, const MapColours& colours) {
   constexpr std::ptrdiff_t kSwatch = 18, kGap = 8;
+  constexpr double kScaleBar = 200.0;  // at most, in pixels
   const std::ptrdiff_t text_y = top + 1;
 
-  const double length_m = round_length(metres_per_pixel * 200.0);
-  const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
-  picture.fill(kMargin, top + 8, bar, 3, kInk);
-  picture.fill(kMargin, top + 2, 3, 15, kInk);
-  picture.fill(kMargin + bar - 3, top + 2, 3, 15, kInk);
-  draw_label(picture, kMargin + bar + kGap, text_y, length_text(length_m) + " m", kTextScale, kInk);
+  // A lattice may be larger than doubles can say.
+  if (std::isfinite(metres_per_pixel * kScaleBar)) {
+    const double length_m = round_length(metres_per_pixel * kScaleBar);
+    const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
+    picture.fill(kMargin, top + 8, bar, 3, kInk);
+    picture.fill(kMargin, top + 2, 3, 15, kInk);
+    picture.fill(kMargin + bar - 3, top + 2, 3, 15, kInk);
+    draw_label(picture, kMargin + bar + kGap, text_y, length_text(length_m) + " m", kTextScale, kInk);
+  }
 
   struct Entry {
     std::string_view text;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -64,8 +65,8 @@ pid_t Workplace::start(const std::vector<std::string>& words, const Streams& str
   redirect(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
   redirect(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
   if (streams.out_is_broken_pipe) {
-    int ends[2] = {-1, -1};
-    if (::pipe(ends) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(125);
+    std::array<int, 2> ends = {-1, -1};
+    if (::pipe(ends.data()) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(125);
     ::close(ends[0]);
     ::close(ends[1]);
   }

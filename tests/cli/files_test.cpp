@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <random>
 #include <thread>
@@ -16,6 +16,7 @@ namespace pingvox::test {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 using Words = std::vector<std::string>;
 
 /// A call of each command that reads `file`.
@@ -40,7 +41,7 @@ TEST(Files, WhatCannotBeReadIsOneLineAndNoOutput) {
   const Workplace here;
   make_good_map(here);
   here.write("empty", "");
-  here.write("noise", std::string("\x01\x02\xFE\0\xFFno format begins like this", 32));
+  here.write("noise", "\x01\x02\xFE\0\xFF no format begins like this"s);
   here.write("prose.txt", "Dear diary,\ntoday the sonar heard nothing.\n");
   here.write("line\nbreak", "");
   fs::create_directory(here.folder() / "folder");

@@ -39,22 +39,27 @@ class Reader {
     return true;
   }
 
+  /// At a backslash: goes to the last character of what it begins.
+  bool escape() {
+    ++at_;
+    const char escaped = at_ < text_.size() ? text_[at_] : '\0';
+    if (std::string_view("\"\\/bfnrtu").find(escaped) == std::string_view::npos) return false;
+    if (escaped != 'u') return true;
+    for (int i = 0; i < 4; ++i) {
+      ++at_;
+      if (at_ >= text_.size() || !std::isxdigit(static_cast<unsigned char>(text_[at_]))) return false;
+    }
+    return true;
+  }
+
   bool string(std::string* content) {
     if (!take('"')) return false;
     for (; at_ < text_.size() && text_[at_] != '"'; ++at_) {
       if (static_cast<unsigned char>(text_[at_]) < 0x20) return false;
-      if (text_[at_] == '\\') {
-        const char escaped = ++at_ < text_.size() ? text_[at_] : '\0';
-        if (std::string_view("\"\\/bfnrtu").find(escaped) == std::string_view::npos) return false;
-        if (escaped == 'u') {
-          for (int i = 0; i < 4; ++i) {
-            if (++at_ >= text_.size() || !std::isxdigit(static_cast<unsigned char>(text_[at_]))) return false;
-          }
-        }
-      }
+      if (text_[at_] == '\\' && !escape()) return false;
       if (content) *content += text_[at_];
     }
-    return at_ < text_.size() && text_[at_++] == '"';
+    return take('"');
   }
 
   bool digits() {

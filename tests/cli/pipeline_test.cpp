@@ -32,21 +32,29 @@ FlatJson json_with(const Outcome& outcome, const Words& keys) {
   return *json;
 }
 
-const Words kMapKeys = {
-    "beams",          "sweeps",         "echoes",        "skipped",       "cells_freed",      "cells_hit",
-    "seconds.read",   "seconds.detect", "seconds.trace", "seconds.apply", "seconds.write",    "seconds.total",
-    "map.resolution", "map.depth",      "map.leaves",    "map.inner",     "map.memory_bytes", "map.occupied_cells",
-    "map.free_cells", "map.bounds.min", "map.bounds.max"};
-const Words kInfoLogKeys = {"kind",     "format",       "beams",      "sweeps",     "bins.min",
-                            "bins.max", "bin_length_m", "duration_s", "sector_deg", "skipped"};
-const Words kInfoMapKeys = {"kind",  "format",         "resolution", "depth",      "nodes",      "leaves",
-                            "inner", "occupied_cells", "free_cells", "bounds.min", "bounds.max", "memory_bytes"};
+Words map_keys() {
+  return {
+      "beams",          "sweeps",         "echoes",        "skipped",       "cells_freed",      "cells_hit",
+      "seconds.read",   "seconds.detect", "seconds.trace", "seconds.apply", "seconds.write",    "seconds.total",
+      "map.resolution", "map.depth",      "map.leaves",    "map.inner",     "map.memory_bytes", "map.occupied_cells",
+      "map.free_cells", "map.bounds.min", "map.bounds.max"};
+}
+
+Words info_log_keys() {
+  return {"kind",     "format",       "beams",      "sweeps",     "bins.min",
+          "bins.max", "bin_length_m", "duration_s", "sector_deg", "skipped"};
+}
+
+Words info_map_keys() {
+  return {"kind",  "format",         "resolution", "depth",      "nodes",      "leaves",
+          "inner", "occupied_cells", "free_cells", "bounds.min", "bounds.max", "memory_bytes"};
+}
 
 TEST(Pipeline, FromTheSimulatedTankToItsPictures) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "tank.csv", "--seed", "3", "--turns", "3"}).status, 0);
 
-  FlatJson log = json_with(here.call({"info", "tank.csv", "--json"}), kInfoLogKeys);
+  FlatJson log = json_with(here.call({"info", "tank.csv", "--json"}), info_log_keys());
   EXPECT_EQ(log["kind"], "\"log\"");
   EXPECT_EQ(log["format"], "\"csv\"");
   EXPECT_EQ(log["beams"], "600");
@@ -56,13 +64,13 @@ TEST(Pipeline, FromTheSimulatedTankToItsPictures) {
   EXPECT_EQ(log["sector_deg"], "360");
   EXPECT_EQ(log["skipped"], "0");
 
-  FlatJson made = json_with(here.call({"map", "tank.csv", "-o", "tank.ot", "--beam", "fan", "--json"}), kMapKeys);
+  FlatJson made = json_with(here.call({"map", "tank.csv", "-o", "tank.ot", "--beam", "fan", "--json"}), map_keys());
   EXPECT_EQ(made["beams"], "600");
   EXPECT_EQ(made["sweeps"], "3");
   EXPECT_EQ(made["map.resolution"], "0.05");
   EXPECT_EQ(made["map.depth"], "16");
 
-  FlatJson map = json_with(here.call({"info", "tank.ot", "--json"}), kInfoMapKeys);
+  FlatJson map = json_with(here.call({"info", "tank.ot", "--json"}), info_map_keys());
   EXPECT_EQ(map["kind"], "\"map\"");
   EXPECT_EQ(map["format"], "\"ot\"");
   EXPECT_EQ(map["occupied_cells"], made["map.occupied_cells"]);
@@ -131,12 +139,12 @@ TEST(Pipeline, SeveralLogsBecomeOneMap) {
   const Workplace here;
   here.simulate_tank();
   here.write("scan.txt", "NODE 0 0 0 0 0 0\n1 0 0\n0 1 0\n0 0 30\n");
-  FlatJson one = json_with(here.call({"map", "tank.csv", "-o", "a.ot", "--json"}), kMapKeys);
-  FlatJson two = json_with(here.call({"map", "tank.csv", "tank.csv", "-o", "b.ot", "--json"}), kMapKeys);
+  FlatJson one = json_with(here.call({"map", "tank.csv", "-o", "a.ot", "--json"}), map_keys());
+  FlatJson two = json_with(here.call({"map", "tank.csv", "tank.csv", "-o", "b.ot", "--json"}), map_keys());
   EXPECT_EQ(one["beams"], "400");
   EXPECT_EQ(two["beams"], "800");
   EXPECT_EQ(two["sweeps"], "4");
-  FlatJson mixed = json_with(here.call({"map", "tank.csv", "scan.txt", "-o", "c.ot", "--json"}), kMapKeys);
+  FlatJson mixed = json_with(here.call({"map", "tank.csv", "scan.txt", "-o", "c.ot", "--json"}), map_keys());
   EXPECT_EQ(mixed["sweeps"], "3");
   EXPECT_THAT(mixed["map.bounds.max"], ::testing::HasSubstr(", 30.0"));
 }
@@ -204,6 +212,7 @@ TEST(Map, ProgressGoesToStandardErrorOnlyWhenWanted) {
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "never"}).err, "");
   const Outcome shown =
       here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always", "--beam", "cone", "--resolution", "0.02"});
+  EXPECT_THAT(shown.err, ::testing::HasSubstr(" %  "));
   EXPECT_THAT(shown.err, ::testing::HasSubstr("beams"));
   EXPECT_TRUE(shown.err.ends_with("\r\x1b[K")) << "the line is left behind";
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--quiet"}).out, "");
@@ -214,15 +223,15 @@ TEST(Map, TheRecordingOfTheTankHas28SweepsAnd4BeamsOver) {
   if (!std::filesystem::exists(recording)) GTEST_SKIP() << recording << " is not there";
   const Workplace here;
   const std::string path = std::filesystem::canonical(recording);
-  FlatJson made = json_with(here.call({"map", path, "-o", "tank.bt", "--resolution", "0.0125", "--json"}), kMapKeys);
+  FlatJson made = json_with(here.call({"map", path, "-o", "tank.bt", "--resolution", "0.0125", "--json"}), map_keys());
   EXPECT_EQ(made["beams"], "5604");
   EXPECT_EQ(made["sweeps"], "28");
   EXPECT_EQ(made["skipped"], "0");
-  FlatJson log = json_with(here.call({"info", path, "--json"}), kInfoLogKeys);
+  FlatJson log = json_with(here.call({"info", path, "--json"}), info_log_keys());
   EXPECT_EQ(log["bins.min"], "186");
   EXPECT_EQ(log["bins.max"], "399");
   EXPECT_EQ(log["sector_deg"], "360");
-  FlatJson map = json_with(here.call({"info", "tank.bt", "--json"}), kInfoMapKeys);
+  FlatJson map = json_with(here.call({"info", "tank.bt", "--json"}), info_map_keys());
   EXPECT_EQ(map["free_cells"], made["map.free_cells"]);
   EXPECT_EQ(map["occupied_cells"], made["map.occupied_cells"]);
 }

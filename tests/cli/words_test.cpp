@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <regex>
+#include <algorithm>
 #include <set>
+#include <string>
 
 #include "call.hpp"
 #include "suggest.hpp"
@@ -105,7 +106,8 @@ TEST(Words, EachCommandExplainsItselfWithExamples) {
 TEST(Words, VersionIsOneLine) {
   const Outcome outcome = Workplace().call({"--version"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_TRUE(std::regex_match(outcome.out, std::regex("pingvox [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << outcome.out;
+  EXPECT_THAT(outcome.out, ::testing::StartsWith("pingvox 0."));
+  EXPECT_EQ(outcome.out.find('\n'), outcome.out.size() - 1);
 }
 
 TEST(Words, TheViewerOfLaterVersionsIsNoSpellingMistake) {
@@ -114,14 +116,20 @@ TEST(Words, TheViewerOfLaterVersionsIsNoSpellingMistake) {
 
 /// All long options in a text.
 std::set<std::string> options_in(const std::string& text) {
-  const std::regex option("--[a-z][a-z-]*");
-  return {std::sregex_token_iterator(text.begin(), text.end(), option), {}};
+  std::set<std::string> options;
+  for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at), text.size());
+    if (end > at + 2) options.insert(text.substr(at, end - at));
+    at = end;
+  }
+  return options;
 }
 
 TEST(Words, TheManPageKnowsEveryOptionOfTheHelp) {
   const Workplace here;
   std::filesystem::copy_file(PINGVOX_SOURCE_DIR "/docs/man/pingvox.1", here.folder() / "page");
-  const std::string page = std::regex_replace(here.read("page"), std::regex("\\\\-"), "-");
+  std::string page = here.read("page");
+  std::erase(page, '\\');  // \- is how roff spells a dash
   const std::set<std::string> described = options_in(page);
   std::size_t checked = 0;
   for (const std::string command : {"", "map", "info", "compare", "convert", "render", "simulate"}) {

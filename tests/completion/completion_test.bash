@@ -1,6 +1,6 @@
 #!/bin/bash
-# completion_test.bash COMPLETION [PROGRAM]: what bash offers after some lines, and that the options it offers are those
-# of the program's own --help.
+# completion_test.bash COMPLETION [PROGRAM]: what bash offers after some lines, and that the options and words it offers
+# are those of the program's own --help.
 set -euo pipefail
 
 completion=$1
@@ -32,7 +32,7 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|simulate" pingvox ""
+offers "map|info|compare|convert|render|simulate|bench" pingvox ""
 offers "map" pingvox m
 offers "compare|convert" pingvox co
 offers "--help|--version" pingvox -
@@ -40,6 +40,8 @@ offers "--resolution" pingvox map --reso
 offers "ray|fan|cone" pingvox map --beam ""
 offers "cone" pingvox map tank.csv --beam c
 offers "ray|fan|cone" pingvox map --beam =
+offers "csv|bt|ot|pvx|ply" pingvox convert --format ""
+offers "ply" pingvox map --format pl
 offers "cone" pingvox map --beam = c
 offers "" pingvox map --resolution ""
 offers "tank.csv" pingvox map tank
@@ -48,23 +50,29 @@ offers "two words.csv" pingvox info two
 offers "tank" pingvox simulate ""
 offers "--json" pingvox compare a b --j
 
-# Long options in a help text, without those that only a negation or the help itself shows.
-options_in_help() { "$program" "$@" --help | grep -oE -- '(^|[ ,[])--[a-z][a-z-]+' | grep -oE -- '--.*' | sort -u; }
+# same WHAT FIRST SECOND: two lists of lines, in any order.
+same() {
+  local difference
+  ((++cases))
+  difference=$(comm -3 <(sort -u <<<"$2") <(sort -u <<<"$3"))
+  if [[ -n $difference ]]; then
+    printf '%s\n%s\n' "$1: only in the completion (left) or only in --help (right):" "$difference"
+    ((++failures))
+  fi
+}
 
 if [[ -n $program ]]; then
   for command in map info compare convert render simulate; do
-    ((++cases))
-    difference=$(comm -3 <(_pingvox_options "$command" | sort -u) <(
-      words=("$command")
-      [[ $command != simulate ]] || words+=(tank)
-      options_in_help "${words[@]}"
-    ))
-    if [[ -n $difference ]]; then
-      echo "$command: options only in the completion (left) or only in --help (right):"
-      echo "$difference"
-      ((++failures))
-    fi
+    help=$("$program" "$command" --help)
+    # Lines as in `  -o, --output FILE     what it is`.
+    in_help=$(sed -nE 's/^ {2,}(-[a-zA-Z], )?(--[a-z-]+)( .*)?$/\2/p' <<<"$help")
+    same "$command" "$(_pingvox_options "$command")" "$in_help"
+    for option in $in_help; do
+      words=$(sed -nE "s/^ {2,}(-[a-zA-Z], )?$option ([a-z]+(\|[a-z]+)*)( .*)?\$/\\2/p" <<<"$help" | tr '|' '\n')
+      same "$command $option" "$(_pingvox_words "$option" "$command")" "$words"
+    done
   done
+  same "commands" "$(_pingvox_commands)" "$("$program" --help | sed -nE '/^Commands:/,/^$/s/^ {2,}([a-z]+) .*/\1/p')"
 fi
 
 echo "$cases cases, $failures failures"

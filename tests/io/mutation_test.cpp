@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fuzz/bodies/beams.hpp"
+#include "fuzz/bodies/maps.hpp"
 #include "fuzz/bodies/scans.hpp"
 #include "fuzz/bodies/tum.hpp"
 #include "pingvox/io/file.hpp"
@@ -56,7 +57,8 @@ TEST_P(Mutation, KeepsItsPromises) {
 INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
                          testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
                                          Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
-                                         Reader{"tum", fuzz::tum}),
+                                         Reader{"tum", fuzz::tum}, Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps},
+                                         Reader{"pvx", fuzz::pvx}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -451,26 +451,4 @@ TEST(Octomap, StopsAtTheMemoryLimit) {
   }
 }
 
-TEST(Octomap, MutantsAreRefusedOrKept) {
-  std::mt19937_64 sample(11);
-  const auto updates = random_updates(sample, 16, 40);
-  const OccupancyMap map = map_of(updates, {.resolution_m = 0.1});
-  Bytes oldest = bytes_of_hex("03000000 9a9999999999b93f 11000000");
-  const Bytes tree = bytes_of_hex(kOneVoxelTree);
-  oldest.insert(oldest.end(), tree.begin(), tree.end());
-  octomap::ColorOcTree coloured(0.1);
-  for (const Update& update : updates) coloured.updateNode(octomap_key(update.key), update.log_odds);
-  const Bytes originals[] = {written(map, Format::kBt), written(map, Format::kOt), oldest, written_full(coloured)};
-  for (const Bytes& original : originals) {
-    std::size_t accepted = 0, refused = 0;
-    for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
-      SCOPED_TRACE(seed);
-      std::mt19937_64 random(seed);
-      ++(is_refused_or_kept(mutated(original, random)) ? accepted : refused);
-    }
-    EXPECT_GT(accepted, 10U);
-    EXPECT_GT(refused, 1000U);
-  }
-}
-
 }  // namespace

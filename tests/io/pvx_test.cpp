@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <limits>
+#include <filesystem>
 #include <sstream>
 
 #include "io/map_samples.hpp"
+#include "pingvox/io/file.hpp"
 
 using namespace pingvox;
 using namespace pingvox::samples;
@@ -175,22 +176,6 @@ TEST(Pvx, RefusesSenselessHeadersAndTrees) {
   expect_refused(with(70, "0000c07f"), corrupt, "log-odds of nan");
 }
 
-TEST(Pvx, MutantsAreRefusedOrKept) {
-  std::mt19937_64 sample(5);
-  for (const int depth : {2, 16, 65}) {
-    const OccupancyMap map = map_of(random_updates(sample, depth, 30), {.resolution_m = 0.1, .depth = depth});
-    const Bytes original = written(map, Format::kPvx, "mutants");
-    std::size_t accepted = 0, refused = 0;
-    for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
-      SCOPED_TRACE(seed);
-      std::mt19937_64 random(seed);
-      ++(is_refused_or_kept(sealed(mutated(original, random))) ? accepted : refused);
-    }
-    EXPECT_GT(accepted, 30U);
-    EXPECT_GT(refused, 1000U);
-  }
-}
-
 TEST(Maps, RefuseWhatIsNoMap) {
   for (const std::string_view text : {"", "hello", "# Octomap", "PINGVOX"}) {
     const auto map = read(bytes_of(text));
@@ -202,6 +187,23 @@ TEST(Maps, RefuseWhatIsNoMap) {
   const auto done = write_map(tiny_map(), Format::kCsv, "", out);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error().message, HasSubstr(".pvx"));
+}
+
+// Else the mutants and the fuzzers start from nothing.
+TEST(Maps, CorporaAreRead) {
+  std::size_t files = 0;
+  for (const std::string_view format : {"bt", "ot", "pvx"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(PINGVOX_FUZZ_CORPUS "/").append(format))) {
+      SCOPED_TRACE(entry.path());
+      const auto file = read_file(entry.path().string());
+      ASSERT_TRUE(file) << file.error().message;
+      const auto map = read_map(*file);
+      ASSERT_TRUE(map) << map.error().message;
+      EXPECT_EQ(name_of(map->format), format);
+      ++files;
+    }
+  }
+  EXPECT_GE(files, 9U);
 }
 
 TEST(Maps, SayWhenTheStreamIsBad) {

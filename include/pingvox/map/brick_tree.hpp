@@ -102,7 +102,8 @@ struct BrickTree {
 
   int brick_depth() const { return levels - 2; }
   /// Depth of the deepest node, brick_depth at most, that holds both keys.
-  int common_depth(const WideKey& a, const WideKey& b) const;
+  template <KeyWord W>
+  int common_depth(const BasicKey<W>& a, const BasicKey<W>& b) const;
   /// Which child to take below a node of `depth` (in the tree's levels).
   template <KeyWord W>
   int octant_below(const BasicKey<W>& key, int depth) const {
@@ -144,27 +145,30 @@ void prune_all(BrickTree& tree, Parents parents);
 /// Recomputes and returns `a` with the leaves of `b` (of another tree of the same levels) added, clamped.
 Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
 
+/// How a cursor changes a tree.
+struct CursorRules {
+  Parents parents = Parents::kMax;
+  Pruning pruning = Pruning::kWhenSettled;
+  EarlyDrop early_drop = EarlyDrop::kOn;
+  Clamp clamp{};
+};
+
 /// A place in a tree and the path to it: the one piece of code that changes trees. Moving on settles what it leaves, so
 /// that keys in the tree's order (or near it) cost a few steps each and every parent is recomputed once.
+/// Two widths are compiled: 64 bits, and wide for lattices that are deeper.
+template <KeyWord W>
 class Cursor {
  public:
-  struct Rules {
-    Parents parents = Parents::kMax;
-    Pruning pruning = Pruning::kWhenSettled;
-    EarlyDrop early_drop = EarlyDrop::kOn;
-    Clamp clamp{};
-  };
-
-  Cursor(BrickTree& tree, const Rules& rules);
+  Cursor(BrickTree& tree, const CursorRules& rules);
 
   /// Adds evidence to one cell.
-  void update(const WideKey& key, LogOdds evidence);
+  void update(const BasicKey<W>& key, LogOdds evidence);
 
   /// Adds evidence to the cells of the brick that holds `key`.
-  void vote(const WideKey& key, const Votes& votes);
+  void vote(const BasicKey<W>& key, const Votes& votes);
 
   /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
-  void set(const WideKey& key, int depth, float value);
+  void set(const BasicKey<W>& key, int depth, float value);
 
   /// Settles the path up to the root and lets go of it.
   void flush();
@@ -174,10 +178,10 @@ class Cursor {
     int depth;  ///< of the deepest entry
     Entry end;  ///< inner: the brick is there
   };
-  Reach reach(const WideKey& key);
+  Reach reach(const BasicKey<W>& key);
 
  private:
-  void move_to(const WideKey& key);
+  void move_to(const BasicKey<W>& key);
   Entry& entry_at(int depth);
   int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
   void grow_to(int depth);
@@ -187,15 +191,21 @@ class Cursor {
   void settle_group(int depth);
   void settle_down_to(int depth);
   void after_change(int depth);
+  void brick_changed();
+  void forget_brick();
 
   BrickTree& tree_;
-  Rules rules_;
-  WideKey key_;
-  int reach_ = 0;  ///< depth of the deepest entry on the path
+  CursorRules rules_;
+  BasicKey<W> key_;
+  bool is_placed_ = false;              ///< whether the path leads to key_
+  int reach_ = 0;                       ///< depth of the deepest entry on the path
+  std::uint32_t brick_ = Entry::kNone;  ///< the brick at its end, if there is one
   bool brick_stale_ = false;
+  /// Whether the brick's entry holds its maximum although the brick is stale.
+  enum class Summary : std::uint8_t { kRight, kStale } brick_summary_ = Summary::kRight;
   // Group n holds the children of the path's node of depth n; it is stale when one of them changed.
-  std::array<std::uint32_t, kMaxDepth> group_{};
-  std::array<bool, kMaxDepth> stale_{};
+  std::array<std::uint32_t, kLevelsOf<W>> group_{};
+  std::array<bool, kLevelsOf<W>> stale_{};
 };
 
 }  // namespace detail

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/geometry/lattice.hpp"
@@ -128,7 +129,8 @@ class Editor {
 
  private:
   OccupancyMap& map_;
-  detail::Cursor cursor_;
+  // Keys of 64 bits are quicker; deeper lattices need wide ones.
+  std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor_;
 };
 
 }  // namespace pingvox

@@ -37,6 +37,8 @@ class BeamSource {
   virtual Result<std::optional<Beam>> next() = 0;
   /// Beams (or records that should have been one) left out so far because they were damaged.
   virtual std::size_t skipped() const { return 0; }
+  /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: nobody knows.
+  virtual std::optional<double> share_read() const { return std::nullopt; }
 };
 
 }  // namespace pingvox

@@ -17,8 +17,9 @@ struct MapColours {
 };
 
 struct MapPictureOptions {
-  std::size_t target_px = 1000;            ///< about as long is the longer side of what is known, 16..3072
-  std::optional<double> min_z_m, max_z_m;  ///< only what overlaps this slab of the map frame
+  std::size_t target_px = 1000;                  ///< about as long is the longer side of what is known, 16..3072
+  std::optional<double> min_z_m = std::nullopt;  ///< only what lies above, map frame
+  std::optional<double> max_z_m = std::nullopt;  ///< only what lies below
   MapColours colours{};
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once

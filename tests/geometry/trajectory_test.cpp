@@ -1,0 +1,56 @@
+#include "pingvox/geometry/trajectory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace pingvox;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Pose yawed(double x_m, double yaw_rad) {
+  return pose_from_rpy({x_m, 0.0, 0.0}, 0.0, 0.0, yaw_rad);
+}
+
+TEST(Pose, TurnsRollThenPitchThenYawAboutFixedAxes) {
+  const Pose pose = pose_from_rpy({1.0, 2.0, 3.0}, kPi / 2, 0.0, kPi / 2);
+  // Roll brings y to z; yaw leaves z alone and brings x to y.
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 1, 0)).isApprox(Eigen::Vector3d(1, 2, 4), 1e-12));
+  EXPECT_TRUE((pose * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 3), 1e-12));
+  // A positive pitch lowers the bow.
+  EXPECT_LT((pose_from_rpy({0, 0, 0}, 0.0, 0.1, 0.0) * Eigen::Vector3d(1, 0, 0)).z(), 0.0);
+}
+
+TEST(Pose, InterpolationTakesTheShortWayAround) {
+  const Pose middle = interpolated(yawed(0.0, 170.0 * kPi / 180), yawed(2.0, -170.0 * kPi / 180), 0.5);
+  EXPECT_TRUE(middle.isApprox(yawed(1.0, kPi), 1e-12));
+}
+
+TEST(Trajectory, IsReadBetweenItsPosesAndNowhereElse) {
+  const auto made = Trajectory::make({{10.0, yawed(0.0, 0.0)}, {20.0, yawed(1.0, 1.0)}, {21.0, yawed(5.0, 1.0)}});
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->at(10.0)->isApprox(yawed(0.0, 0.0)));
+  EXPECT_TRUE(made->at(12.5)->isApprox(yawed(0.25, 0.25), 1e-12));
+  EXPECT_TRUE(made->at(20.0)->isApprox(yawed(1.0, 1.0)));
+  EXPECT_TRUE(made->at(20.5)->isApprox(yawed(3.0, 1.0), 1e-12));
+  EXPECT_TRUE(made->at(21.0)->isApprox(yawed(5.0, 1.0)));
+  for (const double time_s : {9.999, 21.001, std::nan(""), -std::numeric_limits<double>::infinity()}) {
+    EXPECT_FALSE(made->at(time_s)) << time_s;
+  }
+  EXPECT_TRUE(Trajectory::still(yawed(3.0, 1.0)).at(-1e9)->isApprox(yawed(3.0, 1.0)));
+}
+
+TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
+  EXPECT_FALSE(Trajectory::make({}));
+  for (const double second : {1.0, 0.5, std::nan("")}) {
+    const auto made = Trajectory::make({{1.0, yawed(0.0, 0.0)}, {second, yawed(0.0, 0.0)}});
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, Error::Code::kCorrupt);
+    EXPECT_NE(made.error().message.find("pose 1"), std::string::npos) << made.error().message;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,105 @@
+#include "pingvox/viewer/render_echoes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "viewer/picture_text.hpp"
+
+using namespace pingvox;
+
+namespace {
+
+constexpr std::size_t kLeft = 110, kTop = 24;
+
+Beam beam_of(std::vector<std::uint8_t> intensities, double bin_length_m = 0.5) {
+  return {.time_s = 0.0, .bearing_rad = 0.0, .bin_length_m = bin_length_m, .intensities = std::move(intensities)};
+}
+
+Echo echo_at(double range_m) {
+  Echo echo;
+  echo.range_m = range_m;
+  return echo;
+}
+
+const std::vector<std::pair<Rgb, char>> kLetters = {{Rgb{0, 0, 0}, '.'},
+                                                    {Rgb{128, 128, 128}, 'o'},
+                                                    {Rgb{255, 255, 255}, '#'},
+                                                    {EchoPictureOptions{}.echo, '|'},
+                                                    {EchoPictureOptions{}.nothing, ' '}};
+
+TEST(RenderEchoes, RowsAreBeamsAndColumnsAreRange) {
+  // The third beam has fewer bins, the fourth twice as long ones.
+  const std::vector<Beam> beams = {beam_of({0, 0, 255, 0}), beam_of({255, 0, 0, 0}), beam_of({64, 255}),
+                                   beam_of({0, 255}, 1.0)};
+  const Picture picture = render_echoes(beams, {}, {.target_px = 16});
+  EXPECT_EQ(drawn(picture, kLeft, kTop, 16, 1, 1, kLetters), "........####....\n");
+  std::string rows;
+  for (std::size_t row = 0; row < 4; ++row) rows += drawn(picture, kLeft, kTop + row * 16, 4, 1, 4, kLetters);
+  EXPECT_EQ(rows,
+            "..#.\n"
+            "#...\n"
+            "o#  \n"
+            "..##\n");
+}
+
+TEST(RenderEchoes, MarksEachEchoWhereItIs) {
+  const std::vector<Beam> beams = {beam_of({0, 0, 0, 0}), beam_of({0, 0, 0, 0}), beam_of({0, 0, 0, 0})};
+  const std::vector<std::optional<Echo>> echoes = {echo_at(1.0), std::nullopt, echo_at(1.75)};
+  const Picture picture = render_echoes(beams, echoes, {.target_px = 16});
+  std::string rows;
+  for (std::size_t row = 0; row < 3; ++row) rows += drawn(picture, kLeft, kTop + row * 16, 16, 1, 1, kLetters);
+  EXPECT_EQ(rows,
+            ".......|||......\n"
+            "................\n"
+            ".............|||\n");
+}
+
+TEST(RenderEchoes, ManyBeamsShareRowsAndNoEchoIsLost) {
+  std::vector<Beam> beams;
+  std::vector<std::optional<Echo>> echoes;
+  for (int n = 0; n < 5604; ++n) {
+    beams.push_back(beam_of(std::vector<std::uint8_t>(399, 0), 0.0125));
+    beams.back().intensities[100] = n % 3 == 1 ? 255 : 0;
+    echoes.push_back(n == 4000 ? std::optional(echo_at(2.5)) : std::nullopt);
+  }
+  const Picture picture = render_echoes(beams, echoes);
+  EXPECT_LE(picture.height(), 2200U);
+  EXPECT_LE(picture.width(), 1200U);
+  constexpr std::size_t kRows = 1868;  // of three beams each
+  std::size_t bright = 0, marked = 0;
+  for (std::size_t y = kTop; y < kTop + kRows; ++y) {
+    for (std::size_t x = kLeft; x < kLeft + 798; ++x) {
+      bright += picture.at(x, y) == Rgb{255, 255, 255} ? 1 : 0;
+      marked += picture.at(x, y) == EchoPictureOptions{}.echo ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(bright, kRows * 2);
+  EXPECT_EQ(marked, 3U);
+}
+
+TEST(RenderEchoes, DrawsWhateverIsValid) {
+  std::size_t pictures = 0;
+  const auto draws = [&](const std::vector<Beam>& beams) {
+    const Picture picture = render_echoes(beams, std::vector<std::optional<Echo>>(beams.size(), echo_at(1e9)));
+    EXPECT_LE(picture.width(), Picture::kMaxSide);
+    EXPECT_LE(picture.height(), Picture::kMaxSide);
+    ++pictures;
+  };
+  draws({});
+  draws({beam_of({})});
+  draws({beam_of({1})});
+  draws({beam_of({1, 2, 3}, 5e-324), beam_of({1}, 1e-323)});
+  draws({beam_of({1, 2, 3}, 5e-324), beam_of({1, 2}, 5000.0)});
+  draws({beam_of(std::vector<std::uint8_t>(100'000, 7), 0.001), beam_of({9, 9})});
+  draws(std::vector<Beam>(20'000, beam_of({1, 2, 3})));
+  EXPECT_EQ(pictures, 7U);
+}
+
+TEST(EchoPictureOptions, RefuseSenselessValues) {
+  EXPECT_TRUE(EchoPictureOptions{}.validate());
+  EXPECT_FALSE(EchoPictureOptions{.target_px = 3}.validate());
+  EXPECT_FALSE(EchoPictureOptions{.gamma = 0.0}.validate());
+}
+
+}  // namespace

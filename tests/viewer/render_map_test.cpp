@@ -1,0 +1,188 @@
+#include "pingvox/viewer/render_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "viewer/picture_text.hpp"
+
+using namespace pingvox;
+
+namespace {
+
+const MapColours kColours{};
+const Rgb kCrossColour{230, 120, 0};
+
+/// The picture without its border and what is below it.
+struct Inside {
+  std::size_t left, top, right, bottom;
+};
+
+Inside inside_of(const Picture& picture) {
+  return {24, 24, picture.width() - 24, picture.height() - 56};
+}
+
+/// Pixels inside of the border that have this colour.
+std::size_t count_of(const Picture& picture, Rgb colour) {
+  const Inside in = inside_of(picture);
+  std::size_t count = 0;
+  for (std::size_t y = in.top; y < in.bottom; ++y) {
+    for (std::size_t x = in.left; x < in.right; ++x) count += picture.at(x, y) == colour ? 1 : 0;
+  }
+  return count;
+}
+
+/// Upper left corner of the smallest box around all that is known.
+std::pair<std::size_t, std::size_t> corner_of_known(const Picture& picture) {
+  const Inside in = inside_of(picture);
+  std::pair corner{in.right, in.bottom};
+  for (std::size_t y = in.top; y < in.bottom; ++y) {
+    for (std::size_t x = in.left; x < in.right; ++x) {
+      if (picture.at(x, y) == kColours.unknown) continue;
+      corner = {std::min(corner.first, x), std::min(corner.second, y)};
+    }
+  }
+  return corner;
+}
+
+Key cell(int x, int y, int z) {
+  const auto word = [](int c) { return static_cast<std::uint16_t>(32768 + c); };
+  return {word(x), word(y), word(z)};
+}
+
+const std::vector<std::pair<Rgb, char>> kLetters = {
+    {kColours.unknown, ' '}, {kColours.surely_free, '.'}, {kColours.surely_occupied, '#'}};
+
+TEST(RenderMap, PutsXUpAndYLeft) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    const LogOdds wall = Clamp{}.highest, water = Clamp{}.lowest;
+    // Far from the origin, so that its cross is not in the picture.
+    for (int y = 100; y < 105; ++y) editor.set(cell(203, y, 0), 16, wall);  // ahead: a wall
+    for (int x = 200; x < 203; ++x) editor.set(cell(x, 104, 0), 16, wall);  // left: another
+    for (int x = 200; x < 203; ++x) editor.set(cell(x, 101, 0), 16, water);
+    editor.set(cell(201, 102, 5), 16, water);  // free above, but
+    editor.set(cell(201, 102, -3), 16, wall);  // occupied below
+  }
+  const Picture picture = render_map(map, {.target_px = 80});
+  const auto [left, top] = corner_of_known(picture);
+  EXPECT_EQ(drawn(picture, left, top, 5, 4, 16, kLetters),
+            "#####\n"
+            "#  . \n"
+            "# #. \n"
+            "#  . \n");
+}
+
+TEST(RenderMap, ShowsOnlyTheSlab) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    editor.set(cell(100, 100, 0), 16, Clamp{}.lowest);
+    editor.set(cell(100, 100, 3), 16, Clamp{}.highest);
+    editor.set(cell(101, 100, 0), 16, Clamp{}.lowest);
+  }
+  const Picture all = render_map(map, {.target_px = 16});
+  EXPECT_EQ(count_of(all, kColours.surely_occupied), 64U);
+  const Picture slab = render_map(map, {.target_px = 16, .min_z_m = 0.0, .max_z_m = 3.0});
+  EXPECT_EQ(count_of(slab, kColours.surely_occupied), 0U);
+  EXPECT_EQ(count_of(slab, kColours.surely_free), 128U);
+}
+
+TEST(RenderMap, MarksTheOriginAndWhatIsUndecided) {
+  OccupancyMap map({.resolution_m = 1.0, .thresholds = {LogOdds(-0.5F), LogOdds(0.5F)}});
+  map.edit().set(cell(0, 0, 0), 13, LogOdds(0.0F));
+  map.edit().set(cell(-8, -8, 0), 13, LogOdds(0.0F));
+  const Picture picture = render_map(map, {.target_px = 160});
+  EXPECT_GT(count_of(picture, kColours.undecided), 10'000U);
+  // Where the two squares meet, in the middle.
+  const auto [left, top] = corner_of_known(picture);
+  EXPECT_EQ(picture.at(left + 80, top + 80), kCrossColour);
+  EXPECT_EQ(picture.at(left + 90, top + 80), kCrossColour);
+  EXPECT_NE(picture.at(left + 93, top + 80), kCrossColour);
+}
+
+TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
+  std::size_t checked = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    OccupancyMap map({.resolution_m = 0.1});
+    {
+      Editor editor = map.edit();
+      for (int i = 0; i < 300; ++i) {
+        const int size = 1 << (random() % 4);
+        const auto place = [&] { return static_cast<int>(random() % 64) / size * size; };
+        const int x = place(), y = place(), z = place();
+        const LogOdds belief = random() % 3 == 0 ? Clamp{}.highest : Clamp{}.lowest;
+        editor.set(cell(1024 + x, 1024 + y, z), 16 - std::countr_zero(static_cast<unsigned>(size)), belief);
+      }
+    }
+    const auto box = map.bounds();
+    ASSERT_TRUE(box);
+    const auto cells = [](double m) { return static_cast<int>(std::lround(m / 0.1)); };
+    const int low_x = cells(box->min.x()), high_x = cells(box->max.x());
+    const int low_y = cells(box->min.y()), high_y = cells(box->max.y());
+    const Picture picture = render_map(map, {.target_px = 64 * 4});
+    const auto [left, top] = corner_of_known(picture);
+    const auto nx = static_cast<std::size_t>(high_x - low_x), ny = static_cast<std::size_t>(high_y - low_y);
+    std::string expected;
+    for (int x = high_x - 1; x >= low_x; --x) {
+      for (int y = high_y - 1; y >= low_y; --y) {
+        char letter = ' ';
+        for (int z = 0; z < 64; ++z) {
+          const auto belief = map.at(cell(x, y, z));
+          if (belief && letter != '#') letter = *belief > LogOdds(0.0F) ? '#' : '.';
+        }
+        expected += letter;
+        ++checked;
+      }
+      expected += '\n';
+    }
+    EXPECT_EQ(drawn(picture, left, top, ny, nx, 256 / std::max(nx, ny), kLetters), expected);
+  }
+  EXPECT_GT(checked, 30'000U);
+}
+
+TEST(RenderMap, LosesNoThinWallWhereAPixelIsManyCells) {
+  OccupancyMap map({.resolution_m = 0.01});
+  {
+    Editor editor = map.edit();
+    editor.set(cell(0, 0, 0), 4, Clamp{}.lowest);                                      // 4096 cells a side
+    for (int x = 0; x < 4096; ++x) editor.set(cell(x, 1234, 0), 16, Clamp{}.highest);  // one cell thick
+  }
+  const Picture picture = render_map(map, {.target_px = 500});
+  EXPECT_LE(picture.width(), 700U);
+  EXPECT_EQ(count_of(picture, kColours.surely_occupied), 4096U / 16U);
+}
+
+TEST(RenderMap, DrawsMapsOfAnyDepthAndSize) {
+  for (const int depth : {1, 2, 3, 16, 17, 64, 128}) {
+    for (const double resolution_m : {1e-300, 0.05, 1e269}) {
+      SCOPED_TRACE(::testing::Message() << depth << " levels, " << resolution_m << " m");
+      OccupancyMap map({.resolution_m = resolution_m, .depth = depth});
+      const Picture empty = render_map(map);
+      EXPECT_GT(empty.width(), 0U);
+      const WideWord last = depth == 128 ? ~WideWord{0} : (WideWord{1} << depth) - 1;
+      map.edit().set(WideKey{}, depth, Clamp{}.highest);
+      map.edit().set(WideKey{last, last, last}, depth, Clamp{}.lowest);
+      const Picture corners = render_map(map);
+      EXPECT_GT(count_of(corners, kColours.surely_occupied), 0U);
+      EXPECT_GT(count_of(corners, kColours.surely_free), 0U);
+      map.edit().set(WideKey{}, 0, Clamp{}.highest);
+      EXPECT_GT(count_of(render_map(map), kColours.surely_occupied), 0U);
+    }
+  }
+}
+
+TEST(MapPictureOptions, RefuseSenselessValues) {
+  EXPECT_TRUE(MapPictureOptions{}.validate());
+  EXPECT_FALSE(MapPictureOptions{.target_px = 0}.validate());
+  EXPECT_FALSE(MapPictureOptions{.target_px = 4000}.validate());
+  EXPECT_FALSE((MapPictureOptions{.min_z_m = 1.0, .max_z_m = 1.0}).validate());
+}
+
+}  // namespace
