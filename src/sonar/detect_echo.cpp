@@ -140,6 +140,21 @@ class FirstBins {
   std::vector<std::optional<std::size_t>> edges_;  ///< kCanny
 };
 
+/// Whether the contrast is what the call says, and no beam around a beam decides about it.
+bool has_given_contrast(const EchoOptions& options) {
+  return options.detector == Detector::kRise && options.threshold;
+}
+
+std::vector<int> contrasts_of(const PolarImage& image, const std::vector<BinWindow>& windows,
+                              const EchoOptions& options) {
+  if (has_given_contrast(options)) return std::vector<int>(image.rows(), *options.threshold);
+  std::vector<int> contrasts = usual_contrasts(image, windows);
+  if (options.threshold && options.detector != Detector::kCanny) {
+    for (int& contrast : contrasts) contrast = std::min(contrast, *options.threshold);
+  }
+  return contrasts;
+}
+
 }  // namespace
 
 Result<void> EchoOptions::validate() const {
@@ -171,9 +186,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
   assert(options.validate());
   assert(image.rows() == sweep.beams.size());
   const std::vector<BinWindow> windows = windows_of(image, sweep, options);
-  const bool given = options.detector == Detector::kRise && options.threshold;
-  const std::vector<int> contrasts =
-      given ? std::vector<int>(image.rows(), *options.threshold) : usual_contrasts(image, windows);
+  const std::vector<int> contrasts = contrasts_of(image, windows, options);
   const FirstBins first_bins(image, windows, contrasts, options);
 
   std::vector<std::optional<Echo>> echoes(image.rows());
@@ -201,8 +214,7 @@ FilterOptions usual_filter(Detector detector) {
 
 std::optional<std::size_t> reach_beams(const EchoOptions& options) {
   if (!options.min_range_m) return std::nullopt;
-  const bool given = options.detector == Detector::kRise && options.threshold;
-  return (given ? 0 : kContrastReach_beams) +
+  return (has_given_contrast(options) ? 0 : kContrastReach_beams) +
          (options.detector == Detector::kCanny ? canny_reach_beams(options.canny) : 0);
 }
 

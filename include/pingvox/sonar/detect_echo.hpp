@@ -24,7 +24,7 @@ struct Echo {
 /// How an echo is found. Whatever finds its first bin, it runs from there to the last bin before the beam has fallen by
 /// more than half the contrast below its peak, and its range is the middle of its crest: the mean of its bins, weighted
 /// with what they stand above a quarter of the contrast below the peak. The contrast is the threshold of kRise, or what
-/// that would be by default.
+/// that would be by default; no more than a given threshold of kLevel, kMax or kCfar.
 enum class Detector {
   /// Differences of successive bins, as in the paper (section 8.2), summed over a rise: a bin is an echo's first when
   /// the differences from bin to bin, added up since the last valley, reach the threshold. Without noise and smoothing
@@ -75,10 +75,11 @@ struct EchoOptions {
   std::size_t min_bin = 0;  ///< the same in bins; the farther one of both counts
   double max_range_m = std::numeric_limits<double>::infinity();
   /// kRise: the least sum of differences over a rise, 1..255. kLevel, kMax: the least intensity, 1..255. kCanny: the
-  /// gradient of a strong edge, 1..2040. kCfar: how far above the noise around it an echo must stand at least, 1..255.
-  /// nullopt: as follows from the gain : the contrast is half of the largest rise that is usual in
-  /// the 33 beams around, and 14 times the noise where that rise is less: kRise the contrast; kLevel and kMax the
-  /// contrast above the lower quartile of the beam; kCanny 1.6 times, kCfar half the contrast.
+  /// gradient that a strong edge exceeds, 1..2040. kCfar: how far above the noise around it an echo must stand, 1..255.
+  /// nullopt: by the gain that the beam was heard with. kRise: half of the largest rise (within 48 bins) that is usual
+  /// in the 33 beams around, 70 in the tank recording; where that rise is less than ten times the noise, a rise of
+  /// twenty times the noise. kLevel, kMax: as much above the lower quartile of the beam. kCanny: 1.6 times, kCfar: as
+  /// much.
   std::optional<int> threshold = std::nullopt;
   CannyOptions canny = {};
   CfarOptions cfar = {};
