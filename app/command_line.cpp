@@ -179,8 +179,14 @@ std::string shown(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-constexpr std::array kFilters = {Word<Filter>{"none", Filter::kNone}, Word<Filter>{"gaussian", Filter::kGaussian}};
-constexpr std::array kDetectors = {Word<Detector>{"rise", Detector::kRise}};
+constexpr std::array kFilters = {Word<Filter>{"none", Filter::kNone}, Word<Filter>{"mean", Filter::kMean},
+                                 Word<Filter>{"median", Filter::kMedian}, Word<Filter>{"gaussian", Filter::kGaussian}};
+constexpr std::array kDetectors = {Word<Detector>{"rise", Detector::kRise}, Word<Detector>{"level", Detector::kLevel},
+                                   Word<Detector>{"max", Detector::kMax}, Word<Detector>{"canny", Detector::kCanny},
+                                   Word<Detector>{"cfar", Detector::kCfar}};
+constexpr std::array kCfars = {Word<CfarOptions::Noise>{"ca", CfarOptions::Noise::kCellAveraging},
+                               Word<CfarOptions::Noise>{"so", CfarOptions::Noise::kSmallestOf},
+                               Word<CfarOptions::Noise>{"os", CfarOptions::Noise::kOrdered}};
 constexpr std::array kShapes = {Word<BeamShape>{"ray", BeamShape::kRay}, Word<BeamShape>{"fan", BeamShape::kFan},
                                 Word<BeamShape>{"cone", BeamShape::kCone}};
 constexpr std::array kRays = {Word<RayAlgorithm>{"dda", RayAlgorithm::kDda},
@@ -238,22 +244,47 @@ Take into_sound_speed_ratio(double& ratio) {
   };
 }
 
-OptionTable::Group echo_group(FilterOptions& filter, EchoOptions& echo, double& sound_speed_ratio,
-                              const Take& max_range) {
-  return {"Echoes",
-          {{"--min-range", 0, "M", "nearer bins are the head's own ringing, and no evidence", shown(echo.min_range_m),
-            into_number(echo.min_range_m)},
-           {"--max-range", 0, "M", "farther bins and cells are left alone", "none", max_range},
-           {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
-            into_sound_speed_ratio(sound_speed_ratio)},
-           choice("--filter", kFilters, "how sweeps are smoothed before echoes are looked for", filter.filter),
-           {"--kernel", 0, "N", "edge of the filter's window in beams and bins, odd", fmt::format("{}", filter.kernel),
-            into_number(filter.kernel)},
-           {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", shown(filter.sigma),
-            into_number(filter.sigma)},
-           choice("--detect", kDetectors, "how echoes are found", echo.detector),
-           {"--threshold", 0, "T", "rise of intensity that makes an echo, 1..255", fmt::format("{}", echo.threshold),
-            into_number(echo.threshold)}}};
+/// How echoes are found, as the call says it: what it does not say follows from the detector.
+struct EchoWords {
+  Filter filter = FilterOptions{}.filter;
+  std::optional<int> kernel;
+  std::optional<double> sigma;
+  EchoOptions echo;
+
+  FilterOptions filter_options() const {
+    const FilterOptions usual = usual_filter(echo.detector);
+    return {filter, kernel.value_or(usual.kernel), sigma.value_or(usual.sigma)};
+  }
+};
+
+Take into_min_range(std::optional<double>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    if (text != "auto") return into_optional(target)(text);
+    target.reset();
+    return {};
+  };
+}
+
+OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const Take& max_range) {
+  EchoOptions& echo = words.echo;
+  return {
+      "Echoes",
+      {{"--min-range", 0, "M|auto", "nearer bins are the head's own ringing, and no evidence; auto: as it is found",
+        shown(EchoOptions::kUsualBlanking_m), into_min_range(echo.min_range_m)},
+       {"--min-bin", 0, "N", "nor are those before this one, counted from 0", fmt::format("{}", echo.min_bin),
+        into_number(echo.min_bin)},
+       {"--max-range", 0, "M", "farther bins and cells are left alone", "none", max_range},
+       {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
+        into_sound_speed_ratio(sound_speed_ratio)},
+       choice("--filter", kFilters, "how sweeps are smoothed before echoes are looked for", words.filter),
+       {"--kernel", 0, "N", "edge of the filter's window in beams and bins, odd", "5, canny: 11",
+        into_optional(words.kernel)},
+       {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
+        into_optional(words.sigma)},
+       choice("--detect", kDetectors, "how echoes are found", echo.detector),
+       {"--threshold", 0, "T", "the rise, level or gradient (canny) that makes an echo", "by the gain",
+        into_optional(echo.threshold)},
+       choice("--cfar", kCfars, "noise of cfar: cell-averaging, smallest-of or ordered-statistic", echo.cfar.noise)}};
 }
 
 // --- Checks that cost no work. ---
@@ -330,6 +361,7 @@ Result<Command> map_command(const Words& words) {
   MapOptions& map = command.map;
   BuildOptions& build = command.build;
   BeamModelOptions& model = build.model;
+  EchoWords echoes;
 
   const Take mount = [&](const std::string& text) -> Result<void> {
     const auto n = numbers_from<6>(text);
@@ -422,7 +454,7 @@ Result<Command> map_command(const Words& words) {
          choice("--ray", kRays, "how rays go from cell to cell", model.ray),
          choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
          choice("--silent", kSilents, "what a beam without an echo says", model.silent)}},
-       echo_group(build.filter, build.echo, build.sound_speed_ratio, max_range),
+       echo_group(echoes, build.sound_speed_ratio, max_range),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt --beam cone",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
@@ -433,6 +465,8 @@ Result<Command> map_command(const Words& words) {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
+    build.filter = echoes.filter_options();
+    build.echo = echoes.echo;
     if (const auto valid = map.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = build.validate(); !valid) return tl::unexpected(valid.error());
     if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {
@@ -520,7 +554,8 @@ Result<Command> convert_command(const Words& words) {
 Result<Command> render_command(const Words& words) {
   RenderCommand command;
   std::size_t size_px = command.map_picture.target_px;
-  const Take max_range = into_number(command.echo.max_range_m);
+  EchoWords echoes;
+  const Take max_range = into_number(echoes.echo.max_range_m);
   const OptionTable table{
       "render",
       "Draws a PNG: of a log of beams what was heard, in polar coordinates and with a mark on each echo; of a map\n"
@@ -536,7 +571,7 @@ Result<Command> render_command(const Words& words) {
          strict_option(command.damage),
          quiet_option(command.manner),
          config_option()}},
-       echo_group(command.filter, command.echo, command.sound_speed_ratio, max_range)},
+       echo_group(echoes, command.sound_speed_ratio, max_range)},
       {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50", "pingvox render tank.bt -o map.png"},
       ""};
   return parsed(table, words, [&]() -> Result<Command> {
@@ -546,6 +581,8 @@ Result<Command> render_command(const Words& words) {
     command.map_picture.target_px = command.echo_picture.target_px = size_px;
     if (const auto valid = command.map_picture.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.echo_picture.validate(); !valid) return tl::unexpected(valid.error());
+    command.filter = echoes.filter_options();
+    command.echo = echoes.echo;
     if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());

@@ -11,14 +11,14 @@ _pingvox_options() {
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
       options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
-      options+=(--min-range --max-range --sound-speed --filter --kernel --sigma --detect --threshold)
+      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
     compare) options+=(--json --quiet) ;;
     convert) options+=(--output --format --strict --quiet) ;;
     render)
       options+=(--output --size --sweep --min-z --max-z --strict --quiet --config)
-      options+=(--min-range --max-range --sound-speed --filter --kernel --sigma --detect --threshold)
+      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
       options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --speed --turns --drift)
@@ -32,8 +32,9 @@ _pingvox_options() {
 # _pingvox_words OPTION COMMAND: prints the words that an option takes, one a line; nothing when they are no fixed set.
 _pingvox_words() {
   case "$1" in
-    --filter) printf '%s\n' none gaussian ;;
-    --detect) printf '%s\n' rise ;;
+    --filter) printf '%s\n' none mean median gaussian ;;
+    --detect) printf '%s\n' rise level max canny cfar ;;
+    --cfar) printf '%s\n' ca so os ;;
     --beam) printf '%s\n' ray fan cone ;;
     --ray) printf '%s\n' dda bresenham ;;
     --vote) printf '%s\n' sweep beam ;;
@@ -71,7 +72,7 @@ _pingvox() {
 
   if [[ -z $words ]]; then
     case "$previous" in
-      --resolution | --depth | --mount | --min-range | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
+      --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --min-z | --max-z)

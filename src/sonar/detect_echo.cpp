@@ -7,86 +7,175 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
+
+#include "sonar/bin_window.hpp"
+#include "sonar/canny.hpp"
+#include "sonar/cfar.hpp"
+#include "sonar/contrast.hpp"
 
 namespace pingvox {
 namespace {
 
-/// The bins that may be evidence: those that lie inside [min_range_m, max_range_m] as a whole.
-struct BinWindow {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
+using Bins = std::span<const std::uint8_t>;
 
-BinWindow window_of(std::size_t bins, double bin_length_m, const EchoOptions& options) {
-  // 0.75 m / 0.0125 m may come out as 60.000000000000007, which is bin 60 and not 61.
-  constexpr double kRounding_bins = 1e-6;
-  const auto in_beam = [bins](double n) {
-    return static_cast<std::size_t>(std::clamp(n, 0.0, static_cast<double>(bins)));
-  };
-  return {.begin = in_beam(std::ceil(options.min_range_m / bin_length_m - kRounding_bins)),
-          .end = in_beam(std::floor(options.max_range_m / bin_length_m + kRounding_bins))};
+/// Whether an echo with its top here has ended there.
+bool fell_from(Bins bins, std::size_t top, std::size_t i, int contrast) {
+  return 2 * (bins[top] - bins[i]) > contrast;
 }
 
-std::optional<Echo> first_rise(std::span<const std::uint8_t> bins, BinWindow window, int threshold) {
-  const auto fell_from = [&bins, threshold](std::size_t top, std::size_t i) {
-    return 2 * (bins[top] - bins[i]) > threshold;
-  };
-  if (window.begin >= window.end) return std::nullopt;
-  // Adding up the differences since the valley gives the height above it, so only valley and top have to be known.
-  std::size_t valley = window.begin;
-  std::size_t top = window.begin;
-  std::size_t i = window.begin + 1;
-  for (; i < window.end && bins[i] - bins[valley] < threshold; ++i) {
-    if (bins[i] <= bins[valley] || fell_from(top, i)) {
-      valley = top = i;
-    } else if (bins[i] > bins[top]) {
-      top = i;
-    }
-  }
-  if (i >= window.end) return std::nullopt;
-  Echo echo{.first = i, .peak = i, .last = i};
-  for (++i; i < window.end && !fell_from(echo.peak, i); ++i) {
-    if (bins[i] > bins[echo.peak]) echo.peak = i;
-    echo.last = i;
-  }
-  echo.intensity = bins[echo.peak];
-  return echo;
-}
-
-/// Middle of the echo's crest [bins]: of its bins, each weighing as much as it stands above a quarter of the threshold
+/// Middle of the echo's crest [bins]: of its bins, each weighing as much as it stands above a quarter of the contrast
 /// below the peak. A single bin of speckle decides which one is the peak, but hardly about this.
-double crest_of(std::span<const std::uint8_t> bins, const Echo& echo, int threshold) {
+double crest_of(Bins bins, const Echo& echo, int contrast) {
   double weights = 0.0;
   double moment = 0.0;
   for (std::size_t i = echo.first; i <= echo.last; ++i) {
-    const double weight = std::max(0, threshold - 4 * (bins[echo.peak] - bins[i]));
+    const double weight = std::max(0, contrast - 4 * (bins[echo.peak] - bins[i]));
     weights += weight;
     moment += weight * (static_cast<double>(i) + 0.5);
   }
   return moment / weights;
 }
 
-std::vector<std::optional<Echo>> rises(const PolarImage& image, const Sweep& sweep, const EchoOptions& options) {
-  std::vector<std::optional<Echo>> echoes(image.rows());
-  for (std::size_t n = 0; n < image.rows(); ++n) {
-    const double bin_length_m = sweep.beams[n].bin_length_m;
-    const std::span<const std::uint8_t> bins = image.row(n).first(image.bins_in(n));
-    std::optional<Echo> echo = first_rise(bins, window_of(bins.size(), bin_length_m, options), options.threshold);
-    if (echo) echo->range_m = crest_of(bins, *echo, options.threshold) * bin_length_m;
-    echoes[n] = echo;
+/// The echo whose first bin this is, without its range.
+Echo echo_from(Bins bins, BinWindow window, std::size_t first, int contrast) {
+  Echo echo{.first = first, .peak = first, .last = first};
+  for (std::size_t i = first + 1; i < window.end && !fell_from(bins, echo.peak, i, contrast); ++i) {
+    if (bins[i] > bins[echo.peak]) echo.peak = i;
+    echo.last = i;
   }
-  return echoes;
+  return echo;
+}
+
+std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold) {
+  // Adding up the differences since the valley gives the height above it, so only valley and top have to be known.
+  std::size_t valley = window.begin;
+  std::size_t top = window.begin;
+  for (std::size_t i = window.begin + 1; i < window.end; ++i) {
+    if (bins[i] - bins[valley] >= threshold) return i;
+    if (bins[i] <= bins[valley] || fell_from(bins, top, i, threshold)) {
+      valley = top = i;
+    } else if (bins[i] > bins[top]) {
+      top = i;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A level that the beam's own background does not reach. REQUIRES a window that is not empty.
+int usual_level(Bins bins, BinWindow window, int contrast) {
+  const Bins seen = bins.subspan(window.begin, window.end - window.begin);
+  std::vector<std::uint8_t> values(seen.begin(), seen.end());
+  const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+  std::ranges::nth_element(values, quartile);
+  return *quartile + contrast;
+}
+
+std::optional<std::size_t> first_at_level(Bins bins, BinWindow window, int level) {
+  for (std::size_t i = window.begin; i < window.end; ++i) {
+    if (bins[i] >= level) return i;
+  }
+  return std::nullopt;
+}
+
+/// Where the echo of the strongest bin begins.
+std::optional<std::size_t> start_of_strongest(Bins bins, BinWindow window, int level, int contrast) {
+  std::size_t peak = window.begin;
+  for (std::size_t i = window.begin; i < window.end; ++i) {
+    if (bins[i] > bins[peak]) peak = i;
+  }
+  if (bins[peak] < level) return std::nullopt;
+  std::size_t first = peak;
+  while (first > window.begin && !fell_from(bins, peak, first - 1, contrast)) --first;
+  return first;
+}
+
+/// The first bins of echoes, each detector in its own way.
+class FirstBins {
+ public:
+  FirstBins(const PolarImage& image, const std::vector<BinWindow>& windows, const std::vector<int>& contrasts,
+            const EchoOptions& options)
+      : windows_(windows), contrasts_(contrasts), options_(options) {
+    if (options.detector == Detector::kCfar) scale_ = cfar_scale(options.cfar);
+    if (options.detector != Detector::kCanny) return;
+    std::vector<int> strong;
+    strong.reserve(contrasts.size());
+    for (const int contrast : contrasts) strong.push_back(options.threshold.value_or((8 * contrast + 2) / 5));
+    edges_ = first_edges(image, windows, strong, options.canny);
+  }
+
+  /// REQUIRES a window that is not empty.
+  std::optional<std::size_t> in(std::size_t n, Bins bins) const {
+    const BinWindow window = windows_[n];
+    const int contrast = contrasts_[n];
+    switch (options_.detector) {
+      case Detector::kRise:
+        return first_rise(bins, window, contrast);
+      case Detector::kLevel:
+        return first_at_level(bins, window, level_of(bins, window, contrast));
+      case Detector::kMax:
+        return start_of_strongest(bins, window, level_of(bins, window, contrast), contrast);
+      case Detector::kCanny:
+        return edges_[n];
+      case Detector::kCfar: {
+        const double least = options_.threshold ? *options_.threshold : contrast;
+        const auto first =
+            first_above_noise(bins.subspan(window.begin, window.end - window.begin), scale_, least, options_.cfar);
+        if (first) return window.begin + *first;
+        break;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  int level_of(Bins bins, BinWindow window, int contrast) const {
+    return options_.threshold ? *options_.threshold : usual_level(bins, window, contrast);
+  }
+
+  const std::vector<BinWindow>& windows_;
+  const std::vector<int>& contrasts_;
+  const EchoOptions& options_;
+  double scale_ = 0.0;                             ///< kCfar
+  std::vector<std::optional<std::size_t>> edges_;  ///< kCanny
+};
+
+/// Whether the contrast is what the call says, and no beam around a beam decides about it.
+bool has_given_contrast(const EchoOptions& options) {
+  return options.detector == Detector::kRise && options.threshold;
+}
+
+std::vector<int> contrasts_of(const PolarImage& image, const std::vector<BinWindow>& windows,
+                              const EchoOptions& options) {
+  if (has_given_contrast(options)) return std::vector<int>(image.rows(), *options.threshold);
+  std::vector<int> contrasts = usual_contrasts(image, windows);
+  if (options.threshold && options.detector != Detector::kCanny) {
+    for (int& contrast : contrasts) contrast = std::min(contrast, *options.threshold);
+  }
+  return contrasts;
 }
 
 }  // namespace
 
 Result<void> EchoOptions::validate() const {
   std::string bad;
-  if (!(min_range_m >= 0.0)) bad += fmt::format(" min_range_m must be >= 0, is {};", min_range_m);
-  if (!(max_range_m > min_range_m)) {
-    bad += fmt::format(" max_range_m must be greater than min_range_m ({}), is {};", min_range_m, max_range_m);
-  }
-  if (threshold < 1 || threshold > 255) bad += fmt::format(" threshold must be in 1..255, is {};", threshold);
+  const auto check = [&bad](bool good, std::string_view name, const std::string& rule, auto value) {
+    if (!good) bad += fmt::format(" {} must be {}, is {};", name, rule, value);
+  };
+  const double nearest = min_range_m.value_or(0.0);
+  check(nearest >= 0.0 && std::isfinite(nearest), "min_range_m", ">= 0", nearest);
+  check(max_range_m > nearest, "max_range_m", fmt::format("greater than min_range_m ({})", nearest), max_range_m);
+  const int most = detector == Detector::kCanny ? 2040 : 255;
+  check(!threshold || (*threshold >= 1 && *threshold <= most), "threshold", fmt::format("in 1..{}", most),
+        threshold.value_or(0));
+  check(canny.low >= 0 && canny.low <= 2040, "canny.low", "in 0..2040", canny.low);
+  check(canny.link >= 1 && canny.link <= 6400, "canny.link", "in 1..6400", canny.link);
+  check(cfar.guard <= 1000, "cfar.guard", "at most 1000", cfar.guard);
+  check(cfar.training >= 1 && cfar.training <= 1000, "cfar.training", "in 1..1000", cfar.training);
+  check(cfar.false_alarm_rate > 0.0 && cfar.false_alarm_rate <= 0.5, "cfar.false_alarm_rate", "> 0 and at most 0.5",
+        cfar.false_alarm_rate);
+  const double scale = cfar.scale.value_or(1.0);
+  check(scale >= 1.0 && std::isfinite(scale), "cfar.scale", ">= 1", scale);
   if (bad.empty()) return {};
   bad.pop_back();
   return fail(Error::Code::kBadOption, "echo:" + bad);
@@ -96,11 +185,37 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
                                                const EchoOptions& options) {
   assert(options.validate());
   assert(image.rows() == sweep.beams.size());
-  switch (options.detector) {
-    case Detector::kRise:
-      return rises(image, sweep, options);
+  const std::vector<BinWindow> windows = windows_of(image, sweep, options);
+  const std::vector<int> contrasts = contrasts_of(image, windows, options);
+  const FirstBins first_bins(image, windows, contrasts, options);
+
+  std::vector<std::optional<Echo>> echoes(image.rows());
+  for (std::size_t n = 0; n < image.rows(); ++n) {
+    if (windows[n].begin >= windows[n].end) continue;
+    const Bins bins = image.row(n).first(image.bins_in(n));
+    const std::optional<std::size_t> first = first_bins.in(n, bins);
+    if (!first) continue;
+    Echo echo = echo_from(bins, windows[n], *first, contrasts[n]);
+    echo.intensity = bins[echo.peak];
+    echo.range_m = crest_of(bins, echo, contrasts[n]) * sweep.beams[n].bin_length_m;
+    echoes[n] = echo;
   }
-  return std::vector<std::optional<Echo>>(image.rows());
+  return echoes;
+}
+
+FilterOptions usual_filter(Detector detector) {
+  FilterOptions filter;
+  if (detector == Detector::kCanny) {
+    filter.kernel = 11;
+    filter.sigma = 2.3;
+  }
+  return filter;
+}
+
+std::optional<std::size_t> reach_beams(const EchoOptions& options) {
+  if (!options.min_range_m) return std::nullopt;
+  return (has_given_contrast(options) ? 0 : kContrastReach_beams) +
+         (options.detector == Detector::kCanny ? canny_reach_beams(options.canny) : 0);
 }
 
 }  // namespace pingvox

@@ -59,12 +59,28 @@ cv::Mat with_margins(const PolarImage& image, int margin) {
   return out;
 }
 
-PolarImage gaussian(const PolarImage& image, const FilterOptions& options) {
+cv::Mat smoothed(const cv::Mat& source, const FilterOptions& options) {
+  const cv::Size window(options.kernel, options.kernel);
+  cv::Mat out;
+  switch (options.filter) {
+    case Filter::kNone:
+      return source;
+    case Filter::kMean:
+      cv::blur(source, out, window, cv::Point(-1, -1), cv::BORDER_REPLICATE);
+      break;
+    case Filter::kMedian:
+      cv::medianBlur(source, out, options.kernel);  // it knows no other border than the outermost value repeated
+      break;
+    case Filter::kGaussian:
+      cv::GaussianBlur(source, out, window, options.sigma, options.sigma, cv::BORDER_REPLICATE);
+      break;
+  }
+  return out;
+}
+
+PolarImage smoothed(const PolarImage& image, const FilterOptions& options) {
   const int margin = options.kernel / 2;
-  const cv::Mat source = with_margins(image, margin);
-  cv::Mat smooth;
-  cv::GaussianBlur(source, smooth, cv::Size(options.kernel, options.kernel), options.sigma, options.sigma,
-                   cv::BORDER_REPLICATE);
+  const cv::Mat smooth = smoothed(with_margins(image, margin), options);
   PolarImage out = image;
   for (std::size_t n = 0; n < out.rows(); ++n) {
     const auto* row = smooth.ptr<std::uint8_t>(static_cast<int>(n) + margin);
@@ -88,19 +104,17 @@ PolarImage filtered(const PolarImage& image, const FilterOptions& options) {
   assert(options.validate());
   const bool fits = image.rows() < INT_MAX / 2 && image.columns() < INT_MAX;  // OpenCV counts in int
   assert(fits);
-  if (image.rows() == 0 || image.columns() == 0 || !fits) return image;
+  if (options.filter == Filter::kNone || image.rows() == 0 || image.columns() == 0 || !fits) return image;
   try {
-    switch (options.filter) {
-      case Filter::kNone:
-        return image;
-      case Filter::kGaussian:
-        return gaussian(image, options);
-    }
+    return smoothed(image, options);
   } catch (const cv::Exception&) {
     // For valid arguments it has only one reason: no memory. Then the same happens as when a vector of ours gets none.
     throw std::bad_alloc();
   }
-  return image;
+}
+
+std::size_t reach_beams(const FilterOptions& options) {
+  return options.filter == Filter::kNone ? 0 : 2 * static_cast<std::size_t>(options.kernel / 2);
 }
 
 }  // namespace pingvox

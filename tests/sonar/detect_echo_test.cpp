@@ -12,8 +12,10 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr double kBin_m = 0.1;
+constexpr int kThreshold = 70;
 
-std::optional<Echo> echo_of(std::vector<std::uint8_t> bins, EchoOptions options = {.min_range_m = 0.0},
+std::optional<Echo> echo_of(std::vector<std::uint8_t> bins,
+                            EchoOptions options = {.min_range_m = 0.0, .threshold = kThreshold},
                             double bin_length_m = kBin_m) {
   Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(1)};
   sweep.beams[0].bin_length_m = bin_length_m;
@@ -79,12 +81,13 @@ TEST(Rise, MayBeInTheLastBinAndInTheWholeRangeOfIntensities) {
 
 TEST(Blanking, NeverUsesANearerBinNotEvenAsTheFootOfARise) {
   // The step at bin 3 lies between a blanked bin and the first that counts.
-  EXPECT_FALSE(echo_of({0, 0, 0, 200, 200, 200}, {.min_range_m = 0.3}));
-  const auto echo = echo_of({0, 200, 0, 0, 200, 0}, {.min_range_m = 0.3});
+  EXPECT_FALSE(echo_of({0, 0, 0, 200, 200, 200}, {.min_range_m = 0.3, .threshold = kThreshold}));
+  const auto echo = echo_of({0, 200, 0, 0, 200, 0}, {.min_range_m = 0.3, .threshold = kThreshold});
   ASSERT_TRUE(echo);
   EXPECT_EQ(echo->first, 4U);
-  EXPECT_FALSE(echo_of({0, 0, 200}, {.min_range_m = 0.15})) << "bin 1 lies half inside the blanking range";
-  EXPECT_FALSE(echo_of({0, 200}, {.min_range_m = 1e9}));
+  EXPECT_FALSE(echo_of({0, 0, 200}, {.min_range_m = 0.15, .threshold = kThreshold}))
+      << "bin 1 lies half inside the blanking range";
+  EXPECT_FALSE(echo_of({0, 200}, {.min_range_m = 1e9, .threshold = kThreshold}));
 }
 
 TEST(Blanking, IsNotABinOffByRounding) {
@@ -96,8 +99,9 @@ TEST(Blanking, IsNotABinOffByRounding) {
       std::vector<std::uint8_t> bins(n + 2, 0);
       bins[n + 1] = 200;
       const double range_m = static_cast<double>(n) * bin_m;
-      EXPECT_TRUE(echo_of(bins, {.min_range_m = range_m}, bin_m)) << "bin n counts";
-      EXPECT_FALSE(echo_of(bins, {.min_range_m = range_m + 0.5 * bin_m}, bin_m)) << "bin n does not";
+      EXPECT_TRUE(echo_of(bins, {.min_range_m = range_m, .threshold = kThreshold}, bin_m)) << "bin n counts";
+      EXPECT_FALSE(echo_of(bins, {.min_range_m = range_m + 0.5 * bin_m, .threshold = kThreshold}, bin_m))
+          << "bin n does not";
     }
   }
 }
@@ -107,7 +111,7 @@ TEST(Blanking, GoesByEachBeamsOwnBinLength) {
   for (Beam& beam : sweep.beams) beam.intensities = {0, 0, 200, 0, 0, 0, 0, 200, 0, 0};
   sweep.beams[0].bin_length_m = 0.1;
   sweep.beams[1].bin_length_m = 0.5;
-  const auto echoes = detect_echoes(PolarImage(sweep), sweep, {.min_range_m = 0.45});
+  const auto echoes = detect_echoes(PolarImage(sweep), sweep, {.min_range_m = 0.45, .threshold = kThreshold});
   ASSERT_TRUE(echoes[0] && echoes[1]);
   EXPECT_EQ(echoes[0]->peak, 7U);
   EXPECT_DOUBLE_EQ(echoes[0]->range_m, 0.75);
@@ -117,8 +121,8 @@ TEST(Blanking, GoesByEachBeamsOwnBinLength) {
 
 TEST(MaxRange, CutsWhatLiesBeyondItOrAcrossIt) {
   const std::vector<std::uint8_t> bins{0, 0, 100, 200, 0};
-  EXPECT_FALSE(echo_of(bins, {.min_range_m = 0.0, .max_range_m = 0.25}));
-  const auto echo = echo_of(bins, {.min_range_m = 0.0, .max_range_m = 0.3});
+  EXPECT_FALSE(echo_of(bins, {.min_range_m = 0.0, .max_range_m = 0.25, .threshold = kThreshold}));
+  const auto echo = echo_of(bins, {.min_range_m = 0.0, .max_range_m = 0.3, .threshold = kThreshold});
   ASSERT_TRUE(echo);
   EXPECT_EQ(echo->intensity, 100) << "bin 3 lies beyond";
 }
@@ -131,7 +135,7 @@ TEST(Detection, IgnoresWhatFillsUpAShortBeam) {
   PolarImage image(sweep);
   image.row(1)[4] = 255;
   image.row(2)[4] = 255;
-  const auto echoes = detect_echoes(image, sweep, {.min_range_m = 0.0});
+  const auto echoes = detect_echoes(image, sweep, {.min_range_m = 0.0, .threshold = kThreshold});
   ASSERT_EQ(echoes.size(), 3U);
   EXPECT_TRUE(echoes[0]);
   EXPECT_FALSE(echoes[1]);
@@ -156,8 +160,8 @@ TEST(Detection, KeepsItsPromisesOnAnyBeam) {
     EXPECT_LE(echo->peak, echo->last);
     ASSERT_LT(echo->last, bins.size());
     EXPECT_EQ(echo->intensity, bins[echo->peak]);
-    EXPECT_GE(echo->intensity, options.threshold);
-    EXPECT_GE(kBin_m * static_cast<double>(echo->first), options.min_range_m - 1e-9);
+    EXPECT_GE(echo->intensity, *options.threshold);
+    EXPECT_GE(kBin_m * static_cast<double>(echo->first), *options.min_range_m - 1e-9);
     EXPECT_GT(echo->range_m, kBin_m * static_cast<double>(echo->first));
     EXPECT_LT(echo->range_m, kBin_m * static_cast<double>(echo->last + 1));
     EXPECT_LE(echo->range_m, options.max_range_m);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -15,6 +16,8 @@ using testing::Each;
 using testing::HasSubstr;
 using Wrap = PolarImage::Wrap;
 
+constexpr std::array kFilters = {Filter::kMean, Filter::kMedian, Filter::kGaussian};
+
 PolarImage random_image(std::mt19937_64& random, std::size_t rows, std::size_t columns, Wrap wrap) {
   PolarImage image(std::vector(rows, columns), columns, wrap);
   for (std::size_t n = 0; n < rows; ++n) {
@@ -23,34 +26,53 @@ PolarImage random_image(std::mt19937_64& random, std::size_t rows, std::size_t c
   return image;
 }
 
-/// The definition, written to be obviously right: a weighted mean over the square window.
+/// The definitions, written to be obviously right: a weighted mean, or the middle one, of the square window.
 double smoothed_pixel(const PolarImage& image, int n, int i, const FilterOptions& options) {
   const int rows = static_cast<int>(image.rows());
   const int columns = static_cast<int>(image.columns());
   double sum = 0.0;
   double weights = 0.0;
+  std::vector<std::uint8_t> window;
   for (int down = -(options.kernel / 2); down <= options.kernel / 2; ++down) {
     for (int right = -(options.kernel / 2); right <= options.kernel / 2; ++right) {
-      const double weight = std::exp(-0.5 * (down * down + right * right) / (options.sigma * options.sigma));
+      const double gaussian = std::exp(-0.5 * (down * down + right * right) / (options.sigma * options.sigma));
+      const double weight = options.filter == Filter::kGaussian ? gaussian : 1.0;
       const int row =
           image.wrap() == Wrap::kAround ? (((n + down) % rows) + rows) % rows : std::clamp(n + down, 0, rows - 1);
       const int column = std::clamp(i + right, 0, columns - 1);
-      sum += weight * image.row(static_cast<std::size_t>(row))[static_cast<std::size_t>(column)];
+      window.push_back(image.row(static_cast<std::size_t>(row))[static_cast<std::size_t>(column)]);
+      sum += weight * window.back();
       weights += weight;
     }
   }
-  return sum / weights;
+  if (options.filter != Filter::kMedian) return sum / weights;
+  std::ranges::sort(window);
+  return window[window.size() / 2];
 }
 
-TEST(Filtered, IsTheGaussianMeanAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel) {
+/// How far a filter may be off the definition: fixed-point weights and rounding.
+double tolerance_of(Filter filter) {
+  switch (filter) {
+    case Filter::kGaussian:
+      return 1.5;
+    case Filter::kMean:
+      return 0.51;
+    case Filter::kMedian:
+    case Filter::kNone:
+      break;
+  }
+  return 0.0;
+}
+
+TEST(Filtered, IsWhatItsNameSaysAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel) {
   std::size_t checked = 0;
-  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 360; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const std::size_t rows = 1 + random() % 20;
     const std::size_t columns = 1 + random() % 20;
-    const PolarImage image = random_image(random, rows, columns, seed % 2 == 0 ? Wrap::kAround : Wrap::kNone);
-    const FilterOptions options{.filter = Filter::kGaussian,
+    const PolarImage image = random_image(random, rows, columns, seed / 3 % 2 == 0 ? Wrap::kAround : Wrap::kNone);
+    const FilterOptions options{.filter = kFilters[seed % kFilters.size()],
                                 .kernel = static_cast<int>(1 + 2 * (random() % 8)),
                                 .sigma = 0.5 + static_cast<double>(random() % 30) / 10.0};
     SCOPED_TRACE(testing::Message() << rows << " x " << columns << ", " << options.kernel << ", " << options.sigma);
@@ -60,22 +82,26 @@ TEST(Filtered, IsTheGaussianMeanAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel
     EXPECT_EQ(out.wrap(), image.wrap());
     for (std::size_t n = 0; n < rows; ++n) {
       for (std::size_t i = 0; i < columns; ++i) {
-        // Fixed-point weights and rounding.
-        EXPECT_NEAR(out.row(n)[i], smoothed_pixel(image, static_cast<int>(n), static_cast<int>(i), options), 1.5);
+        EXPECT_NEAR(out.row(n)[i], smoothed_pixel(image, static_cast<int>(n), static_cast<int>(i), options),
+                    tolerance_of(options.filter));
         ++checked;
       }
     }
   }
-  EXPECT_GT(checked, 10'000U);
+  EXPECT_GT(checked, 30'000U);
 }
 
 TEST(Filtered, TakesTheLargestKernelOnTheSmallestImages) {
   for (const Wrap wrap : {Wrap::kAround, Wrap::kNone}) {
-    PolarImage image({1}, 1, wrap);
-    image.row(0)[0] = 200;
-    EXPECT_THAT(filtered(image, {.filter = Filter::kGaussian, .kernel = 99, .sigma = 30.0}).row(0), Each(200));
-    EXPECT_EQ(filtered(PolarImage({}, 0, wrap), {}).rows(), 0U);
-    EXPECT_EQ(filtered(PolarImage({0, 0}, 0, wrap), {}).rows(), 2U);
+    for (const Filter filter : kFilters) {
+      SCOPED_TRACE(static_cast<int>(filter));
+      PolarImage image({1}, 1, wrap);
+      image.row(0)[0] = 200;
+      const FilterOptions options{.filter = filter, .kernel = 99, .sigma = 30.0};
+      EXPECT_THAT(filtered(image, options).row(0), Each(200));
+      EXPECT_EQ(filtered(PolarImage({}, 0, wrap), options).rows(), 0U);
+      EXPECT_EQ(filtered(PolarImage({0, 0}, 0, wrap), options).rows(), 2U);
+    }
   }
 }
 
@@ -89,12 +115,41 @@ TEST(Filtered, LeavesTheImageAloneWithoutAFilter) {
 TEST(Filtered, DoesNotDarkenTheEndsOfShortBeamsNorTheirNeighbours) {
   PolarImage image({8, 3, 0, 8, 5, 5, 5, 5, 5, 5, 5}, 8, Wrap::kAround);
   for (std::size_t n = 0; n < image.rows(); ++n) std::ranges::fill(image.row(n).first(image.bins_in(n)), 100);
-  const PolarImage out = filtered(image, {.filter = Filter::kGaussian, .kernel = 5, .sigma = 1.0});
-  for (std::size_t n = 0; n < out.rows(); ++n) {
-    SCOPED_TRACE(n);
-    EXPECT_THAT(out.row(n).first(out.bins_in(n)), Each(100));
-    EXPECT_THAT(out.row(n).subspan(out.bins_in(n)), Each(0)) << "bins that the beam does not have";
+  for (const Filter filter : kFilters) {
+    const PolarImage out = filtered(image, {.filter = filter, .kernel = 5, .sigma = 1.0});
+    for (std::size_t n = 0; n < out.rows(); ++n) {
+      SCOPED_TRACE(n);
+      EXPECT_THAT(out.row(n).first(out.bins_in(n)), Each(100));
+      EXPECT_THAT(out.row(n).subspan(out.bins_in(n)), Each(0)) << "bins that the beam does not have";
+    }
   }
+}
+
+TEST(Filtered, DependsOnNoBeamBeyondItsReach) {
+  std::size_t changed = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const FilterOptions options{
+        .filter = kFilters[seed % kFilters.size()], .kernel = static_cast<int>(1 + 2 * (random() % 4)), .sigma = 2.0};
+    std::vector<std::size_t> bins(30);
+    for (std::size_t& n : bins) n = random() % 12;
+    bins[15] = 11;
+    PolarImage image(bins, 11, Wrap::kNone);
+    for (std::size_t n = 0; n < image.rows(); ++n) {
+      for (std::uint8_t& pixel : image.row(n).first(bins[n])) pixel = static_cast<std::uint8_t>(random() % 256);
+    }
+    const PolarImage before = filtered(image, options);
+    for (std::uint8_t& pixel : image.row(15)) pixel = static_cast<std::uint8_t>(255 - pixel);
+    const PolarImage after = filtered(image, options);
+    for (std::size_t n = 0; n < image.rows(); ++n) {
+      const bool same = std::ranges::equal(before.row(n), after.row(n));
+      changed += same ? 0U : 1U;
+      const std::size_t distance = n < 15 ? 15 - n : n - 15;
+      EXPECT_TRUE(same || distance <= reach_beams(options)) << n;
+    }
+  }
+  EXPECT_GT(changed, 100U);
 }
 
 TEST(FilterOptions, NameEveryBrokenField) {

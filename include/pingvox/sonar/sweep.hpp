@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pingvox/sonar/beam.hpp"
@@ -46,6 +47,8 @@ class SweepAssembler {
   /// Returns what has been gathered since the last sweep (nullopt: nothing) and starts anew. A gathered turn counts as
   /// kTurn if the head had turned all the way round, its last step included, else kCut.
   std::optional<Sweep> finish();
+  /// The beams since the last sweep.
+  std::span<const Beam> gathered() const { return gathered_.beams; }
 
  private:
   /// How `beam`, turned by `delta_rad` since the beam before it, ends the gathered sweep; nullopt: it goes on.

@@ -1,0 +1,27 @@
+#include "sonar/bin_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pingvox/sonar/blanking.hpp"
+
+namespace pingvox {
+
+std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& options) {
+  // 0.75 m / 0.0125 m may come out as 60.000000000000007, which is bin 60 and not 61.
+  constexpr double kRounding_bins = 1e-6;
+  const double min_range_m = options.min_range_m ? *options.min_range_m : blanking_range_m(image, sweep);
+  std::vector<BinWindow> windows;
+  windows.reserve(image.rows());
+  for (std::size_t n = 0; n < image.rows(); ++n) {
+    const double bins = static_cast<double>(image.bins_in(n));
+    const double bin_length_m = sweep.beams[n].bin_length_m;
+    const double begin = std::ceil(min_range_m / bin_length_m - kRounding_bins);
+    const double end = std::floor(options.max_range_m / bin_length_m + kRounding_bins);
+    windows.push_back({.begin = std::max(static_cast<std::size_t>(std::clamp(begin, 0.0, bins)), options.min_bin),
+                       .end = static_cast<std::size_t>(std::clamp(end, 0.0, bins))});
+  }
+  return windows;
+}
+
+}  // namespace pingvox

@@ -1,0 +1,99 @@
+#include "sonar/contrast.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <deque>
+#include <optional>
+#include <span>
+
+namespace pingvox {
+namespace {
+
+/// What is to be heard in one beam.
+struct Loudness {
+  int rise;      ///< the largest one within kRise_bins
+  double noise;  ///< median difference of bins a few apart
+};
+
+constexpr std::size_t kRise_bins = 48;  // longer than any wall's; a background that grows with the range is none
+constexpr std::size_t kApart_bins = 6;  // beyond the usual filter's window
+
+int largest_rise(std::span<const std::uint8_t> bins) {
+  int largest = 0;
+  std::deque<std::size_t> valleys;  // of the last kRise_bins: each lower than all those before it are gone
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    while (!valleys.empty() && bins[valleys.back()] >= bins[i]) valleys.pop_back();
+    valleys.push_back(i);
+    if (i - valleys.front() > kRise_bins) valleys.pop_front();
+    largest = std::max(largest, bins[i] - bins[valleys.front()]);
+  }
+  return largest;
+}
+
+/// Between whole numbers too: smoothed noise is often less than 2.
+double median_difference(std::span<const std::uint8_t> bins) {
+  if (bins.size() <= kApart_bins) return 0.0;
+  std::array<std::size_t, 256> counts{};
+  for (std::size_t i = kApart_bins; i < bins.size(); ++i) {
+    ++counts[static_cast<std::size_t>(std::abs(bins[i] - bins[i - kApart_bins]))];
+  }
+  const double half = 0.5 * static_cast<double>(bins.size() - kApart_bins);
+  double below = 0.0;
+  std::size_t value = 0;
+  while (below + static_cast<double>(counts[value]) < half) below += static_cast<double>(counts[value++]);
+  const double share = (half - below) / static_cast<double>(counts[value]);
+  return value == 0 ? 0.5 * share : static_cast<double>(value) - 0.5 + share;
+}
+
+template <class T>
+T ranked(std::vector<T>& values, std::size_t rank) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::ranges::nth_element(values, place);
+  return *place;
+}
+
+int contrast_of(std::vector<int>& rises, std::vector<double>& noises) {
+  constexpr int kLeastRise = 14;  // of 255, where there is no noise at all
+  if (rises.empty()) return kLeastRise;
+  const int rise = ranked(rises, rises.size() * 3 / 4);
+  const double noise = ranked(noises, noises.size() / 2);
+  if (rise >= std::max<double>(kLeastRise, 10.0 * noise)) return (rise + 1) / 2;
+  return std::max(kLeastRise, static_cast<int>(std::ceil(20.0 * noise)));
+}
+
+}  // namespace
+
+std::vector<int> usual_contrasts(const PolarImage& image, const std::vector<BinWindow>& windows) {
+  std::vector<std::optional<Loudness>> heard(image.rows());
+  for (std::size_t n = 0; n < image.rows(); ++n) {
+    const auto [begin, end] = windows[n];
+    if (begin >= end) continue;
+    const std::span<const std::uint8_t> bins = image.row(n).subspan(begin, end - begin);
+    heard[n] = Loudness{largest_rise(bins), median_difference(bins)};
+  }
+  const auto rows = static_cast<std::ptrdiff_t>(image.rows());
+  constexpr auto kReach = static_cast<std::ptrdiff_t>(kContrastReach_beams);
+  std::vector<int> contrasts;
+  contrasts.reserve(image.rows());
+  std::vector<int> rises;
+  std::vector<double> noises;
+  for (std::ptrdiff_t n = 0; n < rows; ++n) {
+    rises.clear();
+    noises.clear();
+    for (std::ptrdiff_t at = n - kReach; at <= n + kReach; ++at) {
+      const bool inside = at >= 0 && at < rows;
+      if (!inside && image.wrap() == PolarImage::Wrap::kNone) continue;
+      const std::optional<Loudness>& loudness = heard[static_cast<std::size_t>((at % rows + rows) % rows)];
+      if (!loudness) continue;
+      rises.push_back(loudness->rise);
+      noises.push_back(loudness->noise);
+    }
+    contrasts.push_back(contrast_of(rises, noises));
+  }
+  return contrasts;
+}
+
+}  // namespace pingvox

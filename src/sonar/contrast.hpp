@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pingvox/sonar/polar_image.hpp"
+#include "sonar/bin_window.hpp"
+
+namespace pingvox {
+
+/// How many beams to either side decide about one beam's contrast.
+inline constexpr std::size_t kContrastReach_beams = 16;
+
+/// The rise of intensity that makes an echo, by the gain that each beam was heard with: half of the largest rise of
+/// the beams around it (their upper quartile), which is about 70 in the paper's recording. Where that rise is not ten
+/// times the noise (the median difference of bins six apart), only noise is heard, and an echo needs a rise of twenty
+/// times the noise. 7 or more.
+std::vector<int> usual_contrasts(const PolarImage& image, const std::vector<BinWindow>& windows);
+
+}  // namespace pingvox

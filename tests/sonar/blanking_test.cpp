@@ -1,0 +1,78 @@
+#include "pingvox/sonar/blanking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "pingvox/sonar/detect_echo.hpp"
+#include "pingvox/sonar/filters.hpp"
+#include "support/tank_recording.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr double kBin_m = 0.05;
+
+/// A turn of a head that rings over its first `ringing` bins, with a wall somewhere behind it in each beam.
+Sweep ringing_turn(std::mt19937_64& random, std::size_t ringing, int loudness, std::size_t beams = 60) {
+  Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(beams)};
+  for (Beam& beam : sweep.beams) {
+    beam.bin_length_m = kBin_m;
+    beam.intensities.resize(200);
+    const std::size_t wall = 40 + random() % 150;
+    for (std::size_t i = 0; i < 200; ++i) {
+      const int heard = (i < ringing ? loudness : 0) + (i >= wall && i < wall + 6 ? 150 : 0);
+      beam.intensities[i] = static_cast<std::uint8_t>(heard + static_cast<int>(random() % 12));
+    }
+  }
+  return sweep;
+}
+
+TEST(BlankingRange, IsFoundAtTheEndOfWhatIsInEveryBeam) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const std::size_t ringing = 3 + random() % 30;
+    const Sweep sweep = ringing_turn(random, ringing, static_cast<int>(40 + random() % 100));
+    const double found_m = blanking_range_m(PolarImage(sweep), sweep);
+    const double end_m = static_cast<double>(ringing) * kBin_m;
+    EXPECT_GE(found_m, end_m - 1e-9);
+    EXPECT_LE(found_m, end_m + 0.25) << "a few bins of noise may go on falling";
+  }
+}
+
+TEST(BlankingRange, IsNoneWithoutRingingAndUsualInAFewBeams) {
+  std::mt19937_64 random(5);
+  const Sweep silent = ringing_turn(random, 0, 0);
+  EXPECT_EQ(blanking_range_m(PolarImage(silent), silent), 0.0);
+  const Sweep few = ringing_turn(random, 20, 100, 31);
+  EXPECT_EQ(blanking_range_m(PolarImage(few), few), EchoOptions::kUsualBlanking_m);
+  const Sweep none;
+  EXPECT_EQ(blanking_range_m(PolarImage(none), none), EchoOptions::kUsualBlanking_m);
+}
+
+TEST(BlankingRange, IsAtMostHalfOfTheRange) {
+  Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(40)};
+  for (Beam& beam : sweep.beams) {
+    beam.bin_length_m = kBin_m;
+    beam.intensities.assign(100, 200);
+    for (std::size_t i = 60; i < 100; ++i) beam.intensities[i] = 0;
+  }
+  EXPECT_LE(blanking_range_m(PolarImage(sweep), sweep), 2.5);
+}
+
+TEST(BlankingRange, FoundInTheTankRecordingEndsBetweenTheRingingAndTheWalls) {
+  std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
+  if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
+  for (std::size_t turn = 0; turn < 28; ++turn) {
+    SCOPED_TRACE(turn);
+    const auto first = beams.begin() + static_cast<std::ptrdiff_t>(200 * turn);
+    const Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = {first, first + 200}};
+    const double found_m = blanking_range_m(filtered(PolarImage(sweep), {}), sweep);
+    EXPECT_GT(found_m, 0.3);
+    EXPECT_LT(found_m, 1.2);
+  }
+}
+
+}  // namespace
+}  // namespace pingvox
