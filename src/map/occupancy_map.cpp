@@ -280,6 +280,7 @@ Editor::Editor(OccupancyMap& map, Pruning pruning)
   }
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): std::visit throws for a variant without a value, which ours never is
 Editor::~Editor() {
   synchronize();
 }

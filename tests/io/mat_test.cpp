@@ -144,7 +144,7 @@ TEST(Mat, ConvertsFromEachTypeInWhichNumbersAreStored) {
 TEST(Mat, LeavesDamagedRecordsOutAndNamesTheFirstWhenAsked) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto number = [](float value) { return mat5_writer::numbers<float>(7, 7, {value}, kLittle); };
-  const auto bins = [](std::vector<float> values) { return mat5_writer::numbers<float>(7, 7, values, kLittle); };
+  const auto bins = [](const std::vector<float>& values) { return mat5_writer::numbers<float>(7, 7, values, kLittle); };
   const Bytes empty = mat5_writer::element(14, {}, kLittle);
   Bytes too_few = mat5_writer::matrix_head(7, {1, 2}, "", kLittle);
   mat5_writer::append(too_few, mat5_writer::element(7, {0, 0, 0, 0}, kLittle));
