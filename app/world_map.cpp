@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace pingvox::app {
@@ -43,8 +44,11 @@ class Grid {
  public:
   enum class Kind : std::uint8_t { kUnknown, kWater, kSurface };
 
-  Grid(const Cell& low, const Cell& size, double resolution_m)
-      : low_(low), size_(size), resolution_m_(resolution_m), kinds_(static_cast<std::size_t>(size.prod())) {}
+  Grid(Cell low, Cell size, double resolution_m)
+      : low_(std::move(low)),
+        size_(std::move(size)),
+        resolution_m_(resolution_m),
+        kinds_(static_cast<std::size_t>(size_.prod())) {}
 
   Kind& at(const Cell& c) { return kinds_[static_cast<std::size_t>(c.x() + size_.x() * (c.y() + size_.y() * c.z()))]; }
 

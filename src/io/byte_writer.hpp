@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -23,8 +24,8 @@ class ByteWriter {
   template <class T>
     requires std::is_arithmetic_v<T>
   void put(T value) {
-    std::uint8_t raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
+    std::array<std::uint8_t, sizeof(T)> raw;
+    std::memcpy(raw.data(), &value, sizeof(T));
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       buffer_.push_back(raw[std::endian::native == std::endian::little ? i : sizeof(T) - 1 - i]);
     }

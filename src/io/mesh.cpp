@@ -61,7 +61,7 @@ bool is_full(const TriangleMesh& mesh) {
 
 class Words {
  public:
-  explicit Words(Lines lines) : lines_(std::move(lines)) {}
+  explicit Words(Lines lines) : lines_(lines) {}
 
   std::optional<std::string_view> next() {
     for (;;) {

@@ -337,7 +337,8 @@ Scene cave_scene(const CaveOptions& o) {
   }
   const std::size_t there = scene.loop.waypoints_m.size();
   for (std::size_t n = there; n-- > 0;) {
-    scene.loop.waypoints_m.push_back(scene.loop.waypoints_m[n] + Vector3d(0.0, 2.0 * off, 0.0));
+    const Vector3d back = scene.loop.waypoints_m[n] + Vector3d(0.0, 2.0 * off, 0.0);
+    scene.loop.waypoints_m.push_back(back);
   }
   scene.loop.end = Route::End::kStarts;
   for (double x = -1.0; x <= last; x += 2.0) {

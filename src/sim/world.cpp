@@ -261,8 +261,9 @@ TriangleMesh heightfield(const std::vector<double>& heights_m, std::size_t colum
   std::vector<Vector3d> vertices;
   vertices.reserve(heights_m.size());
   for (std::size_t i = 0; i < heights_m.size(); ++i) {
+    const std::size_t row = i / columns;
     vertices.emplace_back(corner_m + Vector3d(static_cast<double>(i % columns) * step_m,
-                                              static_cast<double>(i / columns) * step_m, heights_m[i]));
+                                              static_cast<double>(row) * step_m, heights_m[i]));
   }
   return grid(std::move(vertices), columns);
 }

@@ -158,7 +158,7 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
 
 void draw_footer(Picture& picture, std::ptrdiff_t top, double metres_per_pixel, const MapColours& colours) {
   constexpr std::ptrdiff_t kSwatch = 18, kGap = 8;
-  constexpr double kScaleBar = 200.0;  // at most, in pixels
+  constexpr double kScaleBar = 130.0;  // at most, in pixels: the legend needs the rest of the narrowest picture
   const std::ptrdiff_t text_y = top + 1;
 
   // A lattice may be larger than doubles can say.

@@ -187,7 +187,7 @@ TEST(TriangleTree, FindsWhatLookingAtEachTriangleFinds) {
     TriangleMesh mesh;
     for (std::uint32_t n = 0; n < 300; ++n) {
       const Vector3d at = point(random, 3.0);
-      for (int corner = 0; corner < 3; ++corner) mesh.vertices_m.push_back(at + point(random, 1.0));
+      for (int corner = 0; corner < 3; ++corner) mesh.vertices_m.emplace_back(at + point(random, 1.0));
       mesh.triangles.push_back({3 * n, 3 * n + 1, 3 * n + 2});
     }
     World all;
@@ -219,7 +219,9 @@ TEST(TriangleTree, FindsWhatLookingAtEachTriangleFinds) {
 TEST(Heightfield, IsCrossedAtItsHeights) {
   const std::size_t columns = 5;
   std::vector<double> heights;
-  for (int i = 0; i < 20; ++i) heights.push_back(0.1 * (i % 5) + 0.2 * static_cast<double>(i / 5));
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 5; ++column) heights.push_back(0.1 * column + 0.2 * row);
+  }
   World world;
   world.add(heightfield(heights, columns, {-1.0, -1.0, -3.0}, 0.5));
   for (const double x : {-0.9, 0.13, 0.8}) {
