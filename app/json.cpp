@@ -80,6 +80,14 @@ JsonObject& JsonObject::add(std::string_view key, const Eigen::Vector3d& value) 
 JsonObject& JsonObject::add(std::string_view key, const JsonObject& value) {
   return add_text(key, value.text());
 }
+JsonObject& JsonObject::add(std::string_view key, std::span<const JsonObject> values) {
+  std::string json = "[";
+  for (const JsonObject& value : values) json += (json.size() > 1 ? ",\n" : "\n") + value.text();
+  return add_text(key, json + "\n]");
+}
+JsonObject& JsonObject::add_truth(std::string_view key, bool value) {
+  return add_text(key, value ? "true" : "false");
+}
 JsonObject& JsonObject::add_null(std::string_view key) {
   return add_text(key, "null");
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,8 @@ class JsonObject {
   JsonObject& add(std::string_view key, const char* value) { return add(key, std::string_view(value)); }
   JsonObject& add(std::string_view key, const Eigen::Vector3d& value);  ///< [x, y, z]
   JsonObject& add(std::string_view key, const JsonObject& value);
+  JsonObject& add(std::string_view key, std::span<const JsonObject> values);  ///< an array, each on its own line
+  JsonObject& add_truth(std::string_view key, bool value);                    ///< true or false
   JsonObject& add_null(std::string_view key);
 
   /// The object on one line, without a line break at its end.

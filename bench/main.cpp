@@ -1,0 +1,145 @@
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench.hpp"
+
+namespace {
+
+using namespace pingvox;
+using namespace pingvox::bench;
+
+constexpr int kDone = 0, kCouldNotBeDone = 1, kWordsAreOff = 2;
+
+constexpr std::string_view kUsage =
+    "Usage: pingvox bench NAME... | all | list [--json] [--markdown] [--pictures DIR]\n"
+    "Measures pingvox, beside OctoMap where that does the same work: each result is checked before it is timed.\n"
+    "\n"
+    "  NAME            one of `list`\n"
+    "  all             each benchmark of speed, and what a vehicle asks for\n"
+    "  list            their names\n"
+    "  --json          one JSON object on standard output\n"
+    "  --markdown      tables in Markdown\n"
+    "  --pictures DIR  draw charts (and the paper's figures) into a folder\n"
+    "  --quiet         say nothing on standard error while it runs\n";
+
+enum class Form { kTable, kJson, kMarkdown };
+
+struct Call {
+  std::vector<const Bench*> chosen;
+  Form form = Form::kTable;
+  BenchOptions options;
+  bool shows_usage = false, shows_list = false;
+};
+
+void complain(std::string_view message) {
+  fmt::print(stderr, "pingvox: bench: {}\n", message);
+}
+
+void say(std::string_view line) {
+  fmt::print(stderr, "{}\n", line);
+}
+
+bool is_in_all(const Bench& bench) {
+  return bench.family == Family::kSpeed || bench.family == Family::kVehicle;
+}
+
+/// kBadOption when the words are off.
+Result<Call> parsed(const std::vector<std::string>& words) {
+  Call call;
+  call.options.say = &say;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    const std::size_t before = call.chosen.size();
+    if (word == "--json") {
+      call.form = Form::kJson;
+    } else if (word == "--markdown") {
+      call.form = Form::kMarkdown;
+    } else if (word == "--quiet") {
+      call.options.say = nullptr;
+    } else if (word == "--help" || word == "-h") {
+      call.shows_usage = true;
+    } else if (word == "--pictures") {
+      if (++i == words.size()) return fail(Error::Code::kBadOption, "--pictures wants a folder");
+      call.options.pictures = words[i];
+    } else if (word == "list") {
+      call.shows_list = true;
+    } else {
+      for (const Bench& bench : benches()) {
+        if (bench.name == word || (word == "all" && is_in_all(bench))) call.chosen.push_back(&bench);
+      }
+      if (call.chosen.size() == before) {
+        return fail(Error::Code::kBadOption, fmt::format("there is no '{}'; `pingvox bench list` has the names", word));
+      }
+    }
+  }
+  if (call.chosen.empty() && !call.shows_list) call.shows_usage = true;
+  return call;
+}
+
+std::string list() {
+  std::string out;
+  for (const Bench& bench : benches()) out += fmt::format("{:<14} {}\n", bench.name, bench.what);
+  return out;
+}
+
+std::string json_of(const std::vector<Row>& rows) {
+  std::vector<app::JsonObject> objects;
+  objects.reserve(rows.size());
+  for (const Row& row : rows) objects.push_back(row.json());
+  if (objects.size() == 1) return objects.front().text() + "\n";
+  app::JsonObject all;
+  all.add("benches", objects);
+  return all.text() + "\n";
+}
+
+int run(const Call& call) {
+  std::vector<Row> rows;
+  int status = kDone;
+  for (const Bench* bench : call.chosen) {
+    if (call.options.say != nullptr) say(fmt::format("{}: {} ...", bench->name, bench->what));
+    const Result<std::vector<Row>> result = bench->run(call.options);
+    if (!result) {
+      complain(fmt::format("{}: {}", bench->name, result.error().message));
+      status = kCouldNotBeDone;
+      continue;
+    }
+    rows.insert(rows.end(), result->begin(), result->end());
+  }
+  const std::string out = call.form == Form::kJson       ? json_of(rows)
+                          : call.form == Form::kMarkdown ? markdown_of(rows)
+                                                         : table_of(rows);
+  if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0) {
+    complain("standard output does not take the result");
+    return kCouldNotBeDone;
+  }
+  return status;
+}
+
+int called_with(const std::vector<std::string>& words) {
+  const Result<Call> call = parsed(words);
+  if (!call) {
+    complain(call.error().message);
+    return kWordsAreOff;
+  }
+  if (call->shows_usage || call->shows_list) {
+    fmt::print("{}", call->shows_usage ? std::string(kUsage) : list());
+    return kDone;
+  }
+  return run(*call);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return called_with({argv + 1, argv + argc});
+  } catch (const std::exception& exception) {
+    complain(exception.what());
+    return kCouldNotBeDone;
+  }
+}
