@@ -12,6 +12,8 @@ endif()
 function(pingvox_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_CLANG_TIDY "${PINGVOX_CLANG_TIDY_COMMAND}")
+  # A product and a sum rounded at once would make cells depend on the processor.
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
   target_compile_options(
     ${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast
                       -Woverloaded-virtual $<$<BOOL:${PINGVOX_WARNINGS_AS_ERRORS}>:-Werror>)
@@ -26,7 +28,8 @@ endfunction()
 # pingvox_layer(NAME [DEPENDS LAYER...]): one folder of src/ and include/pingvox/ as one target.
 function(pingvox_layer name)
   cmake_parse_arguments(LAYER "" "" "DEPENDS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp"
+       "${PROJECT_SOURCE_DIR}/src/${name}/kernels/*.cpp")
   list(TRANSFORM LAYER_DEPENDS PREPEND pingvox_)
   if(sources)
     add_library(pingvox_${name} STATIC ${sources})

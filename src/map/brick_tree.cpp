@@ -145,7 +145,9 @@ bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
   for (std::uint64_t left = is_miss_negative ? votes.hit : votes.missed | votes.hit; left != 0; left &= left - 1) {
     const auto cell = static_cast<std::size_t>(std::countr_zero(left));
     const std::uint64_t bit = left & (~left + 1);
-    const LogOdds evidence = (votes.hit & bit) != 0 ? LogOdds(votes.hits[cell]) : votes.miss;
+    const LogOdds evidence = (votes.hit & bit) == 0  ? votes.miss
+                             : votes.hits == nullptr ? votes.all_hits
+                                                     : LogOdds(votes.hits[cell]);
     if (evidence == LogOdds(0.0F)) continue;
     const float after = added(brick.value[cell], evidence, clamp);
     changed |= after != brick.value[cell] || (brick.known & bit) == 0;

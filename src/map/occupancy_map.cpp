@@ -75,7 +75,8 @@ void for_each_brick(const ScanUpdate& scan, F&& f) {
       };
       const auto lowest = page.lowest.as<W>();
       const BasicKey<W> key{lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
-      f(key, detail::Votes{missed, scan.miss(), hit, hit != 0 ? scan.evidence(page, brick) : nullptr});
+      const ScanUpdate::Hits hits = hit != 0 ? scan.hits(page, brick) : ScanUpdate::Hits{};
+      f(key, detail::Votes{missed, scan.miss(), hit, hits.of_cell, hits.all});
     }
   }
 }

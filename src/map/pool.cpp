@@ -29,11 +29,13 @@ std::size_t room_for(std::size_t size, std::size_t had) {
 void Arena::grow(std::size_t size) {
   if (size <= size_) return;
   const std::size_t room = room_for(size, size_);
-  void* const place = data_ == nullptr ? mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
-                                       : mremap(data_, size_, room, MREMAP_MAYMOVE);
+  void* const place = data_ == nullptr
+                          ? mmap(nullptr, room, PROT_READ | PROT_WRITE,
+                                 MAP_PRIVATE | MAP_ANONYMOUS | (pages_ == Pages::kSmall ? MAP_NORESERVE : 0), -1, 0)
+                          : mremap(data_, size_, room, MREMAP_MAYMOVE);
   if (place == MAP_FAILED) throw std::bad_alloc();
   // Only advice: where huge pages are off, nothing is lost but speed.
-  if (room >= kHugePage) madvise(place, room, MADV_HUGEPAGE);
+  if (pages_ == Pages::kHuge && room >= kHugePage) madvise(place, room, MADV_HUGEPAGE);
   data_ = static_cast<std::byte*>(place);
   size_ = room;
 }

@@ -1,6 +1,7 @@
 #include "pingvox/map/scan_update.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 
@@ -97,22 +98,62 @@ std::uint32_t ScanUpdate::page_of(const WideKey& key) {
   return slots_[slot] - 1;
 }
 
+void ScanUpdate::spread_evidence(Page& page, std::size_t brick) {
+  if (evidence_used_ == evidence_.size()) evidence_.emplace_back();
+  page.evidence[brick] = static_cast<std::uint32_t>(evidence_used_++);
+  std::array<float, 64>& evidence = evidence_[page.evidence[brick]];
+  evidence.fill(std::numeric_limits<float>::lowest());
+  for (std::size_t cell = 0; cell < 64; ++cell) {
+    if (((page.hit[brick] >> cell) & 1) != 0) evidence[cell] = usual_hit_.value();
+  }
+}
+
 void ScanUpdate::mark_hit(std::uint32_t page_index, std::size_t cell, LogOdds evidence) {
   Page& page = pages_[page_index];
   const std::size_t brick = cell / 64;
-  if (page.hit[brick] == 0) {
-    if (evidence_used_ == evidence_.size()) evidence_.emplace_back();
-    page.evidence[brick] = static_cast<std::uint32_t>(evidence_used_++);
-    evidence_[page.evidence[brick]].fill(std::numeric_limits<float>::lowest());
-  }
+  if (!has_hits_) usual_hit_ = evidence;
+  has_hits_ = true;
+  if (page.hit[brick] == 0) page.evidence[brick] = kUsual;
+  if (page.evidence[brick] == kUsual && evidence != usual_hit_) spread_evidence(page, brick);
   page.hit[brick] |= std::uint64_t{1} << (cell % 64);
+  if (page.evidence[brick] == kUsual) return;
   float& surest = evidence_[page.evidence[brick]][cell % 64];
   surest = std::max(surest, evidence.value());
+}
+
+detail::ScanWindow& ScanUpdate::window(int bits) {
+  window_.open(bits);
+  return window_;
+}
+
+void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
+  std::uint64_t* const touched = window_.touched();
+  for (std::size_t word = 0; word < window_.touched_words(); ++word) {
+    for (std::uint64_t left = touched[word]; left != 0; left &= left - 1) {
+      const std::uint64_t number = word * 64 + static_cast<std::uint64_t>(std::countr_zero(left));
+      const std::uint32_t index = page_of({lowest.x + (detail::gathered_bits(number) << kPageBits),
+                                           lowest.y + (detail::gathered_bits(number >> 1) << kPageBits),
+                                           lowest.z + (detail::gathered_bits(number >> 2) << kPageBits)});
+      Page& page = pages_[index];
+      std::uint64_t* const missed = window_.missed() + number * 64;
+      std::uint64_t* const hits = window_.hit() + number * 64;
+      for (std::size_t brick = 0; brick < 64; ++brick) {
+        page.missed[brick] |= missed[brick];
+        for (std::uint64_t cells = hits[brick]; cells != 0; cells &= cells - 1) {
+          mark_hit(index, brick * 64 + static_cast<std::size_t>(std::countr_zero(cells)), hit);
+        }
+      }
+      std::fill_n(missed, 64, 0);
+      std::fill_n(hits, 64, 0);
+    }
+    touched[word] = 0;
+  }
 }
 
 void ScanUpdate::clear() {
   used_ = 0;
   evidence_used_ = 0;
+  has_hits_ = false;
   std::fill(slots_.begin(), slots_.end(), kFree);
 }
 

@@ -1,10 +1,21 @@
 #include "pingvox/map/trace_ray.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "map/kernels/ray_lanes.hpp"
 #include "pingvox/map/ray_bresenham.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
 namespace pingvox {
 namespace {
+
+/// What the last cells of rays say.
+enum class Ends { kHit, kNothing };
 
 /// Marks the cells of a ray, asking for a page only when the ray enters one.
 class Marker {
@@ -47,6 +58,173 @@ bool trace(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::V
   return true;
 }
 
+/// Traces many rays from one place: those that fit into a window of the scan several at a time, the others one by one.
+class FanTracer {
+ public:
+  /// @param some  ends of rays [m]; the window is made for them and may be too small for others
+  FanTracer(const Lattice& lattice, const Eigen::Vector3d& origin_m, const PointScanOptions& options,
+            std::span<const Eigen::Vector3d> some, ScanUpdate& scan)
+      : lattice_(lattice), origin_m_(origin_m), options_(options), scan_(scan) {
+    const int bits = window_bits(some);
+    if (options.ray != RayAlgorithm::kDda || some.size() < kFewRays || lattice.depth() <= ScanUpdate::kPageBits ||
+        bits > detail::ScanWindow::kMostBits) {
+      return;
+    }
+    window_ = &scan.window(bits);
+    place_window(bits);
+  }
+
+  /// Marks the cells of rays as missed but for their last ones.
+  /// @param ends  what these are: hit, or nothing is known of them
+  /// @return how many of them leave the lattice
+  std::size_t trace(std::span<const Eigen::Vector3d> ends_m, Ends ends) {
+    if (window_ == nullptr) return trace_singly(ends_m, ends);
+    std::size_t outside = 0;
+    for_each_block(ends_m, [&](std::span<const Eigen::Vector3d> block) {
+      others_.clear();
+      detail::prepare_rays(lanes_, fan_, block, ready_, others_);
+      if (ends == Ends::kHit) {
+        for (const detail::ReadyRay& ray : ready_) mark_hit(ray.end);
+      }
+      detail::mark_rays(lanes_, ready_, start_, *window_);
+      for (const std::uint32_t other : others_) outside += trace_singly(block.subspan(other, 1), ends);
+    });
+    return outside;
+  }
+
+  /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are.
+  std::vector<Eigen::Vector3d> cells_of(std::span<const Eigen::Vector3d> points_m) {
+    std::vector<Eigen::Vector3d> middles_m;
+    std::set<WideKey> seen;  // of those outside of the window
+    const auto add_singly = [&](const Eigen::Vector3d& point_m) {
+      const auto key = lattice_.key_of<WideWord>(point_m);
+      if (!key || seen.insert(*key).second) middles_m.push_back(key ? lattice_.centre_of(*key) : point_m);
+    };
+    if (window_ == nullptr) {
+      std::for_each(points_m.begin(), points_m.end(), add_singly);
+      return middles_m;
+    }
+    std::vector<std::uint64_t> found;
+    for_each_block(points_m, [&](std::span<const Eigen::Vector3d> block) {
+      places_.resize(block.size());
+      detail::find_cells(lanes_, fan_, block, places_);
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        if (places_[i] == detail::kNowhere) {
+          add_singly(block[i]);
+        } else if (mark_hit(places_[i])) {
+          found.push_back(places_[i]);
+        }
+      }
+    });
+    for (const std::uint64_t place : found) {
+      middles_m.push_back(lattice_.centre_of(key_at(place)));
+      // Marked only to know it again; whether it is a hit its range decides.
+      window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
+    }
+    return middles_m;
+  }
+
+  /// Hands what was marked to the scan. To be called last.
+  void finish() {
+    if (window_ != nullptr) scan_.take_window(key_of(fan_.window_lowest), options_.hit);
+  }
+
+ private:
+  // Below, opening and emptying a window costs more than it saves.
+  static constexpr std::size_t kFewRays = 16;
+  static constexpr std::size_t kBlock = 2048;
+
+  template <class F>
+  static void for_each_block(std::span<const Eigen::Vector3d> all, F&& f) {
+    for (std::size_t first = 0; first < all.size(); first += kBlock) {
+      f(all.subspan(first, std::min(kBlock, all.size() - first)));
+    }
+  }
+
+  std::size_t trace_singly(std::span<const Eigen::Vector3d> ends_m, Ends ends) {
+    std::size_t outside = 0;
+    for (const Eigen::Vector3d& end_m : ends_m) {
+      if (ends == Ends::kHit) {
+        if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_.add_hit(*end, options_.hit);
+      }
+      if (!trace_ray(lattice_, origin_m_, end_m, options_.ray, scan_)) ++outside;
+    }
+    return outside;
+  }
+
+  /// @return whether it was not marked before
+  bool mark_hit(std::uint64_t place) {
+    std::uint64_t& word = window_->hit()[place / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (place % 64);
+    if ((word & bit) != 0) return false;
+    word |= bit;
+    const std::uint64_t page = place >> detail::ScanWindow::kPageCellBits;
+    window_->touched()[page / 64] |= std::uint64_t{1} << (page % 64);
+    return true;
+  }
+
+  /// Of a window that holds the rays: a guess from some of them. More than there may be where it is of no use.
+  int window_bits(std::span<const Eigen::Vector3d> ends_m) const {
+    constexpr std::size_t kLooked = 1024;
+    const std::size_t apart = std::max<std::size_t>(1, ends_m.size() / kLooked);
+    double farthest_m = 0.0;
+    for (std::size_t i = 0; i < ends_m.size(); i += apart) {
+      farthest_m = std::max(farthest_m, (ends_m[i] - origin_m_).cwiseAbs().maxCoeff());
+    }
+    farthest_m = std::min(farthest_m, options_.max_range_m);
+    const double cells = 2.0 * (farthest_m / lattice_.resolution_m() + 1.0 + (1 << ScanUpdate::kPageBits));
+    // Farther out, doubles have gaps, and keys of deep lattices are no whole numbers of 64 bits.
+    const double farthest_cell = origin_m_.cwiseAbs().maxCoeff() / lattice_.resolution_m() + cells;
+    if (!(farthest_cell < 0x1p40)) return detail::ScanWindow::kMostBits + 1;
+    return std::max(ScanUpdate::kPageBits, std::ilogb(cells) + 1);
+  }
+
+  void place_window(int bits) {
+    fan_.cells_per_m = 1.0 / lattice_.resolution_m();
+    fan_.from = origin_m_ * fan_.cells_per_m;
+    const double edge = std::ldexp(1.0, bits), border = std::ldexp(1.0, lattice_.depth() - 1);
+    start_ = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto cell = static_cast<std::int64_t>(std::floor(fan_.from[static_cast<Eigen::Index>(a)]));
+      const std::int64_t lowest = cell - (std::int64_t{1} << (bits - 1));
+      // Pages begin at multiples of their size, counted from the centre of the lattice.
+      fan_.window_lowest[a] = (lowest >> ScanUpdate::kPageBits) * (1 << ScanUpdate::kPageBits);
+      const auto base = static_cast<double>(fan_.window_lowest[a]);
+      fan_.lowest[a] = std::max(base, -border);
+      fan_.highest[a] = std::min(base + edge, border) - 1.0;
+      start_ |= detail::spread_bits(static_cast<std::uint64_t>(cell - fan_.window_lowest[a])) << a;
+    }
+    // From outside of the lattice nothing is traced.
+    if (!lattice_.key_of<WideWord>(origin_m_)) fan_.highest.fill(-std::numeric_limits<double>::infinity());
+  }
+
+  WideKey key_of(const std::array<std::int64_t, 3>& cell) const {
+    const WideWord centre = WideWord{1} << (lattice_.depth() - 1);
+    const auto word = [&](std::int64_t n) {
+      return n < 0 ? centre - static_cast<WideWord>(-n) : centre + static_cast<WideWord>(n);
+    };
+    return {word(cell[0]), word(cell[1]), word(cell[2])};
+  }
+
+  WideKey key_at(std::uint64_t place) const {
+    std::array<std::int64_t, 3> cell = fan_.window_lowest;
+    for (std::size_t a = 0; a < 3; ++a) cell[a] += static_cast<std::int64_t>(detail::gathered_bits(place >> a));
+    return key_of(cell);
+  }
+
+  const Lattice& lattice_;
+  Eigen::Vector3d origin_m_;
+  const PointScanOptions& options_;
+  ScanUpdate& scan_;
+  detail::ScanWindow* window_ = nullptr;  ///< nullptr: every ray by itself
+  detail::RayFan fan_;
+  std::uint64_t start_ = 0;  ///< place of the cell where the rays begin
+  detail::Lanes lanes_ = detail::widest_lanes();
+  std::vector<detail::ReadyRay> ready_;
+  std::vector<std::uint32_t> others_;
+  std::vector<std::uint64_t> places_;
+};
+
 }  // namespace
 
 bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
@@ -56,23 +234,28 @@ bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eige
 
 std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
                          ScanUpdate& scan) {
+  FanTracer tracer(lattice, points.origin_m, options, points.points_m, scan);
+  std::vector<Eigen::Vector3d> middles_m;
+  if (options.ends == EndPoints::kCells) middles_m = tracer.cells_of(points.points_m);
+  const std::vector<Eigen::Vector3d>& ends_m = options.ends == EndPoints::kCells ? middles_m : points.points_m;
+
   std::size_t outside = 0;
-  for (const Eigen::Vector3d& point_m : points.points_m) {
-    const Eigen::Vector3d way_m = point_m - points.origin_m;
-    const double range_m = way_m.norm();
-    if (range_m > options.max_range_m) {
-      const Eigen::Vector3d end_m = points.origin_m + way_m * (options.max_range_m / range_m);
-      if (!trace_ray(lattice, points.origin_m, end_m, options.ray, scan)) ++outside;
-      continue;
+  if (!std::isfinite(options.max_range_m)) {
+    outside = tracer.trace(ends_m, Ends::kHit);
+  } else {
+    std::vector<Eigen::Vector3d> near_m, cut_m;
+    for (const Eigen::Vector3d& end_m : ends_m) {
+      const Eigen::Vector3d way_m = end_m - points.origin_m;
+      const double range_m = way_m.norm();
+      if (range_m > options.max_range_m) {
+        cut_m.emplace_back(points.origin_m + way_m * (options.max_range_m / range_m));
+      } else {
+        near_m.push_back(end_m);
+      }
     }
-    const auto end = lattice.key_of<WideWord>(point_m);
-    if (!end) {
-      ++outside;
-      continue;
-    }
-    scan.add_hit(*end, options.hit);
-    if (!trace_ray(lattice, points.origin_m, point_m, options.ray, scan)) ++outside;
+    outside = tracer.trace(near_m, Ends::kHit) + tracer.trace(cut_m, Ends::kNothing);
   }
+  tracer.finish();
   return outside;
 }
 

@@ -124,13 +124,14 @@ bool is_uniform(const Brick& brick);
 /// All cells of an octant known, and equal.
 bool is_uniform_octant(const Brick& brick, int octant);
 
-/// Evidence for the cells of one brick: `miss` where a bit of `missed` is set, hits[i] where bit i of `hit` is set.
-/// REQUIRES missed and hit to be disjoint.
+/// Evidence for the cells of one brick: `miss` where a bit of `missed` is set; where bit i of `hit` is set hits[i], or
+/// `all_hits` when there are none. REQUIRES missed and hit to be disjoint.
 struct Votes {
   std::uint64_t missed = 0;
   LogOdds miss;
   std::uint64_t hit = 0;
   const float* hits = nullptr;
+  LogOdds all_hits;
 };
 /// Adds evidence to a brick. @return whether anything changed
 bool add(const Votes& votes, const Clamp& clamp, Brick& brick);

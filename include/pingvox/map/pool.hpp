@@ -15,11 +15,18 @@ namespace pingvox::detail {
 /// never touched costs no memory. On Linux it asks for huge pages and grows without copying.
 class Arena {
  public:
-  Arena() = default;
-  Arena(Arena&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  enum class Pages {
+    kHuge,   ///< asked for: what is filled from end to end
+    kSmall,  ///< of what is touched here and there
+  };
+
+  explicit Arena(Pages pages = Pages::kHuge) : pages_(pages) {}
+  Arena(Arena&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)), pages_(other.pages_) {}
   Arena& operator=(Arena&& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
+    std::swap(pages_, other.pages_);
     return *this;
   }
   Arena(const Arena&) = delete;
@@ -34,6 +41,7 @@ class Arena {
  private:
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
+  Pages pages_;
 };
 
 /// Fixed-size records addressed by 32-bit index from 2 on (0 and 1 mean something else to Entry). Freed ones are used

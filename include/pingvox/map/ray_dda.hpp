@@ -15,9 +15,13 @@ namespace pingvox {
 /// The order in which a segment crosses the faces between cells (Amanatides & Woo 1987), on integers: crossings of an
 /// axis lie at first + n * apart along the segment, and each axis has a known number of them. So no rounding can miss
 /// the end or run past it, which is what goes wrong in the paper's figures 11 and 12. They are compared in units of
-/// 2^-62 of the segment's length and added up in units of 2^-126: in the coarser ones a long ray would drift.
+/// 2^-62 of the segment's length. Up to kFewFaces they are added up in these units, too; beyond in units of 2^-126, or
+/// a long ray would drift.
 class FaceCrossings {
  public:
+  /// Sums over so many faces stay within 1e-9 of a cell in units of 2^-62 (tracers of many rays rely on these).
+  static constexpr std::uint64_t kFewFaces = 32768;
+
   /// @param from, to  ends of the segment in cells (metres times cells per metre)
   /// REQUIRES finite ends with |floor(to) - floor(from)| < 2^62 along each axis
   FaceCrossings(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -34,6 +38,8 @@ class FaceCrossings {
       // A segment with one crossing may be so short that its inverse is no number.
       if (left_[i] > 1) apart_[i] = static_cast<WideWord>(std::ldexp(1.0 / std::abs(along), 126));
     }
+    if (total_ > kFewFaces) return;
+    for (WideWord& apart : apart_) apart = apart >> 64 << 64;
   }
 
   /// Faces that are left to cross: the Manhattan distance of the two cells.

@@ -7,6 +7,7 @@
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/log_odds.hpp"
+#include "pingvox/map/scan_window.hpp"
 
 namespace pingvox {
 
@@ -21,7 +22,12 @@ class ScanUpdate {
     WideKey lowest;  ///< its lowest cell
     std::array<std::uint64_t, 64> missed{};
     std::array<std::uint64_t, 64> hit{};
-    std::array<std::uint32_t, 64> evidence{};  ///< where the hits of a brick have their evidence; valid where hit != 0
+    std::array<std::uint32_t, 64> evidence{};  ///< of a brick's hits (`hits`); valid where hit != 0
+  };
+  /// Evidence for the hits of a brick.
+  struct Hits {
+    const float* of_cell = nullptr;  ///< 64 of them, valid where a bit of `hit` is set; nullptr: all alike
+    LogOdds all{};
   };
 
   /// @param miss  evidence for a cell that sound passed through
@@ -57,13 +63,28 @@ class ScanUpdate {
   /// Forgets all marks and keeps the memory for the next scan.
   void clear();
 
+  /// For tracers of many rays: a window to mark cells in, empty. REQUIRES 4 <= bits <= ScanWindow::kMostBits.
+  detail::ScanWindow& window(int bits);
+  /// Takes over what was marked in the window, and empties it.
+  /// @param lowest  its lowest cell, the lowest of a page, too
+  /// @param hit     evidence of all its hits
+  void take_window(const WideKey& lowest, LogOdds hit);
+
   /// The pages in the tree's order.
   std::vector<std::uint32_t> pages_in_order() const;
   const Page& page(std::uint32_t index) const { return pages_[index]; }
-  /// Evidence of the 64 cells of a brick, valid where its bit of `hit` is set.
-  const float* evidence(const Page& page, std::size_t brick) const { return evidence_[page.evidence[brick]].data(); }
+  /// REQUIRES hits in the brick.
+  Hits hits(const Page& page, std::size_t brick) const {
+    const std::uint32_t at = page.evidence[brick];
+    return at == kUsual ? Hits{nullptr, usual_hit_} : Hits{evidence_[at].data(), {}};
+  }
 
  private:
+  /// Instead of a place in evidence_: each hit of the brick has the evidence usual_hit_.
+  static constexpr std::uint32_t kUsual = 0xFFFFFFFF;
+
+  /// Gives the hits of a brick evidence of their own.
+  void spread_evidence(Page& page, std::size_t brick);
   void rehash(std::size_t slots);
   std::size_t slot_of(const WideKey& lowest) const;
 
@@ -72,6 +93,9 @@ class ScanUpdate {
   std::size_t used_ = 0;
   std::vector<std::array<float, 64>> evidence_;
   std::size_t evidence_used_ = 0;
+  bool has_hits_ = false;
+  LogOdds usual_hit_{};  ///< of the first hit: most scans have no other
+  detail::ScanWindow window_;
   std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free
 };
 

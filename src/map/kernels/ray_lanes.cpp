@@ -1,0 +1,169 @@
+#include "map/kernels/ray_lanes.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "pingvox/map/ray_dda.hpp"
+
+// clang has no such pragmas; there the plain loops do.
+#if defined(__x86_64__) && !defined(__clang__)
+#define PINGVOX_X86_LANES
+#endif
+
+namespace pingvox::detail {
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr double kUnits = 0x1p62;  // of a ray's length
+
+/// Bits of one axis in a place of the tree's order, and their lowest one.
+constexpr std::array<std::uint64_t, 3> kAxisBits{0x1249249249249249U, 0x1249249249249249U << 1,
+                                                 0x1249249249249249U << 2};
+
+/// What to add to an axis' bits, before they are masked, for one cell ahead or back: a carry must run through the bits
+/// of the other axes.
+constexpr std::uint64_t step_of(std::size_t axis, bool is_ahead) {
+  return is_ahead ? ~kAxisBits[axis] + 1 : ~(std::uint64_t{1} << axis) + 1;
+}
+
+inline __attribute__((always_inline)) void mark(std::uint64_t place, std::uint64_t* missed, std::uint64_t* touched) {
+  std::uint64_t& word = missed[place / 64];
+  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
+  // Most cells are crossed by many rays: reading is cheaper than writing the same again.
+  if ((word & bit) != 0) return;
+  word |= bit;
+  const std::uint64_t page = place >> ScanWindow::kPageCellBits;
+  touched[page / 64] |= std::uint64_t{1} << (page % 64);
+}
+
+void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
+  std::uint64_t* const missed = window.missed();
+  std::uint64_t* const touched = window.touched();
+  for (const ReadyRay& ray : rays) {
+    std::array<std::int64_t, 3> next = ray.next;
+    std::array<std::uint64_t, 3> step{}, place{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      step[a] = step_of(a, ((ray.ahead >> a) & 1U) != 0);
+      place[a] = start & kAxisBits[a];
+    }
+    for (std::uint32_t left = ray.left; left > 0; --left) {
+      mark(place[0] | place[1] | place[2], missed, touched);
+      const std::size_t axis = next[0] < next[1] ? (next[0] < next[2] ? 0U : 2U) : (next[1] < next[2] ? 1U : 2U);
+      next[axis] += ray.apart[axis];
+      place[axis] = (place[axis] + step[axis]) & kAxisBits[axis];
+    }
+  }
+}
+
+/// Rays by the number of faces that they cross, most first, so that eight neighbours end nearly together.
+class ByLength {
+ public:
+  explicit ByLength(std::span<const ReadyRay> rays) : order_(rays.size()) {
+    std::uint32_t most = 0;
+    for (const ReadyRay& ray : rays) most = std::max(most, ray.left);
+    std::vector<std::uint32_t> place(most + 2);
+    for (const ReadyRay& ray : rays) ++place[most - ray.left + 1];
+    for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
+    for (std::size_t i = 0; i < rays.size(); ++i) order_[place[most - rays[i].left]++] = static_cast<std::uint32_t>(i);
+    while (!order_.empty() && rays[order_.back()].left == 0) order_.pop_back();
+  }
+  std::span<const std::uint32_t> order() const { return order_; }
+
+ private:
+  std::vector<std::uint32_t> order_;
+};
+
+// The same loops for each kind of machine.
+namespace plain {
+constexpr std::size_t kLanes = 2;
+#include "map/kernels/ray_lanes_loops.hpp"
+}  // namespace plain
+
+#ifdef PINGVOX_X86_LANES
+#pragma GCC push_options
+#pragma GCC target("avx2")
+namespace avx2 {
+constexpr std::size_t kLanes = 4;
+#include "map/kernels/ray_lanes_loops.hpp"
+}  // namespace avx2
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512vl")
+namespace avx512 {
+constexpr std::size_t kLanes = 8;
+#include "map/kernels/ray_lanes_loops.hpp"
+}  // namespace avx512
+#pragma GCC pop_options
+#endif
+
+}  // namespace
+
+#ifdef PINGVOX_X86_LANES
+
+Lanes widest_lanes() {
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    return Lanes::kAvx512;
+  return __builtin_cpu_supports("avx2") ? Lanes::kAvx2 : Lanes::kOne;
+}
+
+void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
+                  std::vector<std::uint32_t>& others) {
+  switch (lanes) {
+    case Lanes::kAvx512:
+      return avx512::prepare(fan, ends_m, ready, others);
+    case Lanes::kAvx2:
+      return avx2::prepare(fan, ends_m, ready, others);
+    case Lanes::kOne:
+      return plain::prepare(fan, ends_m, ready, others);
+  }
+}
+
+void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
+                std::span<std::uint64_t> places) {
+  assert(places.size() == points_m.size());
+  switch (lanes) {
+    case Lanes::kAvx512:
+      return avx512::find(fan, points_m, places);
+    case Lanes::kAvx2:
+      return avx2::find(fan, points_m, places);
+    case Lanes::kOne:
+      return plain::find(fan, points_m, places);
+  }
+}
+
+void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
+  switch (lanes) {
+    case Lanes::kAvx512:
+      return avx512::mark_all(rays, start, window);
+    case Lanes::kAvx2:
+      return avx2::mark_all(rays, start, window);
+    case Lanes::kOne:
+      return mark_one_by_one(rays, start, window);
+  }
+}
+
+#else
+
+Lanes widest_lanes() {
+  return Lanes::kOne;
+}
+
+void prepare_rays(Lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
+                  std::vector<std::uint32_t>& others) {
+  plain::prepare(fan, ends_m, ready, others);
+}
+
+void find_cells(Lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m, std::span<std::uint64_t> places) {
+  plain::find(fan, points_m, places);
+}
+
+void mark_rays(Lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
+  mark_one_by_one(rays, start, window);
+}
+
+#endif
+
+}  // namespace pingvox::detail

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pingvox/map/scan_window.hpp"
+
+/// Rays from one place, several at a time, into the bit masks of a ScanWindow. The cells are those of FaceCrossings, to
+/// the last one: the same sums of the same whole numbers (tests/map/ray_lanes_test.cpp).
+namespace pingvox::detail {
+
+/// The instructions that a loop over lanes is written for. Each gives the same marks.
+enum class Lanes {
+  kOne,     ///< plain C++, one ray at a time
+  kAvx2,    ///< 8 rays as two vectors of four
+  kAvx512,  ///< 8 rays as one vector
+};
+/// The widest that this machine has.
+Lanes widest_lanes();
+
+/// Where the window lies and where rays begin, in cells as the lattice counts them: cell 0 has its lowest corner at the
+/// origin of the map.
+struct RayFan {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< metres times cells per metre
+  double cells_per_m = 1.0;
+  std::array<std::int64_t, 3> window_lowest{};  ///< lowest cell of the window
+  /// Cells that are in the window and in the lattice: lowest <= floor(coordinate) <= highest.
+  std::array<double, 3> lowest{}, highest{};
+};
+
+/// One ray, ready to be walked: where it crosses the faces of cells in units of 2^-62 of its length (FaceCrossings).
+struct alignas(64) ReadyRay {
+  std::array<std::int64_t, 3> next, apart;
+  std::uint32_t left;   ///< faces to cross
+  std::uint32_t ahead;  ///< bit a is set when the key grows along axis a
+  std::uint64_t end;    ///< place of its last cell in the window
+};
+
+/// Prepares rays to `ends_m` [m, map frame].
+/// @param others   gets the numbers of all others: outside of the window, no numbers, too many faces, or so close to a
+///                 corner at their end that only exact counting tells which face comes last
+void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
+                  std::vector<std::uint32_t>& others);
+
+/// Place in the window of each point [m, map frame]; kNowhere: outside of the window.
+/// REQUIRES places.size() == points_m.size()
+inline constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
+void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
+                std::span<std::uint64_t> places);
+
+/// Marks the cells of each ray as missed, its first one included, its last one not.
+/// @param start  place of the cell where all of them begin
+void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window);
+
+}  // namespace pingvox::detail

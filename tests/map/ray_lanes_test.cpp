@@ -1,0 +1,137 @@
+#include "map/kernels/ray_lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "pingvox/map/ray_dda.hpp"
+
+namespace pingvox::detail {
+namespace {
+
+std::vector<Lanes> lanes_here() {
+  std::vector<Lanes> lanes{Lanes::kOne};
+  if (widest_lanes() != Lanes::kOne) lanes.push_back(Lanes::kAvx2);
+  if (widest_lanes() == Lanes::kAvx512) lanes.push_back(Lanes::kAvx512);
+  return lanes;
+}
+
+constexpr int kBits = 7;  // a window of 128 cells, from -64 to 63
+constexpr std::int64_t kHalf = 64;
+
+RayFan fan_from(const Eigen::Vector3d& from_m, double cells_per_m) {
+  RayFan fan;
+  fan.from = from_m * cells_per_m;
+  fan.cells_per_m = cells_per_m;
+  fan.window_lowest.fill(-kHalf);
+  fan.lowest.fill(-static_cast<double>(kHalf));
+  fan.highest.fill(static_cast<double>(kHalf - 1));
+  return fan;
+}
+
+std::uint64_t place_of(const std::array<std::int64_t, 3>& cell) {
+  std::uint64_t place = 0;
+  for (std::size_t a = 0; a < 3; ++a) place |= spread_bits(static_cast<std::uint64_t>(cell[a] + kHalf)) << a;
+  return place;
+}
+
+std::array<std::int64_t, 3> cell_of(const Eigen::Vector3d& point) {
+  return {static_cast<std::int64_t>(std::floor(point.x())), static_cast<std::int64_t>(std::floor(point.y())),
+          static_cast<std::int64_t>(std::floor(point.z()))};
+}
+
+/// Ends all around, short and long; many on corners, edges and faces of cells, where ties are to be decided alike.
+std::vector<Eigen::Vector3d> ends_around(const Eigen::Vector3d& from_m, std::mt19937_64& random, std::size_t count) {
+  std::vector<Eigen::Vector3d> ends;
+  const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d end(40.0 * uniform() - 20.0, 40.0 * uniform() - 20.0, 40.0 * uniform() - 20.0);
+    const auto kind = random() % 8;
+    if (kind == 0) end = end.array().round();
+    if (kind == 1) end = from_m.array() + (end - from_m).array().round();  // at 45 degrees, along axes
+    if (kind == 2) end = from_m + 0.01 * end;
+    if (kind == 3) end *= 3.0;  // some beyond the window
+    if (kind == 4) end[static_cast<Eigen::Index>(random() % 3)] = from_m[static_cast<Eigen::Index>(random() % 3)];
+    ends.push_back(end);
+  }
+  ends.emplace_back(std::nan(""), 0.0, 0.0);
+  ends.emplace_back(0.0, std::numeric_limits<double>::infinity(), 0.0);
+  ends.emplace_back(0.0, 0.0, -1e300);
+  return ends;
+}
+
+// Kills a lane that takes another face than the plain stepper (ties, backward steps, ends on faces), a carry that does
+// not reach the next bit of its axis, a ray that marks its end, lanes that go on marking when their ray has ended.
+TEST(RayLanes, MarkTheCellsOfFaceCrossings) {
+  std::size_t marked = 0, taken = 0, left_out = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const double cells_per_m = seed % 3 == 0 ? 1.0 : 1.7;
+    Eigen::Vector3d from(0.1 * static_cast<double>(random() % 37), -0.2, 0.05 * static_cast<double>(random() % 100));
+    if (seed % 4 == 0) from = Eigen::Vector3d::Zero();
+    const RayFan fan = fan_from(from, cells_per_m);
+    const std::vector<Eigen::Vector3d> ends = ends_around(from, random, 1 + random() % 100);
+    for (const Lanes lanes : lanes_here()) {
+      SCOPED_TRACE(static_cast<int>(lanes));
+      std::vector<ReadyRay> ready;
+      std::vector<std::uint32_t> others;
+      prepare_rays(lanes, fan, ends, ready, others);
+      ASSERT_EQ(ready.size() + others.size(), ends.size());
+      left_out += others.size();
+
+      std::set<std::uint64_t> expected, hit;
+      std::vector<std::uint64_t> places(ends.size());
+      find_cells(lanes, fan, ends, places);
+      std::size_t number = 0;
+      for (std::size_t i = 0; i < ends.size(); ++i) {
+        const Eigen::Vector3d to = ends[i] * cells_per_m;
+        const bool inside = (to.array() >= -64.0).all() && (to.array() < 64.0).all();
+        ASSERT_EQ(places[i], inside ? place_of(cell_of(to)) : kNowhere);
+        if (std::find(others.begin(), others.end(), i) != others.end()) continue;
+        ASSERT_TRUE(inside);
+        ASSERT_EQ(ready[number++].end, places[i]);
+        ++taken;
+        FaceCrossings crossings(fan.from, to);
+        std::array<std::int64_t, 3> cell = cell_of(fan.from);
+        while (crossings.left() > 0) {
+          expected.insert(place_of(cell));
+          const std::size_t axis = crossings.next_axis();
+          cell[axis] += crossings.is_ahead(axis) ? 1 : -1;
+          crossings.cross(axis);
+        }
+        ASSERT_EQ(place_of(cell), places[i]);
+      }
+
+      ScanWindow window;
+      window.open(kBits);
+      mark_rays(lanes, ready, place_of(cell_of(fan.from)), window);
+      std::set<std::uint64_t> found;
+      for (std::uint64_t place = 0; place < std::uint64_t{1} << (3 * kBits); ++place) {
+        if (((window.missed()[place / 64] >> (place % 64)) & 1) == 0) continue;
+        found.insert(place);
+        const std::uint64_t page = place >> ScanWindow::kPageCellBits;
+        ASSERT_TRUE((window.touched()[page / 64] >> (page % 64)) & 1);
+      }
+      ASSERT_EQ(found, expected);
+      marked += found.size();
+    }
+  }
+  EXPECT_GT(marked, 100'000U);
+  EXPECT_GT(taken, 10'000U);
+  EXPECT_GT(left_out, 500U);
+}
+
+TEST(RayLanes, SpreadBitsAreGatheredAgain) {
+  for (std::uint64_t word = 0; word < 2048; ++word) {
+    ASSERT_EQ(gathered_bits(spread_bits(word)), word);
+    ASSERT_EQ(gathered_bits(spread_bits(word) << 1 >> 1 | spread_bits(2047) << 1 | spread_bits(5) << 2), word);
+  }
+}
+
+}  // namespace
+}  // namespace pingvox::detail
