@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "bench/duel.hpp"
@@ -28,10 +29,17 @@ void for_each_cell(F&& f) {
   }
 }
 
-void fill(OccupancyMap& map, Pruning pruning) {
-  Editor editor = map.edit(pruning);
+void fill_each(OccupancyMap& map) {
+  Editor editor = map.edit(Pruning::kEachUpdate);
   const LogOdds hit = LogOdds::from_probability(0.7);
   for_each_cell([&](std::uint16_t x, std::uint16_t y, std::uint16_t z) { editor.update(Key{x, y, z}, hit); });
+}
+
+void fill_at_once(OccupancyMap& map) {
+  std::vector<Key> keys;
+  keys.reserve(std::size_t{kEdge} * kEdge * kEdge);
+  for_each_cell([&](std::uint16_t x, std::uint16_t y, std::uint16_t z) { keys.push_back({x, y, z}); });
+  (void)map.update(std::span<const Key>(keys), LogOdds::from_probability(0.7));
 }
 
 /// The library's own value of a hit is a double's logarithm: the same number is handed in.
@@ -45,10 +53,10 @@ void fill(octomap::OcTree& tree, bool lazy) {
   tree.prune();
 }
 
-Result<std::vector<Row>> cube(std::string name, Pruning pruning, bool lazy) {
+Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&), bool lazy) {
   std::optional<OccupancyMap> map;
   std::unique_ptr<octomap::OcTree> tree;
-  const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { fill(*map, pruning); }};
+  const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { fill_ours(*map); }};
   const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(kCell_m); }, [&] { fill(*tree, lazy); }};
   ours.prepare();
   ours.work();
@@ -70,11 +78,11 @@ Result<std::vector<Row>> cube(std::string name, Pruning pruning, bool lazy) {
 }  // namespace
 
 Result<std::vector<Row>> cube_each(const BenchOptions&) {
-  return cube("cube-each", Pruning::kEachUpdate, false);
+  return cube("cube-each", &fill_each, false);
 }
 
 Result<std::vector<Row>> cube_lazy(const BenchOptions&) {
-  return cube("cube-lazy", Pruning::kWhenSettled, true);
+  return cube("cube-lazy", &fill_at_once, true);
 }
 
 }  // namespace pingvox::bench

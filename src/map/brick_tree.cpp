@@ -34,6 +34,13 @@ float clamped(float value, const Clamp& clamp) {
   return std::clamp(value, clamp.lowest.value(), clamp.highest.value());
 }
 
+/// The evidence that each cell of a brick gets alike; nullopt: not all of them do.
+std::optional<LogOdds> for_all_cells(const Votes& votes) {
+  if (votes.missed == kAllCells) return votes.miss;
+  if (votes.hit == kAllCells && votes.hits == nullptr) return votes.all_hits;
+  return std::nullopt;
+}
+
 /// Index of the highest bit that is set. REQUIRES that one is.
 int highest_bit(std::uint64_t word) {
   return 63 - std::countl_zero(word);
@@ -137,17 +144,21 @@ Brick brick_of(Entry entry) {
 bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
   assert((votes.missed & votes.hit) == 0);
   bool changed = false;
-  const bool is_miss_negative = votes.miss < LogOdds(0.0F);
-  if (is_miss_negative && votes.missed != 0) {
-    changed = add_misses(brick, votes.missed, votes.miss.value(), clamp) || (votes.missed & ~brick.known) != 0;
-    brick.known |= votes.missed;
+  const auto add_to = [&](std::uint64_t cells, LogOdds evidence) {
+    if (cells == 0 || evidence == LogOdds(0.0F)) return;
+    changed |= add_alike(brick, cells, evidence.value(), clamp);
+    changed |= (cells & ~brick.known) != 0;
+    brick.known |= cells;
+  };
+  add_to(votes.missed, votes.miss);
+  if (votes.hits == nullptr) {
+    add_to(votes.hit, votes.all_hits);
+    return changed;
   }
-  for (std::uint64_t left = is_miss_negative ? votes.hit : votes.missed | votes.hit; left != 0; left &= left - 1) {
+  for (std::uint64_t left = votes.hit; left != 0; left &= left - 1) {
     const auto cell = static_cast<std::size_t>(std::countr_zero(left));
     const std::uint64_t bit = left & (~left + 1);
-    const LogOdds evidence = (votes.hit & bit) == 0  ? votes.miss
-                             : votes.hits == nullptr ? votes.all_hits
-                                                     : LogOdds(votes.hits[cell]);
+    const LogOdds evidence(votes.hits[cell]);
     if (evidence == LogOdds(0.0F)) continue;
     const float after = added(brick.value[cell], evidence, clamp);
     changed |= after != brick.value[cell] || (brick.known & bit) == 0;
@@ -415,28 +426,42 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
 }
 
 template <KeyWord W>
-void Cursor<W>::vote(const BasicKey<W>& key, const Votes& votes) {
+bool Cursor<W>::vote(const BasicKey<W>& key, const Votes& votes) {
   move_to(key);
   const Entry entry = entry_at(reach_);
   if (entry.is_inner()) {
     const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]);
-    if (!changed && rules_.early_drop == EarlyDrop::kOn) return;
-    brick_changed();
-    return;
+    if (changed || rules_.early_drop == EarlyDrop::kOff) brick_changed();
+    return changed;
+  }
+  if (const auto evidence = for_all_cells(votes); evidence && rules_.pruning != Pruning::kNever) {
+    // The same for the whole of a leaf: what becomes of it is a leaf.
+    const float after = added(entry.value, *evidence, rules_.clamp);
+    if (*evidence == LogOdds(0.0F) || (entry.is_leaf() && after == entry.value)) return false;
+    make_leaf(after);
+    return true;
   }
   Brick brick = brick_of(entry);
-  if (!add(votes, rules_.clamp, brick)) return;
+  if (!add(votes, rules_.clamp, brick)) return false;
+  if (rules_.pruning != Pruning::kNever && is_uniform(brick)) {
+    make_leaf(brick.value[0]);
+    return true;
+  }
   grow_to(tree_.brick_depth());
   Entry& at_brick = entry_at(tree_.brick_depth());
-  if (rules_.pruning != Pruning::kNever && is_uniform(brick)) {
-    at_brick = Entry::leaf(brick.value[0]);
-    after_change(reach_);
-    return;
-  }
   brick_ = tree_.bricks.allocate(brick);
   at_brick.link = brick_;
   mark_stale_above(reach_);
   brick_changed();
+  return true;
+}
+
+// Where there is no brick.
+template <KeyWord W>
+void Cursor<W>::make_leaf(float value) {
+  grow_to(tree_.brick_depth());
+  entry_at(tree_.brick_depth()) = Entry::leaf(value);
+  after_change(reach_);
 }
 
 template <KeyWord W>

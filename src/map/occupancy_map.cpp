@@ -9,6 +9,7 @@
 #include <new>
 #include <variant>
 
+#include "map/key_batch.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
 
@@ -81,27 +82,56 @@ void for_each_brick(const ScanUpdate& scan, F&& f) {
   }
 }
 
-/// An upper bound of what applying a scan makes the tree's storage grow by. Bricks that it leaves as they are need
+/// Foresees what the tree's storage grows by, brick by brick: an upper bound. Bricks that stay as they are need
 /// nothing: a map at its limit still takes in what it knows already.
 template <KeyWord W>
-std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
-  std::size_t bricks = 0, groups = 0;
-  detail::Cursor<W> cursor(tree, {});
-  std::optional<BasicKey<W>> made;
-  for_each_brick<W>(scan, [&](const BasicKey<W>& key, const detail::Votes& votes) {
-    const auto reach = cursor.reach(key);
+class Growth {
+ public:
+  Growth(detail::BrickTree& tree, const Clamp& clamp) : tree_(tree), clamp_(clamp), cursor_(tree, {}) {}
+
+  enum class More { kNo, kYes };
+  /// @param more  whether votes on the same brick follow
+  void add(const BasicKey<W>& key, const detail::Votes& votes, More more) {
+    const auto reach = cursor_.reach(key);
     if (reach.end.is_inner()) return;
     detail::Brick brick = detail::brick_of(reach.end);
-    if (!detail::add(votes, clamp, brick)) return;
-    if (!detail::is_uniform(brick)) ++bricks;
+    if (!detail::add(votes, clamp_, brick)) return;
+    if (more == More::kYes || !detail::is_uniform(brick)) ++bricks_;
     // Groups that the brick made before needs are counted already.
-    const int from = std::max(reach.depth, made ? tree.common_depth(*made, key) + 1 : 0);
-    if (from < tree.brick_depth()) groups += static_cast<std::size_t>(tree.brick_depth() - from);
-    made = key;
+    const int from = std::max(reach.depth, made_ ? tree_.common_depth(*made_, key) + 1 : 0);
+    if (from < tree_.brick_depth()) groups_ += static_cast<std::size_t>(tree_.brick_depth() - from);
+    made_ = key;
+  }
+
+  std::size_t bytes() const {
+    const auto beyond = [](std::size_t wanted, std::size_t spare) { return wanted > spare ? wanted - spare : 0; };
+    return beyond(bricks_, tree_.bricks.spare()) * sizeof(detail::Brick) +
+           beyond(groups_, tree_.groups.spare()) * sizeof(detail::Group);
+  }
+
+ private:
+  detail::BrickTree& tree_;
+  Clamp clamp_;
+  detail::Cursor<W> cursor_;
+  std::size_t bricks_ = 0, groups_ = 0;
+  std::optional<BasicKey<W>> made_;
+};
+
+template <KeyWord W>
+std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
+  Growth<W> growth(tree, clamp);
+  for_each_brick<W>(
+      scan, [&](const BasicKey<W>& key, const detail::Votes& votes) { growth.add(key, votes, Growth<W>::More::kNo); });
+  return growth.bytes();
+}
+
+std::size_t growth_of(detail::BrickTree& tree, const detail::KeyBatch& batch, LogOdds evidence, const Clamp& clamp) {
+  using Growing = Growth<std::uint64_t>;
+  Growing growth(tree, clamp);
+  batch.for_each_brick<std::uint64_t>([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
+    growth.add(key, {0, {}, cells.once, nullptr, evidence}, cells.more != 0 ? Growing::More::kYes : Growing::More::kNo);
   });
-  const auto beyond = [](std::size_t wanted, std::size_t spare) { return wanted > spare ? wanted - spare : 0; };
-  return beyond(bricks, tree.bricks.spare()) * sizeof(detail::Brick) +
-         beyond(groups, tree.groups.spare()) * sizeof(detail::Group);
+  return growth.bytes();
 }
 
 template <KeyWord W>
@@ -115,6 +145,31 @@ ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, c
   });
   cursor.flush();
   return report;
+}
+
+void apply_batch(detail::BrickTree& tree, const detail::CursorRules& rules, const detail::KeyBatch& batch,
+                 LogOdds evidence) {
+  detail::Cursor<std::uint64_t> cursor(tree, rules);
+  batch.for_each_brick<std::uint64_t>([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
+    const auto vote = [&](std::uint64_t some) { return cursor.vote(key, {0, {}, some, nullptr, evidence}); };
+    bool changed = vote(cells.once);
+    std::uint64_t left = cells.more;
+    for (std::uint32_t round = 2; left != 0 && changed; ++round) {
+      changed = vote(left);  // once nothing changes, nothing will: it is the same evidence
+      for (std::uint64_t some = left; some != 0; some &= some - 1) {
+        const auto cell = static_cast<std::size_t>(std::countr_zero(some));
+        if (cells.times[cell] <= round) left &= ~(std::uint64_t{1} << cell);
+      }
+    }
+  });
+  cursor.flush();
+}
+
+/// An error when so many bytes are more than the limit; 0 is none.
+Result<void> check_limit(std::size_t needed, std::size_t limit) {
+  if (limit == 0 || needed <= limit) return {};
+  return fail(Error::Code::kLimit,
+              fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
 }
 
 std::size_t bytes_of(const detail::BrickTree& tree) {
@@ -223,19 +278,37 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
   try {
     if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
-      const std::size_t needed = bytes_of(tree_) + with_cursor_word(tree_.levels, [&]<KeyWord W>() {
-                                   return growth_of<W>(tree_, scan, options_.clamp);
-                                 });
-      if (needed > limit) {
-        return fail(Error::Code::kLimit,
-                    fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
-      }
+      const std::size_t growth =
+          with_cursor_word(tree_.levels, [&]<KeyWord W>() { return growth_of<W>(tree_, scan, options_.clamp); });
+      if (const auto fits = check_limit(bytes_of(tree_) + growth, limit); !fits) return tl::unexpected(fits.error());
     }
     const detail::CursorRules rules = rules_of(options_, Pruning::kWhenSettled);
     return with_cursor_word(tree_.levels, [&]<KeyWord W>() { return applied<W>(tree_, rules, scan); });
   } catch (const std::bad_alloc&) {
     detail::prune_all(tree_, options_.parents);
     return fail(Error::Code::kLimit, "out of memory: the scan was taken in only in part");
+  }
+}
+
+template <KeyWord W>
+Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evidence) {
+  try {
+    if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
+    if (tree_.levels > detail::KeyBatch::kMostDepth || keys.size() > std::numeric_limits<std::uint32_t>::max()) {
+      Editor editor = edit();
+      for (const BasicKey<W>& key : keys) editor.update(key, evidence);
+      return {};
+    }
+    const detail::KeyBatch batch(keys);
+    if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
+      const std::size_t growth = growth_of(tree_, batch, evidence, options_.clamp);
+      if (auto fits = check_limit(bytes_of(tree_) + growth, limit); !fits) return fits;
+    }
+    apply_batch(tree_, rules_of(options_, Pruning::kWhenSettled), batch, evidence);
+    return {};
+  } catch (const std::bad_alloc&) {
+    detail::prune_all(tree_, options_.parents);
+    return fail(Error::Code::kLimit, "out of memory: the batch was taken in only in part");
   }
 }
 
@@ -315,6 +388,7 @@ void Editor::synchronize() {
   template std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>&) const;            \
   template std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>&, int) const; \
   template Occupancy OccupancyMap::classify(const BasicKey<W>&) const;                   \
+  template Result<void> OccupancyMap::update(std::span<const BasicKey<W>>, LogOdds);     \
   template void Editor::update(const BasicKey<W>&, LogOdds);                             \
   template void Editor::set(const BasicKey<W>&, int, LogOdds);
 PINGVOX_FOR_KEY_WORD(std::uint8_t)

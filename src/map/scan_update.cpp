@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "map/tree_order.hpp"
 #include "pingvox/map/brick_tree.hpp"
 
 namespace pingvox {
@@ -21,23 +22,6 @@ std::size_t hashed(const WideKey& key) {
   const std::uint64_t sum =
       mixed(key.x, 0x9E3779B97F4A7C15U) + mixed(key.y, 0xC2B2AE3D27D4EB4FU) + mixed(key.z, 0x165667B19E3779F9U);
   return static_cast<std::size_t>(sum ^ (sum >> 29));
-}
-
-/// Whether the highest bit of a is below the highest bit of b.
-bool is_lower_in_highest_bit(WideWord a, WideWord b) {
-  return a < b && a < (a ^ b);
-}
-
-/// The tree's order: the axis that differs in the highest bit decides; in a tie z before y before x.
-bool is_before(const WideKey& a, const WideKey& b) {
-  WideWord most = a.z ^ b.z;
-  bool before = a.z < b.z;
-  if (is_lower_in_highest_bit(most, a.y ^ b.y)) {
-    most = a.y ^ b.y;
-    before = a.y < b.y;
-  }
-  if (is_lower_in_highest_bit(most, a.x ^ b.x)) before = a.x < b.x;
-  return before;
 }
 
 /// Bits of the cells first..last (of 0..3) of a brick's lowest row along an axis.
@@ -161,7 +145,7 @@ std::vector<std::uint32_t> ScanUpdate::pages_in_order() const {
   std::vector<std::uint32_t> order(used_);
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(),
-            [this](std::uint32_t a, std::uint32_t b) { return is_before(pages_[a].lowest, pages_[b].lowest); });
+            [this](std::uint32_t a, std::uint32_t b) { return detail::is_before(pages_[a].lowest, pages_[b].lowest); });
   return order;
 }
 

@@ -41,15 +41,16 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
     uniform += equal;
 
     const std::uint64_t missed = seed % 7 == 0 ? 0 : random() & random();
+    const LogOdds evidence(seed % 2 == 0 ? -0.4F : 0.85F);
     Brick plain = brick;
     bool changed = false;
     for (std::size_t i = 0; i < 64; ++i) {
       if (!((missed >> i) & 1)) continue;
-      const float after = updated_by(LogOdds(plain.value[i]), LogOdds(-0.4F), kClamp).value();
+      const float after = updated_by(LogOdds(plain.value[i]), evidence, kClamp).value();
       changed |= after != plain.value[i];
       plain.value[i] = after;
     }
-    EXPECT_EQ(add_misses(brick, missed, -0.4F, kClamp), changed);
+    EXPECT_EQ(add_alike(brick, missed, evidence.value(), kClamp), changed);
     EXPECT_EQ(brick.value, plain.value);
     unchanged += !changed;
   }

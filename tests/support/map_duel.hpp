@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -61,7 +62,9 @@ class Duel {
         depth_(depth) {}
 
   void step() {
-    switch (random_() % 12) {
+    switch (random_() % 13) {
+      case 11:
+        return batch();
       case 0:
       case 1:
         return edit_cells();
@@ -194,6 +197,17 @@ class Duel {
     for (const auto& [key, change] : expected.hit) expected.missed.erase(key);
     EXPECT_EQ(report->cells_freed, expected.missed.size());
     oracle_.apply(expected);
+    is_pruned_ = true;
+  }
+
+  void batch() {
+    std::vector<WideKey> keys;
+    for (std::uint64_t i = random_() % 200; i > 0; --i) {
+      keys.push_back(random_() % 3 == 0 && !keys.empty() ? keys[random_() % keys.size()] : places_.key());
+    }
+    const LogOdds change = evidence();
+    ASSERT_TRUE(map_.update(std::span<const WideKey>(keys), change));
+    for (const WideKey& key : keys) oracle_.update(key, change);
     is_pruned_ = true;
   }
 

@@ -165,8 +165,8 @@ class Cursor {
   /// Adds evidence to one cell.
   void update(const BasicKey<W>& key, LogOdds evidence);
 
-  /// Adds evidence to the cells of the brick that holds `key`.
-  void vote(const BasicKey<W>& key, const Votes& votes);
+  /// Adds evidence to the cells of the brick that holds `key`. @return whether anything changed
+  bool vote(const BasicKey<W>& key, const Votes& votes);
 
   /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
   void set(const BasicKey<W>& key, int depth, float value);
@@ -187,6 +187,7 @@ class Cursor {
   int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
   void grow_to(int depth);
   Brick& brick_made();
+  void make_leaf(float value);
   void mark_stale_above(int depth);
   void settle_brick();
   void settle_group(int depth);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include "pingvox/geometry/key.hpp"
@@ -88,6 +89,12 @@ class OccupancyMap {
   /// is pruned. @return kLimit when memory_limit_bytes would be passed: the map is as before then.
   /// REQUIRES an update made for this lattice's depth.
   Result<ApplyReport> apply(const ScanUpdate& scan);
+
+  /// A batch of updates (paper, section 5.5): each key's cell gets the evidence as often as the key is named, in the
+  /// tree's order whatever theirs is; then parents are right and the tree is pruned. The map is the one that an editor
+  /// makes of them one by one. @return kLimit as for `apply` (deeper than 23 levels the limit is not looked at)
+  template <KeyWord W>
+  Result<void> update(std::span<const BasicKey<W>> keys, LogOdds evidence);
 
   /// Adds another map's log-odds to this one's, clamped, cell by cell; a cell that only one knows keeps its belief.
   /// @return kBadOption when the lattices differ, kLimit as for `apply`

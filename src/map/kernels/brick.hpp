@@ -31,20 +31,23 @@ inline bool any_of(FourMasks lanes) {
   return (lanes[0] | lanes[1] | lanes[2] | lanes[3]) != 0;
 }
 
-/// for each cell of `missed`: value = updated_by(value, miss, clamp). REQUIRES miss < 0 and unknown cells to be 0.
+/// for each cell of `cells`: value = updated_by(value, evidence, clamp). REQUIRES evidence != 0 and unknown cells to be
+/// 0.
 /// @return whether a value changed
-inline bool add_misses(Brick& brick, std::uint64_t missed, float miss, const Clamp& clamp) {
+inline bool add_alike(Brick& brick, std::uint64_t cells, float evidence, const Clamp& clamp) {
   const float lowest = clamp.lowest.value(), highest = clamp.highest.value();
+  const bool is_hit = evidence > 0.0F;
   FourMasks changed{};
   for (std::size_t first = 0; first < 64; first += 4) {
-    const std::uint64_t cells = missed >> first;
-    if ((cells & 0xF) == 0) continue;
+    const std::uint64_t some = cells >> first;
+    if ((some & 0xF) == 0) continue;
     const Four before = four_at(brick, first);
-    const Four sum = before + miss;
+    const Four sum = before + evidence;
     const Four from_below = sum < lowest ? Four{} + lowest : sum;
     const Four clamped = from_below > highest ? Four{} + highest : from_below;
-    // What is at the lower clamp, or was set below it, stays.
-    const Four after = (lanes_of(cells) & (before > lowest)) != 0 ? clamped : before;
+    // What is at the clamp that the evidence leads to, or was set beyond it, stays.
+    const FourMasks moves = is_hit ? before < highest : before > lowest;
+    const Four after = (lanes_of(some) & moves) != 0 ? clamped : before;
     changed |= after != before;
     std::memcpy(brick.value.data() + first, &after, sizeof after);
   }
