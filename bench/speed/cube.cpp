@@ -72,7 +72,7 @@ Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&)
       side.work();
     });
   };
-  return std::vector{speed_row(std::move(name), result, memory(ours), memory(peer))};
+  return std::vector{speed_row(std::move(name), result, {memory(ours), memory(peer)})};
 }
 
 }  // namespace

@@ -1,0 +1,239 @@
+#include "growth.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "bench/duel.hpp"
+#include "pingvox/map/compare.hpp"
+#include "pingvox/map/scan_update.hpp"
+#include "pingvox/mapping/insonified_volume.hpp"
+#include "pingvox/sim/random.hpp"
+
+namespace pingvox::bench {
+namespace {
+
+constexpr double kCell_m = 0.05;
+constexpr std::array<std::uint64_t, 5> kSizes = {10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
+/// What the time at the largest size may be of that at the smallest.
+constexpr double kMostGrowth = 1.3;
+constexpr std::size_t kPlaces = 5, kRounds = 100;
+/// The smallest map is small, and so is the first block.
+constexpr std::uint16_t kEdge = 16, kMiddle = 32768;
+constexpr std::uint64_t kBlock = std::uint64_t{kEdge} * kEdge * kEdge;
+
+/// Water and walls of a basin, filled block by block: no eight cells in a cube are the same, so nothing is joined and
+/// each cell takes what a cell may take.
+class Basin {
+ public:
+  explicit Basin(OccupancyMap& map) : map_(map) {}
+
+  /// Fills at least up to so many known cells. @return the error of the block that did not go in
+  Result<void> fill(std::uint64_t cells) {
+    while (filled_ < cells) {
+      for (int blocks = 0; blocks < 16 && filled_ < cells; ++blocks) mark_next();
+      const auto applied = map_.apply(scan_);
+      scan_.clear();
+      if (!applied) return tl::unexpected(applied.error());
+    }
+    return {};
+  }
+  std::uint64_t filled() const { return filled_; }
+
+ private:
+  /// Rows of 100 blocks (80 m), eight rows to a layer more: the basin grows to the side and upwards.
+  void mark_next() {
+    const std::uint64_t n = next_++;
+    const auto place = [](std::uint64_t block) { return static_cast<std::uint16_t>(kMiddle + block * kEdge); };
+    const std::uint16_t x0 = place(n % 100), y0 = place(n / 100 % 100), z0 = place(n / 10'000);
+    const LogOdds hit = LogOdds::from_probability(0.7);
+    for (std::uint16_t x = 0; x < kEdge; ++x) {
+      for (std::uint16_t y = 0; y < kEdge; ++y) {
+        std::uint64_t bits = random_.bits();
+        for (std::uint16_t z = 0; z < kEdge; ++z, bits >>= 1U) {
+          const Key key{static_cast<std::uint16_t>(x0 + x), static_cast<std::uint16_t>(y0 + y),
+                        static_cast<std::uint16_t>(z0 + z)};
+          if ((bits & 1U) != 0) {
+            scan_.add_hit(key, hit);
+          } else {
+            scan_.add_miss(key);
+          }
+        }
+      }
+    }
+    filled_ += kBlock;
+  }
+
+  OccupancyMap& map_;
+  ScanUpdate scan_;
+  Random random_{15};
+  std::uint64_t next_ = 0, filled_ = 0;
+};
+
+/// A place with water all around that is not known, the n-th of many that are alike: a multiple of 128 cells apart.
+InsonifiedVolume beam_at(std::size_t n) {
+  const double step_m = 128 * kCell_m;
+  InsonifiedVolume beam{.bearing_rad = 0.3, .width_rad = 0.052, .height_rad = 0.61, .range_m = 2.0};
+  beam.map_from_sensor.translation() = Eigen::Vector3d(step_m * static_cast<double>(n % 100) + 0.02,
+                                                       -step_m * (2.0 + static_cast<double>(n / 100)) + 0.02, 0.02);
+  return beam;
+}
+
+/// A small scan: one beam of 3 x 35 degrees with an echo at 2 m, some 1500 cells.
+ScanUpdate probe(const Lattice& lattice, std::size_t n) {
+  ScanUpdate scan;
+  trace_volume(lattice, beam_at(n), [](double) { return LogOdds::from_probability(0.7); }, scan);
+  return scan;
+}
+
+/// Takes back what a probe said of the water, so that it can be said again.
+ScanUpdate unsaid(const Lattice& lattice, std::size_t n) {
+  ScanUpdate scan(LogOdds(-ScanUpdate().miss().value()));
+  trace_volume(lattice, beam_at(n), nullptr, scan);
+  return scan;
+}
+
+struct Probes {
+  double known_us = 0.0;  ///< median time to apply a probe where a vehicle was a moment ago
+  double new_us = 0.0;    ///< the same where nothing was known yet
+  std::uint64_t new_cells = 0;
+};
+
+/// The first kPlaces again and again, then as many new ones. By the wall clock: asking for CPU time may take as long as
+/// a probe, and the median leaves out what the machine did meanwhile.
+Result<Probes> probed(OccupancyMap& map, std::size_t first_new) {
+  std::vector<double> known_us, new_us;
+  Probes result;
+  const auto timed = [&](const ScanUpdate& scan, std::vector<double>& times_us) {
+    const auto started = std::chrono::steady_clock::now();
+    auto applied = map.apply(scan);
+    times_us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - started).count());
+    return applied;
+  };
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    for (std::size_t n = 0; n < kPlaces; ++n) {
+      if (const auto taken_back = map.apply(unsaid(map.lattice(), n)); !taken_back) {
+        return tl::unexpected(taken_back.error());
+      }
+    }
+    for (std::size_t n = 0; n < kPlaces; ++n) {
+      if (const auto applied = timed(probe(map.lattice(), n), known_us); !applied) {
+        return tl::unexpected(applied.error());
+      }
+    }
+  }
+  for (std::size_t n = first_new; n < first_new + kPlaces; ++n) {
+    const auto applied = timed(probe(map.lattice(), n), new_us);
+    if (!applied) return tl::unexpected(applied.error());
+    result.new_cells += applied->cells_freed + applied->cells_hit;
+  }
+  result.known_us = median(known_us);
+  result.new_us = median(new_us);
+  return result;
+}
+
+std::uint64_t known_cells(const OccupancyMap& map) {
+  const MapCounts counts = map.counts();
+  return counts.occupied_cells + counts.free_cells + counts.undecided_cells;
+}
+
+Result<std::vector<Row>> rows_by_size() {
+  OccupancyMap map({.resolution_m = kCell_m});
+  std::uint64_t probe_cells = 0;
+  for (std::size_t n = 0; n < kPlaces; ++n) {
+    const auto applied = map.apply(probe(map.lattice(), n));
+    if (!applied) return tl::unexpected(applied.error());
+    probe_cells += applied->cells_freed + applied->cells_hit;
+  }
+  Basin basin(map);
+  std::vector<Row> rows;
+  Probes first;
+  for (std::size_t i = 0; i < kSizes.size(); ++i) {
+    if (const auto filled = basin.fill(kSizes[i] - std::min(kSizes[i], probe_cells)); !filled) {
+      return tl::unexpected(filled.error());
+    }
+    const std::uint64_t cells = basin.filled() + probe_cells;
+    const std::size_t bytes = map.memory_bytes();
+    if (known_cells(map) != cells) {
+      return fail(Error::Code::kCorrupt, fmt::format("{} cells are known, {} were filled", known_cells(map), cells));
+    }
+    const auto probes = probed(map, (i + 1) * kPlaces);
+    if (!probes) return tl::unexpected(probes.error());
+    probe_cells += probes->new_cells;
+    if (i == 0) first = *probes;
+    Row row;
+    row.add("name", "growth")
+        .add_truth("checked", true)
+        .add("cells", cells)
+        .add("apply_us", probes->known_us)
+        .add("growth", probes->known_us / first.known_us)
+        .add_truth("within", probes->known_us <= kMostGrowth * first.known_us)
+        .add("apply_new_us", probes->new_us)
+        .add("growth_new", probes->new_us / first.new_us)
+        .add("memory_bytes", std::uint64_t{bytes})
+        .add("bytes_per_cell", static_cast<double>(bytes) / static_cast<double>(cells));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Fills a map step by step, `most` of them at most. @return how many went in before the limit stopped it
+Result<std::uint64_t> steps_into(Basin& basin, std::uint64_t most) {
+  for (std::uint64_t step = 0; step < most; ++step) {
+    const auto filled = basin.fill(basin.filled() + 16 * kBlock);
+    if (filled) continue;
+    if (filled.error().code != Error::Code::kLimit) return tl::unexpected(filled.error());
+    return step;
+  }
+  return most;
+}
+
+/// Fills a map until its limit stops it, and looks whether it is what it was before.
+Result<Row> row_of_limit() {
+  constexpr std::size_t kLimit_bytes = std::size_t{64} << 20U;
+  constexpr std::uint64_t kMostSteps = kSizes.back() / (16 * kBlock);
+  const MapOptions options{.resolution_m = kCell_m, .memory_limit_bytes = kLimit_bytes};
+  OccupancyMap first(options), map(options);
+  Basin into_first(first), into_map(map);
+  const auto steps = steps_into(into_first, kMostSteps);
+  if (!steps) return tl::unexpected(steps.error());
+  if (const auto again = steps_into(into_map, *steps); !again || *again != *steps) {
+    return fail(Error::Code::kCorrupt, fmt::format("the limit let {} scans in at first", *steps));
+  }
+  const OccupancyMap before = map;
+  const auto refused = steps_into(into_map, 1);
+  if (*steps == kMostSteps || !refused || *refused != 0) {
+    return fail(Error::Code::kCorrupt, "the memory limit stopped nothing");
+  }
+  const auto found = compare_maps(before, map, Sameness::kLogOdds);
+  if (!found) return tl::unexpected(found.error());
+  if (!found->equal() || found->cells() == 0 || map.memory_bytes() != before.memory_bytes() ||
+      map.memory_bytes() > kLimit_bytes) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("at its limit of {} bytes the map changed: {} cells differ, {} bytes", kLimit_bytes,
+                            found->cells() - found->same, map.memory_bytes()));
+  }
+  Row row;
+  row.add("name", "growth-limit")
+      .add_truth("checked", true)
+      .add("cells", known_cells(map))
+      .add("memory_limit_bytes", std::uint64_t{kLimit_bytes})
+      .add("memory_bytes", std::uint64_t{map.memory_bytes()});
+  return row;
+}
+
+}  // namespace
+
+Result<std::vector<Row>> growth(const BenchOptions&) {
+  Result<std::vector<Row>> rows = rows_by_size();
+  if (!rows) return rows;
+  const Result<Row> limit = row_of_limit();
+  if (!limit) return tl::unexpected(limit.error());
+  rows->push_back(*limit);
+  return rows;
+}
+
+}  // namespace pingvox::bench
