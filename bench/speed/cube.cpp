@@ -17,47 +17,51 @@ namespace {
 constexpr double kCell_m = 0.01;
 constexpr std::uint16_t kFirst = 32768, kEdge = 100;
 
-template <class F>
-void for_each_cell(F&& f) {
+/// All cells of the cube, in both libraries' keys: what the sides are given.
+struct Cells {
+  std::vector<Key> ours;
+  std::vector<octomap::OcTreeKey> peer;
+};
+
+Cells cells_of_cube() {
+  Cells cells;
+  const auto word = [](std::uint16_t n) { return static_cast<std::uint16_t>(kFirst + n); };
   for (std::uint16_t x = 0; x < kEdge; ++x) {
     for (std::uint16_t y = 0; y < kEdge; ++y) {
       for (std::uint16_t z = 0; z < kEdge; ++z) {
-        f(static_cast<std::uint16_t>(kFirst + x), static_cast<std::uint16_t>(kFirst + y),
-          static_cast<std::uint16_t>(kFirst + z));
+        cells.ours.push_back({word(x), word(y), word(z)});
+        cells.peer.emplace_back(word(x), word(y), word(z));
       }
     }
   }
+  return cells;
 }
 
-void fill_each(OccupancyMap& map) {
+void fill_each(OccupancyMap& map, std::span<const Key> cells) {
   Editor editor = map.edit(Pruning::kEachUpdate);
   const LogOdds hit = LogOdds::from_probability(0.7);
-  for_each_cell([&](std::uint16_t x, std::uint16_t y, std::uint16_t z) { editor.update(Key{x, y, z}, hit); });
+  for (const Key& cell : cells) editor.update(cell, hit);
 }
 
-void fill_at_once(OccupancyMap& map) {
-  std::vector<Key> keys;
-  keys.reserve(std::size_t{kEdge} * kEdge * kEdge);
-  for_each_cell([&](std::uint16_t x, std::uint16_t y, std::uint16_t z) { keys.push_back({x, y, z}); });
-  (void)map.update(std::span<const Key>(keys), LogOdds::from_probability(0.7));
+void fill_at_once(OccupancyMap& map, std::span<const Key> cells) {
+  (void)map.update(cells, LogOdds::from_probability(0.7));
 }
 
 /// The library's own value of a hit is a double's logarithm: the same number is handed in.
-void fill(octomap::OcTree& tree, bool lazy) {
+void fill(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> cells, bool lazy) {
   const float hit = LogOdds::from_probability(0.7).value();
-  for_each_cell([&](std::uint16_t x, std::uint16_t y, std::uint16_t z) {
-    tree.updateNode(octomap::OcTreeKey(x, y, z), hit, lazy);
-  });
+  for (const octomap::OcTreeKey& cell : cells) tree.updateNode(cell, hit, lazy);
   if (!lazy) return;
   tree.updateInnerOccupancy();
   tree.prune();
 }
 
-Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&), bool lazy) {
+Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&, std::span<const Key>), bool lazy) {
+  const Cells cells = cells_of_cube();
   std::optional<OccupancyMap> map;
   std::unique_ptr<octomap::OcTree> tree;
-  const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { fill_ours(*map); }};
-  const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(kCell_m); }, [&] { fill(*tree, lazy); }};
+  const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { fill_ours(*map, cells.ours); }};
+  const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(kCell_m); }, [&] { fill(*tree, cells.peer, lazy); }};
   ours.prepare();
   ours.work();
   peer.prepare();

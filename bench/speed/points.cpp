@@ -36,8 +36,7 @@ std::vector<Key> normal_keys(double sigma) {
 }
 
 void update(OccupancyMap& map, std::span<const Key> keys, LogOdds hit) {
-  Editor editor = map.edit(Pruning::kWhenSettled);
-  for (const Key& key : keys) editor.update(key, hit);
+  (void)map.update(keys, hit);
 }
 
 void update(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> keys, LogOdds hit, PeerMode mode) {

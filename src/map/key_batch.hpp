@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,11 +23,12 @@ struct BrickCells {
 };
 
 /// Sorts by code, stable. Digits that are the same in all codes cost nothing.
-inline void sort_by_code(std::vector<BrickCells>& all) {
+/// @param sorted  room to work in
+inline void sort_by_code(std::vector<BrickCells>& all, std::vector<BrickCells>& sorted) {
   std::uint64_t differing = 0;
   for (const BrickCells& one : all) differing |= one.code ^ all.front().code;
   constexpr int kDigit = 11;
-  std::vector<BrickCells> sorted(all.size());
+  sorted.resize(all.size());
   std::array<std::uint32_t, (1U << kDigit) + 1> place{};
   for (int shift = 0; shift < 64 && (differing >> shift) != 0; shift += kDigit) {
     constexpr std::uint64_t kMask = (1U << kDigit) - 1;
@@ -39,31 +41,83 @@ inline void sort_by_code(std::vector<BrickCells>& all) {
   }
 }
 
-/// The keys of a batch of updates, gathered by brick in the tree's order.
+/// Counts how often cells are named within a cube of 128^3 cells, a byte each: what batches that are dense in space
+/// need no sorting for.
+class CountWindow {
+ public:
+  /// Edge in cells, and in bricks.
+  static constexpr unsigned kEdge = 128;
+
+  /// Puts the window around a key. REQUIRES nothing counted in it.
+  void open(const BasicKey<std::uint64_t>& around) {
+    if (counts_.empty()) counts_.resize(std::size_t{kEdge} * kEdge * kEdge);
+    const auto base = [](std::uint64_t word) { return (word & ~std::uint64_t{3}) - kEdge / 2; };
+    lowest_ = {base(around.x), base(around.y), base(around.z)};
+  }
+
+  /// @return false, and nothing is counted, when the key is outside or its counter is full
+  bool count(const BasicKey<std::uint64_t>& key) {
+    const std::uint64_t x = key.x - lowest_.x, y = key.y - lowest_.y, z = key.z - lowest_.z;
+    if ((x | y | z) >= kEdge) return false;
+    const std::uint64_t place = kSpread[x] | kSpread[y] << 1 | kSpread[z] << 2;
+    std::uint8_t& times = counts_[place];
+    if (times == 255) return false;
+    ++times;
+    touched_[place >> 12] |= std::uint64_t{1} << ((place >> 6) & 63);
+    return true;
+  }
+
+  /// Calls f(lowest cell, counters of its 64 cells) for each brick with counts, and empties the window.
+  template <class F>
+  void take(F&& f) {
+    for (std::size_t word = 0; word < touched_.size(); ++word) {
+      for (std::uint64_t left = touched_[word]; left != 0; left &= left - 1) {
+        const std::uint64_t brick = word * 64 + static_cast<std::uint64_t>(std::countr_zero(left));
+        const std::span<std::uint8_t, 64> counts(counts_.data() + brick * 64, 64);
+        f(BasicKey<std::uint64_t>{lowest_.x + 4 * gathered_bits(brick), lowest_.y + 4 * gathered_bits(brick >> 1),
+                                  lowest_.z + 4 * gathered_bits(brick >> 2)},
+          counts);
+        std::fill(counts.begin(), counts.end(), std::uint8_t{0});
+      }
+      touched_[word] = 0;
+    }
+  }
+
+ private:
+  static constexpr std::array<std::uint32_t, kEdge> kSpread = [] {
+    std::array<std::uint32_t, kEdge> spread{};
+    for (std::size_t i = 0; i < kEdge; ++i) spread[i] = static_cast<std::uint32_t>(spread_bits(i));
+    return spread;
+  }();
+
+  BasicKey<std::uint64_t> lowest_;
+  std::vector<std::uint8_t> counts_;
+  std::array<std::uint64_t, (kEdge / 4) * (kEdge / 4) * (kEdge / 4) / 64> touched_{};
+};
+
+/// The keys of a batch of updates, gathered by brick, about in the tree's order. Its memory is kept for the next batch.
 class KeyBatch {
  public:
   /// Deeper lattices have more bits than a code.
   static constexpr int kMostDepth = 23;
+  /// Smaller batches are only sorted.
+  static constexpr std::size_t kWorthAWindow = 16'384;
 
   /// REQUIRES keys of a lattice of kMostDepth levels at most, fewer than 2^32.
   template <KeyWord W>
-  explicit KeyBatch(std::span<const BasicKey<W>> keys) {
-    // Neighbours in the batch are often neighbours in space: what falls into one brick is one entry.
-    BasicKey<W> brick{};
-    for (const BasicKey<W>& key : keys) {
-      const std::uint64_t bit = std::uint64_t{1} << cell_in_brick(key);
-      const BasicKey<W> in{static_cast<W>(key.x >> 2), static_cast<W>(key.y >> 2), static_cast<W>(key.z >> 2)};
-      if (!entries_.empty() && in == brick && (entries_.back().cells & bit) == 0) {
-        entries_.back().cells |= bit;
-        continue;
+  void gather(std::span<const BasicKey<W>> keys) {
+    assert(entries_.empty());
+    if (keys.size() < kWorthAWindow) {
+      for (const BasicKey<W>& key : keys) add(key.template as<std::uint64_t>());
+    } else {
+      window_.open(middle_of(keys));
+      for (const BasicKey<W>& key : keys) {
+        const auto same = key.template as<std::uint64_t>();
+        if (!window_.count(same)) add(same);
       }
-      brick = in;
-      const std::uint64_t code = spread_bits(static_cast<std::uint64_t>(in.x)) |
-                                 spread_bits(static_cast<std::uint64_t>(in.y)) << 1 |
-                                 spread_bits(static_cast<std::uint64_t>(in.z)) << 2;
-      entries_.push_back({code, bit});
     }
-    sort_by_code(entries_);
+    add_entry();
+    if (!entries_.empty()) sort_by_code(entries_, room_);
   }
 
   /// How often each cell of a brick is in the batch.
@@ -73,10 +127,19 @@ class KeyBatch {
     const std::array<std::uint32_t, 64>& times;  ///< valid where a bit of `more` is set
   };
 
-  /// Calls f(lowest cell of the brick, Cells) for each brick, in the tree's order.
-  template <KeyWord W, class F>
-  void for_each_brick(F&& f) const {
+  /// Calls f(lowest cell of the brick, Cells) for each brick, and empties the batch. A brick may come twice.
+  template <class F>
+  void take(F&& f) {
     std::array<std::uint32_t, 64> times{};
+    window_.take([&](const BasicKey<std::uint64_t>& lowest, std::span<const std::uint8_t, 64> counts) {
+      std::uint64_t once = 0, more = 0;
+      for (std::size_t cell = 0; cell < 64; ++cell) {
+        times[cell] = counts[cell];
+        once |= std::uint64_t{counts[cell] > 0} << cell;
+        more |= std::uint64_t{counts[cell] > 1} << cell;
+      }
+      f(lowest, Cells{once, more, times});
+    });
     for (std::size_t i = 0; i < entries_.size();) {
       const std::uint64_t code = entries_[i].code;
       std::uint64_t once = 0, more = 0;
@@ -88,14 +151,47 @@ class KeyBatch {
         }
         once |= entries_[i].cells;
       }
-      const BasicKey<W> lowest{static_cast<W>(gathered_bits(code) << 2), static_cast<W>(gathered_bits(code >> 1) << 2),
-                               static_cast<W>(gathered_bits(code >> 2) << 2)};
-      f(lowest, Cells{once, more, times});
+      f(BasicKey<std::uint64_t>{gathered_bits(code) << 2, gathered_bits(code >> 1) << 2, gathered_bits(code >> 2) << 2},
+        Cells{once, more, times});
     }
+    entries_.clear();
   }
 
  private:
-  std::vector<BrickCells> entries_;
+  /// Of the box around some of the keys.
+  template <KeyWord W>
+  static BasicKey<std::uint64_t> middle_of(std::span<const BasicKey<W>> keys) {
+    constexpr std::size_t kLooked = 64;
+    auto low = keys.front().template as<std::uint64_t>(), high = low;
+    for (std::size_t i = 0; i < keys.size(); i += keys.size() / kLooked) {
+      const auto key = keys[i].template as<std::uint64_t>();
+      low = {std::min(low.x, key.x), std::min(low.y, key.y), std::min(low.z, key.z)};
+      high = {std::max(high.x, key.x), std::max(high.y, key.y), std::max(high.z, key.z)};
+    }
+    return {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
+  }
+
+  /// Neighbours in the batch are often neighbours in space: what falls into one brick is one entry.
+  void add(const BasicKey<std::uint64_t>& key) {
+    const std::uint64_t bit = std::uint64_t{1} << cell_in_brick(key);
+    const BasicKey<std::uint64_t> brick{key.x >> 2, key.y >> 2, key.z >> 2};
+    if (brick != brick_ || (cells_ & bit) != 0) {
+      add_entry();
+      brick_ = brick;
+    }
+    cells_ |= bit;
+  }
+
+  void add_entry() {
+    if (cells_ == 0) return;
+    entries_.push_back({spread_bits(brick_.x) | spread_bits(brick_.y) << 1 | spread_bits(brick_.z) << 2, cells_});
+    cells_ = 0;
+  }
+
+  CountWindow window_;
+  BasicKey<std::uint64_t> brick_;  ///< of the entry in the making
+  std::uint64_t cells_ = 0;
+  std::vector<BrickCells> entries_, room_;
 };
 
 }  // namespace pingvox::detail

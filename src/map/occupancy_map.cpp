@@ -125,10 +125,10 @@ std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Cla
   return growth.bytes();
 }
 
-std::size_t growth_of(detail::BrickTree& tree, const detail::KeyBatch& batch, LogOdds evidence, const Clamp& clamp) {
+std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds evidence, const Clamp& clamp) {
   using Growing = Growth<std::uint64_t>;
   Growing growth(tree, clamp);
-  batch.for_each_brick<std::uint64_t>([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
+  batch.take([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
     growth.add(key, {0, {}, cells.once, nullptr, evidence}, cells.more != 0 ? Growing::More::kYes : Growing::More::kNo);
   });
   return growth.bytes();
@@ -147,10 +147,9 @@ ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, c
   return report;
 }
 
-void apply_batch(detail::BrickTree& tree, const detail::CursorRules& rules, const detail::KeyBatch& batch,
-                 LogOdds evidence) {
+void apply_batch(detail::BrickTree& tree, const detail::CursorRules& rules, detail::KeyBatch& batch, LogOdds evidence) {
   detail::Cursor<std::uint64_t> cursor(tree, rules);
-  batch.for_each_brick<std::uint64_t>([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
+  batch.take([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
     const auto vote = [&](std::uint64_t some) { return cursor.vote(key, {0, {}, some, nullptr, evidence}); };
     bool changed = vote(cells.once);
     std::uint64_t left = cells.more;
@@ -299,11 +298,13 @@ Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evi
       for (const BasicKey<W>& key : keys) editor.update(key, evidence);
       return {};
     }
-    const detail::KeyBatch batch(keys);
+    detail::KeyBatch batch;
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
+      batch.gather(keys);
       const std::size_t growth = growth_of(tree_, batch, evidence, options_.clamp);
       if (auto fits = check_limit(bytes_of(tree_) + growth, limit); !fits) return fits;
     }
+    batch.gather(keys);
     apply_batch(tree_, rules_of(options_, Pruning::kWhenSettled), batch, evidence);
     return {};
   } catch (const std::bad_alloc&) {
