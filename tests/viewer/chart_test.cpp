@@ -49,6 +49,8 @@ TEST(Ticks, AreRoundNumbersWithinTheAxis) {
   EXPECT_EQ(texts_of(ticks_of({10.0, 0.0}, 3)), (Texts{"0", "5", "10"}));
   EXPECT_EQ(texts_of(ticks_of({1.0, 1000.0, Spacing::kLogarithmic}, 8)), (Texts{"1", "10", "100", "1000"}));
   EXPECT_EQ(texts_of(ticks_of({0.5, 20.0, Spacing::kLogarithmic}, 9)), (Texts{"0.5", "1", "2", "5", "10", "20"}));
+  // Far from 0, neighbours still differ.
+  EXPECT_EQ(texts_of(ticks_of({4600000.1, 4600001.1}, 2)), (Texts{"4600000.5", "4600001"}));
   const std::vector<Tick> falling = ticks_of({10.0, 0.0}, 3);
   EXPECT_DOUBLE_EQ(falling.front().share, 1.0);
   EXPECT_DOUBLE_EQ(falling.back().share, 0.0);

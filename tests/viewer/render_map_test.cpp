@@ -16,13 +16,22 @@ namespace {
 const MapColours kColours{};
 const Rgb kCrossColour{230, 120, 0};
 
-/// The picture without its border and what is below it.
+/// What is in the frame: around what is known there is always something unknown.
 struct Inside {
   std::size_t left, top, right, bottom;
 };
 
 Inside inside_of(const Picture& picture) {
-  return {24, 24, picture.width() - 24, picture.height() - 56};
+  Inside in{0, 0, 0, 0};
+  const auto is_unknown = [&](std::size_t x, std::size_t y) { return picture.at(x, y) == kColours.unknown; };
+  for (std::size_t i = 0; i < picture.width() * picture.height(); ++i) {
+    in.left = i % picture.width();
+    in.top = i / picture.width();
+    if (is_unknown(in.left, in.top)) break;
+  }
+  for (in.right = in.left; is_unknown(in.right, in.top);) ++in.right;
+  for (in.bottom = in.top; is_unknown(in.left, in.bottom);) ++in.bottom;
+  return in;
 }
 
 /// Pixels inside of the border that have this colour.
@@ -75,6 +84,59 @@ TEST(RenderMap, PutsXUpAndYLeft) {
             "#  . \n"
             "# #. \n"
             "#  . \n");
+}
+
+TEST(RenderMap, PutsZUpFromEachSide) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    const LogOdds wall = Clamp{}.highest, water = Clamp{}.lowest;
+    for (int x = 200; x < 204; ++x) editor.set(cell(x, 100, 50), 16, water);  // a bottom of water, and on it
+    editor.set(cell(203, 100, 51), 16, wall);                                 // a step ahead,
+    editor.set(cell(203, 100, 52), 16, wall);
+    editor.set(cell(200, 102, 51), 16, wall);  // and one to the left
+  }
+  const auto seen = [&](MapView view, std::size_t across) {
+    const Picture picture = render_map(map, {.view = view, .target_px = 64});
+    const auto [left, top] = corner_of_known(picture);
+    const std::size_t cell_px = 64 * 23 / 20 / std::max<std::size_t>(across, 3);
+    return drawn(picture, left, top, across, 3, cell_px, kLetters);
+  };
+  EXPECT_EQ(seen(MapView::kRight, 4),
+            "   #\n"
+            "#  #\n"
+            "....\n");
+  EXPECT_EQ(seen(MapView::kLeft, 4),
+            "#   \n"
+            "#  #\n"
+            "....\n");
+  EXPECT_EQ(seen(MapView::kFront, 3),
+            "#  \n"
+            "# #\n"
+            ".  \n");
+  EXPECT_EQ(seen(MapView::kBehind, 3),
+            "  #\n"
+            "# #\n"
+            "  .\n");
+}
+
+TEST(RenderMap, ShowsOneLayerOfCells) {
+  OccupancyMap map({.resolution_m = 0.05});
+  {
+    Editor editor = map.edit();
+    for (int z = -3; z <= 3; ++z) editor.set(cell(100, 100 + z, z), 16, Clamp{}.highest);
+  }
+  const auto cells_at = [&](double z_m) {
+    const Picture picture = render_map(map, {.target_px = 16, .layer_z_m = z_m});
+    return count_of(picture, kColours.surely_occupied) / 256;
+  };
+  // A height between two layers belongs to the upper one.
+  for (const double z_m : {0.0, 0.02, 0.05, -0.05, -0.15, 0.1, 0.15, 0.199}) EXPECT_EQ(cells_at(z_m), 1U) << z_m;
+  for (const double z_m : {0.21, -0.16, 1e6, -1e300}) {
+    EXPECT_GT(render_map(map, {.layer_z_m = z_m}).width(), 0U) << z_m;
+  }
+  // All of them from above, so that the layer is one of several.
+  EXPECT_EQ(count_of(render_map(map, {.target_px = 16}), kColours.surely_occupied), 7U * 4U);
 }
 
 TEST(RenderMap, ShowsOnlyTheSlab) {
@@ -142,7 +204,7 @@ TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
       }
       expected += '\n';
     }
-    EXPECT_EQ(drawn(picture, left, top, ny, nx, 256 / std::max(nx, ny), kLetters), expected);
+    EXPECT_EQ(drawn(picture, left, top, ny, nx, 256 * 23 / 20 / std::max(nx, ny), kLetters), expected);
   }
   EXPECT_GT(checked, 30'000U);
 }
@@ -183,6 +245,7 @@ TEST(MapPictureOptions, RefuseSenselessValues) {
   EXPECT_FALSE(MapPictureOptions{.target_px = 0}.validate());
   EXPECT_FALSE(MapPictureOptions{.target_px = 4000}.validate());
   EXPECT_FALSE((MapPictureOptions{.min_z_m = 1.0, .max_z_m = 1.0}).validate());
+  EXPECT_FALSE((MapPictureOptions{.min_z_m = 1.0, .layer_z_m = 1.0}).validate());
 }
 
 }  // namespace
