@@ -57,6 +57,11 @@ std::pair<std::size_t, std::size_t> corner_of_known(const Picture& picture) {
   return corner;
 }
 
+/// Pixels along the edge of a cell.
+std::size_t edge_px(std::size_t target_px, std::size_t cells) {
+  return target_px * 23 / 20 / cells;
+}
+
 Key cell(int x, int y, int z) {
   const auto word = [](int c) { return static_cast<std::uint16_t>(32768 + c); };
   return {word(x), word(y), word(z)};
@@ -79,7 +84,7 @@ TEST(RenderMap, PutsXUpAndYLeft) {
   }
   const Picture picture = render_map(map, {.target_px = 80});
   const auto [left, top] = corner_of_known(picture);
-  EXPECT_EQ(drawn(picture, left, top, 5, 4, 16, kLetters),
+  EXPECT_EQ(drawn(picture, left, top, 5, 4, edge_px(80, 5), kLetters),
             "#####\n"
             "#  . \n"
             "# #. \n"
@@ -99,7 +104,7 @@ TEST(RenderMap, PutsZUpFromEachSide) {
   const auto seen = [&](MapView view, std::size_t across) {
     const Picture picture = render_map(map, {.view = view, .target_px = 64});
     const auto [left, top] = corner_of_known(picture);
-    const std::size_t cell_px = 64 * 23 / 20 / std::max<std::size_t>(across, 3);
+    const std::size_t cell_px = edge_px(64, std::max<std::size_t>(across, 3));
     return drawn(picture, left, top, across, 3, cell_px, kLetters);
   };
   EXPECT_EQ(seen(MapView::kRight, 4),
@@ -148,10 +153,10 @@ TEST(RenderMap, ShowsOnlyTheSlab) {
     editor.set(cell(101, 100, 0), 16, Clamp{}.lowest);
   }
   const Picture all = render_map(map, {.target_px = 16});
-  EXPECT_EQ(count_of(all, kColours.surely_occupied), 64U);
+  EXPECT_EQ(count_of(all, kColours.surely_occupied), edge_px(16, 2) * edge_px(16, 2));
   const Picture slab = render_map(map, {.target_px = 16, .min_z_m = 0.0, .max_z_m = 3.0});
   EXPECT_EQ(count_of(slab, kColours.surely_occupied), 0U);
-  EXPECT_EQ(count_of(slab, kColours.surely_free), 128U);
+  EXPECT_EQ(count_of(slab, kColours.surely_free), 2 * edge_px(16, 2) * edge_px(16, 2));
 }
 
 TEST(RenderMap, MarksTheOriginAndWhatIsUndecided) {
@@ -162,9 +167,10 @@ TEST(RenderMap, MarksTheOriginAndWhatIsUndecided) {
   EXPECT_GT(count_of(picture, kColours.undecided), 10'000U);
   // Where the two squares meet, in the middle.
   const auto [left, top] = corner_of_known(picture);
-  EXPECT_EQ(picture.at(left + 80, top + 80), kCrossColour);
-  EXPECT_EQ(picture.at(left + 90, top + 80), kCrossColour);
-  EXPECT_NE(picture.at(left + 93, top + 80), kCrossColour);
+  const std::size_t x = left + 8 * edge_px(160, 16), y = top + 8 * edge_px(160, 16);
+  EXPECT_EQ(picture.at(x, y), kCrossColour);
+  EXPECT_EQ(picture.at(x + 10, y), kCrossColour);
+  EXPECT_NE(picture.at(x + 13, y), kCrossColour);
 }
 
 TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
@@ -204,7 +210,7 @@ TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
       }
       expected += '\n';
     }
-    EXPECT_EQ(drawn(picture, left, top, ny, nx, 256 * 23 / 20 / std::max(nx, ny), kLetters), expected);
+    EXPECT_EQ(drawn(picture, left, top, ny, nx, edge_px(256, std::max(nx, ny)), kLetters), expected);
   }
   EXPECT_GT(checked, 30'000U);
 }
@@ -218,7 +224,7 @@ TEST(RenderMap, LosesNoThinWallWhereAPixelIsManyCells) {
   }
   const Picture picture = render_map(map, {.target_px = 500});
   EXPECT_LE(picture.width(), 700U);
-  EXPECT_EQ(count_of(picture, kColours.surely_occupied), 4096U / 16U);
+  EXPECT_EQ(count_of(picture, kColours.surely_occupied), 4096U / 16U * edge_px(500, 256) * edge_px(500, 256));
 }
 
 TEST(RenderMap, DrawsMapsOfAnyDepthAndSize) {
