@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
@@ -32,23 +33,57 @@ struct Disc {
   }
 };
 
-void draw_image(Picture& picture, const Area& area, const CartesianImage& image, const EchoPictureOptions& look) {
+/// How far the beams reach in each direction, to tell silence from what nobody listened to.
+class Reach {
+ public:
+  Reach(const Sweep& sweep, double beam_width_rad) : range_m_(kDirections, 0.0) {
+    const double half = 0.5 * beam_width_rad / kStep_rad;
+    for (const Beam& beam : sweep.beams) {
+      const double range_m = static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
+      const double middle = beam.bearing_rad / kStep_rad;
+      for (double n = std::ceil(middle - half); n <= middle + half; ++n) {
+        double& there = range_m_[direction(n)];
+        there = std::max(there, range_m);
+      }
+    }
+  }
+
+  bool holds(double x_m, double y_m) const {
+    return std::hypot(x_m, y_m) <= range_m_[direction(std::round(std::atan2(y_m, x_m) / kStep_rad))];
+  }
+
+ private:
+  static constexpr std::size_t kDirections = 7200;
+  static constexpr double kStep_rad = 2.0 * std::numbers::pi / kDirections;
+
+  static std::size_t direction(double n) {
+    const double turns = std::floor(n / kDirections);
+    return std::min(static_cast<std::size_t>(n - turns * kDirections), kDirections - 1);
+  }
+
+  std::vector<double> range_m_;
+};
+
+void draw_image(Picture& picture, const Area& area, const CartesianImage& image, const Reach& reach,
+                const EchoPictureOptions& look) {
   const std::array<Rgb, 256> greys = greys_of(look);
   const double range_m = 0.5 * static_cast<double>(image.size_px) * image.pixel_m;
   for (std::size_t row = 0; row < image.size_px; ++row) {
     for (std::size_t column = 0; column < image.size_px; ++column) {
-      const bool is_reached = std::hypot(image.x_m(row), image.y_m(column)) <= range_m;
+      const double x_m = image.x_m(row), y_m = image.y_m(column);
+      if (std::hypot(x_m, y_m) > range_m) continue;
+      const std::uint8_t intensity = image.at(row, column);
       picture.set(area.x + static_cast<std::ptrdiff_t>(column), area.y + static_cast<std::ptrdiff_t>(row),
-                  is_reached ? greys[image.at(row, column)] : look.nothing);
+                  intensity > 0 || reach.holds(x_m, y_m) ? greys[intensity] : look.nothing);
     }
   }
 }
 
 /// Rings of range with their metres, and spokes at the rim with their degrees.
 void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
-  const double step_m = round_length_above(disc.range_m / 4.0);
+  const double step_m = round_length_above(disc.range_m / 5.0);
   for (int n = 1; n * step_m < disc.range_m * (1.0 + 1e-9); ++n) {
-    draw_circle(picture, disc.middle, n * step_m / disc.range_m * disc.radius_px, 1.2, kRing, 0.55, area);
+    draw_circle(picture, disc.middle, n * step_m / disc.range_m * disc.radius_px, 1.3, kRing, 0.8, area);
   }
   constexpr int kSpokes = 12;
   for (int n = 0; n < kSpokes; ++n) {
@@ -65,11 +100,11 @@ void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
 
 /// What the rings are, on a dark patch so that it can be read on any grey.
 void draw_ring_labels(Picture& picture, const Disc& disc) {
-  const double step_m = round_length_above(disc.range_m / 4.0);
+  const double step_m = round_length_above(disc.range_m / 5.0);
   // Between two spokes, where walls seldom are.
   const double bearing_rad = 345.0 * std::numbers::pi / 180.0;
   for (int n = 1; n * step_m < disc.range_m * (1.0 - 1e-9); ++n) {
-    const std::string text = length_text(n * step_m);
+    const std::string text = length_text(n * step_m) + " m";
     const Spot at = disc.spot_at(n * step_m, bearing_rad);
     const std::ptrdiff_t x = std::lround(at.x), y = std::lround(at.y), width = label_width(text, kTextScale);
     picture.fill(x - width / 2 - 3, y - 10, width + 4, 20, {30, 30, 30});
@@ -118,14 +153,14 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
     draw_label(picture, kMargin, footer, "nothing was heard", kTextScale, kInk);
     return picture;
   }
-  draw_image(picture, area, drawn, options.look);
+  draw_image(picture, area, drawn, Reach(sweep, options.beam_width_rad), options.look);
   draw_polar_grid(picture, area, disc);
+  draw_ring_labels(picture, disc);
   const double radius = std::clamp(half / 200.0, 1.6, 4.0);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (!echoes[i] || !(echoes[i]->range_m <= disc.range_m)) continue;
     draw_disc(picture, disc.spot_at(echoes[i]->range_m, sweep.beams[i].bearing_rad), radius, options.look.echo);
   }
-  draw_ring_labels(picture, disc);
   draw_marker(picture, Marker::kPlus, disc.middle, 7.0, kRing);
   draw_scale_bar(picture, kMargin, footer, disc);
   draw_echo_legend(picture, kMargin, footer + kFooterRow, options.look,

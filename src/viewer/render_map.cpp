@@ -105,11 +105,13 @@ void for_each_shown(const OccupancyMap& map, const MapPictureOptions& options, V
   for_each_leaf<WideWord>(map, query, visit);
 }
 
-/// Columns of the shown part, at most `most` of them along each side.
-Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
-  const Look look = look_of(options.view);
-  const Lattice& lattice = map.lattice();
-  const int levels = lattice.depth();
+/// The lowest and the highest cell of the shown part.
+struct Corners {
+  WideKey low, high;
+};
+
+std::optional<Corners> corners_of(const OccupancyMap& map, const MapPictureOptions& options) {
+  const int levels = map.lattice().depth();
   WideKey low{~WideWord{0}, ~WideWord{0}, ~WideWord{0}}, high{0, 0, 0};
   for_each_shown(map, options, [&](const Leaf<WideWord>& leaf) {
     const int bits = levels - leaf.depth;
@@ -118,7 +120,30 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
     high = {std::max(high.x, leaf.key.x + last), std::max(high.y, leaf.key.y + last),
             std::max(high.z, leaf.key.z + last)};
   });
-  if (low.x > high.x) return {};
+  if (low.x > high.x) return std::nullopt;
+  return Corners{low, high};
+}
+
+/// Corners moved out to a box, as far as the lattice reaches.
+Corners widened(const Corners& corners, const Box& box, const Lattice& lattice) {
+  Corners wide = corners;
+  const auto low = lattice.key_of<WideWord>(box.min);
+  // The upper face belongs to the cells beyond it.
+  const auto high = lattice.key_of<WideWord>(box.max.array() - 0.5 * lattice.resolution_m());
+  if (low) wide.low = {std::min(wide.low.x, low->x), std::min(wide.low.y, low->y), std::min(wide.low.z, low->z)};
+  if (high)
+    wide.high = {std::max(wide.high.x, high->x), std::max(wide.high.y, high->y), std::max(wide.high.z, high->z)};
+  return wide;
+}
+
+/// Columns of the shown part, at most `most` of them along each side.
+Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
+  const Look look = look_of(options.view);
+  const Lattice& lattice = map.lattice();
+  const int levels = lattice.depth();
+  const std::optional<Corners> known = corners_of(map, options);
+  if (!known) return {};
+  const auto [low, high] = options.at_least ? widened(*known, *options.at_least, lattice) : *known;
 
   const WideWord low_across = word_along(low, look.across), low_up = word_along(low, look.up);
   const WideWord high_across = word_along(high, look.across), high_up = word_along(high, look.up);
@@ -254,6 +279,16 @@ Result<void> MapPictureOptions::validate() const {
   return fail(Error::Code::kBadOption, "map picture:" + bad);
 }
 
+std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& options) {
+  assert(options.validate());
+  const std::optional<Corners> corners = corners_of(map, options);
+  if (!corners) return std::nullopt;
+  const Lattice& lattice = map.lattice();
+  const Eigen::Vector3d low_m = lattice.lowest_corner_of(corners->low, lattice.depth());
+  const Eigen::Vector3d high_m = lattice.lowest_corner_of(corners->high, lattice.depth());
+  return Box{low_m, high_m.array() + lattice.resolution_m()};
+}
+
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
   const Look look = look_of(options.view);
@@ -278,7 +313,7 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   const double bottom_m = columns.least_up_m - metres(halo);
   const AxisScale up_scale{bottom_m, bottom_m + metres(height)};
   const auto ticks_on = [](std::ptrdiff_t pixels) {
-    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(pixels / 100, 2, 12));
+    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(pixels / 80, 4, 12));
   };
   const std::vector<Tick> across_ticks = ticks_of(across_scale, ticks_on(width));
   const std::vector<Tick> up_ticks = ticks_of(up_scale, ticks_on(height));

@@ -144,6 +144,29 @@ TEST(RenderMap, ShowsOneLayerOfCells) {
   EXPECT_EQ(count_of(render_map(map, {.target_px = 16}), kColours.surely_occupied), 7U * 4U);
 }
 
+TEST(RenderMap, ShowsMoreThanIsKnownToBeCompared) {
+  OccupancyMap small({.resolution_m = 1.0}), large({.resolution_m = 1.0});
+  small.edit().set(cell(100, 100, 0), 16, Clamp{}.highest);
+  large.edit().set(cell(98, 101, 0), 16, Clamp{}.highest);
+  large.edit().set(cell(102, 99, 7), 16, Clamp{}.highest);
+  const auto part = shown_part(large, {});
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->min, Eigen::Vector3d(98, 99, 0));
+  EXPECT_EQ(part->max, Eigen::Vector3d(103, 102, 8));
+  EXPECT_FALSE(shown_part(OccupancyMap{}, {}));
+  EXPECT_EQ(shown_part(large, {.layer_z_m = 7.5})->min, Eigen::Vector3d(102, 99, 7));
+
+  const Picture a = render_map(large, {.target_px = 100});
+  const Picture b = render_map(small, {.target_px = 100, .at_least = part});
+  EXPECT_EQ(a.width(), b.width());
+  EXPECT_EQ(a.height(), b.height());
+  // The cell in the middle of five by three.
+  const auto [left, top] = corner_of_known(b);
+  const auto [all_left, all_top] = corner_of_known(a);
+  EXPECT_EQ(left, all_left + edge_px(100, 5));
+  EXPECT_EQ(top, all_top + 2 * edge_px(100, 5));
+}
+
 TEST(RenderMap, ShowsOnlyTheSlab) {
   OccupancyMap map({.resolution_m = 1.0});
   {

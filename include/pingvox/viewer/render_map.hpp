@@ -33,10 +33,14 @@ struct MapPictureOptions {
   std::optional<double> max_z_m = std::nullopt;  ///< only what lies below
   /// Only the layer of cells of the finest resolution that holds this height, instead of the two above.
   std::optional<double> layer_z_m = std::nullopt;
+  std::optional<Box> at_least = std::nullopt;  ///< shown even where nothing is known, so that pictures can be compared
   MapColours colours{};
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
+
+/// The smallest box around the cells of a map that a picture shows; nullopt when there are none.
+std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& options);
 
 /// A map seen from one of its sides: each line of cells along the look has the colour of its surest belief of being
 /// occupied. A cell is a whole number of pixels; where the map is too large for that, a pixel is 2, 4, 8 ... cells wide
