@@ -17,7 +17,9 @@ _pingvox_options() {
     compare) options+=(--json --quiet) ;;
     convert) options+=(--output --format --strict --quiet) ;;
     render)
-      options+=(--output --size --sweep --min-z --max-z --strict --quiet --config)
+      options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
+      options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
+      options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
@@ -46,6 +48,11 @@ _pingvox_words() {
       [[ $2 != convert ]] || echo csv
       printf '%s\n' bt ot pvx ply
       ;;
+    --view) printf '%s\n' polar cartesian above side slice ;;
+    --from) printf '%s\n' right left front behind ;;
+    --show) printf '%s\n' raw filtered ;;
+    --echoes) printf '%s\n' on off ;;
+    --between) printf '%s\n' interpolate nothing ;;
     --progress) printf '%s\n' auto always never ;;
   esac
 }
@@ -75,8 +82,8 @@ _pingvox() {
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
-        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --min-z | --max-z)
-        return # a number: nothing to offer
+        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --z | --min-z | --max-z | --caption | --title | --beside)
+        return # a number or a text: nothing to offer
         ;;
     esac
     if [[ $current == -* ]]; then
