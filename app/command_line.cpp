@@ -794,14 +794,14 @@ Result<Command> render_command(const Words& words) {
         if (!caption.empty()) continue;
         caption = caption_of(setting, settings);
         if (inputs.size() > 1) {
-          const std::string name = std::filesystem::path(input).filename().string();
-          caption = name + (caption.empty() ? "" : ": " + caption);
+          if (!caption.empty()) caption.insert(0, ": ");
+          caption.insert(0, std::filesystem::path(input).filename().string());
         }
       }
     }
     Words files = inputs;
     for (const PanelWords& setting : settings) {
-      if (setting.build.poses == "-") files.push_back("-");
+      if (setting.build.poses == "-") files.emplace_back("-");
     }
     if (const auto once = check_standard_input(files); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());

@@ -79,9 +79,14 @@ void draw_image(Picture& picture, const Area& area, const CartesianImage& image,
   }
 }
 
+/// How far apart rings of range are [m]: five at most, and so that their labels have room.
+double ring_step_m(const Disc& disc) {
+  return round_length_above(disc.range_m * std::max(0.2, 40.0 / disc.radius_px));
+}
+
 /// Rings of range with their metres, and spokes at the rim with their degrees.
 void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
-  const double step_m = round_length_above(disc.range_m / 5.0);
+  const double step_m = ring_step_m(disc);
   for (int n = 1; n * step_m < disc.range_m * (1.0 + 1e-9); ++n) {
     draw_circle(picture, disc.middle, n * step_m / disc.range_m * disc.radius_px, 1.3, kRing, 0.8, area);
   }
@@ -100,7 +105,7 @@ void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
 
 /// What the rings are, on a dark patch so that it can be read on any grey.
 void draw_ring_labels(Picture& picture, const Disc& disc) {
-  const double step_m = round_length_above(disc.range_m / 5.0);
+  const double step_m = ring_step_m(disc);
   // Between two spokes, where walls seldom are.
   const double bearing_rad = 345.0 * std::numbers::pi / 180.0;
   for (int n = 1; n * step_m < disc.range_m * (1.0 - 1e-9); ++n) {
