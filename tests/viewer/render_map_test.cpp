@@ -263,6 +263,12 @@ TEST(RenderMap, DrawsMapsOfAnyDepthAndSize) {
       const Picture corners = render_map(map);
       EXPECT_GT(count_of(corners, kColours.surely_occupied), 0U);
       EXPECT_GT(count_of(corners, kColours.surely_free), 0U);
+      for (const MapView view : {MapView::kRight, MapView::kLeft, MapView::kFront, MapView::kBehind}) {
+        const Picture side = render_map(map, {.view = view, .at_least = shown_part(map, {})});
+        EXPECT_GT(count_of(side, kColours.surely_occupied), 0U);
+      }
+      const Picture layer = render_map(map, {.layer_z_m = 0.0, .at_least = Box{{-1e308, -1, 0}, {1e308, 1, 1e-320}}});
+      EXPECT_LE(layer.width(), Picture::kMaxSide);
       map.edit().set(WideKey{}, 0, Clamp{}.highest);
       EXPECT_GT(count_of(render_map(map), kColours.surely_occupied), 0U);
     }
