@@ -10,12 +10,12 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
-      options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
+      options+=(--poses --mount --origin --beam --beam-width --beam-height --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
     compare) options+=(--json --quiet) ;;
-    convert) options+=(--output --format --strict --quiet) ;;
+    convert) options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height) ;;
     render)
       options+=(--output --size --sweep --min-z --max-z --strict --quiet --config)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
@@ -44,8 +44,10 @@ _pingvox_words() {
     --trajectory) printf '%s\n' still line lawn-mower loop ;;
     --format)
       [[ $2 != convert ]] || echo csv
-      printf '%s\n' bt ot pvx ply
+      printf '%s\n' bt ot pvx ply pcd
+      [[ $2 != convert ]] || printf '%s\n' pgm yaml asc
       ;;
+    --height) printf '%s\n' highest lowest ;;
     --progress) printf '%s\n' auto always never ;;
   esac
 }
@@ -75,7 +77,7 @@ _pingvox() {
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
-        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --min-z | --max-z)
+        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --z | --min-z | --max-z | --origin)
         return # a number: nothing to offer
         ;;
     esac
