@@ -56,6 +56,7 @@ std::optional<Scalar> scalar_of(const Field& field) {
 /// Puts what a line of the header says into its place.
 /// @return what is wrong with it; empty: nothing
 std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader& header) {
+  if (words.empty()) return "belongs in no header";  // nothing but commas
   const std::string_view key = words.front();
   const std::size_t values = words.size() - 1;
   const auto take_count = [&](std::optional<std::uint64_t>& target) -> std::string_view {
