@@ -9,14 +9,19 @@ namespace pingvox {
 
 bool looks_like_xyz(std::span<const std::uint8_t> bytes) {
   // More are the bins of a beam whose columns nobody named.
-  constexpr std::size_t kMostNumbers = 16;
+  constexpr std::size_t kMostWords = 16;
+  constexpr int kLines = 10;
   Lines lines(text_of(bytes));
-  std::string_view line = lines.next_with_content().value_or("");
-  std::size_t count = 0;
-  while (const auto word = cut_word(line)) {
-    if (++count > kMostNumbers || !number_in(*word)) return false;
+  for (int looked_at = 0; looked_at < kLines; ++looked_at) {
+    auto line = lines.next_with_content();
+    if (!line) return looked_at > 0;
+    std::size_t count = 0;
+    while (const auto word = cut_word(*line)) {
+      if (++count > kMostWords || (looked_at == 0 && !number_in(*word))) return false;
+    }
+    if (looked_at == 0 && count < 3) return false;
   }
-  return count >= 3;
+  return true;
 }
 
 Result<std::unique_ptr<ScanSource>> open_xyz(FileBytes file, Damage damage, const CloudOrigin& origin_m) {

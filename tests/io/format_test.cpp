@@ -63,6 +63,8 @@ TEST(Format, TellsXyzFromOtherColumnsOfNumbers) {
   EXPECT_EQ(format_of_text("10 20 30 and I am coming\n"), std::nullopt);
   EXPECT_EQ(format_of_text("10.25,3.14,0.0125,0,43,68,90,1,2,3,4,5,6,7,8,9,10\n"), std::nullopt)
       << "beams without a header";
+  EXPECT_EQ(format_of_text("1 0 2 27 28\n1 1 14 27 28 29 30 31 32 33 34 35 36 37 38 39 40\n"), std::nullopt)
+      << "the same with a short one first";
   // As many columns as a trajectory has, or one more or less.
   EXPECT_EQ(format_of_text("1 2 3 0.1 200 10 0 77\n1 2 3 0.2 200 10 0 78\n"), Format::kXyz);
   EXPECT_EQ(format_of_text("1 2 3 0 0 1 9\n1 2 3 0 1 0 9\n"), Format::kXyz) << "with normals";
