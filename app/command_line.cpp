@@ -213,10 +213,14 @@ constexpr std::array kProgress = {Word<ShowProgress>{"auto", ShowProgress::kAuto
                                   Word<ShowProgress>{"always", ShowProgress::kAlways},
                                   Word<ShowProgress>{"never", ShowProgress::kNever}};
 constexpr std::array kMapFormats = {Word<Format>{"bt", Format::kBt}, Word<Format>{"ot", Format::kOt},
-                                    Word<Format>{"pvx", Format::kPvx}, Word<Format>{"ply", Format::kPly}};
-constexpr std::array kLogAndMapFormats = {Word<Format>{"csv", Format::kCsv}, Word<Format>{"bt", Format::kBt},
-                                          Word<Format>{"ot", Format::kOt}, Word<Format>{"pvx", Format::kPvx},
-                                          Word<Format>{"ply", Format::kPly}};
+                                    Word<Format>{"pvx", Format::kPvx}, Word<Format>{"ply", Format::kPly},
+                                    Word<Format>{"pcd", Format::kPcd}};
+constexpr std::array kLogAndMapFormats = {
+    Word<Format>{"csv", Format::kCsv},  Word<Format>{"bt", Format::kBt},     Word<Format>{"ot", Format::kOt},
+    Word<Format>{"pvx", Format::kPvx},  Word<Format>{"ply", Format::kPly},   Word<Format>{"pcd", Format::kPcd},
+    Word<Format>{"pgm", Format::kGrid}, Word<Format>{"yaml", Format::kGrid}, Word<Format>{"asc", Format::kAsc}};
+constexpr std::array kSurfaces = {Word<Surface>{"highest", Surface::kHighest},
+                                  Word<Surface>{"lowest", Surface::kLowest}};
 constexpr std::array kCsvOnly = {Word<Format>{"csv", Format::kCsv}};
 constexpr std::array kPngOnly = {Word<Format>{"png", Format::kPng}};
 
@@ -463,6 +467,14 @@ Result<Command> map_command(const Words& words) {
     if (taken && threads < 1) return off(fmt::format("{} is less than 1", text));
     return taken;
   };
+  const Take origin = [&](const std::string& text) -> Result<void> {
+    const auto n = numbers_from<3>(text);
+    if (!n) return tl::unexpected(n.error());
+    const Eigen::Vector3d place(n->data());
+    if (!place.allFinite()) return off(fmt::format("'{}': must be finite", text));
+    command.cloud_origin_m = place;
+    return {};
+  };
   const Take log = [&](const std::string& text) -> Result<void> {
     command.logs.push_back(text);
     return {};
@@ -479,29 +491,35 @@ Result<Command> map_command(const Words& words) {
   map_options.options.push_back({"--threads", 0, "N",
                                  "threads that may be used, 1 or more; the result does not depend on it", "1",
                                  thread_count});
+  OptionTable::Group sensor_options = sensor_group(build);
+  sensor_options.options.push_back({"--origin", 0, "X,Y,Z", "from where the points of a cloud were seen, in the map",
+                                    "0,0,0; a PCD's VIEWPOINT", origin});
   const OptionTable table{
       "map",
       "Turns sonar logs into a 3D occupancy map: reads the LOGs one after another, finds the echoes of each beam, and\n"
       "frees and hits the cells that its sound went through and came back from.",
       {{"LOG", Positional::Count::kMany,
-        "beams (MATLAB 5, CSV) or point scans (OctoMap's .graph and its text form), told by content; - is standard "
-        "input",
+        "beams (MATLAB 5, CSV), point scans (OctoMap's .graph and its text form) or clouds of points, each a scan "
+        "(PLY, "
+        "PCD, XYZ), told by content; - is standard input",
         log}},
       {{"Output",
-        {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply (points); - is standard output"),
+        {output_option(output,
+                       "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply or .pcd (points); - is standard output"),
          {"--format", 0, words_of(kMapFormats), "format of the map, whatever its name", "by suffix, else bt", format},
          json_option(command.manner),
          quiet_option(command.manner),
          choice("--progress", kProgress, "show on standard error how far the work is; auto: on a terminal",
                 command.manner.progress)}},
        map_options,
-       sensor_group(build),
+       sensor_options,
        echo_group(build.echoes, build.build.sound_speed_ratio, into_number(build.build.model.max_range_m)),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt --beam cone",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
-       "pingvox map scans.graph -o scans.bt --resolution 0.1 --vote sweep", "pingvox map - -o - < tank.csv > tank.bt"},
-      "Point scans use the options of the map, --ray and --max-range.\n"
+       "pingvox map scans.graph -o scans.bt --resolution 0.1 --vote sweep",
+       "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
+      "Point scans and clouds use the options of the map, --ray and --max-range.\n"
       "Exit status: 0 done, 1 could not be done, 2 the words of the call are off."};
   return parsed(table, words, [&]() -> Result<Command> {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
@@ -534,7 +552,8 @@ Result<Command> info_command(const Words& words) {
   InfoCommand command;
   const OptionTable table{
       "info",
-      "Says what a file holds: a log of beams or of point scans, a map, or a trajectory. Told by content, not by name.",
+      "Says what a file holds: a log of beams or of point scans, a cloud, a map, a mesh, or a trajectory. Told by\n"
+      "content, not by name.",
       {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", into(command.file)}},
       {{"Options", {json_option(command.manner), strict_option(command.damage)}}},
       {"pingvox info tank.mat", "pingvox info tank.bt --json"},
@@ -568,19 +587,42 @@ Result<Command> convert_command(const Words& words) {
     asked_format = *value;
     return {};
   };
+  std::optional<double> layer_m;
+  std::optional<Surface> surface;
+  const Take take_surface = [&](const std::string& text) -> Result<void> {
+    const Result<Surface> value = value_of(kSurfaces, text);
+    if (!value) return tl::unexpected(value.error());
+    surface = *value;
+    return {};
+  };
   const OptionTable table{
       "convert",
-      "Writes a file in another format: a log of beams as CSV, a map as another map or as a cloud of points.",
-      {{"IN", Positional::Count::kOne, "a log of beams or a map; - is standard input", into(command.input)}},
+      "Writes a file in another format: a log of beams as CSV; a map as another map, as a cloud of points, as a grid\n"
+      "for ROS's map_server, or as heights; a mesh as the map of its surface.",
+      {{"IN", Positional::Count::kOne, "a log of beams, a map or a mesh (OFF, PLY, STL); - is standard input",
+        into(command.input)}},
       {{"Options",
         {output_option(command.output,
-                       "what to write: .csv from a log, .bt .ot .pvx .ply from a map; - is standard output"),
+                       "what to write: .csv from a log; .bt .ot .pvx from a map or a mesh, and .ply .pcd (points), "
+                       ".yaml with its .pgm (map_server), .asc (ESRI grid of heights); - is standard output"),
          {"--format", 0, words_of(kLogAndMapFormats), "format of the output, whatever its name", "by suffix, else csv",
           format},
          strict_option(command.damage),
-         quiet_option(command.manner)}}},
-      {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.bt -o tank.ply"},
-      ""};
+         quiet_option(command.manner)}},
+       {"Meshes",
+        {{"--resolution", 0, "M", "edge of a cell", shown(MapOptions{}.resolution_m),
+          into_optional(command.resolution_m)}}},
+       {"Grids and heights",
+        {{"--z", 0, "M", "only the layer of cells that holds this height", "all layers", into_optional(layer_m)},
+         {"--min-z", 0, "M", "no layer below", "none", into_optional(command.slice.min_z_m)},
+         {"--max-z", 0, "M", "no layer above", "none", into_optional(command.slice.max_z_m)},
+         {"--height", 0, words_of(kSurfaces),
+          "which occupied cell of a column gives its height, that of its upper face",
+          word_of(kSurfaces, command.surface), take_surface}}}},
+      {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.bt -o tank.ply",
+       "pingvox convert harbour.bt -o harbour.yaml --min-z -0.5 --max-z 0.5", "pingvox convert seabed.ot -o seabed.asc",
+       "pingvox convert hull.stl -o hull.bt --resolution 0.1"},
+      "A column of a grid is occupied when any of its cells is, free when one is and none is occupied, else unknown."};
   return parsed(table, words, [&]() -> Result<Command> {
     if (format_for_writing(command.output) == Format::kPng) {
       return off(fmt::format("{}: pictures are drawn by 'pingvox render'", command.output));
@@ -588,6 +630,20 @@ Result<Command> convert_command(const Words& words) {
     const Result<Format> output_as = output_format(command.output, asked_format, kLogAndMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
+    const bool is_grid = command.format == Format::kGrid, is_heights = command.format == Format::kAsc;
+    const bool is_sliced = layer_m || command.slice.min_z_m || command.slice.max_z_m;
+    if (is_sliced && !is_grid && !is_heights) {
+      return off("--z, --min-z and --max-z: only for grids and heights, .yaml, .pgm and .asc");
+    }
+    if (surface && !is_heights) return off("--height: only for heights, .asc");
+    command.surface = surface.value_or(command.surface);
+    if (layer_m && (command.slice.min_z_m || command.slice.max_z_m)) return off("--z is both --min-z and --max-z");
+    if (layer_m) command.slice = {layer_m, layer_m};
+    if (const auto valid = command.slice.validate(); !valid) return tl::unexpected(valid.error());
+    if (command.resolution_m) {
+      if (const auto lattice = Lattice::make(*command.resolution_m); !lattice) return tl::unexpected(lattice.error());
+    }
+    if (is_grid && command.output == "-") return off("-o -: of a grid, two files are written: name the first one");
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;
   });
@@ -940,9 +996,10 @@ struct CommandName {
 /// `view` is known, so that nobody is told to have misspelt it, but not offered.
 constexpr std::array kCommands = {
     CommandName{"map", "logs to a map", &map_command},
-    CommandName{"info", "what a log or a map holds", &info_command},
+    CommandName{"info", "what a log, a cloud, a map or a mesh holds", &info_command},
     CommandName{"compare", "two maps, cell by cell", &compare_command},
-    CommandName{"convert", "a log to CSV, a map to another format or a cloud", &convert_command},
+    CommandName{"convert", "a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
+                &convert_command},
     CommandName{"render", "a picture of a log with its echoes, or of a map", &render_command},
     CommandName{"simulate", "the log of a sonar in a world of your choice", &simulate_command},
     CommandName{"bench", "measurements, when pingvox-bench is installed", &bench_command},

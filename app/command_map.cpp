@@ -115,7 +115,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       Result<FileBytes> file = read_file(command.logs[i]);
       if (!file) return tl::unexpected(file.error());
       const std::string name = file->name;
-      const Result<Log> log = open_log(std::move(*file), command.damage);
+      const Result<Log> log = open_log(std::move(*file), command.damage, command.cloud_origin_m);
       if (!log) return tl::unexpected(log.error());
       totals.report.seconds.read += read.seconds();
 

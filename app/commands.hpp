@@ -10,6 +10,7 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/map/slice.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -36,6 +37,7 @@ struct MapCommand {
   std::string output;             ///< "-" is standard output
   Format format = Format::kBt;
   std::optional<std::string> poses;
+  std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
   MapOptions map;
   BuildOptions build;
@@ -58,6 +60,9 @@ struct ConvertCommand {
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
+  std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the usual one
+  SliceOptions slice;                  ///< of grids and heights
+  Surface surface = Surface::kHighest;
 };
 
 /// What a picture shows: of a log of beams one of the first two; of a map, or of a log after mapping it, the others.
