@@ -1,8 +1,18 @@
 #include <array>
 
 #include "bench.hpp"
+#include "speed/command.hpp"
+#include "speed/cone.hpp"
 #include "speed/cube.hpp"
+#include "speed/map_files.hpp"
+#include "speed/memory.hpp"
+#include "speed/points.hpp"
+#include "speed/queries.hpp"
+#include "speed/rays.hpp"
 #include "speed/scans.hpp"
+#include "vehicle/growth.hpp"
+#include "vehicle/realtime.hpp"
+#include "vehicle/startup.hpp"
 
 namespace pingvox::bench {
 
@@ -10,10 +20,25 @@ std::span<const Bench> benches() {
   static constexpr std::array kBenches = {
       Bench{"cube-each", "the paper's cube, parents right and pruned after each update", Family::kSpeed, &cube_each},
       Bench{"cube-lazy", "the paper's cube as one batch, settled and pruned at its end", Family::kSpeed, &cube_lazy},
+      Bench{"points-5000", "a million points far apart, one update each", Family::kSpeed, &points_5000},
+      Bench{"points-50", "the same a hundred times as near to each other", Family::kSpeed, &points_50},
+      Bench{"points-5", "the same in so few cells that most updates change nothing", Family::kSpeed, &points_5},
       Bench{"tank-2d", "28 sweeps in a tank as scans of rays, cells of 1.25 cm", Family::kSpeed, &tank_2d},
       Bench{"tank-3d", "3 sweeps, each beam a bundle of 32 x 64 rays, cells of 5 cm", Family::kSpeed, &tank_3d},
       Bench{"tank-3d-cells", "the same, end points made cells first", Family::kSpeed, &tank_3d_cells},
       Bench{"tank-fine", "one sweep of bundles in cells of 1.25 cm", Family::kSpeed, &tank_fine},
+      Bench{"tank-cone", "3 sweeps, each beam a cone by geometry against a bundle of rays", Family::kSpeed, &tank_cone},
+      Bench{"rays", "131,072 random rays made keys", Family::kSpeed, &rays},
+      Bench{"look-up", "what a million keys are in the map of tank-3d", Family::kSpeed, &look_up},
+      Bench{"cast-ray", "what 100,000 rays hit in the map of tank-3d", Family::kSpeed, &cast_rays},
+      Bench{"leaves", "once over all leaves of the map of tank-3d", Family::kSpeed, &leaves},
+      Bench{"bt-write", "the map of tank-3d as .bt, to memory", Family::kSpeed, &bt_write},
+      Bench{"bt-read", "the same from memory", Family::kSpeed, &bt_read},
+      Bench{"memory", "what the map of tank-3d takes in memory", Family::kSpeed, &memory},
+      Bench{"command", "a million points in 20 scans: pingvox map against graph2tree", Family::kSpeed, &command},
+      Bench{"realtime", "the tank recording beam by beam: time until each is in the map", Family::kVehicle, &realtime},
+      Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
+      Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
   };
   return kBenches;
 }

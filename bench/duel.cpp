@@ -1,6 +1,7 @@
 #include "duel.hpp"
 
 #include <malloc.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,17 +16,11 @@
 namespace pingvox::bench {
 namespace {
 
-double timed(const Side& side, int times) {
+double timed(const Side& side, int times, double (*clock_s)()) {
   if (side.prepare) side.prepare();
-  const double started = cpu_time_s();
+  const double started = clock_s();
   for (int i = 0; i < times; ++i) side.work();
-  return (cpu_time_s() - started) / times;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return (clock_s() - started) / times;
 }
 
 /// A line of /proc/self/status in bytes; 0 when it is not there.
@@ -39,13 +34,40 @@ std::uint64_t status_bytes(const std::string& name) {
   return 0;
 }
 
-std::uint64_t growth_while(const std::function<void()>& work) {
+std::uint64_t peak_growth(const std::function<void()>& work) {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5" << std::flush;  // the peak starts anew
   const std::uint64_t before = status_bytes("VmRSS");
   work();
   const std::uint64_t peak = status_bytes("VmHWM");
   return before != 0 && peak > before ? peak - before : 0;
+}
+
+std::uint64_t live_growth(const std::function<std::shared_ptr<const void>()>& build) {
+  malloc_trim(0);
+  const std::uint64_t before = status_bytes("VmRSS");
+  const std::shared_ptr<const void> built = build();
+  malloc_trim(0);
+  const std::uint64_t after = status_bytes("VmRSS");
+  return before != 0 && after > before ? after - before : 0;
+}
+
+/// What `measure` says in a process of its own; 0 when there is none.
+std::uint64_t in_child(const std::function<std::uint64_t()>& measure) {
+  int ends[2] = {};
+  if (pipe(ends) != 0) return 0;
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::uint64_t measured = measure();
+    const bool told = write(ends[1], &measured, sizeof measured) == static_cast<ssize_t>(sizeof measured);
+    _exit(told ? 0 : 1);
+  }
+  close(ends[1]);
+  std::uint64_t measured = 0;
+  if (child < 0 || read(ends[0], &measured, sizeof measured) != static_cast<ssize_t>(sizeof measured)) measured = 0;
+  close(ends[0]);
+  if (child > 0) waitpid(child, nullptr, 0);
+  return measured;
 }
 
 }  // namespace
@@ -56,16 +78,31 @@ double cpu_time_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+double childrens_cpu_time_s() {
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
 DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options) {
   const auto times_for = [&](const Side& side) {
-    const double once = timed(side, 1);
+    const double once = timed(side, 1, options.clock_s);
     return std::clamp(static_cast<int>(std::ceil(options.least_s / std::max(once, 1e-7))), 1, 100'000);
   };
   const int ours_times = times_for(ours), peer_times = times_for(peer);
   std::vector<double> ours_s, peer_s, ratios;
   for (int pair = 0; pair < options.pairs; ++pair) {
-    ours_s.push_back(timed(ours, ours_times));
-    peer_s.push_back(timed(peer, peer_times));
+    ours_s.push_back(timed(ours, ours_times, options.clock_s));
+    peer_s.push_back(timed(peer, peer_times, options.clock_s));
     ratios.push_back(peer_s.back() / ours_s.back());
   }
   const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
@@ -73,23 +110,14 @@ DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options) 
 }
 
 std::uint64_t peak_memory_bytes(const std::function<void()>& work) {
-  int ends[2] = {};
-  if (pipe(ends) != 0) return 0;
-  const pid_t child = fork();
-  if (child == 0) {
-    const std::uint64_t grown = growth_while(work);
-    const bool told = write(ends[1], &grown, sizeof grown) == static_cast<ssize_t>(sizeof grown);
-    _exit(told ? 0 : 1);
-  }
-  close(ends[1]);
-  std::uint64_t grown = 0;
-  if (child < 0 || read(ends[0], &grown, sizeof grown) != static_cast<ssize_t>(sizeof grown)) grown = 0;
-  close(ends[0]);
-  if (child > 0) waitpid(child, nullptr, 0);
-  return grown;
+  return in_child([&] { return peak_growth(work); });
 }
 
-Row speed_row(std::string name, const DuelResult& result, std::uint64_t ours_bytes, std::uint64_t octomap_bytes) {
+std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>()>& build) {
+  return in_child([&] { return live_growth(build); });
+}
+
+Row speed_row(std::string name, const DuelResult& result, const DuelMemory& bytes) {
   Row row;
   row.add("name", name)
       .add_truth("checked", true)
@@ -97,9 +125,16 @@ Row speed_row(std::string name, const DuelResult& result, std::uint64_t ours_byt
       .add("octomap_s", result.peer_s)
       .add("ratio", result.ratio)
       .add("ratio_min", result.ratio_min)
-      .add("ratio_max", result.ratio_max)
-      .add("ours_bytes", ours_bytes)
-      .add("octomap_bytes", octomap_bytes);
+      .add("ratio_max", result.ratio_max);
+  const auto add = [&](const char* field, const std::optional<std::uint64_t>& value) {
+    if (value) {
+      row.add(field, *value);
+    } else {
+      row.add_nothing(field);
+    }
+  };
+  add("ours_bytes", bytes.ours);
+  add("octomap_bytes", bytes.peer);
   return row;
 }
 

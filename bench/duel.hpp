@@ -3,7 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "report.hpp"
 
@@ -11,6 +14,11 @@ namespace pingvox::bench {
 
 /// CPU time of this process so far [s], all threads together: what else the machine does is left out of it.
 double cpu_time_s();
+/// The same of all processes that it started and that have ended.
+double childrens_cpu_time_s();
+
+/// The value in the middle, the mean of the two there of an even number. REQUIRES at least one.
+double median(std::vector<double> values);
 
 /// One side of a comparison. `prepare` is not timed (a fresh map, a copy of what is used up); it may be empty.
 struct Side {
@@ -30,6 +38,7 @@ struct DuelOptions {
   /// Work shorter than this is done several times in a row and the time divided; only for work that may be repeated
   /// without preparing it again.
   double least_s = 0.0;
+  double (*clock_s)() = &cpu_time_s;
 };
 
 /// Runs both sides once untimed (caches, pages), then by turns.
@@ -39,8 +48,17 @@ DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options =
 /// be told. `work` must not need other threads.
 std::uint64_t peak_memory_bytes(const std::function<void()>& work);
 
+/// By how much the resident memory of a fresh process is larger [bytes] once `build` has run in it and returned what it
+/// built, all else freed and given back; 0 when that cannot be told. `build` must not need other threads.
+std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>()>& build);
+
+/// Memory that the two sides took [bytes]; none where the work makes nothing that lasts.
+struct DuelMemory {
+  std::optional<std::uint64_t> ours, peer;
+};
+
 /// The row of a benchmark of speed: {name, checked, ours_s, octomap_s, ratio, ratio_min, ratio_max, ours_bytes,
 /// octomap_bytes}.
-Row speed_row(std::string name, const DuelResult& result, std::uint64_t ours_bytes, std::uint64_t octomap_bytes);
+Row speed_row(std::string name, const DuelResult& result, const DuelMemory& bytes);
 
 }  // namespace pingvox::bench

@@ -64,7 +64,7 @@ Result<std::vector<Row>> cube(std::string name, Pruning pruning, bool lazy) {
       side.work();
     });
   };
-  return std::vector{speed_row(std::move(name), result, memory(ours), memory(peer))};
+  return std::vector{speed_row(std::move(name), result, {memory(ours), memory(peer)})};
 }
 
 }  // namespace

@@ -43,6 +43,8 @@ class Comparison {
     result_.cells += cells;
     if (a && b && std::bit_cast<std::uint32_t>(*a) == std::bit_cast<std::uint32_t>(*b)) return;
     result_.differs += cells;
+    if (!b) result_.only_ours += cells;
+    if (!a) result_.only_peer += cells;
     if (!a || !b || (*a >= threshold_) != (*b >= threshold_)) result_.classes += cells;
   }
 

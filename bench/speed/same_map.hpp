@@ -11,8 +11,9 @@ namespace pingvox::bench {
 
 /// How two maps of the same space differ, in cells of the finest resolution (of whole leaves where these are larger).
 struct MapDifference {
-  std::uint64_t cells = 0;    ///< that either of the two knows
-  std::uint64_t differs = 0;  ///< known in one only, or with another value
+  std::uint64_t cells = 0;                     ///< that either of the two knows
+  std::uint64_t differs = 0;                   ///< known in one only, or with another value
+  std::uint64_t only_ours = 0, only_peer = 0;  ///< of these: known in one only
   std::uint64_t classes = 0;  ///< of these: occupied in one and free in the other, or known in one only
   double share() const { return cells == 0 ? 0.0 : static_cast<double>(differs) / static_cast<double>(cells); }
 };

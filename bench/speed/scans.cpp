@@ -8,25 +8,15 @@
 #include <span>
 
 #include "bench/duel.hpp"
+#include "insert_scans.hpp"
 #include "peer.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/map/trace_ray.hpp"
-#include "pingvox/mapping/beam_model.hpp"
 #include "same_map.hpp"
 #include "tank_echoes.hpp"
 
 namespace pingvox::bench {
 namespace {
-
-constexpr int kAcross = 32, kUp = 64;
-
-void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const PointScan> scans, const PointScanOptions& options) {
-  for (const PointScan& points : scans) {
-    trace_points(map.lattice(), points, options, scan);
-    (void)map.apply(scan);
-    scan.clear();
-  }
-}
 
 struct ScanWork {
   std::string name;
@@ -71,24 +61,16 @@ Result<std::vector<Row>> run(const ScanWork& work) {
     insert(fresh, clouds, peer_ends, mode);
   });
   const DuelResult result = duel(ours, peer);
-  Row row = speed_row(work.name, result, ours_bytes, peer_bytes);
+  Row row = speed_row(work.name, result, {ours_bytes, peer_bytes});
   row.add("input", work.input).add("cells", found.cells).add("cells_that_differ", found.differs);
   return std::vector{row};
 }
 
-Result<std::vector<PointScan>> bundles(std::size_t sweeps, std::string& input) {
-  const Result<TankEchoes> tank = tank_echoes();
-  if (!tank) return tl::unexpected(tank.error());
-  input = tank->input;
-  std::vector<PointScan> scans;
-  for (std::size_t i = 0; i < sweeps; ++i) scans.push_back(bundles_of(tank->sweeps[i], kAcross, kUp));
-  return scans;
-}
-
 Result<std::vector<Row>> run_bundles(ScanWork work, std::size_t sweeps) {
-  Result<std::vector<PointScan>> scans = bundles(sweeps, work.input);
-  if (!scans) return tl::unexpected(scans.error());
-  work.scans = std::move(*scans);
+  Result<TankBundles> bundles = tank_bundles(sweeps);
+  if (!bundles) return tl::unexpected(bundles.error());
+  work.input = bundles->input;
+  work.scans = std::move(bundles->scans);
   return run(work);
 }
 

@@ -11,9 +11,5 @@ Result<std::vector<Row>> tank_2d(const BenchOptions& options);
 Result<std::vector<Row>> tank_3d(const BenchOptions& options);
 Result<std::vector<Row>> tank_3d_cells(const BenchOptions& options);
 Result<std::vector<Row>> tank_fine(const BenchOptions& options);
-/// The beams as cones, against insertPointCloud of their bundles of rays.
-Result<std::vector<Row>> tank_cone(const BenchOptions& options);
-/// What the heap grows by for the finished map of tank-3d.
-Result<std::vector<Row>> memory(const BenchOptions& options);
 
 }  // namespace pingvox::bench

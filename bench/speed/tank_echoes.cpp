@@ -1,15 +1,11 @@
 #include "tank_echoes.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <memory>
 #include <numbers>
 #include <utility>
 
-#include "pingvox/io/beams.hpp"
-#include "pingvox/io/file.hpp"
-#include "pingvox/sim/scene.hpp"
-#include "pingvox/sim/sonar.hpp"
+#include "bench/tank_beams.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/sweep.hpp"
 
@@ -18,7 +14,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-Result<std::vector<std::vector<BeamEcho>>> echoes_of(BeamSource& source) {
+std::vector<std::vector<BeamEcho>> echoes_of(std::vector<Beam> beams) {
   std::vector<std::vector<BeamEcho>> sweeps;
   SweepAssembler assembler;
   const auto add = [&](const std::optional<Sweep>& sweep) {
@@ -30,12 +26,7 @@ Result<std::vector<std::vector<BeamEcho>>> echoes_of(BeamSource& source) {
       if (echoes[i]) found.push_back({sweep->beams[i].bearing_rad, echoes[i]->range_m, echoes[i]->intensity});
     }
   };
-  for (;;) {
-    Result<std::optional<Beam>> beam = source.next();
-    if (!beam) return tl::unexpected(beam.error());
-    if (!*beam) break;
-    add(assembler.add(std::move(**beam)));
-  }
+  for (Beam& beam : beams) add(assembler.add(std::move(beam)));
   add(assembler.finish());
   return sweeps;
 }
@@ -47,21 +38,9 @@ Eigen::Vector3d as_floats(const Eigen::Vector3d& point_m) {
 }  // namespace
 
 Result<TankEchoes> tank_echoes() {
-  const std::filesystem::path recording =
-      std::filesystem::path(PINGVOX_SHARED_DATA) / "tank-static-mat/dataset_static.mat";
-  if (std::filesystem::exists(recording)) {
-    auto file = read_file(recording.string());
-    if (!file) return tl::unexpected(file.error());
-    auto beams = open_beams(std::move(*file));
-    if (!beams) return tl::unexpected(beams.error());
-    auto sweeps = echoes_of(**beams);
-    if (!sweeps) return tl::unexpected(sweeps.error());
-    return TankEchoes{"recording", std::move(*sweeps)};
-  }
-  SonarSimulator simulator(tank_scene({}).world, Trajectory::still(Pose::Identity()), {}, 28);
-  auto sweeps = echoes_of(simulator);
-  if (!sweeps) return tl::unexpected(sweeps.error());
-  return TankEchoes{"simulated", std::move(*sweeps)};
+  Result<TankBeams> tank = tank_beams();
+  if (!tank) return tl::unexpected(tank.error());
+  return TankEchoes{std::move(tank->input), echoes_of(std::move(tank->beams))};
 }
 
 PointScan rays_of(const std::vector<BeamEcho>& sweep) {
@@ -87,6 +66,16 @@ PointScan bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
     }
   }
   return scan;
+}
+
+Result<TankBundles> tank_bundles(std::size_t sweeps) {
+  Result<TankEchoes> tank = tank_echoes();
+  if (!tank) return tl::unexpected(tank.error());
+  TankBundles bundles{std::move(tank->input), {}};
+  for (std::size_t i = 0; i < std::min(sweeps, tank->sweeps.size()); ++i) {
+    bundles.scans.push_back(bundles_of(tank->sweeps[i], 32, 64));
+  }
+  return bundles;
 }
 
 }  // namespace pingvox::bench

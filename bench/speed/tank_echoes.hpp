@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,10 +17,9 @@ struct BeamEcho {
   std::uint8_t intensity = 0;
 };
 
-/// The complete sweeps of the paper's recording with the echoes that the defaults find; beams without one are left out.
-/// Where the recording is not there, 28 sweeps of the simulated tank (seed 1) stand in for it.
+/// The complete sweeps of tank_beams() with the echoes that the defaults find; beams without one are left out.
 struct TankEchoes {
-  std::string input;  ///< "recording" or "simulated"
+  std::string input;  ///< as in TankBeams
   std::vector<std::vector<BeamEcho>> sweeps;
 };
 Result<TankEchoes> tank_echoes();
@@ -29,5 +30,12 @@ PointScan rays_of(const std::vector<BeamEcho>& sweep);
 
 /// Each echo as a bundle of `across` x `up` rays, evenly over 3 x 35 degrees on the sphere, all with the echo's range.
 PointScan bundles_of(const std::vector<BeamEcho>& sweep, int across, int up);
+
+/// The first sweeps of tank_echoes(), each echo as a bundle of 32 x 64 rays.
+struct TankBundles {
+  std::string input;  ///< as in TankBeams
+  std::vector<PointScan> scans;
+};
+Result<TankBundles> tank_bundles(std::size_t sweeps);
 
 }  // namespace pingvox::bench

@@ -1,0 +1,100 @@
+#include "rays.hpp"
+
+#include <fmt/core.h>
+#include <octomap/OcTree.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "bench/duel.hpp"
+#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/sim/random.hpp"
+
+namespace pingvox::bench {
+namespace {
+
+constexpr double kCell_m = 0.05, kHalfBox_m = 10.0;
+constexpr std::size_t kRays = 131'072;
+/// liboctomap adds up floats as it goes: the most rays (as a share) that may take another way past an edge.
+constexpr double kMostOther = 0.01;
+
+struct Segment {
+  Eigen::Vector3d from_m, to_m;  ///< coordinates are those of floats
+};
+
+std::vector<Segment> random_segments() {
+  Random random(11);
+  const auto coordinate = [&] {
+    return static_cast<double>(static_cast<float>((2.0 * random.uniform() - 1.0) * kHalfBox_m));
+  };
+  std::vector<Segment> segments(kRays);
+  for (auto& [from_m, to_m] : segments) {
+    for (double& c : from_m) c = coordinate();
+    for (double& c : to_m) c = coordinate();
+  }
+  return segments;
+}
+
+void keys_of(const Lattice& lattice, const Segment& segment, std::vector<Key>& keys) {
+  keys.clear();
+  const auto ray = dda<std::uint16_t>(lattice, segment.from_m, segment.to_m);
+  if (!ray) return;
+  for (const Key key : *ray) keys.push_back(key);
+}
+
+octomap::point3d as_peer(const Eigen::Vector3d& point_m) {
+  return {static_cast<float>(point_m.x()), static_cast<float>(point_m.y()), static_cast<float>(point_m.z())};
+}
+
+bool are_same(const std::vector<Key>& ours, const octomap::KeyRay& peer) {
+  return std::equal(ours.begin(), ours.end(), peer.begin(), peer.end(), [](const Key& a, const octomap::OcTreeKey& b) {
+    return a.x == b[0] && a.y == b[1] && a.z == b[2];
+  });
+}
+
+}  // namespace
+
+Result<std::vector<Row>> rays(const BenchOptions&) {
+  const Lattice lattice(kCell_m);
+  const octomap::OcTree tree(kCell_m);
+  const std::vector<Segment> segments = random_segments();
+  std::vector<std::pair<octomap::point3d, octomap::point3d>> peer_segments;
+  peer_segments.reserve(segments.size());
+  for (const Segment& s : segments) peer_segments.emplace_back(as_peer(s.from_m), as_peer(s.to_m));
+  std::vector<Key> keys;
+  octomap::KeyRay peer_keys;
+
+  std::size_t same = 0, cells = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    keys_of(lattice, segments[i], keys);
+    tree.computeRayKeys(peer_segments[i].first, peer_segments[i].second, peer_keys);
+    same += are_same(keys, peer_keys);
+    cells += keys.size();
+  }
+  const double share = static_cast<double>(same) / static_cast<double>(segments.size());
+  if (share < 1.0 - kMostOther) {
+    return fail(Error::Code::kCorrupt, fmt::format("only {} of {} rays have liboctomap's keys", same, segments.size()));
+  }
+
+  // The sums keep the compiler from leaving the work out.
+  std::size_t ours_cells = 0, peer_cells = 0;
+  const Side ours{{}, [&] {
+                    for (const Segment& segment : segments) {
+                      keys_of(lattice, segment, keys);
+                      ours_cells += keys.size();
+                    }
+                  }};
+  const Side peer{{}, [&] {
+                    for (const auto& [from, to] : peer_segments) {
+                      tree.computeRayKeys(from, to, peer_keys);
+                      peer_cells += peer_keys.size();
+                    }
+                  }};
+  const DuelResult result = duel(ours, peer);
+  if (ours_cells % cells != 0 || peer_cells == 0) return fail(Error::Code::kCorrupt, "rays changed while timed");
+  Row row = speed_row("rays", result, {});
+  row.add("rays", std::uint64_t{segments.size()}).add("cells", std::uint64_t{cells}).add("share_same", share);
+  return std::vector{row};
+}
+
+}  // namespace pingvox::bench

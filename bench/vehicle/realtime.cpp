@@ -1,0 +1,186 @@
+#include "realtime.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "bench/duel.hpp"
+#include "bench/tank_beams.hpp"
+#include "pingvox/map/compare.hpp"
+#include "pingvox/mapping/build_map.hpp"
+#include "pingvox/sonar/echo_stream.hpp"
+
+namespace pingvox::bench {
+namespace {
+
+constexpr double kCell_m = 0.05;
+constexpr double kTankRate_hz = 23.0, kFastRate_hz = 100.0;  ///< beams per second: of the recording, of a fast head
+constexpr int kReplays = 5;
+
+/// A vehicle wants each beam in its map at once: a beam votes as it comes.
+BuildOptions vehicle_options() {
+  BuildOptions options;
+  options.filter = usual_filter(Detector::kRise);
+  options.model.shape = BeamShape::kCone;
+  options.vote = Vote::kPerBeam;
+  return options;
+}
+
+struct Replay {
+  std::vector<double> wall_s, cpu_s;  ///< of each beam
+  double whole_cpu_s = 0.0;
+};
+
+/// What asking for the CPU time takes of it: here and there a tenth of what a beam takes, or half.
+double cpu_of_asking_s() {
+  std::vector<double> times;
+  for (int i = 0; i < 1000; ++i) {
+    const double before = cpu_time_s();
+    times.push_back(cpu_time_s() - before);
+  }
+  return median(times);
+}
+
+/// Takes beams one by one, back to back: what a vehicle does between two beams, without the waiting.
+class LiveMap {
+ public:
+  explicit LiveMap(const BuildOptions& options)
+      : options_(options), stream_(options.filter, options.echo), scan_(options.model.miss) {}
+
+  void add(Beam beam) { apply(stream_.add(std::move(beam))); }
+  void finish() { apply(stream_.finish()); }
+  const OccupancyMap& map() const { return map_; }
+  std::size_t applied() const { return applied_; }
+
+ private:
+  void apply(const std::vector<EchoStream::Heard>& heard) {
+    for (const EchoStream::Heard& h : heard) {
+      trace_beam(map_.lattice(), Pose::Identity(), h.beam, h.echo, options_.model, scan_);
+      applied_ += map_.apply(scan_).has_value();
+      scan_.clear();
+    }
+  }
+
+  BuildOptions options_;
+  EchoStream stream_;
+  ScanUpdate scan_;
+  OccupancyMap map_{{.resolution_m = kCell_m}};
+  std::size_t applied_ = 0;
+};
+
+/// By the wall clock.
+Replay replayed(const std::vector<Beam>& beams, LiveMap& live) {
+  Replay replay;
+  std::vector<Beam> fresh = beams;
+  const double cpu_before_s = cpu_time_s();
+  for (Beam& beam : fresh) {
+    const auto before = std::chrono::steady_clock::now();
+    live.add(std::move(beam));
+    replay.wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
+  }
+  live.finish();
+  replay.whole_cpu_s = cpu_time_s() - cpu_before_s;
+  return replay;
+}
+
+/// By the CPU clock: a replay of its own, which the other need not wait for.
+void add_cpu_times(const std::vector<Beam>& beams, Replay& replay) {
+  LiveMap live(vehicle_options());
+  std::vector<Beam> fresh = beams;
+  const double asking_s = cpu_of_asking_s();
+  for (Beam& beam : fresh) {
+    const double before = cpu_time_s();
+    live.add(std::move(beam));
+    replay.cpu_s.push_back(std::max(0.0, cpu_time_s() - before - asking_s));
+  }
+}
+
+/// Gives out beams that are in memory.
+class Recorded final : public BeamSource {
+ public:
+  explicit Recorded(const std::vector<Beam>& beams) : beams_(beams) {}
+  Result<std::optional<Beam>> next() override {
+    if (given_ == beams_.size()) return std::nullopt;
+    return beams_[given_++];
+  }
+
+ private:
+  const std::vector<Beam>& beams_;
+  std::size_t given_ = 0;
+};
+
+/// The same cells must be known as by build_map, which hears each sweep to its end first: it takes the beams in another
+/// order, and where a belief was clamped in between it may be another.
+Result<double> share_of_other_classes(const std::vector<Beam>& beams, const LiveMap& live) {
+  if (live.applied() != beams.size()) {
+    return fail(Error::Code::kCorrupt, fmt::format("{} of {} beams came out", live.applied(), beams.size()));
+  }
+  OccupancyMap map({.resolution_m = kCell_m});
+  Recorded source(beams);
+  const auto built = build_map(source, Trajectory::still(Pose::Identity()), vehicle_options(), map);
+  if (!built) return tl::unexpected(built.error());
+  const auto found = compare_maps(live.map(), map, Sameness::kOccupancy);
+  if (!found) return tl::unexpected(found.error());
+  if (found->cells() == 0 || found->only_a + found->only_b > 0) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("of {} cells {} are known in one map only", found->cells(), found->only_a + found->only_b));
+  }
+  return static_cast<double>(found->different) / static_cast<double>(found->cells());
+}
+
+double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+}
+
+}  // namespace
+
+Result<std::vector<Row>> realtime(const BenchOptions&) {
+  const Result<TankBeams> tank = tank_beams();
+  if (!tank) return tl::unexpected(tank.error());
+  if (tank->beams.empty()) return fail(Error::Code::kCorrupt, "no beams to replay");
+  std::vector<Replay> replays;
+  std::optional<double> other;
+  for (int i = 0; i < kReplays; ++i) {
+    LiveMap live(vehicle_options());
+    replays.push_back(replayed(tank->beams, live));
+    add_cpu_times(tank->beams, replays.back());
+    if (other) continue;
+    const auto share = share_of_other_classes(tank->beams, live);
+    if (!share) return tl::unexpected(share.error());
+    other = *share;
+  }
+  // The median of the replays: one that the machine disturbed does not count.
+  const auto over_replays = [&](auto statistic) {
+    std::vector<double> values;
+    for (const Replay& replay : replays) values.push_back(statistic(replay));
+    return median(values);
+  };
+  const auto wall_ms = [&](double share) {
+    return 1e3 * over_replays([&](const Replay& r) { return percentile(r.wall_s, share); });
+  };
+  const auto cpu_ms = [&](double share) {
+    return 1e3 * over_replays([&](const Replay& r) { return percentile(r.cpu_s, share); });
+  };
+  const double cpu_s = over_replays([](const Replay& r) { return r.whole_cpu_s; });
+  const double cpu_of_beam_s = cpu_s / static_cast<double>(tank->beams.size());
+  Row row;
+  row.add("name", "realtime")
+      .add_truth("checked", true)
+      .add("beams", std::uint64_t{tank->beams.size()})
+      .add("p50_ms", wall_ms(0.5))
+      .add("p99_ms", wall_ms(0.99))
+      .add("max_ms", wall_ms(1.0))
+      .add("cpu_p50_ms", cpu_ms(0.5))
+      .add("cpu_p99_ms", cpu_ms(0.99))
+      .add("cpu_max_ms", cpu_ms(1.0))
+      .add("cpu_share", cpu_of_beam_s * kTankRate_hz)
+      .add("cpu_share_at_100_hz", cpu_of_beam_s * kFastRate_hz)
+      .add("input", tank->input)
+      .add("share_of_other_classes", *other);
+  return std::vector{row};
+}
+
+}  // namespace pingvox::bench
