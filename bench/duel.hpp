@@ -41,7 +41,7 @@ struct DuelOptions {
   double (*clock_s)() = &cpu_time_s;
 };
 
-/// Runs both sides once untimed (caches, pages), then by turns.
+/// Runs both sides by turns. Whoever calls it has run both before, to check what they make: caches and pages are warm.
 DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options = {});
 
 /// By how much the resident memory of a fresh process grows at most while `work` runs in it [bytes]; 0 when that cannot

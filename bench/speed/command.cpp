@@ -10,6 +10,7 @@
 
 #include "bench/duel.hpp"
 #include "bench/process.hpp"
+#include "hush.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/compare.hpp"
@@ -63,6 +64,7 @@ Result<void> write_graph(const std::string& path) {
                                   0.0, 0.0, yaw_rad));
   }
   std::ofstream out(path, std::ios::binary);
+  const Hush hush;
   graph.writeBinary(out);
   if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: cannot be written", path));
   return {};

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bench/duel.hpp"
+#include "hush.hpp"
 #include "pingvox/io/maps.hpp"
 #include "same_map.hpp"
 #include "tank_maps.hpp"
@@ -38,6 +39,7 @@ double cpu_of_whole_write_s(const octomap::OcTree& tree) {
 Result<std::vector<Row>> bt_write(const BenchOptions&) {
   const Result<TankMaps> maps = tank_maps();
   if (!maps) return tl::unexpected(maps.error());
+  const Hush hush;
   const double whole_s = cpu_of_whole_write_s(*maps->peer);
   // Rounded once before, so that its quicker call, which only writes, gives the same bytes. Ours rounds as it writes.
   maps->peer->toMaxLikelihood();
@@ -46,7 +48,7 @@ Result<std::vector<Row>> bt_write(const BenchOptions&) {
   const Side ours{[&] { ours_out = std::ostringstream(); },
                   [&] { (void)write_map(maps->ours, Format::kBt, "", ours_out); }};
   const Side peer{[&] { peer_out = std::ostringstream(); }, [&] { maps->peer->writeBinaryConst(peer_out); }};
-  const DuelResult result = duel(ours, peer);
+  const DuelResult result = duel(ours, peer, {.pairs = 21});
   if (ours_out.view().empty() || ours_out.view() != peer_out.view()) {
     return fail(Error::Code::kCorrupt, fmt::format("{} bytes are not the {} bytes that liboctomap writes",
                                                    ours_out.view().size(), peer_out.view().size()));
@@ -62,6 +64,7 @@ Result<std::vector<Row>> bt_write(const BenchOptions&) {
 Result<std::vector<Row>> bt_read(const BenchOptions&) {
   const Result<TankMaps> maps = tank_maps();
   if (!maps) return tl::unexpected(maps.error());
+  const Hush hush;
   const Result<std::string> bytes = bt_of(maps->ours);
   if (!bytes) return tl::unexpected(bytes.error());
   const FileBytes file{"tank.bt", {bytes->begin(), bytes->end()}};
@@ -74,7 +77,7 @@ Result<std::vector<Row>> bt_read(const BenchOptions&) {
                     in = std::istringstream(*bytes);
                   },
                   [&] { tree->readBinary(in); }};
-  const DuelResult result = duel(ours, peer);
+  const DuelResult result = duel(ours, peer, {.pairs = 21});
   if (!*map) return tl::unexpected(map->error());
   if (const auto same = same_to_the_bit(map->value().map, *tree); !same) return tl::unexpected(same.error());
   Row row = speed_row("bt-read", result, {});

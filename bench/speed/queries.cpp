@@ -187,16 +187,16 @@ Result<std::vector<Row>> leaves(const BenchOptions&) {
   const OccupancyMap& map = maps->ours;
   const octomap::OcTree& tree = *maps->peer;
   LeafSums ours_sums, peer_sums;
-  const Side ours{[&] { ours_sums = {}; },
-                  [&] {
+  const Side ours{{}, [&] {
+                    ours_sums = {};
                     for_each_leaf<std::uint16_t>(map, {}, [&](const Leaf<std::uint16_t>& leaf) {
                       ++ours_sums.leaves;
                       ours_sums.values += static_cast<double>(leaf.belief.value());
                       ours_sums.sizes_m += map.lattice().cell_size_m(leaf.depth);
                     });
                   }};
-  const Side peer{[&] { peer_sums = {}; },
-                  [&] {
+  const Side peer{{}, [&] {
+                    peer_sums = {};
                     const auto end = tree.end_leafs();
                     for (auto leaf = tree.begin_leafs(); leaf != end; ++leaf) {
                       ++peer_sums.leaves;
@@ -204,7 +204,7 @@ Result<std::vector<Row>> leaves(const BenchOptions&) {
                       peer_sums.sizes_m += leaf.getSize();
                     }
                   }};
-  const DuelResult result = duel(ours, peer, {.pairs = 7, .least_s = 0.0});
+  const DuelResult result = duel(ours, peer, {.pairs = 9, .least_s = 0.05});
   // The same leaves in the same order, so the same sums to the last bit.
   if (!(ours_sums == peer_sums)) {
     return fail(Error::Code::kCorrupt, fmt::format("{} leaves with sums {} and {} against {} with {} and {}",

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <streambuf>
+
+namespace pingvox::bench {
+
+/// liboctomap talks on standard error when it reads and writes. As long as this lives it is not heard, and its words
+/// cost it no system call.
+class Hush {
+ public:
+  Hush();
+  Hush(const Hush&) = delete;
+  Hush& operator=(const Hush&) = delete;
+  ~Hush();
+
+ private:
+  std::streambuf* stream_;  ///< of std::cerr
+  int descriptor_;          ///< a second one of standard error, -1: none
+};
+
+}  // namespace pingvox::bench
