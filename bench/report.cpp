@@ -47,6 +47,12 @@ void for_each_stretch(const std::vector<Row>& rows, F&& f) {
 
 }  // namespace
 
+// Not in the header: inlined, g++ 12 takes the other alternatives of the variant for uninitialized.
+Row& Row::put(std::string name, Value value) {
+  fields_.emplace_back(std::move(name), std::move(value));
+  return *this;
+}
+
 app::JsonObject Row::json() const {
   app::JsonObject object;
   for (const auto& [name, value] : fields_) {

@@ -30,10 +30,7 @@ class Row {
   app::JsonObject json() const;
 
  private:
-  Row& put(std::string name, Value value) {
-    fields_.emplace_back(std::move(name), std::move(value));
-    return *this;
-  }
+  Row& put(std::string name, Value value);
   std::vector<std::pair<std::string, Value>> fields_;
 };
 
