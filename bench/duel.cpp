@@ -118,7 +118,7 @@ std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>(
   return in_child([&] { return live_growth(build); });
 }
 
-Row speed_row(std::string name, const DuelResult& result, const DuelMemory& bytes) {
+Row speed_row(const std::string& name, const DuelResult& result, const DuelMemory& bytes) {
   Row row;
   row.add("name", name)
       .add_truth("checked", true)

@@ -66,6 +66,6 @@ struct DuelMemory {
 
 /// The row of a benchmark of speed: {name, checked, ours_s, octomap_s, ratio, ratio_min, ratio_max, ours_bytes,
 /// octomap_bytes}.
-Row speed_row(std::string name, const DuelResult& result, const DuelMemory& bytes);
+Row speed_row(const std::string& name, const DuelResult& result, const DuelMemory& bytes);
 
 }  // namespace pingvox::bench

@@ -45,7 +45,7 @@ void fill(octomap::OcTree& tree, bool lazy) {
   tree.prune();
 }
 
-Result<std::vector<Row>> cube(std::string name, Pruning pruning, bool lazy) {
+Result<std::vector<Row>> cube(const std::string& name, Pruning pruning, bool lazy) {
   std::optional<OccupancyMap> map;
   std::unique_ptr<octomap::OcTree> tree;
   const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { fill(*map, pruning); }};
@@ -64,7 +64,7 @@ Result<std::vector<Row>> cube(std::string name, Pruning pruning, bool lazy) {
       side.work();
     });
   };
-  return std::vector{speed_row(std::move(name), result, {memory(ours), memory(peer)})};
+  return std::vector{speed_row(name, result, {memory(ours), memory(peer)})};
 }
 
 }  // namespace

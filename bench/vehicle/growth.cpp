@@ -77,9 +77,10 @@ class Basin {
 /// A place with water all around that is not known, the n-th of many that are alike: a multiple of 128 cells apart.
 InsonifiedVolume beam_at(std::size_t n) {
   const double step_m = 128 * kCell_m;
+  const std::size_t row = n / 100, column = n % 100;
   InsonifiedVolume beam{.bearing_rad = 0.3, .width_rad = 0.052, .height_rad = 0.61, .range_m = 2.0};
-  beam.map_from_sensor.translation() = Eigen::Vector3d(step_m * static_cast<double>(n % 100) + 0.02,
-                                                       -step_m * (2.0 + static_cast<double>(n / 100)) + 0.02, 0.02);
+  beam.map_from_sensor.translation() = Eigen::Vector3d(step_m * static_cast<double>(column) + 0.02,
+                                                       -step_m * (2.0 + static_cast<double>(row)) + 0.02, 0.02);
   return beam;
 }
 
