@@ -20,8 +20,7 @@ Result<int> run(const BenchCommand& command, Console&) {
   if (error || !std::filesystem::exists(program, error)) {
     return fail(
         Error::Code::kUnsupported,
-        "bench: there is no pingvox-bench beside the program: it is built where OctoMap and Google Benchmark are "
-        "installed (liboctomap-dev, libbenchmark-dev)");
+        "bench: there is no pingvox-bench beside the program: it is built where OctoMap is installed (liboctomap-dev)");
   }
   std::vector<std::string> words = {program};
   words.insert(words.end(), command.words.begin(), command.words.end());

@@ -97,7 +97,7 @@ double median(std::vector<double> values) {
 
 DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options) {
   const auto times_for = [&](const Side& side) {
-    if (options.least_s <= 0.0) return 1;
+    if (options.warm_up == WarmUp::kNone) return 1;
     const double once = timed(side, 1, options.clock_s);
     return std::clamp(static_cast<int>(std::ceil(options.least_s / std::max(once, 1e-7))), 1, 100'000);
   };
@@ -120,7 +120,7 @@ std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>(
   return in_child([&] { return live_growth(build); });
 }
 
-Row speed_row(std::string name, const DuelResult& result, const DuelMemory& bytes) {
+Row speed_row(const std::string& name, const DuelResult& result, const DuelMemory& bytes) {
   Row row;
   row.add("name", name)
       .add_truth("checked", true)

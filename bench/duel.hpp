@@ -33,15 +33,22 @@ struct DuelResult {
   double ratio_min = 0.0, ratio_max = 0.0;
 };
 
+/// Whether both sides run once before the first pair.
+enum class WarmUp {
+  kOnce,  ///< caches and pages
+  kNone,  ///< for long work that ran a moment ago, to be checked
+};
+
 struct DuelOptions {
   int pairs = 5;
   /// Work shorter than this is done several times in a row and the time divided; only for work that may be repeated
   /// without preparing it again.
   double least_s = 0.0;
   double (*clock_s)() = &cpu_time_s;
+  WarmUp warm_up = WarmUp::kOnce;
 };
 
-/// Runs both sides by turns. Whoever calls it has run both before, to check what they make: caches and pages are warm.
+/// Runs both sides by turns.
 DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options = {});
 
 /// By how much the resident memory of a fresh process grows at most while `work` runs in it [bytes]; 0 when that cannot
@@ -59,6 +66,6 @@ struct DuelMemory {
 
 /// The row of a benchmark of speed: {name, checked, ours_s, octomap_s, ratio, ratio_min, ratio_max, ours_bytes,
 /// octomap_bytes}.
-Row speed_row(std::string name, const DuelResult& result, const DuelMemory& bytes);
+Row speed_row(const std::string& name, const DuelResult& result, const DuelMemory& bytes);
 
 }  // namespace pingvox::bench

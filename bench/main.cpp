@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/suggest.hpp"
 #include "bench.hpp"
 
 namespace {
@@ -25,7 +26,11 @@ constexpr std::string_view kUsage =
     "  --json          one JSON object on standard output\n"
     "  --markdown      tables in Markdown\n"
     "  --pictures DIR  draw charts (and the paper's figures) into a folder\n"
-    "  --quiet         say nothing on standard error while it runs\n";
+    "  --quiet         say nothing on standard error while it runs\n"
+    "\n"
+    "Examples:\n"
+    "  pingvox bench tank-3d tank-cone\n"
+    "  pingvox bench all --json\n";
 
 enum class Form { kTable, kJson, kMarkdown };
 
@@ -46,6 +51,12 @@ void say(std::string_view line) {
 
 bool is_in_all(const Bench& bench) {
   return bench.family == Family::kSpeed || bench.family == Family::kVehicle;
+}
+
+std::vector<std::string> known_words() {
+  std::vector<std::string> words = {"all", "list", "--json", "--markdown", "--pictures", "--quiet", "--help"};
+  for (const Bench& bench : benches()) words.emplace_back(bench.name);
+  return words;
 }
 
 /// kBadOption when the words are off.
@@ -73,7 +84,8 @@ Result<Call> parsed(const std::vector<std::string>& words) {
         if (bench.name == word || (word == "all" && is_in_all(bench))) call.chosen.push_back(&bench);
       }
       if (call.chosen.size() == before) {
-        return fail(Error::Code::kBadOption, fmt::format("there is no '{}'; `pingvox bench list` has the names", word));
+        return fail(Error::Code::kBadOption, fmt::format("there is no '{}'{}; `pingvox bench list` has the names", word,
+                                                         app::did_you_mean(word, known_words())));
       }
     }
   }

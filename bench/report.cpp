@@ -47,6 +47,39 @@ void for_each_stretch(const std::vector<Row>& rows, F&& f) {
 
 }  // namespace
 
+// Not in the header: inlined, g++ 12 takes the other alternatives of the variant for uninitialized.
+Row& Row::put(std::string name, Value value) {
+  fields_.emplace_back(std::move(name), std::move(value));
+  return *this;
+}
+
+Row& Row::add(std::string name, std::string_view value) {
+  fields_.emplace_back(std::move(name), std::string(value));
+  return *this;
+}
+Row& Row::add(std::string name, const char* value) {
+  return add(std::move(name), std::string_view(value));
+}
+Row& Row::add(std::string name, double value) {
+  fields_.emplace_back(std::move(name), value);
+  return *this;
+}
+Row& Row::add(std::string name, std::uint64_t value) {
+  fields_.emplace_back(std::move(name), value);
+  return *this;
+}
+Row& Row::add(std::string name, int value) {
+  return add(std::move(name), static_cast<double>(value));
+}
+Row& Row::add_truth(std::string name, bool value) {
+  fields_.emplace_back(std::move(name), value);
+  return *this;
+}
+Row& Row::add_nothing(std::string name) {
+  fields_.emplace_back(std::move(name), std::monostate());
+  return *this;
+}
+
 app::JsonObject Row::json() const {
   app::JsonObject object;
   for (const auto& [name, value] : fields_) {

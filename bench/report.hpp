@@ -17,23 +17,19 @@ using Value = std::variant<std::monostate, std::string, double, std::uint64_t, b
 /// One line of a result: names and values, in order. The names are keys in JSON and columns in the table.
 class Row {
  public:
-  Row& add(std::string name, std::string_view value) { return put(std::move(name), std::string(value)); }
-  Row& add(std::string name, const char* value) { return put(std::move(name), std::string(value)); }
-  Row& add(std::string name, double value) { return put(std::move(name), value); }
-  Row& add(std::string name, std::uint64_t value) { return put(std::move(name), value); }
-  Row& add(std::string name, int value) { return put(std::move(name), static_cast<double>(value)); }
-  Row& add_truth(std::string name, bool value) { return put(std::move(name), value); }
+  Row& add(std::string name, std::string_view value);
+  Row& add(std::string name, const char* value);
+  Row& add(std::string name, double value);
+  Row& add(std::string name, std::uint64_t value);
+  Row& add(std::string name, int value);
+  Row& add_truth(std::string name, bool value);
   /// Not measured here: null in JSON, a dash in the table.
-  Row& add_nothing(std::string name) { return put(std::move(name), std::monostate{}); }
+  Row& add_nothing(std::string name);
 
   const std::vector<std::pair<std::string, Value>>& fields() const { return fields_; }
   app::JsonObject json() const;
 
  private:
-  Row& put(std::string name, Value value) {
-    fields_.emplace_back(std::move(name), std::move(value));
-    return *this;
-  }
   std::vector<std::pair<std::string, Value>> fields_;
 };
 

@@ -2,6 +2,12 @@
 
 _pingvox_commands() { printf '%s\n' map info compare convert render simulate bench; }
 
+# What `pingvox bench list` lists.
+_pingvox_benches() {
+  printf '%s\n' cube-each cube-lazy points-5000 points-50 points-5 tank-2d tank-3d tank-3d-cells tank-fine tank-cone rays
+  printf '%s\n' look-up cast-ray leaves bt-write bt-read memory command realtime growth startup
+}
+
 # Prints the long options of a command, one a line.
 _pingvox_options() {
   local options=(--help)
@@ -27,6 +33,7 @@ _pingvox_options() {
       options+=(--heading-drift --seed --range --bins --bin-length --beams-per-turn --beam-width --beam-height)
       options+=(--side-lobes --gain --compression --absorption --ringing --speckle --noise --multipath --bubbles --lost)
       ;;
+    bench) options+=(--json --markdown --pictures --quiet) ;;
   esac
   printf '%s\n' "${options[@]}"
 }
@@ -92,6 +99,8 @@ _pingvox() {
       words=$(_pingvox_options "$command")
     elif [[ -z $command ]]; then
       words=$(_pingvox_commands)
+    elif [[ $command == bench && $previous != --pictures ]]; then
+      words="all list $(_pingvox_benches)"
     elif [[ $command == simulate && $previous == simulate ]]; then
       words="tank harbour seabed cave"
       # What begins no world's name is the file of a mesh.

@@ -57,7 +57,7 @@ PeerMode faster_mode(std::span<const octomap::OcTreeKey> keys, LogOdds hit) {
   return time_of(PeerMode::kEager) < time_of(PeerMode::kLazy) ? PeerMode::kEager : PeerMode::kLazy;
 }
 
-Result<std::vector<Row>> points(std::string name, double sigma) {
+Result<std::vector<Row>> points(const std::string& name, double sigma) {
   const LogOdds hit = LogOdds::from_probability(0.7);
   const std::vector<Key> keys = normal_keys(sigma);
   std::vector<octomap::OcTreeKey> peer_keys;
@@ -83,7 +83,7 @@ Result<std::vector<Row>> points(std::string name, double sigma) {
     });
   };
   const DuelMemory bytes{memory(ours), memory(peer)};
-  Row row = speed_row(std::move(name), duel(ours, peer), bytes);
+  Row row = speed_row(name, duel(ours, peer), bytes);
   row.add("octomap_mode", mode == PeerMode::kEager ? "eager" : "lazy");
   return std::vector{row};
 }

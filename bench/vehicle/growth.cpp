@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <utility>
 
 #include "bench/duel.hpp"
 #include "pingvox/map/compare.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kCell_m = 0.05;
 constexpr std::array<std::uint64_t, 5> kSizes = {10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
-/// What the time at the largest size may be of that at the smallest.
+/// What the time in a large map may be of that in the smallest.
 constexpr double kMostGrowth = 1.3;
 constexpr std::size_t kPlaces = 5, kRounds = 100;
 /// The smallest map is small, and so is the first block.
@@ -76,9 +77,10 @@ class Basin {
 /// A place with water all around that is not known, the n-th of many that are alike: a multiple of 128 cells apart.
 InsonifiedVolume beam_at(std::size_t n) {
   const double step_m = 128 * kCell_m;
+  const std::size_t row = n / 100, column = n % 100;
   InsonifiedVolume beam{.bearing_rad = 0.3, .width_rad = 0.052, .height_rad = 0.61, .range_m = 2.0};
-  beam.map_from_sensor.translation() = Eigen::Vector3d(step_m * static_cast<double>(n % 100) + 0.02,
-                                                       -step_m * (2.0 + static_cast<double>(n / 100)) + 0.02, 0.02);
+  beam.map_from_sensor.translation() = Eigen::Vector3d(step_m * static_cast<double>(column) + 0.02,
+                                                       -step_m * (2.0 + static_cast<double>(row)) + 0.02, 0.02);
   return beam;
 }
 
@@ -96,43 +98,47 @@ ScanUpdate unsaid(const Lattice& lattice, std::size_t n) {
   return scan;
 }
 
-struct Probes {
-  double known_us = 0.0;  ///< median time to apply a probe where a vehicle was a moment ago
-  double new_us = 0.0;    ///< the same where nothing was known yet
-  std::uint64_t new_cells = 0;
+/// By the wall clock: asking for CPU time may take as long as a probe.
+Result<ApplyReport> timed(OccupancyMap& map, const ScanUpdate& scan, std::vector<double>& times_us) {
+  const auto started = std::chrono::steady_clock::now();
+  auto applied = map.apply(scan);
+  times_us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - started).count());
+  return applied;
+}
+
+/// Applies kPlaces probes, from number `first` on. @return how many cells they voted on
+Result<std::uint64_t> cells_of_probes(OccupancyMap& map, std::size_t first, std::vector<double>& times_us) {
+  std::uint64_t cells = 0;
+  for (std::size_t n = first; n < first + kPlaces; ++n) {
+    const auto applied = timed(map, probe(map.lattice(), n), times_us);
+    if (!applied) return tl::unexpected(applied.error());
+    cells += applied->cells_freed + applied->cells_hit;
+  }
+  return cells;
+}
+
+Result<void> take_back_probes(OccupancyMap& map) {
+  for (std::size_t n = 0; n < kPlaces; ++n) {
+    if (const auto applied = map.apply(unsaid(map.lattice(), n)); !applied) return tl::unexpected(applied.error());
+  }
+  return {};
+}
+
+struct Known {
+  double small_us = 0.0, large_us = 0.0;  ///< medians
 };
 
-/// The first kPlaces again and again, then as many new ones. By the wall clock: asking for CPU time may take as long as
-/// a probe, and the median leaves out what the machine did meanwhile.
-Result<Probes> probed(OccupancyMap& map, std::size_t first_new) {
-  std::vector<double> known_us, new_us;
-  Probes result;
-  const auto timed = [&](const ScanUpdate& scan, std::vector<double>& times_us) {
-    const auto started = std::chrono::steady_clock::now();
-    auto applied = map.apply(scan);
-    times_us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - started).count());
-    return applied;
-  };
+/// Applies the first kPlaces probes again and again, where a vehicle was a moment ago, to a small map and to a large
+/// one by turns: what else the machine does slows both down.
+Result<Known> probed_again(OccupancyMap& small, OccupancyMap& large) {
+  std::vector<double> small_us, large_us;
   for (std::size_t round = 0; round < kRounds; ++round) {
-    for (std::size_t n = 0; n < kPlaces; ++n) {
-      if (const auto taken_back = map.apply(unsaid(map.lattice(), n)); !taken_back) {
-        return tl::unexpected(taken_back.error());
-      }
-    }
-    for (std::size_t n = 0; n < kPlaces; ++n) {
-      if (const auto applied = timed(probe(map.lattice(), n), known_us); !applied) {
-        return tl::unexpected(applied.error());
-      }
+    for (const auto& [map, times_us] : {std::pair(&small, &small_us), std::pair(&large, &large_us)}) {
+      if (const auto back = take_back_probes(*map); !back) return tl::unexpected(back.error());
+      if (const auto again = cells_of_probes(*map, 0, *times_us); !again) return tl::unexpected(again.error());
     }
   }
-  for (std::size_t n = first_new; n < first_new + kPlaces; ++n) {
-    const auto applied = timed(probe(map.lattice(), n), new_us);
-    if (!applied) return tl::unexpected(applied.error());
-    result.new_cells += applied->cells_freed + applied->cells_hit;
-  }
-  result.known_us = median(known_us);
-  result.new_us = median(new_us);
-  return result;
+  return Known{median(small_us), median(large_us)};
 }
 
 std::uint64_t known_cells(const OccupancyMap& map) {
@@ -141,38 +147,40 @@ std::uint64_t known_cells(const OccupancyMap& map) {
 }
 
 Result<std::vector<Row>> rows_by_size() {
-  OccupancyMap map({.resolution_m = kCell_m});
-  std::uint64_t probe_cells = 0;
-  for (std::size_t n = 0; n < kPlaces; ++n) {
-    const auto applied = map.apply(probe(map.lattice(), n));
-    if (!applied) return tl::unexpected(applied.error());
-    probe_cells += applied->cells_freed + applied->cells_hit;
-  }
-  Basin basin(map);
+  const MapOptions options{.resolution_m = kCell_m};
+  OccupancyMap small(options), map(options);
+  Basin small_basin(small), basin(map);
+  std::vector<double> unused_us;
+  Result<std::uint64_t> probe_cells = cells_of_probes(small, 0, unused_us);
+  if (probe_cells) probe_cells = cells_of_probes(map, 0, unused_us);
+  if (!probe_cells) return tl::unexpected(probe_cells.error());
+  if (const auto filled = small_basin.fill(kSizes[0] - *probe_cells); !filled) return tl::unexpected(filled.error());
+
   std::vector<Row> rows;
-  Probes first;
+  std::uint64_t cells_of_places = *probe_cells;
   for (std::size_t i = 0; i < kSizes.size(); ++i) {
-    if (const auto filled = basin.fill(kSizes[i] - std::min(kSizes[i], probe_cells)); !filled) {
+    if (const auto filled = basin.fill(kSizes[i] - std::min(kSizes[i], cells_of_places)); !filled) {
       return tl::unexpected(filled.error());
     }
-    const std::uint64_t cells = basin.filled() + probe_cells;
+    const std::uint64_t cells = basin.filled() + cells_of_places;
     const std::size_t bytes = map.memory_bytes();
     if (known_cells(map) != cells) {
       return fail(Error::Code::kCorrupt, fmt::format("{} cells are known, {} were filled", known_cells(map), cells));
     }
-    const auto probes = probed(map, (i + 1) * kPlaces);
-    if (!probes) return tl::unexpected(probes.error());
-    probe_cells += probes->new_cells;
-    if (i == 0) first = *probes;
+    const auto known = probed_again(small, map);
+    if (!known) return tl::unexpected(known.error());
+    std::vector<double> new_us;
+    const auto new_cells = cells_of_probes(map, (i + 1) * kPlaces, new_us);
+    if (!new_cells) return tl::unexpected(new_cells.error());
+    cells_of_places += *new_cells;
     Row row;
     row.add("name", "growth")
         .add_truth("checked", true)
         .add("cells", cells)
-        .add("apply_us", probes->known_us)
-        .add("growth", probes->known_us / first.known_us)
-        .add_truth("within", probes->known_us <= kMostGrowth * first.known_us)
-        .add("apply_new_us", probes->new_us)
-        .add("growth_new", probes->new_us / first.new_us)
+        .add("apply_us", known->large_us)
+        .add("growth", known->large_us / known->small_us)
+        .add_truth("within", known->large_us <= kMostGrowth * known->small_us)
+        .add("apply_new_us", median(new_us))
         .add("memory_bytes", std::uint64_t{bytes})
         .add("bytes_per_cell", static_cast<double>(bytes) / static_cast<double>(cells));
     rows.push_back(row);

@@ -51,6 +51,10 @@ offers "tank|harbour|seabed|cave" pingvox simulate ""
 offers "tank.csv" pingvox simulate tank.
 offers "lawn-mower" pingvox simulate harbour --trajectory la
 offers "--json" pingvox compare a b --j
+offers "all" pingvox bench a
+offers "tank-3d|tank-3d-cells" pingvox bench rays tank-3
+offers "--pictures" pingvox bench --p
+offers "tank.csv" pingvox bench all --pictures tank
 
 # same WHAT FIRST SECOND: two lists of lines, in any order.
 same() {
@@ -74,6 +78,11 @@ if [[ -n $program ]]; then
       same "$command $option" "$(_pingvox_words "$option" "$command")" "$words"
     done
   done
+  if benches=$("$program" bench list 2>/dev/null); then
+    same "benches" "$(_pingvox_benches)" "$(cut -d ' ' -f 1 <<<"$benches")"
+    same "bench" "$(_pingvox_options bench)" \
+      "$(sed -nE 's/^ {2,}(--[a-z]+)( .*)?$/\1/p' <<<"$("$program" bench --help)"; echo --help)"
+  fi
   same "commands" "$(_pingvox_commands)" "$("$program" --help | sed -nE '/^Commands:/,/^$/s/^ {2,}([a-z]+) .*/\1/p')"
 fi
 
