@@ -23,6 +23,8 @@ class Row {
   Row& add(std::string name, std::uint64_t value) { return put(std::move(name), value); }
   Row& add(std::string name, int value) { return put(std::move(name), static_cast<double>(value)); }
   Row& add_truth(std::string name, bool value) { return put(std::move(name), value); }
+  /// Whatever it holds.
+  Row& add_value(std::string name, Value value) { return put(std::move(name), std::move(value)); }
   /// Not measured here: null in JSON, a dash in the table.
   Row& add_nothing(std::string name) { return put(std::move(name), std::monostate{}); }
 
