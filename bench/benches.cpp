@@ -5,6 +5,7 @@
 #include "paper/bytes.hpp"
 #include "paper/early_drop.hpp"
 #include "paper/echoes.hpp"
+#include "paper/figures.hpp"
 #include "paper/key_width.hpp"
 #include "paper/paper.hpp"
 #include "paper/parents.hpp"
@@ -36,6 +37,7 @@ std::span<const Bench> benches() {
       Bench{"paper-edges", "figures 17 to 20: thresholds, falling edges, silent beams", Family::kPaper,
             &paper_thresholds},
       Bench{"paper-canny", "figure 21", Family::kPaper, &paper_canny},
+      Bench{"paper-figures", "the figures only, into --pictures DIR", Family::kPaper, &paper_figures},
   };
   return kBenches;
 }

@@ -9,11 +9,13 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <span>
 
 #include "bench/duel.hpp"
 #include "bench/speed/same_map.hpp"
 #include "claim.hpp"
 #include "pingvox/map/compare.hpp"
+#include "pingvox/viewer/chart.hpp"
 
 namespace pingvox::bench {
 namespace {
@@ -59,7 +61,7 @@ std::vector<Key> points_of(double sigma) {
   return points;
 }
 
-void insert(const std::vector<Key>& points, OccupancyMap& map) {
+void insert(std::span<const Key> points, OccupancyMap& map) {
   Editor editor = map.edit(Pruning::kEachUpdate);
   for (const Key& point : points) editor.update(point, kEvidence);
 }
@@ -115,12 +117,42 @@ void add_rows(const Density& density, std::vector<Row>& rows) {
               .why = fmt::format("the paper: {}; its number is from the authors' published files", density.paper)}));
 }
 
+/// CPU time of inserting the first `count` points into an empty map.
+double seconds_of(std::span<const Key> points, EarlyDrop early_drop) {
+  OccupancyMap map({.resolution_m = 1.0, .early_drop = early_drop});
+  const double started = cpu_time_s();
+  insert(points, map);
+  return cpu_time_s() - started;
+}
+
 }  // namespace
 
 Result<std::vector<Row>> paper_early_drop(const BenchOptions&) {
   std::vector<Row> rows;
   for (const Density& density : kDensities) add_rows(density, rows);
   return rows;
+}
+
+Result<Picture> early_drop_chart() {
+  Chart chart{.kind = Chart::Kind::kLines,
+              .title = "Figure 8: inserting points around 10,000",
+              .x_label = "points",
+              .y_label = "CPU time [s]"};
+  for (const Density& density : kDensities) {
+    const std::vector<Key> points = points_of(density.sigma);
+    for (const EarlyDrop early_drop : {EarlyDrop::kOff, EarlyDrop::kOn}) {
+      Series series{.name = fmt::format("{} (sigma {}), {}", density.name, density.sigma,
+                                        early_drop == EarlyDrop::kOn ? "dropped early" : "no check"),
+                    .y = {}};
+      for (std::size_t count = points.size() / 5; count <= points.size(); count += points.size() / 5) {
+        series.x.push_back(static_cast<double>(count));
+        series.y.push_back(seconds_of(std::span(points).first(count), early_drop));
+      }
+      chart.series.push_back(std::move(series));
+    }
+  }
+  if (const auto valid = chart.validate(); !valid) return tl::unexpected(valid.error());
+  return render_chart(chart);
 }
 
 }  // namespace pingvox::bench

@@ -6,6 +6,7 @@
 #include "bytes.hpp"
 #include "early_drop.hpp"
 #include "echoes.hpp"
+#include "figures.hpp"
 #include "key_width.hpp"
 #include "parents.hpp"
 #include "rays.hpp"
@@ -23,6 +24,10 @@ Result<std::vector<Row>> paper(const BenchOptions& options) {
     if (!found) return found;
     rows.insert(rows.end(), found->begin(), found->end());
   }
+  if (!options.pictures) return rows;
+  const Result<std::vector<Row>> figures = paper_figures(options);
+  if (!figures) return figures;
+  rows.insert(rows.end(), figures->begin(), figures->end());
   return rows;
 }
 

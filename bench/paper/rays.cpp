@@ -134,6 +134,12 @@ void add_ends(std::vector<Row>& rows) {
     const auto apart = [](std::uint16_t a, std::uint16_t b) { return std::abs(int{a} - int{b}) > 1; };
     lines += apart(last.x, end->x) || apart(last.y, end->y) || apart(last.z, end->z) ? 1U : 0U;
   }
+  std::size_t anywhere = 0;
+  const std::vector<RandomSegment> segments = random_segments(rays.size(), 3, 4);
+  for (const RandomSegment& segment : segments) {
+    const auto cells = letter_dda<double>(segment.from_cells(), segment.to_cells(), 1.0, LetterStop::kBeyondLength);
+    anywhere += reaches(cells, ExactSegment::cell_of(segment.from), ExactSegment::cell_of(segment.to)) ? 0U : 1U;
+  }
   const auto row = [&](const char* name, const char* section, Value paper, std::size_t rays_lost, Holds holds,
                        const char* why) {
     rows.push_back(row_of({.name = name,
@@ -150,6 +156,8 @@ void add_ends(std::vector<Row>& rows) {
   row("figure-11-letter-double", "6.1", "some", beyond_double, found(beyond_double),
       "its DDA by the letter, stopped beyond the length: rays that lack their last cells");
   row("figure-11-letter-float", "6.1", "some", beyond_float, found(beyond_float), "the same in single precision");
+  row("figure-11-letter-anywhere", "6.1", "some", anywhere, found(anywhere),
+      "ends anywhere in their cells instead of on multiples of 0.1 m");
   row("figure-12-letter-double", "6.1", "sometimes", travelled_double, found(travelled_double),
       "stopped by the distance travelled: rays that end beside their end");
   row("figure-12-letter-float", "6.1", "sometimes", travelled_float, found(travelled_float),
