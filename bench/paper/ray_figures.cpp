@@ -7,45 +7,68 @@
 #include <vector>
 
 #include "letter_dda.hpp"
+#include "pingvox/map/ray_dda.hpp"
 #include "pingvox/viewer/render_ray.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
 
 namespace pingvox::bench {
 namespace {
 
-constexpr std::size_t kPanel_px = 420;
+constexpr std::size_t kPanel_px = 360;
 constexpr double kCell_m = 0.1;
+using Cell = std::array<std::int64_t, 3>;
 
-/// A ray from the origin to a corner of cells, by the letter: with the cell it is to end in, which is hit in any case.
-RayFigure letter_figure(const Eigen::Vector2d& to, LetterStop stop) {
-  RayFigure figure{.from = {0.0, 0.0}, .to = to, .marked = {}};
-  const Eigen::Vector3d to_m(to.x() / 10.0, to.y() / 10.0, 0.0);
-  for (const auto& cell : letter_dda<double>(Eigen::Vector3d::Zero(), to_m, kCell_m, stop)) {
-    figure.marked.push_back({cell[0], cell[1]});
+/// A point in cells of 0.1 m, as metres: tenths, as a person would type them.
+Eigen::Vector3d metres(const Eigen::Vector3d& cells) {
+  return cells / 10.0;
+}
+
+/// By the letter: the cells before the end, and the end cell, which is hit in any case.
+std::vector<Cell> letter_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LetterStop stop) {
+  std::vector<Cell> cells = letter_dda<double>(metres(from), metres(to), kCell_m, stop);
+  const auto axis = [&](int i) { return static_cast<std::int64_t>(std::floor(to[i])); };
+  cells.push_back({axis(0), axis(1), axis(2)});
+  return cells;
+}
+
+/// Steps that are missing before the end cell: 1 is as it should be.
+std::int64_t last_jump(const std::vector<Cell>& cells) {
+  if (cells.size() < 2) return 1;
+  const Cell &end = cells.back(), &before = cells[cells.size() - 2];
+  return std::abs(end[0] - before[0]) + std::abs(end[1] - before[1]) + std::abs(end[2] - before[2]);
+}
+
+/// The first ray of some that loses most.
+template <class Ends>
+Eigen::Vector3d worst_end(const Ends& ends, const Eigen::Vector3d& from, LetterStop stop) {
+  Eigen::Vector3d worst = ends.front();
+  for (const Eigen::Vector3d& to : ends) {
+    if (last_jump(letter_cells(from, to, stop)) > last_jump(letter_cells(from, worst, stop))) worst = to;
   }
-  figure.marked.push_back({static_cast<std::int64_t>(to.x()), static_cast<std::int64_t>(to.y())});
+  return worst;
+}
+
+/// Cells and segment as they look along x or z.
+enum class Along { kX, kZ };
+RayFigure seen(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::vector<Cell>& cells, Along along) {
+  const std::size_t a = along == Along::kX ? 1 : 0, b = along == Along::kX ? 2 : 1;
+  const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+  RayFigure figure{.from = {from[i], from[j]}, .to = {to[i], to[j]}, .marked = {}};
+  for (const Cell& cell : cells) figure.marked.push_back({cell[a], cell[b]});
   return figure;
 }
 
-/// The length of the jump from the last cell but one to the end cell, in cells; 1 is as it should be.
-double last_jump(const RayFigure& figure) {
-  if (figure.marked.size() < 2) return 1.0;
-  const GridCell &end = figure.marked.back(), &before = figure.marked[figure.marked.size() - 2];
-  return static_cast<double>(std::abs(end.x - before.x) + std::abs(end.y - before.y));
-}
-
-/// The shortest ray to a corner whose end is lost the most.
-Eigen::Vector2d worst_end(LetterStop stop) {
-  Eigen::Vector2d worst(1.0, 1.0);
-  double most = 0.0;
-  for (int x = 4; x <= 14; ++x) {
-    for (int y = 2; y < x; ++y) {
-      const Eigen::Vector2d to(x, y);
-      const double jump = last_jump(letter_figure(to, stop));
-      if (jump > most) most = jump, worst = to;
-    }
-  }
-  return worst;
+/// By the library, the end cell included.
+std::vector<Cell> our_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Lattice lattice(kCell_m);
+  std::vector<Cell> cells;
+  const auto add = [&](const Key& key) { cells.push_back({key.x - 32768, key.y - 32768, key.z - 32768}); };
+  const auto ray = dda<std::uint16_t>(lattice, metres(from), metres(to));
+  const auto end = lattice.key_of(metres(to));
+  if (!ray || !end) return cells;
+  for (const Key key : *ray) add(key);
+  add(*end);
+  return cells;
 }
 
 Panel panel(const RayFigure& figure, std::string caption) {
@@ -55,7 +78,8 @@ Panel panel(const RayFigure& figure, std::string caption) {
 }  // namespace
 
 Result<Picture> diagonal_rays() {
-  const Eigen::Vector2d from(0.5, 0.5), to(11.5, 11.5), slant(11.5, 7.5);
+  // Not through the corners: there, rounding may choose.
+  const Eigen::Vector2d from(0.5, 0.3), to(11.5, 11.3), slant(11.5, 7.1);
   const std::array panels = {
       panel(ray_figure(from, to, RayAlgorithm::kBresenham), "9: a diagonal by Bresenham: cells touch at corners only"),
       panel(ray_figure(from, to, RayAlgorithm::kDda), "10: by DDA: it goes from face to face"),
@@ -65,13 +89,27 @@ Result<Picture> diagonal_rays() {
 }
 
 Result<Picture> lost_ends() {
-  const Eigen::Vector2d missing = worst_end(LetterStop::kBeyondLength), snapping = worst_end(LetterStop::kTravelled);
-  const std::array panels = {panel(letter_figure(missing, LetterStop::kBeyondLength),
-                                   "11: the paper's DDA, stopped beyond the length: the last cells are missing"),
-                             panel(ray_figure({0.0, 0.0}, missing, RayAlgorithm::kDda), "ours"),
-                             panel(letter_figure(snapping, LetterStop::kTravelled),
-                                   "12: stopped by the distance travelled: it snaps at the end"),
-                             panel(ray_figure({0.0, 0.0}, snapping, RayAlgorithm::kDda), "ours")};
+  // In the plane, to the middle of a face; in space, to a corner, where three faces are crossed at once.
+  std::vector<Eigen::Vector3d> on_faces, on_corners;
+  for (int x = 6; x <= 12; ++x) {
+    for (int y = 3; y < x; ++y) {
+      on_faces.emplace_back(x, y + 0.5, 0.5);
+      for (int z = 3; z < y; ++z) on_corners.emplace_back(x, y, z);
+    }
+  }
+  const Eigen::Vector3d middle(0.5, 0.5, 0.5), corner = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d missing = worst_end(on_faces, middle, LetterStop::kBeyondLength);
+  const Eigen::Vector3d snapping = worst_end(on_corners, corner, LetterStop::kTravelled);
+  const auto letter = [](const Eigen::Vector3d& from, const Eigen::Vector3d& to, LetterStop stop, Along along) {
+    return seen(from, to, letter_cells(from, to, stop), along);
+  };
+  const std::array panels = {
+      panel(letter(middle, missing, LetterStop::kBeyondLength, Along::kZ),
+            "11: the paper's DDA, stopped beyond the length: its last cell is missing"),
+      panel(seen(middle, missing, our_cells(middle, missing), Along::kZ), "ours"),
+      panel(letter(corner, snapping, LetterStop::kTravelled, Along::kX),
+            "12: in space, stopped by the distance travelled: it snaps at the end (seen along x)"),
+      panel(seen(corner, snapping, our_cells(corner, snapping), Along::kX), "ours, seen along x")};
   return side_by_side(panels);
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 using Echoes = std::vector<std::optional<Echo>>;
 
-constexpr std::size_t kPanel_px = 400;
+constexpr std::size_t kPanel_px = 320;
 
 Picture cartesian(const Sweep& sweep, const PolarImage& image, const Echoes& echoes,
                   BetweenBeams between = BetweenBeams::kInterpolate) {
@@ -37,7 +37,7 @@ std::vector<Beam> beams_of(const Sweep& sweep, const PolarImage& image) {
 }
 
 Picture polar(const std::vector<Beam>& beams) {
-  return render_echoes(beams, {}, {.target_px = 500});
+  return render_echoes(beams, {}, {.target_px = 320});
 }
 
 /// What the paper maps: the axes of one sweep's beams, each up to its echo.
