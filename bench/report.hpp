@@ -24,9 +24,12 @@ class Row {
   Row& add(std::string name, int value) { return put(std::move(name), static_cast<double>(value)); }
   Row& add_truth(std::string name, bool value) { return put(std::move(name), value); }
   /// Whatever it holds.
-  Row& add_value(std::string name, Value value) { return put(std::move(name), std::move(value)); }
+  Row& add_value(std::string name, const Value& value) {
+    fields_.emplace_back(std::move(name), value);
+    return *this;
+  }
   /// Not measured here: null in JSON, a dash in the table.
-  Row& add_nothing(std::string name) { return put(std::move(name), std::monostate{}); }
+  Row& add_nothing(std::string name) { return add_value(std::move(name), Value()); }
 
   const std::vector<std::pair<std::string, Value>>& fields() const { return fields_; }
   app::JsonObject json() const;

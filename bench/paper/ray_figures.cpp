@@ -48,14 +48,25 @@ Eigen::Vector3d worst_end(const Ends& ends, const Eigen::Vector3d& from, LetterS
   return worst;
 }
 
-/// Cells and segment as they look along x or z.
-enum class Along { kX, kZ };
-RayFigure seen(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::vector<Cell>& cells, Along along) {
-  const std::size_t a = along == Along::kX ? 1 : 0, b = along == Along::kX ? 2 : 1;
-  const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+/// Two of the three axes, to look at the plane of.
+struct Plane {
+  std::size_t right, up;
+};
+
+/// Cells and segment as they look in a plane.
+RayFigure seen(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::vector<Cell>& cells,
+               const Plane& plane) {
+  const auto i = static_cast<Eigen::Index>(plane.right), j = static_cast<Eigen::Index>(plane.up);
   RayFigure figure{.from = {from[i], from[j]}, .to = {to[i], to[j]}, .marked = {}};
-  for (const Cell& cell : cells) figure.marked.push_back({cell[a], cell[b]});
+  for (const Cell& cell : cells) figure.marked.push_back({cell[plane.right], cell[plane.up]});
   return figure;
+}
+
+/// A plane in which the jump to the end is to be seen.
+Plane plane_of_jump(const std::vector<Cell>& cells) {
+  const Cell &end = cells.back(), &before = cells[cells.size() - 2];
+  if (end[2] == before[2]) return {0, 1};
+  return end[0] == before[0] ? Plane{1, 2} : Plane{0, 2};
 }
 
 /// By the library, the end cell included.
@@ -100,16 +111,16 @@ Result<Picture> lost_ends() {
   const Eigen::Vector3d middle(0.5, 0.5, 0.5), corner = Eigen::Vector3d::Zero();
   const Eigen::Vector3d missing = worst_end(on_faces, middle, LetterStop::kBeyondLength);
   const Eigen::Vector3d snapping = worst_end(on_corners, corner, LetterStop::kTravelled);
-  const auto letter = [](const Eigen::Vector3d& from, const Eigen::Vector3d& to, LetterStop stop, Along along) {
-    return seen(from, to, letter_cells(from, to, stop), along);
-  };
+  const std::vector<Cell> missed = letter_cells(middle, missing, LetterStop::kBeyondLength);
+  const std::vector<Cell> snapped = letter_cells(corner, snapping, LetterStop::kTravelled);
+  const Plane floor{0, 1}, side = plane_of_jump(snapped);
   const std::array panels = {
-      panel(letter(middle, missing, LetterStop::kBeyondLength, Along::kZ),
+      panel(seen(middle, missing, missed, floor),
             "11: the paper's DDA, stopped beyond the length: its last cell is missing"),
-      panel(seen(middle, missing, our_cells(middle, missing), Along::kZ), "ours"),
-      panel(letter(corner, snapping, LetterStop::kTravelled, Along::kX),
-            "12: in space, stopped by the distance travelled: it snaps at the end (seen along x)"),
-      panel(seen(corner, snapping, our_cells(corner, snapping), Along::kX), "ours, seen along x")};
+      panel(seen(middle, missing, our_cells(middle, missing), floor), "ours"),
+      panel(seen(corner, snapping, snapped, side),
+            "12: in space, seen from a side, stopped by the distance travelled: it snaps at the end"),
+      panel(seen(corner, snapping, our_cells(corner, snapping), side), "ours, from the same side")};
   return side_by_side(panels);
 }
 
