@@ -47,7 +47,9 @@ Result<Picture> map_picture(const Sweep& sweep, const FilterOptions& filter, con
   const BuildOptions options{.filter = filter, .echo = echo, .model = {}};
   const auto report = build_map(beams, Trajectory::still(Pose::Identity()), options, map);
   if (!report) return tl::unexpected(report.error());
-  return render_map(map, {.target_px = kPanel_px});
+  // All maps to the same scale.
+  const Box tank{{-2.9, -2.3, 0.0}, {2.7, 3.1, 0.0}};
+  return render_map(map, {.target_px = kPanel_px, .at_least = tank});
 }
 
 /// Adds pictures as panels of one figure, or remembers the first error.
