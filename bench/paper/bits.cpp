@@ -37,7 +37,7 @@ Result<std::vector<Row>> paper_bits(const BenchOptions&) {
   }
   std::ostringstream own, peer;
   if (const auto written = write_map(map, Format::kBt, "", own); !written) return tl::unexpected(written.error());
-  tree.writeBinaryData(peer);  // without the header: liboctomap's writer of files talks
+  tree.writeBinaryData(peer);  // the tree without the header
   const std::string bytes = own.str();
   const std::string theirs = peer.str();
   if (theirs.size() != 32 || bytes.size() < 32) return fail(Error::Code::kCorrupt, "the .bt is not 16 levels deep");
