@@ -24,7 +24,7 @@ class Folder {
                    const Result<Picture>& picture) {
     if (!picture) return tl::unexpected(picture.error());
     const std::string file = name + ".png";
-    const auto written =
+    Result<void> written =
         write_file((path_ / file).string(), [&](std::ostream& out) { return write_png(*picture, out); });
     if (!written) return written;
     rows_.push_back(row_of({.name = name,

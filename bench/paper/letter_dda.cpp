@@ -22,7 +22,7 @@ std::vector<std::array<std::int64_t, 3>> letter_dda(const Eigen::Vector3d& from,
                       static_cast<Real>(cell[2] - start[2]));
   };
   const auto edge = static_cast<Real>(resolution_m);
-  const Eigen::Matrix<Real, 3, 1> origin = from.cast<Real>(), way = (to - from).cast<Real>();
+  const Eigen::Matrix<Real, 3, 1> way = (to - from).cast<Real>();
   const Real length = way.norm();
   std::array<Real, 3> next{}, apart{};
   std::array<std::int64_t, 3> step{};
@@ -31,7 +31,7 @@ std::vector<std::array<std::int64_t, 3>> letter_dda(const Eigen::Vector3d& from,
     const Real direction = way[axis] / length;
     step[i] = direction > 0 ? 1 : -1;
     const Real border = static_cast<Real>(start[i] + (direction > 0 ? 1 : 0)) * edge;
-    next[i] = direction == 0 ? std::numeric_limits<Real>::max() : (border - origin[axis]) / direction;
+    next[i] = direction == 0 ? std::numeric_limits<Real>::max() : (border - static_cast<Real>(from[axis])) / direction;
     apart[i] = direction == 0 ? Real{0} : edge / std::abs(direction);
   }
   std::vector<Cell> cells;

@@ -25,7 +25,7 @@ Result<std::vector<Row>> paper(const BenchOptions& options) {
     rows.insert(rows.end(), found->begin(), found->end());
   }
   if (!options.pictures) return rows;
-  const Result<std::vector<Row>> figures = paper_figures(options);
+  Result<std::vector<Row>> figures = paper_figures(options);
   if (!figures) return figures;
   rows.insert(rows.end(), figures->begin(), figures->end());
   return rows;
