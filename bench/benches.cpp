@@ -1,6 +1,16 @@
 #include <array>
 
 #include "bench.hpp"
+#include "paper/bits.hpp"
+#include "paper/bytes.hpp"
+#include "paper/early_drop.hpp"
+#include "paper/echoes.hpp"
+#include "paper/figures.hpp"
+#include "paper/key_width.hpp"
+#include "paper/paper.hpp"
+#include "paper/parents.hpp"
+#include "paper/rays.hpp"
+#include "paper/table_1.hpp"
 #include "speed/command.hpp"
 #include "speed/cone.hpp"
 #include "speed/cube.hpp"
@@ -27,6 +37,20 @@ std::span<const Bench> benches() {
       Bench{"tank-3d", "3 sweeps, each beam a bundle of 32 x 64 rays, cells of 5 cm", Family::kSpeed, &tank_3d},
       Bench{"tank-3d-cells", "the same, end points made cells first", Family::kSpeed, &tank_3d_cells},
       Bench{"tank-fine", "one sweep of bundles in cells of 1.25 cm", Family::kSpeed, &tank_fine},
+      Bench{"paper", "what the paper says and what we get, all of it; with --pictures its figures", Family::kPaper,
+            &paper},
+      Bench{"paper-keys", "section 5.1: keys of 8 to 128 bits", Family::kPaper, &paper_key_width},
+      Bench{"paper-drop", "figure 8: updates dropped early, by density", Family::kPaper, &paper_early_drop},
+      Bench{"paper-parents", "section 5.3.1: max and mean, seen by a planner", Family::kPaper, &paper_parents},
+      Bench{"paper-table-1", "table 1: nodes and times of the cube", Family::kPaper, &paper_table_1},
+      Bench{"paper-bytes", "section 5.6: bytes of the pruned cube", Family::kPaper, &paper_bytes},
+      Bench{"paper-rays", "figures 9 to 12: DDA and Bresenham against exact arithmetic", Family::kPaper, &paper_rays},
+      Bench{"paper-bits", "section 7: the bits of a .bt file", Family::kPaper, &paper_bits},
+      Bench{"paper-smooth", "figures 13 to 16: echoes after each filter", Family::kPaper, &paper_smoothing},
+      Bench{"paper-edges", "figures 17 to 20: thresholds, falling edges, silent beams", Family::kPaper,
+            &paper_thresholds},
+      Bench{"paper-canny", "figure 21", Family::kPaper, &paper_canny},
+      Bench{"paper-figures", "the figures only, into --pictures DIR", Family::kPaper, &paper_figures},
       Bench{"tank-cone", "3 sweeps, each beam a cone by geometry against a bundle of rays", Family::kSpeed, &tank_cone},
       Bench{"rays", "131,072 random rays made keys", Family::kSpeed, &rays},
       Bench{"look-up", "what a million keys are in the map of tank-3d", Family::kSpeed, &look_up},

@@ -70,6 +70,10 @@ Row& Row::add_truth(std::string name, bool value) {
   fields_.emplace_back(std::move(name), value);
   return *this;
 }
+Row& Row::add_value(std::string name, const Value& value) {
+  fields_.emplace_back(std::move(name), value);
+  return *this;
+}
 Row& Row::add_nothing(std::string name) {
   fields_.emplace_back(std::move(name), std::monostate());
   return *this;

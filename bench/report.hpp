@@ -23,6 +23,7 @@ class Row {
   Row& add(std::string name, std::uint64_t value);
   Row& add(std::string name, int value);
   Row& add_truth(std::string name, bool value);
+  Row& add_value(std::string name, const Value& value);  ///< whatever it holds
   /// Not measured here: null in JSON, a dash in the table.
   Row& add_nothing(std::string name);
 
