@@ -8,6 +8,9 @@
 
 namespace pingvox {
 
+/// The bins over which a rise is measured: longer than any wall's; a background that grows with the range is none.
+inline constexpr std::size_t kRise_bins = 48;
+
 /// How many beams to either side decide about one beam's contrast.
 inline constexpr std::size_t kContrastReach_beams = 16;
 
