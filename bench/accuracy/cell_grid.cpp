@@ -48,7 +48,7 @@ CellGrid CellBox::marked(const std::vector<Eigen::Vector3d>& points_m) const {
   return grid;
 }
 
-CellGrid CellBox::classes_of(const OccupancyMap& map) const {
+CellGrid CellBox::classes_of(const OccupancyMap& map, const Thresholds& thresholds) const {
   CellGrid grid(size());
   const auto middle_of = [&](const CellGrid::Cell& c) {
     const auto word = [](std::int64_t n) { return static_cast<std::uint16_t>(n); };
@@ -56,7 +56,7 @@ CellGrid CellBox::classes_of(const OccupancyMap& map) const {
   };
   const LeafQuery query{.max_depth = {}, .box = Box{middle_of(low_), middle_of(high_)}};
   for_each_leaf<std::uint16_t>(map, query, [&](const Leaf<std::uint16_t>& leaf) {
-    const Occupancy kind = classified(leaf.belief, map.options().thresholds);
+    const Occupancy kind = classified(leaf.belief, thresholds);
     const std::int64_t edge = std::int64_t{1} << (lattice_.depth() - leaf.depth);
     const CellGrid::Cell corner = {leaf.key.x, leaf.key.y, leaf.key.z};
     CellGrid::Cell first{}, last{};

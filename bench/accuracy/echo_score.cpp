@@ -55,12 +55,15 @@ EchoScore judged(std::span<const std::optional<Echo>> echoes, std::span<const Tr
     if (truth.axis_m) {
       count(echo ? std::optional(std::abs(echo->range_m - *truth.axis_m)) : std::nullopt, judge, score.axis);
     }
+    if (echo && off_m(echo->range_m, truth.returns).value_or(1.0) > EchoJudge::kFalse_m) {
+      score.beyond_cone += off_m(echo->range_m, truths[n].lobe).value_or(1.0) <= EchoJudge::kFalse_m;
+    }
     if (truth.returns.empty()) {
       ++score.silent_beams;
       score.silent_echoes += echo.has_value();
       continue;
     }
-    count(echo ? truth.off_m(echo->range_m) : std::nullopt, judge, score.returns);
+    count(echo ? off_m(echo->range_m, truth.returns) : std::nullopt, judge, score.returns);
     score.late += echo && echo->range_m > truth.returns.front().first_m + EchoJudge::kFalse_m;
     score.chance_5cm += share_within_5cm(truth.returns, judge);
   }

@@ -26,7 +26,7 @@ AlignedBox3d judged_box_of(const Recording& recording) {
     box.min().x() -= kBehind_m;
     box.max().x() += kBehind_m;
     box.max().y() += kBehind_m;
-    if (world != "harbour") box.min().y() -= kBehind_m;
+    if (!world.starts_with("harbour")) box.min().y() -= kBehind_m;
   }
   // A face of the box belongs to the upper cell, which lies outside of the world.
   constexpr double kHair_m = 1e-6;
@@ -51,8 +51,8 @@ Result<JudgedWorld> JudgedWorld::make(const Recording& recording, Extent extent,
   return JudgedWorld(box, box.classes_of(*truth), box.marked(visible_m));
 }
 
-MapScore JudgedWorld::judged(const OccupancyMap& map) const {
-  return bench::judged(box_.classes_of(map), truth_, visible_);
+MapScore JudgedWorld::judged(const OccupancyMap& map, const Thresholds& thresholds) const {
+  return bench::judged(box_.classes_of(map, thresholds), truth_, visible_);
 }
 
 Echoes detected(const Recording& recording, const FilterOptions& filter, const EchoOptions& options) {
@@ -62,6 +62,13 @@ Echoes detected(const Recording& recording, const FilterOptions& filter, const E
     all.insert(all.end(), echoes.begin(), echoes.end());
   }
   return all;
+}
+
+Echoes at_first_bins(Echoes echoes, double bin_length_m) {
+  for (std::optional<Echo>& echo : echoes) {
+    if (echo) echo->range_m = (static_cast<double>(echo->first) + 0.5) * bin_length_m;
+  }
+  return echoes;
 }
 
 Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double least_range_m) {

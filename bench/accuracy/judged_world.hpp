@@ -31,7 +31,8 @@ class JudgedWorld {
                                   const std::vector<Eigen::Vector3d>& visible_m);
 
   /// REQUIRES a map of this resolution and 16 levels.
-  MapScore judged(const OccupancyMap& map) const;
+  MapScore judged(const OccupancyMap& map) const { return judged(map, map.options().thresholds); }
+  MapScore judged(const OccupancyMap& map, const Thresholds& thresholds) const;
   const CellBox& box() const { return box_; }
   const CellGrid& truth() const { return truth_; }
   const CellGrid& visible() const { return visible_; }
@@ -47,6 +48,9 @@ class JudgedWorld {
 using Echoes = std::vector<std::optional<Echo>>;
 
 Echoes detected(const Recording& recording, const FilterOptions& filter, const EchoOptions& options);
+
+/// The same echoes, each taken to be in the middle of its first bin, as in the paper.
+Echoes at_first_bins(Echoes echoes, double bin_length_m);
 
 /// What a perfect detector would find on the axis of each beam.
 Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double least_range_m);

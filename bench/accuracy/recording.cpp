@@ -13,6 +13,7 @@ namespace {
 Result<Scene> scene_named(std::string_view world) {
   if (world == "tank") return tank_scene({});
   if (world == "harbour") return harbour_scene({});
+  if (world == "harbour, no hull") return harbour_scene({.hull_length_m = 0.0});
   if (world == "seabed") return seabed_scene({});
   if (world == "cave") return cave_scene({});
   return fail(Error::Code::kBadOption, fmt::format("there is no world '{}'", world));

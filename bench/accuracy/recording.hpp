@@ -13,7 +13,7 @@ namespace pingvox::bench {
 
 /// What is simulated for a measurement.
 struct RecordingOptions {
-  std::string_view world;  ///< tank, harbour, seabed or cave
+  std::string_view world;  ///< tank; harbour; harbour, no hull; seabed; cave
   Motion motion = Motion::kStill;
   std::size_t turns = 5;    ///< of the head
   double speed_m_s = 0.25;  ///< of a vehicle that moves

@@ -17,40 +17,66 @@ Vector3d direction_of(double bearing_rad, double elevation_rad) {
           std::sin(elevation_rad)};
 }
 
-TrueReturns returns_of(const World& world, const SonarSimulator::Ping& ping, const SonarOptions& sonar) {
-  TrueReturns truth;
+/// Half the angles of an elliptic cone.
+struct HalfAngles {
+  double width_rad, height_rad;
+};
+
+/// Where sin(u) / u is zero, when it is half power (0.707) at half the width.
+double null_rad(double half_width_rad) {
+  return std::asin(std::min(1.0, std::numbers::pi / 1.391557 * std::sin(half_width_rad)));
+}
+
+/// Calls f(crossing point, range, half the way by which the range changes to the next ray) for each ray of a cone that
+/// meets something.
+template <class F>
+void for_each_return(const World& world, const SonarSimulator::Ping& ping, const HalfAngles& half, double range_m,
+                     F&& f) {
   const auto& map_from_sensor = ping.map_from_sensor;
-  const double across_step = sonar.beam_width_rad / (2 * kAcross), up_step = sonar.beam_height_rad / (2 * kUp);
-  std::vector<Span> spans;
+  const double across_step = half.width_rad / kAcross, up_step = half.height_rad / kUp;
   for (int up = -kUp; up <= kUp; ++up) {
     for (int across = -kAcross; across <= kAcross; ++across) {
       if (std::hypot(static_cast<double>(up) / kUp, static_cast<double>(across) / kAcross) > 1.0) continue;
       const double bearing = ping.bearing_rad + across * across_step, elevation = up * up_step;
       const SoundRay ray{map_from_sensor.translation(), map_from_sensor.linear() * direction_of(bearing, elevation)};
-      const auto hit = world.first(ray, sonar.range_m());
+      const auto hit = world.first(ray, range_m);
       if (!hit) continue;
-      if (up == 0 && across == 0) truth.axis_m = hit->range_m;
-      truth.seen_m.push_back(ray.at(hit->range_m));
       // The surface goes on at least half way to the next ray; a slanting one changes its range on the way.
       const Vector3d sideways = map_from_sensor.linear() * direction_of(bearing + 0.5 * std::numbers::pi, 0.0) *
                                 (across_step * std::cos(elevation));
       const Vector3d upwards =
           map_from_sensor.linear() * direction_of(bearing, elevation + 0.5 * std::numbers::pi) * up_step;
       const double slant = hit->range_m / std::max(-hit->normal.dot(ray.direction), 0.01);
-      const double half =
-          0.5 * slant * std::max(std::abs(hit->normal.dot(sideways)), std::abs(hit->normal.dot(upwards)));
-      spans.push_back({hit->range_m - half, hit->range_m + half});
+      const double change = std::max(std::abs(hit->normal.dot(sideways)), std::abs(hit->normal.dot(upwards)));
+      f(ray.at(hit->range_m), hit->range_m, 0.5 * slant * change);
     }
   }
-  truth.returns = joined(std::move(spans));
+}
+
+TrueReturns returns_of(const World& world, const SonarSimulator::Ping& ping, const SonarOptions& sonar) {
+  TrueReturns truth;
+  const Vector3d axis = ping.map_from_sensor.linear() * direction_of(ping.bearing_rad, 0.0);
+  const auto on_axis = world.first({ping.map_from_sensor.translation(), axis}, sonar.range_m());
+  if (on_axis) truth.axis_m = on_axis->range_m;
+  const HalfAngles cone{0.5 * sonar.beam_width_rad, 0.5 * sonar.beam_height_rad};
+  for_each_return(world, ping, cone, sonar.range_m(), [&](const Vector3d& at_m, double range_m, double half_m) {
+    truth.seen_m.push_back(at_m);
+    truth.returns.push_back({range_m - half_m, range_m + half_m});
+  });
+  const HalfAngles lobe{null_rad(cone.width_rad), null_rad(cone.height_rad)};
+  for_each_return(world, ping, lobe, sonar.range_m(), [&](const Vector3d&, double range_m, double half_m) {
+    truth.lobe.push_back({range_m - half_m, range_m + half_m});
+  });
+  truth.returns = joined(std::move(truth.returns));
+  truth.lobe = joined(std::move(truth.lobe));
   return truth;
 }
 
 }  // namespace
 
-std::optional<double> TrueReturns::off_m(double range_m) const {
+std::optional<double> off_m(double range_m, const std::vector<Span>& spans) {
   std::optional<double> nearest;
-  for (const Span& span : returns) {
+  for (const Span& span : spans) {
     const double off = std::max({0.0, span.first_m - range_m, range_m - span.last_m});
     if (!nearest || off < *nearest) nearest = off;
   }

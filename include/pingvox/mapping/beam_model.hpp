@@ -49,6 +49,10 @@ struct BeamModelOptions {
   Tracing tracing = Tracing::kGeometry;
   double width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontal, full angle; Micron data sheet
   double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, full angle; Micron data sheet
+  /// Of width and height, about the axis: where an echo's silence before it frees cells. They are those of half power one
+  /// way; within 0.72 of them (sin(u) / u again) it is half power both ways. What stands farther out answers with less
+  /// than half and may not be heard. An echo may come from all of the beam nevertheless.
+  double free_share = 0.72;
   RayAlgorithm ray = RayAlgorithm::kDda;
   HitFrom hit_from = HitFrom::kIntensity;
   LogOdds hit = LogOdds::from_probability(0.7);  ///< evidence of an echo; with kIntensity of the strongest possible one
@@ -84,7 +88,8 @@ double cells_in_beam(const BeamModelOptions& options, double range_m, double res
 /// The most that `build_map` takes for one beam: such a scan needs some hundred megabytes.
 inline constexpr double kMostCellsInBeam = 3e8;
 
-/// Adds to `scan` what one beam says: cells freed up to the echo, cells hit with their share of the evidence.
+/// Adds to `scan` what one beam says: cells freed up to the first bin of the echo (from there on sound came back), cells
+/// hit at its range with their share of the evidence. What lies between the two stays as it was.
 /// @param map_from_sensor  the head's pose when the beam was heard
 /// @return the number of rays left out because an end of them lies outside of the lattice
 std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, const Beam& beam,
