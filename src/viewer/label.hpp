@@ -16,13 +16,21 @@ inline std::ptrdiff_t label_width(std::string_view text, std::ptrdiff_t scale) {
   return static_cast<std::ptrdiff_t>(text.size()) * kLetterWidth * scale;
 }
 
-/// Writes digits, small letters, '.', '-', '+', ',' and '/' with their upper left corner at (x, y). Other characters
-/// leave a gap.
+enum class Reads {
+  kRightwards,
+  kUpwards,  ///< turned to the left, for the axis at the left side
+};
+
+/// Writes ASCII text. Rightwards its upper left corner is at (x, y), upwards its lower left one, where the first letter
+/// stands. Characters without a shape ('`', '$', '{', '}', '\\', and all beyond ASCII) leave a gap.
 void draw_label(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::string_view text, std::ptrdiff_t scale,
-                Rgb colour);
+                Rgb colour, Reads reads = Reads::kRightwards);
 
 /// A round length (1, 2 or 5 times a power of ten) that is at most `most`. REQUIRES most > 0 and finite.
 double round_length(double most);
+
+/// The same that is at least `least`. REQUIRES least > 0 and finite.
+double round_length_above(double least);
 
 /// A round length as text, as in "0.5" or "20".
 std::string length_text(double metres);

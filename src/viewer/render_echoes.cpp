@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "viewer/axis.hpp"
+#include "viewer/colours.hpp"
 #include "viewer/label.hpp"
 
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kTextScale = 2;
-constexpr std::ptrdiff_t kLeft = 110, kRight = 40, kTop = 24, kBottom = 92, kTick = 8, kGap = 6;
+constexpr std::ptrdiff_t kLeft = 110, kRight = 40, kTop = 24, kBottom = 92;
 constexpr std::size_t kMostRows = 2000, kHighEnough = 800;
 constexpr std::ptrdiff_t kMarkWidth = 3;
-constexpr Rgb kPaper{255, 255, 255}, kInk{40, 44, 52};
 
 /// Where beams and ranges are in the picture.
 struct Scale {

@@ -10,16 +10,19 @@
 #include <vector>
 
 #include "pingvox/map/for_each_leaf.hpp"
+#include "viewer/axis.hpp"
+#include "viewer/colours.hpp"
 #include "viewer/label.hpp"
+#include "viewer/strokes.hpp"
 
 namespace pingvox {
 namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-constexpr std::ptrdiff_t kMargin = 24, kFooter = 56, kBorder = 2, kTextScale = 2;
+constexpr std::ptrdiff_t kMargin = 24, kFooter = 56, kBorder = 2;
 constexpr std::ptrdiff_t kLeastWidth = 640;  ///< room for scale bar and legend
-constexpr Rgb kPaper{255, 255, 255}, kInk{40, 44, 52}, kCross{230, 120, 0};
+constexpr Rgb kCross{230, 120, 0};
 
 /// The highest belief of each column of cells. Cells are square, (0, 0) has the lowest x and y; kNothing is unknown.
 struct Columns {
@@ -108,14 +111,6 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
           corner_m.x(), corner_m.y(), std::move(grids[0].belief)};
 }
 
-std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double share) {
-  return static_cast<std::uint8_t>(std::lround(a + (b - a) * share));
-}
-
-Rgb mixed(Rgb a, Rgb b, double share) {
-  return {mixed(a.red, b.red, share), mixed(a.green, b.green, share), mixed(a.blue, b.blue, share)};
-}
-
 /// How far `belief` has come from `from` (0) to `to` (1).
 double share_of(LogOdds belief, LogOdds from, LogOdds to) {
   const double way = static_cast<double>(to.value()) - static_cast<double>(from.value());
@@ -136,15 +131,6 @@ Rgb colour_of(float belief, const MapOptions& map, const MapColours& colours) {
       break;
   }
   return colours.undecided;
-}
-
-/// A frame around a rectangle, outside of it.
-void draw_frame(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t width, std::ptrdiff_t height,
-                std::ptrdiff_t thickness, Rgb colour) {
-  picture.fill(x - thickness, y - thickness, width + 2 * thickness, thickness, colour);
-  picture.fill(x - thickness, y + height, width + 2 * thickness, thickness, colour);
-  picture.fill(x - thickness, y, thickness, height, colour);
-  picture.fill(x + width, y, thickness, height, colour);
 }
 
 /// An orange cross with a dark edge, to be seen on light and dark cells alike.
@@ -183,7 +169,7 @@ void draw_footer(Picture& picture, std::ptrdiff_t top, double metres_per_pixel, 
     draw_label(picture, x, text_y, entry->text, kTextScale, kInk);
     x -= kSwatch + kGap;
     picture.fill(x, top, kSwatch, kSwatch, entry->colour);
-    draw_frame(picture, x, top, kSwatch, kSwatch, 1, kInk);
+    draw_frame(picture, {x, top, kSwatch, kSwatch}, 1, kInk);
     x -= 3 * kGap;
   }
 }
@@ -225,7 +211,7 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
                    colour_of(belief, map.options(), options.colours));
     }
   }
-  draw_frame(picture, kMargin, kMargin, inner_width, inner_height, kBorder, kInk);
+  draw_frame(picture, {kMargin, kMargin, inner_width, inner_height}, kBorder, kInk);
 
   const std::ptrdiff_t footer = kMargin + inner_height + kMargin;
   if (nx == 0) {

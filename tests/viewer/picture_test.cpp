@@ -61,9 +61,21 @@ TEST(Label, IsReadable) {
             "..............................\n");
 }
 
+TEST(Label, ReadsUpwardsAtTheLeftAxis) {
+  Picture picture(9, 18, kWhite);
+  draw_label(picture, 0, 18, "L7", 1, kBlack, Reads::kUpwards);
+  // Turned to the right again, it is the same as rightwards.
+  Picture expected(18, 9, kWhite);
+  draw_label(expected, 0, 0, "L7", 1, kBlack);
+  for (std::size_t x = 0; x < 18; ++x) {
+    for (std::size_t y = 0; y < 9; ++y) EXPECT_EQ(picture.at(y, 17 - x), expected.at(x, y)) << x << " " << y;
+  }
+}
+
 TEST(Label, EachLetterDiffersFromEachOther) {
   std::vector<std::string> shapes;
-  for (const char letter : std::string_view("0123456789.-+,/abcdefghijklmnopqrstuvwxyz")) {
+  for (const char letter :
+       std::string_view("0123456789.-+,/abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ:;=_()[]%*<>!?#&'\"|~@^")) {
     Picture picture(6, 9, kWhite);
     draw_label(picture, 0, 0, std::string_view(&letter, 1), 1, kBlack);
     shapes.push_back(drawn(picture, 0, 0, 6, 9, 1, {{kWhite, '.'}, {kBlack, '#'}}));
@@ -80,6 +92,10 @@ TEST(RoundLength, IsTheLongestRoundOneThatFits) {
   for (const auto& [most, round] : {std::pair{0.7, 0.5}, std::pair{1.0, 1.0}, std::pair{1.99, 1.0}, std::pair{4.9, 2.0},
                                     std::pair{999.0, 500.0}, std::pair{1000.0, 1000.0}, std::pair{0.0021, 0.002}}) {
     EXPECT_DOUBLE_EQ(round_length(most), round) << most;
+  }
+  for (const auto& [least, round] : {std::pair{0.7, 1.0}, std::pair{1.0, 1.0}, std::pair{1.01, 2.0},
+                                     std::pair{5.0, 5.0}, std::pair{0.0021, 0.005}}) {
+    EXPECT_DOUBLE_EQ(round_length_above(least), round) << least;
   }
   EXPECT_EQ(length_text(0.05), "0.05");
   EXPECT_EQ(length_text(20.0), "20");

@@ -1,0 +1,90 @@
+#include "viewer/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "viewer/colours.hpp"
+#include "viewer/label.hpp"
+
+namespace pingvox {
+namespace {
+
+std::vector<Tick> linear_ticks(const AxisScale& scale, std::size_t most) {
+  const double low = std::min(scale.at_start, scale.at_end), high = std::max(scale.at_start, scale.at_end);
+  const double span = high - low;
+  if (!std::isfinite(span) || !(span > 0.0) || span < 1e-12 * std::max(std::abs(low), std::abs(high))) return {};
+  const double step = round_length_above(span / static_cast<double>(most));
+  if (!(step > 0.0) || !std::isfinite(step)) return {};
+  std::vector<Tick> ticks;
+  const double first = std::ceil(low / step - 1e-9);
+  for (double n = first; n * step <= high + 1e-9 * span && ticks.size() <= most + 1; ++n) {
+    const double value = n == 0.0 ? 0.0 : n * step;  // no "-0"
+    ticks.push_back({scale.share_of(value), length_text(value)});
+  }
+  return ticks;
+}
+
+std::vector<Tick> logarithmic_ticks(const AxisScale& scale, std::size_t most) {
+  const double low = std::log10(std::min(scale.at_start, scale.at_end));
+  const double high = std::log10(std::max(scale.at_start, scale.at_end));
+  std::vector<Tick> ticks;
+  const auto add = [&](double value) {
+    const double exponent = std::log10(value);
+    if (exponent >= low - 1e-9 && exponent <= high + 1e-9) ticks.push_back({scale.share_of(value), length_text(value)});
+  };
+  const auto powers = static_cast<std::size_t>(std::max(0.0, high - low)) + 1;
+  const int skip = static_cast<int>(powers / std::max<std::size_t>(most, 1)) + 1;
+  const int last = static_cast<int>(std::floor(high + 1e-9));
+  for (int power = static_cast<int>(std::floor(low)); power <= last; power += skip) {
+    add(std::pow(10.0, power));
+    // Few powers leave room for what lies between them.
+    if (2 * powers <= most) add(2.0 * std::pow(10.0, power));
+    if (2 * powers <= most) add(5.0 * std::pow(10.0, power));
+  }
+  return ticks;
+}
+
+}  // namespace
+
+double AxisScale::share_of(double value) const {
+  if (spacing == Spacing::kLinear) return (value - at_start) / (at_end - at_start);
+  return std::log(value / at_start) / std::log(at_end / at_start);
+}
+
+std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most) {
+  return scale.spacing == Spacing::kLinear ? linear_ticks(scale, most) : logarithmic_ticks(scale, most);
+}
+
+std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks) {
+  std::ptrdiff_t widest = 0;
+  for (const Tick& tick : ticks) widest = std::max(widest, label_width(tick.text, kTextScale));
+  return kTick + kGap + widest + kGap + kTextScale * kLetterHeight + kGap;
+}
+
+void draw_centred(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::string_view text, Rgb colour) {
+  draw_label(picture, x - label_width(text, kTextScale) / 2 + 1, y, text, kTextScale, colour);
+}
+
+void draw_bottom_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title) {
+  const std::ptrdiff_t below = area.bottom() + 2;
+  for (const Tick& tick : ticks) {
+    const auto x = area.x + static_cast<std::ptrdiff_t>(std::lround(tick.share * static_cast<double>(area.width)));
+    picture.fill(x - 1, below, 2, kTick, kInk);
+    draw_centred(picture, x, below + kTick + kGap, tick.text, kInk);
+  }
+  draw_centred(picture, area.x + area.width / 2, below + kTick + 2 * kGap + kTextScale * kLetterHeight, title, kInk);
+}
+
+void draw_left_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title) {
+  for (const Tick& tick : ticks) {
+    const auto y =
+        area.bottom() - static_cast<std::ptrdiff_t>(std::lround(tick.share * static_cast<double>(area.height)));
+    picture.fill(area.x - 2 - kTick, y - 1, kTick, 2, kInk);
+    draw_label(picture, area.x - 2 - kTick - kGap - label_width(tick.text, kTextScale), y - 7, tick.text, kTextScale,
+               kInk);
+  }
+  const std::ptrdiff_t y = area.y + (area.height + label_width(title, kTextScale)) / 2;
+  draw_label(picture, area.x - left_axis_width(ticks), y, title, kTextScale, kInk, Reads::kUpwards);
+}
+
+}  // namespace pingvox

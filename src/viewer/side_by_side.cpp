@@ -1,0 +1,107 @@
+#include "pingvox/viewer/side_by_side.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "viewer/axis.hpp"
+#include "viewer/colours.hpp"
+#include "viewer/label.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::size_t kEdge = 24, kBetween = 16;
+constexpr std::size_t kLine = static_cast<std::size_t>(kTextScale * kLetterHeight) + 6;
+
+/// The text in lines of at most `width` pixels, broken between words, and within those that are longer than a line.
+std::vector<std::string> lines_of(std::string_view text, std::size_t width) {
+  const std::size_t most = std::max<std::size_t>(width / static_cast<std::size_t>(kTextScale * kLetterWidth), 1);
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    std::size_t length = std::min(most, text.size());
+    if (length < text.size() && text[length] != ' ') {
+      const std::size_t space = text.substr(0, length).rfind(' ');
+      if (space != std::string_view::npos && space > 0) length = space;
+    }
+    lines.emplace_back(text.substr(0, length));
+    text.remove_prefix(length);
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  }
+  return lines;
+}
+
+/// Room for text below or above what is so wide.
+std::size_t text_width(std::size_t width) {
+  return width > 2 * kEdge ? width - 2 * kEdge : 1;
+}
+
+struct Row {
+  std::size_t first, last;            ///< panels, one behind the end
+  std::size_t width = 0;              ///< of all, with the gaps between
+  std::size_t height = 0, lines = 0;  ///< of the highest picture; of the longest caption
+};
+
+Row row_of(std::span<const Panel> panels, std::size_t first, std::size_t last) {
+  Row row{first, last};
+  for (std::size_t i = first; i < last; ++i) {
+    const Panel& panel = panels[i];
+    row.width += panel.picture.width() + (i > first ? kBetween : 0);
+    row.height = std::max(row.height, panel.picture.height());
+    row.lines = std::max(row.lines, lines_of(panel.caption, text_width(panel.picture.width())).size());
+  }
+  return row;
+}
+
+std::vector<Row> rows_of(std::span<const Panel> panels, std::size_t count) {
+  std::vector<Row> rows;
+  for (std::size_t r = 0; r < count; ++r) {
+    rows.push_back(row_of(panels, r * panels.size() / count, (r + 1) * panels.size() / count));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Result<Picture> side_by_side(std::span<const Panel> panels, std::string_view title) {
+  if (panels.empty()) return fail(Error::Code::kBadOption, "pictures side by side: there are none");
+  for (std::size_t count = 1; count <= panels.size(); ++count) {
+    const std::vector<Row> rows = rows_of(panels, count);
+    std::size_t width = 0, height = 0;
+    for (const Row& row : rows) {
+      width = std::max(width, row.width);
+      height += row.height + (row.lines > 0 ? row.lines * kLine + kBetween : 0);
+    }
+    const std::vector<std::string> heading = lines_of(title, text_width(width));
+    if (!heading.empty()) height += kEdge + heading.size() * kLine;
+    if (width > Picture::kMaxSide || height > Picture::kMaxSide) continue;
+
+    Picture picture(width, height, kPaper);
+    std::size_t y = heading.empty() ? 0 : kEdge;
+    const auto write = [&](const std::vector<std::string>& lines, std::size_t x, std::size_t top) {
+      for (const std::string& line : lines) {
+        draw_label(picture, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(top), line, kTextScale, kInk);
+        top += kLine;
+      }
+    };
+    write(heading, kEdge, y);
+    y += heading.size() * kLine;
+    for (const Row& row : rows) {
+      std::size_t x = 0;
+      for (std::size_t i = row.first; i < row.last; ++i) {
+        const Panel& panel = panels[i];
+        paste(picture, panel.picture, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(y));
+        write(lines_of(panel.caption, text_width(panel.picture.width())), x + kEdge, y + row.height);
+        x += panel.picture.width() + kBetween;
+      }
+      y += row.height + (row.lines > 0 ? row.lines * kLine + kBetween : 0);
+    }
+    return picture;
+  }
+  return fail(Error::Code::kLimit,
+              fmt::format("{} pictures side by side need more than {} pixels: make them smaller, or draw fewer",
+                          panels.size(), Picture::kMaxSide));
+}
+
+}  // namespace pingvox
