@@ -34,7 +34,7 @@ struct EchoScore {
   std::size_t silent_beams = 0, silent_echoes = 0;  ///< nothing in the cone within range, and yet an echo
   /// Of the false echoes, those within 10 cm of a surface that only the main lobe beyond the cone hears.
   std::size_t beyond_cone = 0;
-  std::size_t late = 0;                             ///< echoes more than 10 cm behind the first return
+  std::size_t late = 0;     ///< echoes more than 10 cm behind the first return
   double chance_5cm = 0.0;  ///< mean share of the ranges listened to that lie within 5 cm of a return
 
   std::size_t false_echoes() const { return returns.wrong + silent_echoes; }

@@ -25,7 +25,6 @@ struct TrueReturns {
   std::vector<Span> lobe;
   /// Points on those surfaces [m, map frame], as dense as the rays that found them.
   std::vector<Eigen::Vector3d> seen_m;
-
 };
 
 /// How far a range is from the nearest of some spans; nullopt: there are none.
