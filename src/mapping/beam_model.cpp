@@ -82,7 +82,7 @@ LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
 
 double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc) {
   const double off_axis = height_rad > 0.0 ? std::clamp(2.0 * elevation_rad / height_rad, -1.0, 1.0) : 0.0;
-  return std::exp2(-off_axis * off_axis) / std::sqrt(std::max(1.0, cells_on_arc));
+  return std::exp2(-off_axis * off_axis) / std::pow(std::max(1.0, cells_on_arc), 0.25);
 }
 
 std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,

@@ -68,8 +68,8 @@ struct BeamModelOptions {
 LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit);
 
 /// Share of an echo's evidence for a cell of its arc. The arc is `cells_on_arc` cells long and sound came back from at
-/// least one of them, so the evidence is thinned by the root of their number (between 1, as if it came from all, and
-/// 1/n, as if from one), and by the vertical beam pattern: half at the edge, where the beam is 3 dB weaker. A cell that
+/// least one of them, so the evidence is thinned by the fourth root of their number (between 1, as if it came from all,
+/// and 1/n, as if from one; judged by simulated truth, docs/decisions.md), and by the vertical beam pattern: half at the edge, where the beam is 3 dB weaker. A cell that
 /// lies on the edge may have its middle beyond it.
 double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc);
 
