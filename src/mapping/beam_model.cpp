@@ -121,20 +121,22 @@ std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, cons
   const double passed_m = echo ? std::min(heard_m, static_cast<double>(echo->first) * beam.bin_length_m) : heard_m;
   const double free_m = std::min(passed_m, options.max_range_m);
   std::size_t outside = 0;
-  if (free_m > 0.0) outside += add_misses(lattice, map_from_sensor, beam.bearing_rad, free_m, passed_part(options), scan);
+  if (free_m > 0.0)
+    outside = add_misses(lattice, map_from_sensor, beam.bearing_rad, free_m, passed_part(options), scan);
   if (!is_hit || !(heard_m > 0.0)) return outside;
 
   const LogOdds evidence =
       options.hit_from == HitFrom::kIntensity ? evidence_of_intensity(echo->intensity, options.hit) : options.hit;
+  std::size_t unplaced = 0;
   for (const BundleRay& ray : beam_bundle(options, beam.bearing_rad, heard_m, lattice.resolution_m())) {
     const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * heard_m);
     if (const auto key = lattice.key_of<WideWord>(end_m)) {
       scan.add_hit(*key, LogOdds(evidence.value() * static_cast<float>(ray.share)));
     } else {
-      ++outside;
+      ++unplaced;
     }
   }
-  return outside;
+  return std::max(outside, unplaced);
 }
 
 }  // namespace pingvox

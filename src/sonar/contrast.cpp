@@ -49,23 +49,23 @@ double median_difference(std::span<const std::uint8_t> bins) {
   return value == 0 ? 0.5 * share : static_cast<double>(value) - 0.5 + share;
 }
 
-/// Noise grows with the range, as the gain does: of four parts of the beam the noisiest but one, so that it is not the
-/// wall's own.
-double noise_of(std::span<const std::uint8_t> bins) {
-  std::array<double, 4> parts{};
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    const std::size_t first = bins.size() * part / parts.size();
-    parts[part] = median_difference(bins.subspan(first, bins.size() * (part + 1) / parts.size() - first));
-  }
-  std::ranges::sort(parts);
-  return parts[2];
-}
-
 template <class T>
 T ranked(std::vector<T>& values, std::size_t rank) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::ranges::nth_element(values, place);
   return *place;
+}
+
+/// Noise grows with the range, as the gain does: of four parts of the beam (fewer of a short one) the noisiest but one,
+/// so that it is not the wall's own.
+double noise_of(std::span<const std::uint8_t> bins) {
+  constexpr std::size_t kLeastPart_bins = 60, kMostParts = 4;
+  std::vector<double> noises(std::clamp<std::size_t>(bins.size() / kLeastPart_bins, 1, kMostParts));
+  for (std::size_t part = 0; part < noises.size(); ++part) {
+    const std::size_t first = bins.size() * part / noises.size();
+    noises[part] = median_difference(bins.subspan(first, bins.size() * (part + 1) / noises.size() - first));
+  }
+  return ranked(noises, std::max<std::size_t>(noises.size(), 2) - 2);
 }
 
 int contrast_of(std::vector<int>& rises, std::vector<double>& noises) {

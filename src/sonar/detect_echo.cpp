@@ -32,7 +32,8 @@ constexpr double kCrestLag_bins = 1.0;
 
 /// Where the wall is [bins]: the middle of the echo's crest, less its lag. Of the bins as they were heard, smoothed
 /// along the beam only: a window across beams mixes in where a slanting wall is for the neighbours. Each weighs as much
-/// as it stands above half of the contrast below the highest, so that a bin of speckle decides hardly anything.
+/// as it stands above half of the contrast below the highest, so that a bin of speckle decides hardly anything. An echo
+/// without a rise of its own is where its first bin is.
 double wall_of(Bins heard, const Echo& echo, int contrast) {
   constexpr std::array<int, 5> kPulse = {1, 4, 6, 4, 1};  // a Gaussian of sigma 1
   constexpr int kSum = 16;
@@ -51,7 +52,7 @@ double wall_of(Bins heard, const Echo& echo, int contrast) {
     weights += weight;
     moment += weight * (static_cast<double>(bin) + 0.5);
   }
-  return std::max(moment / weights - kCrestLag_bins, static_cast<double>(echo.first));
+  return std::max(moment / weights - kCrestLag_bins, static_cast<double>(echo.first) + 0.5);
 }
 
 /// The echo whose first bin this is, without its range.

@@ -111,7 +111,7 @@ TEST_F(OfPerfectRanges, ABiasOfThreeCellsIsSeenInEachMeasure) {
   EXPECT_LT(behind.free_share_near(), 0.99);  // the wall itself is freed, and what is behind
   const MapScore before = score_of(-0.15);
   EXPECT_LT(before.precision(), 0.2);
-  EXPECT_EQ(before.free_share(), 1.0);  // nothing but water was passed
+  EXPECT_GT(before.free_share(), 0.999);  // hardly anything but water was passed
 }
 
 TEST(Recorded, RefusesAnUnknownWorld) {

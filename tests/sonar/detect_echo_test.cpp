@@ -32,7 +32,7 @@ TEST(Rise, OfOneStepIsTheDifferenceOfTwoBins) {
   EXPECT_EQ(echo->peak, 2U) << "the nearest of two equal ones";
   EXPECT_EQ(echo->last, 3U);
   EXPECT_EQ(echo->intensity, 80);
-  EXPECT_DOUBLE_EQ(echo->range_m, 0.3) << "the middle between the two strong bins";
+  EXPECT_DOUBLE_EQ(echo->range_m, 0.25) << "a bin before the middle of the crest, and not before the first bin";
   EXPECT_FALSE(echo_of({10, 10, 79, 79, 10, 10})) << "one less than the threshold";
 }
 
