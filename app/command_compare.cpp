@@ -74,9 +74,9 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
                                              agreement.occupied_both)) +
          report_line("free", fmt::format("{} in A, {} in B, {} in both", agreement.free_a, agreement.free_b,
                                          agreement.free_both)) +
-         report_line("if B is true", fmt::format("precision {}, recall {} (occupied, within one cell); free {}",
-                                                 share_text(agreement.precision()), share_text(agreement.recall()),
-                                                 share_text(agreement.free_true())));
+         report_line("B as truth", fmt::format("precision {}, recall {} (occupied, within one cell); free {}",
+                                               share_text(agreement.precision()), share_text(agreement.recall()),
+                                               share_text(agreement.free_true())));
 }
 
 }  // namespace
