@@ -222,7 +222,7 @@ TEST(Map, ProgressGoesToStandardErrorOnlyWhenWanted) {
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt"}).err, "");
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "never"}).err, "");
   const Outcome shown =
-      here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always", "--beam", "cone", "--resolution", "0.02"});
+      here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always", "--beam", "cone", "--resolution", "0.01"});
   EXPECT_THAT(shown.err, ::testing::HasSubstr(" %  "));
   EXPECT_THAT(shown.err, ::testing::HasSubstr("beams"));
   EXPECT_TRUE(shown.err.ends_with("\r\x1b[K")) << "the line is left behind";
