@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "commands.hpp"
@@ -7,16 +8,24 @@
 #include "open_log.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/grids.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/io/mesh.hpp"
+#include "pingvox/map/slice.hpp"
+#include "pingvox/map/surface_map.hpp"
 #include "write_map_file.hpp"
 
 namespace pingvox::app {
 namespace {
 
+bool is_made_of_maps(FormatKind kind) {
+  return kind == FormatKind::kMap || kind == FormatKind::kCloud || kind == FormatKind::kGrid;
+}
+
 tl::unexpected<Error> does_not_become(const std::string& name, Format from, Format to) {
-  const bool to_map = kind_of(to) == FormatKind::kMap || kind_of(to) == FormatKind::kCloud;
+  const bool to_map = is_made_of_maps(kind_of(to));
   const FormatKind kind = kind_of(from);
-  const bool is_log = kind == FormatKind::kBeams || kind == FormatKind::kScans;
+  const bool is_log = kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud;
   return fail(Error::Code::kBadOption,
               fmt::format("convert: {}: is {}, which does not become .{}{}", name, described(from), name_of(to),
                           to_map && is_log ? ": 'pingvox map' does that" : ""));
@@ -38,13 +47,68 @@ Result<std::string> convert_log(FileBytes file, const ConvertCommand& command) {
   return fmt::format("{} beams{}", beams, skipped > 0 ? fmt::format("; {} damaged ones left out", skipped) : "");
 }
 
-Result<std::string> convert_map(const FileBytes& file, const ConvertCommand& command) {
-  const Result<MapFile> read = read_map(file);
-  if (!read) return tl::unexpected(read.error());
-  const Result<void> written = write_map_file(command.output, read->map, command.format, read->made_by);
+Error with_name(Error error, const std::string& name) {
+  error.message = fmt::format("{}: {}", name, error.message);
+  return error;
+}
+
+/// The map of a mesh's surface, as if it had been read.
+Result<MapFile> map_of_mesh(const FileBytes& file, const ConvertCommand& command) {
+  const Result<TriangleMesh> mesh = read_mesh(file);
+  if (!mesh) return tl::unexpected(mesh.error());
+  MapOptions options;
+  options.resolution_m = command.resolution_m.value_or(options.resolution_m);
+  Result<OccupancyMap> map = surface_map(*mesh, options);
+  if (!map) return tl::unexpected(with_name(map.error(), file.name));
+  return MapFile{command.format, *std::move(map), fmt::format("the surface of {}", file.name)};
+}
+
+/// A grid for map_server: the picture, then the file that names it.
+Result<std::string> write_grid(const OccupancyMap& map, const ConvertCommand& command) {
+  const Result<Raster<Occupancy>> slice = slice_of(map, command.slice);
+  if (!slice) return tl::unexpected(with_name(slice.error(), command.input));
+  const std::filesystem::path picture = std::filesystem::path(command.output).replace_extension(".pgm");
+  const std::filesystem::path about = std::filesystem::path(command.output).replace_extension(".yaml");
+  auto written =
+      write_file(picture.string(), [&](std::ostream& out) { return write_grid_pgm(*slice, out); }).and_then([&] {
+        return write_file(about.string(),
+                          [&](std::ostream& out) { return write_grid_yaml(*slice, picture.filename().string(), out); });
+      });
   if (!written) return tl::unexpected(written.error());
-  const MapCounts counts = read->map.counts();
+  return fmt::format("{} x {} cells, and its {}", slice->columns, slice->rows,
+                     on_one_line((command.output == about.string() ? picture : about).string()));
+}
+
+Result<std::string> write_heights(const OccupancyMap& map, const ConvertCommand& command) {
+  const Result<Raster<float>> heights = heights_of(map, command.slice, command.surface);
+  if (!heights) return tl::unexpected(with_name(heights.error(), command.input));
+  const Result<void> written =
+      write_file(command.output, [&](std::ostream& out) { return write_heights_asc(*heights, out); });
+  if (!written) return tl::unexpected(written.error());
+  return fmt::format("heights of {} x {} columns", heights->columns, heights->rows);
+}
+
+Result<std::string> convert_map(const MapFile& read, const ConvertCommand& command) {
+  if (command.format == Format::kGrid) return write_grid(read.map, command);
+  if (command.format == Format::kAsc) return write_heights(read.map, command);
+  const Result<void> written = write_map_file(command.output, read.map, command.format, read.made_by);
+  if (!written) return tl::unexpected(written.error());
+  const MapCounts counts = read.map.counts();
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);
+}
+
+Result<std::string> convert(FileBytes file, Format format, const ConvertCommand& command) {
+  const FormatKind from = kind_of(format), to = kind_of(command.format);
+  if (command.resolution_m && from != FormatKind::kMesh) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("convert: --resolution: only for meshes, and {} is {}", file.name, described(format)));
+  }
+  if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(file), command);
+  const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
+  if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return does_not_become(file.name, format, command.format);
+  const Result<MapFile> map = is_map ? read_map(file) : map_of_mesh(file, command);
+  if (!map) return tl::unexpected(map.error());
+  return convert_map(*map, command);
 }
 
 }  // namespace
@@ -55,12 +119,7 @@ Result<int> run(const ConvertCommand& command, Console& console) {
   const Result<Format> format = recognised(*file);
   if (!format) return tl::unexpected(format.error());
 
-  const FormatKind from = kind_of(*format), to = kind_of(command.format);
-  const bool log_to_log = from == FormatKind::kBeams && to == FormatKind::kBeams;
-  const bool map_to_map = from == FormatKind::kMap && (to == FormatKind::kMap || to == FormatKind::kCloud);
-  if (!log_to_log && !map_to_map) return does_not_become(file->name, *format, command.format);
-
-  const Result<std::string> what = log_to_log ? convert_log(std::move(*file), command) : convert_map(*file, command);
+  const Result<std::string> what = convert(*std::move(file), *format, command);
   if (!what) return tl::unexpected(what.error());
   const auto told = console.summarise(fmt::format("{}: {}\n", on_one_line(command.output), *what), command.output);
   if (!told) return tl::unexpected(told.error());

@@ -14,6 +14,7 @@
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/io/mesh.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/sonar/sweep.hpp"
 
@@ -120,12 +121,14 @@ Result<Told> told_of(BeamSource& source, const std::string& name, Format format)
 
 Result<Told> told_of(ScanSource& source, const std::string& name, Format format) {
   std::size_t scans = 0, points = 0;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::optional<Box> bounds;
   for (;;) {
     const Result<std::optional<PointScan>> scan = source.next();
     if (!scan) return tl::unexpected(scan.error());
     if (!*scan) break;
     ++scans;
+    origin = (*scan)->origin_m;
     points += (*scan)->points_m.size();
     for (const Eigen::Vector3d& point : (*scan)->points_m) {
       if (!bounds) bounds = Box{point, point};
@@ -134,14 +137,17 @@ Result<Told> told_of(ScanSource& source, const std::string& name, Format format)
     }
   }
   Told told;
-  told.json.add("kind", "scans")
-      .add("format", name_of(format))
-      .add("scans", scans)
-      .add("points", points)
-      .add("bounds", bounds_json(bounds))
-      .add("skipped", source.skipped());
-  told.text = headline(name, format) + report_line("scans", fmt::format("{} with {} points", scans, points)) +
-              report_line("bounds", bounds_text(bounds));
+  told.text = headline(name, format);
+  if (kind_of(format) == FormatKind::kCloud) {
+    told.json.add("kind", "cloud").add("format", name_of(format)).add("points", points).add("origin", origin);
+    told.text += report_line("points", fmt::format("{}", points)) +
+                 report_line("seen from", fmt::format("{:.6g}, {:.6g}, {:.6g} m", origin.x(), origin.y(), origin.z()));
+  } else {
+    told.json.add("kind", "scans").add("format", name_of(format)).add("scans", scans).add("points", points);
+    told.text += report_line("scans", fmt::format("{} with {} points", scans, points));
+  }
+  told.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
+  told.text += report_line("bounds", bounds_text(bounds));
   if (source.skipped() > 0) told.text += report_line("left out", fmt::format("{} damaged", source.skipped()));
   return told;
 }
@@ -172,6 +178,25 @@ Result<Told> told_of_map(const FileBytes& file) {
       .add("memory_bytes", map.memory_bytes());
   told.text = headline(file.name, read->format) + map_text(map, counts);
   if (!read->made_by.empty()) told.text += report_line("made by", on_one_line(read->made_by));
+  return told;
+}
+
+Result<Told> told_of_mesh(const FileBytes& file, Format format) {
+  const Result<TriangleMesh> mesh = read_mesh(file);
+  if (!mesh) return tl::unexpected(mesh.error());
+  Box bounds{mesh->vertices_m.front(), mesh->vertices_m.front()};  // a mesh has a triangle
+  for (const Eigen::Vector3d& vertex : mesh->vertices_m) {
+    bounds = {bounds.min.cwiseMin(vertex), bounds.max.cwiseMax(vertex)};
+  }
+  Told told;
+  told.json.add("kind", "mesh")
+      .add("format", name_of(format))
+      .add("vertices", mesh->vertices_m.size())
+      .add("triangles", mesh->triangles.size())
+      .add("bounds", bounds_json(bounds));
+  told.text = headline(file.name, format) + report_line("vertices", fmt::format("{}", mesh->vertices_m.size())) +
+              report_line("triangles", fmt::format("{}", mesh->triangles.size())) +
+              report_line("bounds", bounds_text(bounds));
   return told;
 }
 
@@ -206,6 +231,8 @@ Result<Told> told_of_file(FileBytes file, Damage damage) {
   switch (kind_of(*format)) {
     case FormatKind::kMap:
       return told_of_map(file);
+    case FormatKind::kMesh:
+      return told_of_mesh(file, *format);
     case FormatKind::kTrajectory:
       return told_of_trajectory(file, *format);
     default:

@@ -198,14 +198,29 @@ constexpr std::array kParents = {Word<Parents>{"max", Parents::kMax}, Word<Paren
 constexpr std::array kSilents = {Word<Silent>{"nothing", Silent::kNothing}, Word<Silent>{"free", Silent::kFree}};
 constexpr std::array kMotions = {Word<Motion>{"still", Motion::kStill}, Word<Motion>{"line", Motion::kLine},
                                  Word<Motion>{"lawn-mower", Motion::kLawnMower}, Word<Motion>{"loop", Motion::kLoop}};
+constexpr std::array kPictureViews = {
+    Word<PictureView>{"polar", PictureView::kPolar}, Word<PictureView>{"cartesian", PictureView::kCartesian},
+    Word<PictureView>{"above", PictureView::kAbove}, Word<PictureView>{"side", PictureView::kSide},
+    Word<PictureView>{"slice", PictureView::kSlice}};
+constexpr std::array kSides = {Word<MapView>{"right", MapView::kRight}, Word<MapView>{"left", MapView::kLeft},
+                               Word<MapView>{"front", MapView::kFront}, Word<MapView>{"behind", MapView::kBehind}};
+constexpr std::array kShownImages = {Word<ShownImage>{"raw", ShownImage::kRaw},
+                                     Word<ShownImage>{"filtered", ShownImage::kFiltered}};
+constexpr std::array kEchoMarks = {Word<EchoMarks>{"on", EchoMarks::kOn}, Word<EchoMarks>{"off", EchoMarks::kOff}};
+constexpr std::array kBetweens = {Word<BetweenBeams>{"interpolate", BetweenBeams::kInterpolate},
+                                  Word<BetweenBeams>{"nothing", BetweenBeams::kNothing}};
 constexpr std::array kProgress = {Word<ShowProgress>{"auto", ShowProgress::kAuto},
                                   Word<ShowProgress>{"always", ShowProgress::kAlways},
                                   Word<ShowProgress>{"never", ShowProgress::kNever}};
 constexpr std::array kMapFormats = {Word<Format>{"bt", Format::kBt}, Word<Format>{"ot", Format::kOt},
-                                    Word<Format>{"pvx", Format::kPvx}, Word<Format>{"ply", Format::kPly}};
-constexpr std::array kLogAndMapFormats = {Word<Format>{"csv", Format::kCsv}, Word<Format>{"bt", Format::kBt},
-                                          Word<Format>{"ot", Format::kOt}, Word<Format>{"pvx", Format::kPvx},
-                                          Word<Format>{"ply", Format::kPly}};
+                                    Word<Format>{"pvx", Format::kPvx}, Word<Format>{"ply", Format::kPly},
+                                    Word<Format>{"pcd", Format::kPcd}};
+constexpr std::array kLogAndMapFormats = {
+    Word<Format>{"csv", Format::kCsv},  Word<Format>{"bt", Format::kBt},     Word<Format>{"ot", Format::kOt},
+    Word<Format>{"pvx", Format::kPvx},  Word<Format>{"ply", Format::kPly},   Word<Format>{"pcd", Format::kPcd},
+    Word<Format>{"pgm", Format::kGrid}, Word<Format>{"yaml", Format::kGrid}, Word<Format>{"asc", Format::kAsc}};
+constexpr std::array kSurfaces = {Word<Surface>{"highest", Surface::kHighest},
+                                  Word<Surface>{"lowest", Surface::kLowest}};
 constexpr std::array kCsvOnly = {Word<Format>{"csv", Format::kCsv}};
 constexpr std::array kPngOnly = {Word<Format>{"png", Format::kPng}};
 
@@ -287,6 +302,93 @@ OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const
        choice("--cfar", kCfars, "noise of cfar: cell-averaging, smallest-of or ordered-statistic", echo.cfar.noise)}};
 }
 
+Take into_clamp(Clamp& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const auto p = numbers_from<2>(text);
+    if (!p) return tl::unexpected(p.error());
+    const auto& [lowest, highest] = *p;
+    if (!(lowest > 0.0 && lowest < highest && highest < 1.0)) {
+      return off(fmt::format("'{}': must be two probabilities between 0 and 1, the smaller one first", text));
+    }
+    target = {LogOdds::from_probability(lowest), LogOdds::from_probability(highest)};
+    return {};
+  };
+}
+
+Take into_bytes(std::size_t& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const Result<std::size_t> bytes = bytes_from(text);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (*bytes == 0) return off("must be more than 0");
+    target = *bytes;
+    return {};
+  };
+}
+
+Take into_mount(Pose& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const auto n = numbers_from<6>(text);
+    if (!n) return off(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
+    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); })) {
+      return off(fmt::format("'{}': must be finite", text));
+    }
+    const auto& [x, y, z, roll, pitch, yaw] = *n;
+    target = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
+    return {};
+  };
+}
+
+/// How a log is mapped, as the call says it.
+struct BuildWords {
+  MapOptions map;
+  BuildOptions build;  ///< filter and echo: see `echoes`
+  EchoWords echoes;
+  std::string poses;
+
+  BuildOptions build_options() const {
+    BuildOptions all = build;
+    all.filter = echoes.filter_options();
+    all.echo = echoes.echo;
+    return all;
+  }
+};
+
+OptionTable::Group map_group(BuildWords& words) {
+  MapOptions& map = words.map;
+  BeamModelOptions& model = words.build.model;
+  return {
+      "Map",
+      {{"--resolution", 0, "M", "edge of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
+       {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot hold 16", fmt::format("{}", map.depth),
+        into_number(map.depth)},
+       {"--hit", 0, "P", "probability that an echo gives a cell", shown(model.hit.probability()),
+        into_probability(model.hit)},
+       {"--miss", 0, "P", "probability that sound passing gives a cell", shown(model.miss.probability()),
+        into_probability(model.miss)},
+       {"--clamp", 0, "P,P", "probabilities beyond which a cell does not go",
+        shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), into_clamp(map.clamp)},
+       choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", words.build.vote),
+       {"--memory-limit", 0, "BYTES", "stop when the map would grow past it; also 512M, 2G", "none",
+        into_bytes(map.memory_limit_bytes)}}};
+}
+
+OptionTable::Group sensor_group(BuildWords& words) {
+  BeamModelOptions& model = words.build.model;
+  return {"Sensor",
+          {{"--poses", 0, "FILE", "where the vehicle was, as TUM lines 't x y z qx qy qz qw'", "it stood still",
+            into(words.poses)},
+           {"--mount", 0, "X,Y,Z,R,P,Y", "the head on the vehicle: metres, then roll, pitch, yaw in degrees",
+            "0,0,0,0,0,0", into_mount(words.build.body_from_sensor)},
+           choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
+           {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
+            into_number(model.width_rad, kDegree_rad)},
+           {"--beam-height", 0, "DEG", "vertically, full angle", shown(model.height_rad / kDegree_rad),
+            into_number(model.height_rad, kDegree_rad)},
+           choice("--ray", kRays, "how rays go from cell to cell", model.ray),
+           choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
+           choice("--silent", kSilents, "what a beam without an echo says", model.silent)}};
+}
+
 // --- Checks that cost no work. ---
 
 /// The format of an output file: as asked for, else by its suffix. Standard output, devices and pipes have no suffix.
@@ -355,49 +457,22 @@ std::string shell_quoted(const std::string& word) {
 
 Result<Command> map_command(const Words& words) {
   MapCommand command;
-  std::string output, poses;
+  std::string output;
   std::optional<Format> asked_format;
   int threads = 1;
-  MapOptions& map = command.map;
-  BuildOptions& build = command.build;
-  BeamModelOptions& model = build.model;
-  EchoWords echoes;
-
-  const Take mount = [&](const std::string& text) -> Result<void> {
-    const auto n = numbers_from<6>(text);
-    if (!n) return off(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
-    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); })) {
-      return off(fmt::format("'{}': must be finite", text));
-    }
-    const auto& [x, y, z, roll, pitch, yaw] = *n;
-    build.body_from_sensor = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
-    return {};
-  };
-  const Take clamp = [&](const std::string& text) -> Result<void> {
-    const auto p = numbers_from<2>(text);
-    if (!p) return tl::unexpected(p.error());
-    const auto& [lowest, highest] = *p;
-    if (!(lowest > 0.0 && lowest < highest && highest < 1.0)) {
-      return off(fmt::format("'{}': must be two probabilities between 0 and 1, the smaller one first", text));
-    }
-    map.clamp = {LogOdds::from_probability(lowest), LogOdds::from_probability(highest)};
-    return {};
-  };
-  const Take max_range = [&](const std::string& text) -> Result<void> {
-    Result<void> taken = into_number(build.echo.max_range_m)(text);
-    model.max_range_m = build.echo.max_range_m;
-    return taken;
-  };
+  BuildWords build;
+  MapOptions& map = build.map;
   const Take thread_count = [&](const std::string& text) -> Result<void> {
     Result<void> taken = into_number(threads)(text);
     if (taken && threads < 1) return off(fmt::format("{} is less than 1", text));
     return taken;
   };
-  const Take memory_limit = [&](const std::string& text) -> Result<void> {
-    const Result<std::size_t> bytes = bytes_from(text);
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (*bytes == 0) return off("must be more than 0");
-    map.memory_limit_bytes = *bytes;
+  const Take origin = [&](const std::string& text) -> Result<void> {
+    const auto n = numbers_from<3>(text);
+    if (!n) return tl::unexpected(n.error());
+    const Eigen::Vector3d place(n->data());
+    if (!place.allFinite()) return off(fmt::format("'{}': must be finite", text));
+    command.cloud_origin_m = place;
     return {};
   };
   const Take log = [&](const std::string& text) -> Result<void> {
@@ -411,64 +486,49 @@ Result<Command> map_command(const Words& words) {
     return {};
   };
 
+  OptionTable::Group map_options = map_group(build);
+  map_options.options.push_back(choice("--parents", kParents, "what inner nodes say of their children", map.parents));
+  map_options.options.push_back({"--threads", 0, "N",
+                                 "threads that may be used, 1 or more; the result does not depend on it", "1",
+                                 thread_count});
+  OptionTable::Group sensor_options = sensor_group(build);
+  sensor_options.options.push_back({"--origin", 0, "X,Y,Z", "from where the points of a cloud were seen, in the map",
+                                    "0,0,0; a PCD's VIEWPOINT", origin});
   const OptionTable table{
       "map",
       "Turns sonar logs into a 3D occupancy map: reads the LOGs one after another, finds the echoes of each beam, and\n"
       "frees and hits the cells that its sound went through and came back from.",
       {{"LOG", Positional::Count::kMany,
-        "beams (MATLAB 5, CSV) or point scans (OctoMap's .graph and its text form), told by content; - is standard "
-        "input",
+        "beams (MATLAB 5, CSV), point scans (OctoMap's .graph and its text form) or clouds of points, each a scan "
+        "(PLY, "
+        "PCD, XYZ), told by content; - is standard input",
         log}},
       {{"Output",
-        {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply (points); - is standard output"),
+        {output_option(output,
+                       "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply or .pcd (points); - is standard output"),
          {"--format", 0, words_of(kMapFormats), "format of the map, whatever its name", "by suffix, else bt", format},
          json_option(command.manner),
          quiet_option(command.manner),
          choice("--progress", kProgress, "show on standard error how far the work is; auto: on a terminal",
                 command.manner.progress)}},
-       {"Map",
-        {{"--resolution", 0, "M", "edge of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
-         {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot hold 16", fmt::format("{}", map.depth),
-          into_number(map.depth)},
-         {"--hit", 0, "P", "probability that an echo gives a cell", shown(model.hit.probability()),
-          into_probability(model.hit)},
-         {"--miss", 0, "P", "probability that sound passing gives a cell", shown(model.miss.probability()),
-          into_probability(model.miss)},
-         {"--clamp", 0, "P,P", "probabilities beyond which a cell does not go",
-          shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), clamp},
-         choice("--parents", kParents, "what inner nodes say of their children", map.parents),
-         choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", build.vote),
-         {"--memory-limit", 0, "BYTES", "stop when the map would grow past it; also 512M, 2G", "none", memory_limit},
-         {"--threads", 0, "N", "threads that may be used, 1 or more; the result does not depend on it", "1",
-          thread_count}}},
-       {"Sensor",
-        {{"--poses", 0, "FILE", "where the vehicle was, as TUM lines 't x y z qx qy qz qw'", "it stood still",
-          into(poses)},
-         {"--mount", 0, "X,Y,Z,R,P,Y", "the head on the vehicle: metres, then roll, pitch, yaw in degrees",
-          "0,0,0,0,0,0", mount},
-         choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
-         {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
-          into_number(model.width_rad, kDegree_rad)},
-         {"--beam-height", 0, "DEG", "vertically, full angle", shown(model.height_rad / kDegree_rad),
-          into_number(model.height_rad, kDegree_rad)},
-         choice("--ray", kRays, "how rays go from cell to cell", model.ray),
-         choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
-         choice("--silent", kSilents, "what a beam without an echo says", model.silent)}},
-       echo_group(echoes, build.sound_speed_ratio, max_range),
+       map_options,
+       sensor_options,
+       echo_group(build.echoes, build.build.sound_speed_ratio, into_number(build.build.model.max_range_m)),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt --beam cone",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
-       "pingvox map scans.graph -o scans.bt --resolution 0.1 --vote sweep", "pingvox map - -o - < tank.csv > tank.bt"},
-      "Point scans use the options of the map, --ray and --max-range.\n"
+       "pingvox map scans.graph -o scans.bt --resolution 0.1 --vote sweep",
+       "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
+      "Point scans and clouds use the options of the map, --ray and --max-range.\n"
       "Exit status: 0 done, 1 could not be done, 2 the words of the call are off."};
   return parsed(table, words, [&]() -> Result<Command> {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
-    build.filter = echoes.filter_options();
-    build.echo = echoes.echo;
-    if (const auto valid = map.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = build.validate(); !valid) return tl::unexpected(valid.error());
+    command.map = map;
+    command.build = build.build_options();
+    if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = command.build.validate(); !valid) return tl::unexpected(valid.error());
     if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {
       return off(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", output, name_of(*output_as),
                              Lattice::kDefaultDepth, map.depth));
@@ -476,9 +536,9 @@ Result<Command> map_command(const Words& words) {
     if (output == "-" && command.manner.report == Report::kJson) {
       return off("-o - and --json: both want standard output");
     }
-    if (!poses.empty()) command.poses = poses;
+    if (!build.poses.empty()) command.poses = build.poses;
     Words inputs = command.logs;
-    inputs.push_back(poses);
+    inputs.push_back(build.poses);
     if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;
@@ -492,7 +552,8 @@ Result<Command> info_command(const Words& words) {
   InfoCommand command;
   const OptionTable table{
       "info",
-      "Says what a file holds: a log of beams or of point scans, a map, or a trajectory. Told by content, not by name.",
+      "Says what a file holds: a log of beams or of point scans, a cloud, a map, a mesh, or a trajectory. Told by\n"
+      "content, not by name.",
       {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", into(command.file)}},
       {{"Options", {json_option(command.manner), strict_option(command.damage)}}},
       {"pingvox info tank.mat", "pingvox info tank.bt --json"},
@@ -527,19 +588,42 @@ Result<Command> convert_command(const Words& words) {
     asked_format = *value;
     return {};
   };
+  std::optional<double> layer_m;
+  std::optional<Surface> surface;
+  const Take take_surface = [&](const std::string& text) -> Result<void> {
+    const Result<Surface> value = value_of(kSurfaces, text);
+    if (!value) return tl::unexpected(value.error());
+    surface = *value;
+    return {};
+  };
   const OptionTable table{
       "convert",
-      "Writes a file in another format: a log of beams as CSV, a map as another map or as a cloud of points.",
-      {{"IN", Positional::Count::kOne, "a log of beams or a map; - is standard input", into(command.input)}},
+      "Writes a file in another format: a log of beams as CSV; a map as another map, as a cloud of points, as a grid\n"
+      "for ROS's map_server, or as heights; a mesh as the map of its surface.",
+      {{"IN", Positional::Count::kOne, "a log of beams, a map or a mesh (OFF, PLY, STL); - is standard input",
+        into(command.input)}},
       {{"Options",
         {output_option(command.output,
-                       "what to write: .csv from a log, .bt .ot .pvx .ply from a map; - is standard output"),
+                       "what to write: .csv from a log; .bt .ot .pvx from a map or a mesh, and .ply .pcd (points), "
+                       ".yaml with its .pgm (map_server), .asc (ESRI grid of heights); - is standard output"),
          {"--format", 0, words_of(kLogAndMapFormats), "format of the output, whatever its name", "by suffix, else csv",
           format},
          strict_option(command.damage),
-         quiet_option(command.manner)}}},
-      {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.bt -o tank.ply"},
-      ""};
+         quiet_option(command.manner)}},
+       {"Meshes",
+        {{"--resolution", 0, "M", "edge of a cell", shown(MapOptions{}.resolution_m),
+          into_optional(command.resolution_m)}}},
+       {"Grids and heights",
+        {{"--z", 0, "M", "only the layer of cells that holds this height", "all layers", into_optional(layer_m)},
+         {"--min-z", 0, "M", "no layer below", "none", into_optional(command.slice.min_z_m)},
+         {"--max-z", 0, "M", "no layer above", "none", into_optional(command.slice.max_z_m)},
+         {"--height", 0, words_of(kSurfaces),
+          "which occupied cell of a column gives its height, that of its upper face",
+          word_of(kSurfaces, command.surface), take_surface}}}},
+      {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.bt -o tank.ply",
+       "pingvox convert harbour.bt -o harbour.yaml --min-z -0.5 --max-z 0.5", "pingvox convert seabed.ot -o seabed.asc",
+       "pingvox convert hull.stl -o hull.bt --resolution 0.1"},
+      "A column of a grid is occupied when any of its cells is, free when one is and none is occupied, else unknown."};
   return parsed(table, words, [&]() -> Result<Command> {
     if (format_for_writing(command.output) == Format::kPng) {
       return off(fmt::format("{}: pictures are drawn by 'pingvox render'", command.output));
@@ -547,45 +631,236 @@ Result<Command> convert_command(const Words& words) {
     const Result<Format> output_as = output_format(command.output, asked_format, kLogAndMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
+    const bool is_grid = command.format == Format::kGrid, is_heights = command.format == Format::kAsc;
+    const bool is_sliced = layer_m || command.slice.min_z_m || command.slice.max_z_m;
+    if (is_sliced && !is_grid && !is_heights) {
+      return off("--z, --min-z and --max-z: only for grids and heights, .yaml, .pgm and .asc");
+    }
+    if (surface && !is_heights) return off("--height: only for heights, .asc");
+    command.surface = surface.value_or(command.surface);
+    if (layer_m && (command.slice.min_z_m || command.slice.max_z_m)) return off("--z is both --min-z and --max-z");
+    if (layer_m) command.slice = {layer_m, layer_m};
+    if (const auto valid = command.slice.validate(); !valid) return tl::unexpected(valid.error());
+    if (command.resolution_m) {
+      if (const auto lattice = Lattice::make(*command.resolution_m); !lattice) return tl::unexpected(lattice.error());
+    }
+    if (is_grid && command.output == "-") return off("-o -: of a grid, two files are written: name the first one");
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;
   });
 }
 
+/// The words of a text, split and unquoted as a shell does it.
+Result<Words> split_words(std::string_view text) {
+  Words words;
+  std::string word;
+  char quote = 0;
+  bool has_begun = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\\' && quote != '\'' && i + 1 < text.size()) {
+      word += text[++i];
+      has_begun = true;
+    } else if (quote != 0 ? c == quote : c == '\'' || c == '"') {
+      quote = quote != 0 ? 0 : c;
+      has_begun = true;  // so that '' is a word
+    } else if (quote == 0 && (c == ' ' || c == '\t' || c == '\n')) {
+      if (has_begun) words.push_back(std::move(word));
+      word.clear();
+      has_begun = false;
+    } else {
+      word += c;
+      has_begun = true;
+    }
+  }
+  if (quote != 0) return off(fmt::format("{}: a quotation mark is not closed", text));
+  if (has_begun) words.push_back(std::move(word));
+  return words;
+}
+
+/// What one panel of a picture shows, as the call says it. A copy with some options changed is the panel beside it.
+struct PanelWords {
+  PanelCommand panel;
+  MapView from = MapView::kRight;
+  std::optional<double> slice_z_m;
+  std::optional<std::size_t> size_px;
+  BuildWords build;
+  std::vector<std::pair<std::string, std::string>> given;  ///< options with their values, those given later behind
+
+  /// What an option was given, last of all; nullopt: nothing.
+  std::optional<std::string> given_to(std::string_view name) const {
+    for (auto it = given.rbegin(); it != given.rend(); ++it) {
+      if (it->first == name) return it->second;
+    }
+    return std::nullopt;
+  }
+};
+
+/// Makes the options also note what they are given.
+void note_in(std::vector<std::pair<std::string, std::string>>& given, std::vector<OptionTable::Group>& groups) {
+  for (auto& group : groups) {
+    for (Option& option : group.options) {
+      option.take = [&given, name = option.name, take = option.take](const std::string& text) -> Result<void> {
+        Result<void> taken = take(text);
+        if (taken) given.emplace_back(name, text);
+        return taken;
+      };
+    }
+  }
+}
+
+/// The options that may differ from panel to panel.
+std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
+  PanelCommand& panel = words.panel;
+  const Take view = [&panel](const std::string& text) -> Result<void> {
+    const Result<PictureView> value = value_of(kPictureViews, text);
+    if (!value) return tl::unexpected(value.error());
+    panel.view = *value;
+    return {};
+  };
+  std::vector<OptionTable::Group> groups = {
+      {"Picture",
+       {{"--view", 0, words_of(kPictureViews),
+         "a log as it was heard; or a map, also that of a log, from one of its sides, or one layer of cells",
+         "polar of a log, above of a map", view},
+        choice("--from", kSides, "of --view side: where one stands, as seen from the vehicle", words.from),
+        {"--z", 0, "M", "of --view slice: a height in the layer", "none", into_optional(words.slice_z_m)},
+        {"--min-z", 0, "M", "of a map, draw nothing below", "none", into_optional(panel.map_picture.min_z_m)},
+        {"--max-z", 0, "M", "of a map, draw nothing above", "none", into_optional(panel.map_picture.max_z_m)},
+        {"--sweep", 0, "N", "of a log, draw only this sweep, counted from 1", "all; cartesian: the first complete one",
+         into_optional(panel.sweep)},
+        choice("--show", kShownImages, "the intensities as heard, or as --filter makes them", panel.image),
+        choice("--echoes", kEchoMarks, "a mark on each echo", panel.marks),
+        choice("--between", kBetweens, "of --view cartesian: what is drawn between the beams", panel.between),
+        {"--size", 0, "PX", "about as long is the longer side of the picture, or of each", "1000; of several 640",
+         into_optional(words.size_px)},
+        {"--caption", 0, "TEXT", "below the picture", "what differs from those beside it", into(panel.caption)}}},
+      echo_group(words.build.echoes, words.build.build.sound_speed_ratio,
+                 into_number(words.build.build.model.max_range_m)),
+      map_group(words.build),
+      sensor_group(words.build)};
+  note_in(words.given, groups);
+  return groups;
+}
+
+/// What of the options that differ between panels this one has.
+std::string caption_of(const PanelWords& words, const std::vector<PanelWords>& all) {
+  // Its own table says how its options are called and what they are when they are not given.
+  PanelWords defaults;
+  std::string caption;
+  for (const auto& group : panel_groups(defaults)) {
+    for (const Option& option : group.options) {
+      const auto value = words.given_to(option.name);
+      const bool differs = std::any_of(all.begin(), all.end(),
+                                       [&](const PanelWords& other) { return other.given_to(option.name) != value; });
+      if (!differs || option.name == "--caption" || option.name == "--size") continue;
+      caption +=
+          fmt::format("{}{} {}", caption.empty() ? "" : ", ", option.name.substr(2), value.value_or(option.standard));
+    }
+  }
+  return caption;
+}
+
+/// The panel with everything in its place.
+Result<PanelCommand> panel_command(const PanelWords& words, std::size_t usual_size_px) {
+  PanelCommand panel = words.panel;
+  panel.map = words.build.map;
+  panel.build = words.build.build_options();
+  if (!words.build.poses.empty()) panel.poses = words.build.poses;
+  panel.map_picture.target_px = panel.echo_picture.target_px = words.size_px.value_or(usual_size_px);
+  if (panel.view == PictureView::kSide) panel.map_picture.view = words.from;
+  if (panel.view == PictureView::kSlice) {
+    if (!words.slice_z_m) return off("--view slice: at which height? (--z M)");
+    panel.map_picture.layer_z_m = words.slice_z_m;
+  }
+  if (panel.sweep == 0U) return off("--sweep: counts from 1");
+  if (const auto valid = panel.map_picture.validate(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = panel.map.validate(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = panel.build.validate(); !valid) return tl::unexpected(valid.error());
+  const CartesianPictureOptions cartesian{panel.echo_picture, panel.between, panel.build.model.width_rad};
+  if (const auto valid = cartesian.validate(); !valid) return tl::unexpected(valid.error());
+  return panel;
+}
+
+/// An option that no panel has use for would silently change nothing.
+Result<void> check_use(const std::vector<PanelWords>& panels, std::string_view option, PictureView view) {
+  const auto any = [&](auto&& says) { return std::any_of(panels.begin(), panels.end(), says); };
+  if (!any([&](const PanelWords& words) { return words.given_to(option).has_value(); })) return {};
+  if (any([&](const PanelWords& words) { return words.panel.view == view; })) return {};
+  return off(fmt::format("{}: is of --view {}", option, word_of(kPictureViews, view)));
+}
+
 Result<Command> render_command(const Words& words) {
   RenderCommand command;
-  std::size_t size_px = command.map_picture.target_px;
-  EchoWords echoes;
-  const Take max_range = into_number(echoes.echo.max_range_m);
-  const OptionTable table{
+  Words inputs, beside;
+  PanelWords first;
+  const auto into_list = [](Words& list) -> Take {
+    return [&list](const std::string& text) -> Result<void> {
+      list.push_back(text);
+      return {};
+    };
+  };
+  OptionTable table{
       "render",
-      "Draws a PNG: of a log of beams what was heard, in polar coordinates and with a mark on each echo; of a map\n"
-      "the view from above.",
-      {{"FILE", Positional::Count::kOne, "a log of beams or a map; - is standard input", into(command.input)}},
-      {{"Options",
-        {output_option(command.output, "the picture, .png; - is standard output"),
-         {"--size", 0, "PX", "about as long is the longer side of the picture", fmt::format("{}", size_px),
-          into_number(size_px)},
-         {"--sweep", 0, "N", "of a log, draw only this sweep, counted from 1", "all", into_optional(command.sweep)},
-         {"--min-z", 0, "M", "of a map, draw nothing below", "none", into_optional(command.map_picture.min_z_m)},
-         {"--max-z", 0, "M", "of a map, draw nothing above", "none", into_optional(command.map_picture.max_z_m)},
-         strict_option(command.damage),
-         quiet_option(command.manner),
-         config_option()}},
-       echo_group(echoes, command.sound_speed_ratio, max_range)},
-      {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50", "pingvox render tank.bt -o map.png"},
-      ""};
+      "Draws a PNG: of a log of beams what was heard, with a mark on each echo; of a map (or a log, mapped as by\n"
+      "'pingvox map') what is where. Several FILEs, and several settings of one, stand side by side.",
+      {{"FILE", Positional::Count::kMany, "a log or a map, told by content; - is standard input", into_list(inputs)}},
+      panel_groups(first),
+      {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50",
+       "pingvox render tank.mat -o sweep.png --view cartesian --show filtered", "pingvox render tank.bt -o map.png",
+       "pingvox render tank.bt -o layer.png --view slice --z 0.5",
+       "pingvox render before.bt after.bt -o both.png --view side --from behind",
+       "pingvox render tank.mat -o thresholds.png --view above --threshold 20 --beside '--threshold 70'"},
+      "Beams, echoes and cells differ in lightness, not only in colour.\n"
+      "Exit status: 0 done, 1 could not be done, 2 the words of the call are off."};
+  auto& options = table.groups.front().options;
+  options.insert(options.begin(), output_option(command.output, "the picture, .png; - is standard output"));
+  options.push_back({"--beside", 0, "OPTIONS",
+                     "the same again beside it with these options changed, as in '--filter none'; may be repeated",
+                     "none", into_list(beside), Repeats::kEachCounts});
+  options.push_back({"--title", 0, "TEXT", "above the picture", "none", into(command.title)});
+  options.push_back(strict_option(command.damage));
+  options.push_back(quiet_option(command.manner));
+  options.push_back(config_option());
   return parsed(table, words, [&]() -> Result<Command> {
     const Result<Format> output_as = output_format(command.output, std::nullopt, kPngOnly);
     if (!output_as) return tl::unexpected(output_as.error());
-    if (command.sweep == 0U) return off("--sweep: counts from 1");
-    command.map_picture.target_px = command.echo_picture.target_px = size_px;
-    if (const auto valid = command.map_picture.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = command.echo_picture.validate(); !valid) return tl::unexpected(valid.error());
-    command.filter = echoes.filter_options();
-    command.echo = echoes.echo;
-    if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());
+    std::vector<PanelWords> settings = {first};
+    for (const std::string& text : beside) {
+      const Result<Words> changed = split_words(text);
+      if (!changed) return off("--beside: " + changed.error().message);
+      PanelWords next = first;
+      next.panel.caption.clear();
+      const Result<Parsed> taken = parse({"render: --beside", "", {}, panel_groups(next), {}, ""}, *changed);
+      if (!taken) return tl::unexpected(taken.error());
+      if (*taken == Parsed::kHelpWanted) return off("--beside: takes no --help");
+      settings.push_back(std::move(next));
+    }
+    for (const auto& [option, view] :
+         {std::pair("--z", PictureView::kSlice), std::pair("--from", PictureView::kSide)}) {
+      if (const auto used = check_use(settings, option, view); !used) return tl::unexpected(used.error());
+    }
+    const std::size_t panels = settings.size() * inputs.size();
+    for (const PanelWords& setting : settings) {
+      const Result<PanelCommand> panel = panel_command(setting, panels > 1 ? 640 : 1000);
+      if (!panel) return tl::unexpected(panel.error());
+      for (const std::string& input : inputs) {
+        command.panels.push_back(*panel);
+        command.panels.back().input = input;
+        std::string& caption = command.panels.back().caption;
+        if (!caption.empty()) continue;
+        caption = caption_of(setting, settings);
+        if (inputs.size() > 1) {
+          if (!caption.empty()) caption.insert(0, ": ");
+          caption.insert(0, std::filesystem::path(input).filename().string());
+        }
+      }
+    }
+    Words files = inputs;
+    for (const PanelWords& setting : settings) {
+      if (setting.build.poses == "-") files.emplace_back("-");
+    }
+    if (const auto once = check_standard_input(files); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;
   });
@@ -722,10 +997,11 @@ struct CommandName {
 /// `view` is known, so that nobody is told to have misspelt it, but not offered.
 constexpr std::array kCommands = {
     CommandName{"map", "logs to a map", &map_command},
-    CommandName{"info", "what a log or a map holds", &info_command},
+    CommandName{"info", "what a log, a cloud, a map or a mesh holds", &info_command},
     CommandName{"compare", "two maps, cell by cell", &compare_command},
-    CommandName{"convert", "a log to CSV, a map to another format or a cloud", &convert_command},
-    CommandName{"render", "a picture of a log with its echoes, or of a map from above", &render_command},
+    CommandName{"convert", "a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
+                &convert_command},
+    CommandName{"render", "a picture of a log with its echoes, or of a map", &render_command},
     CommandName{"simulate", "the log of a sonar in a world of your choice", &simulate_command},
     CommandName{"bench", "measurements, when pingvox-bench is installed", &bench_command},
     CommandName{"view", "", &view_command},

@@ -7,10 +7,10 @@
 
 #include "commands.hpp"
 #include "json.hpp"
+#include "map_log.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/io/tum.hpp"
 #include "progress.hpp"
 #include "write_map_file.hpp"
 
@@ -45,29 +45,8 @@ struct Totals {
   }
 };
 
-Result<Trajectory> trajectory_of(const MapCommand& command) {
-  if (!command.poses) return Trajectory::still(Pose::Identity());
-  const Result<FileBytes> file = read_file(*command.poses);
-  if (!file) return tl::unexpected(file.error());
-  return read_tum(*file);
-}
-
-Result<BuildReport> map_log(const Log& log, const Trajectory& trajectory, const BuildOptions& options,
-                            OccupancyMap& map, const Progress& progress) {
-  if (const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) {
-    return build_map(**beams, trajectory, options, map, progress);
-  }
-  return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
-}
-
 std::optional<double> share_read(const Log& log) {
   return std::visit([](const auto& source) { return source->share_read(); }, log);
-}
-
-/// Errors of the map itself name no file.
-Error with_name(Error error, const std::string& name) {
-  if (error.code == Error::Code::kLimit) error.message = fmt::format("{}: {}", name, error.message);
-  return error;
 }
 
 /// Microseconds: what is shorter is noise.
@@ -125,7 +104,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   const Stopwatch total;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const Result<Trajectory> trajectory = trajectory_of(command);
+  const Result<Trajectory> trajectory = trajectory_of(command.poses);
   if (!trajectory) return tl::unexpected(trajectory.error());
 
   Totals totals;
@@ -136,7 +115,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       Result<FileBytes> file = read_file(command.logs[i]);
       if (!file) return tl::unexpected(file.error());
       const std::string name = file->name;
-      const Result<Log> log = open_log(std::move(*file), command.damage);
+      const Result<Log> log = open_log(std::move(*file), command.damage, command.cloud_origin_m);
       if (!log) return tl::unexpected(log.error());
       totals.report.seconds.read += read.seconds();
 
@@ -148,13 +127,8 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
                                     bytes_text(map->memory_bytes())));
       };
-      const Result<BuildReport> report = map_log(*log, *trajectory, command.build, *map, progress);
-      if (!report) return tl::unexpected(with_name(report.error(), name));
-      if (report->beams == 0) {
-        return fail(Error::Code::kCorrupt,
-                    fmt::format("{}: nothing in it could be mapped ({} left out{})", name, report->skipped,
-                                command.poses ? "; do the times of the poses fit?" : ""));
-      }
+      const Result<BuildReport> report = map_log(*log, name, *trajectory, command.build, *map, progress);
+      if (!report) return tl::unexpected(report.error());
       totals.add(*report);
     }
   }

@@ -10,12 +10,14 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/map/slice.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
+#include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
 
@@ -35,6 +37,7 @@ struct MapCommand {
   std::string output;             ///< "-" is standard output
   Format format = Format::kBt;
   std::optional<std::string> poses;
+  std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
   MapOptions map;
   BuildOptions build;
@@ -57,18 +60,37 @@ struct ConvertCommand {
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
+  std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the usual one
+  SliceOptions slice;                  ///< of grids and heights
+  Surface surface = Surface::kHighest;
+};
+
+/// What a picture shows: of a log of beams one of the first two; of a map, or of a log after mapping it, the others.
+enum class PictureView { kPolar, kCartesian, kAbove, kSide, kSlice };
+enum class ShownImage { kRaw, kFiltered };
+enum class EchoMarks { kOn, kOff };
+
+/// One of the pictures that stand side by side.
+struct PanelCommand {
+  std::string input;
+  std::string caption;
+  std::optional<PictureView> view;  ///< nullopt: polar of a log of beams, else from above
+  ShownImage image = ShownImage::kRaw;
+  EchoMarks marks = EchoMarks::kOn;
+  std::optional<std::size_t> sweep;  ///< counted from 1; nullopt: polar all, Cartesian the first complete one
+  BetweenBeams between = BetweenBeams::kInterpolate;
+  EchoPictureOptions echo_picture;
+  MapPictureOptions map_picture;
+  MapOptions map;  ///< for logs that are mapped
+  BuildOptions build;
+  std::optional<std::string> poses;
 };
 
 struct RenderCommand {
   Manner manner;
-  std::string input, output;
+  std::string output, title;
   Damage damage = Damage::kSkip;
-  FilterOptions filter;
-  EchoOptions echo;
-  double sound_speed_ratio = 1.0;
-  std::optional<std::size_t> sweep;  ///< which one of a log to draw, counted from 1; nullopt: all
-  EchoPictureOptions echo_picture;
-  MapPictureOptions map_picture;
+  std::vector<PanelCommand> panels;  ///< at least one
 };
 
 struct SimulateCommand {

@@ -9,8 +9,9 @@ namespace pingvox::app {
 Result<Format> recognised(const FileBytes& file) {
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   if (const auto format = format_of(file.view())) return *format;
-  return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is none of the logs, maps and trajectories that pingvox reads", file.name));
+  return fail(
+      Error::Code::kUnsupported,
+      fmt::format("{}: is none of the logs, clouds, maps, meshes and trajectories that pingvox reads", file.name));
 }
 
 std::string described(Format format) {
@@ -26,23 +27,29 @@ std::string described(Format format) {
       return with("a trajectory");
     case FormatKind::kCloud:
       return with("a cloud of points");
+    case FormatKind::kMesh:
+      return with("a mesh");
+    case FormatKind::kGrid:
+      return with("a grid");
     case FormatKind::kPicture:
       break;
   }
   return with("a picture");
 }
 
-Result<Log> open_log(FileBytes file, Damage damage) {
+Result<Log> open_log(FileBytes file, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m) {
   const Result<Format> format = recognised(file);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind == FormatKind::kBeams) {
     return open_beams(std::move(file), damage).map([](auto source) { return Log(std::move(source)); });
   }
-  if (kind == FormatKind::kScans) {
-    return open_scans(std::move(file), damage).map([](auto source) { return Log(std::move(source)); });
+  if (kind == FormatKind::kScans || kind == FormatKind::kCloud) {
+    return open_scans(std::move(file), damage, cloud_origin_m).map([](auto source) { return Log(std::move(source)); });
   }
-  return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a log", file.name, described(*format)));
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: is {}, not a log{}", file.name, described(*format),
+                          kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
 }
 
 }  // namespace pingvox::app

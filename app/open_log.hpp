@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -20,7 +22,9 @@ std::string described(Format format);
 /// A log of either kind.
 using Log = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource>>;
 
-/// Any log, told by content. kUnsupported when the file is none, with what it is.
-Result<Log> open_log(FileBytes file, Damage damage);
+/// Any log or cloud, told by content. kUnsupported when the file is none, with what it is.
+/// @param cloud_origin_m  as for open_scans
+Result<Log> open_log(FileBytes file, Damage damage,
+                     const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);
 
 }  // namespace pingvox::app

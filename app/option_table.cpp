@@ -76,6 +76,13 @@ Result<void> apply_config(const OptionTable& table, const std::string& path,
           table, fmt::format("{}: unknown option '{}'{}", path, item.name, did_you_mean(name, option_names(table))));
     }
     if (is_given(*option)) continue;
+    if (option->repeats == Repeats::kEachCounts) {
+      for (const std::string& input : item.inputs) {
+        const Result<void> given = give(table, fmt::format("{}: {}", path, item.name), option->take, input);
+        if (!given) return given;
+      }
+      continue;
+    }
     const std::string value = fmt::format("{}", fmt::join(item.inputs, ","));
     if (option->value.empty()) {
       if (value == "false") continue;
@@ -138,7 +145,9 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& w
       if (option.value.empty()) {
         parsed = app.add_flag(names);
       } else {
-        parsed = app.add_option(names, keep)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+        parsed = app.add_option(names, keep)
+                     ->multi_option_policy(option.repeats == Repeats::kEachCounts ? CLI::MultiOptionPolicy::TakeAll
+                                                                                  : CLI::MultiOptionPolicy::TakeLast);
       }
       found.push_back({&option, nullptr, parsed});
     }
@@ -188,12 +197,12 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& w
   }
   for (const Found& entry : found) {
     if (entry.parsed->count() == 0) continue;
-    const bool all = entry.positional != nullptr;
+    const bool all = entry.positional != nullptr || entry.option->repeats == Repeats::kEachCounts;
     const std::vector<std::string>& values = entry.parsed->results();
     for (std::size_t i = all ? 0 : values.size() - 1; i < values.size(); ++i) {
-      const std::string& where = all ? entry.positional->name : entry.option->name;
-      const Take& take = all ? entry.positional->take : entry.option->take;
-      if (!all && entry.option->value.empty() && values[i] != "true") {
+      const std::string& where = entry.positional ? entry.positional->name : entry.option->name;
+      const Take& take = entry.positional ? entry.positional->take : entry.option->take;
+      if (entry.option && entry.option->value.empty() && values[i] != "true") {
         return wrong_words(table, where + ": takes no value");
       }
       if (const Result<void> given = give(table, where, take, values[i]); !given) {

@@ -12,6 +12,12 @@ namespace pingvox::app {
 /// Turns the text behind an option into a value. Its message says what is wrong with the text, not where it stood.
 using Take = std::function<Result<void>(const std::string&)>;
 
+/// What it means that an option is there several times.
+enum class Repeats {
+  kLastCounts,
+  kEachCounts,  ///< in the order of the call
+};
+
 /// One option of a command: how it is called, what it takes, what it means.
 struct Option {
   std::string name;   ///< "--resolution"
@@ -20,6 +26,7 @@ struct Option {
   std::string help;
   std::string standard;  ///< the default, as typed; empty: none
   Take take;             ///< of a flag: gets "true"
+  Repeats repeats = Repeats::kLastCounts;
 };
 
 /// A word without a dash in front.

@@ -9,35 +9,15 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/triangle_cells.hpp"
+
 namespace pingvox::app {
 namespace {
 
-using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
 using Eigen::Vector3d;
-using Triangle = std::array<Vector3d, 3>;
 
 constexpr std::int64_t kMostCells = std::int64_t{1} << 28;
 constexpr int kBrick = 4;  ///< edge, in cells, of what the map stores as one when it is uniform
-
-/// Whether a triangle and a box have a point in common: no axis keeps them apart (Akenine-Moeller 2001).
-bool touches(const Triangle& triangle, const Vector3d& centre, const Vector3d& half) {
-  const Triangle t = {triangle[0] - centre, triangle[1] - centre, triangle[2] - centre};
-  const auto is_apart = [&](const Vector3d& axis) {
-    const auto [low, high] = std::minmax({t[0].dot(axis), t[1].dot(axis), t[2].dot(axis)});
-    const double reach = axis.cwiseAbs().dot(half);
-    return low > reach || high < -reach;
-  };
-  const Triangle edges = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-  if (is_apart(edges[0].cross(edges[1]))) return false;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Vector3d unit = Vector3d::Unit(axis);
-    if (is_apart(unit)) return false;
-    for (const Vector3d& edge : edges) {
-      if (is_apart(unit.cross(edge))) return false;
-    }
-  }
-  return true;
-}
 
 /// The cells of a box of space, each of them empty, water or a surface.
 class Grid {
@@ -53,13 +33,8 @@ class Grid {
   Kind& at(const Cell& c) { return kinds_[static_cast<std::size_t>(c.x() + size_.x() * (c.y() + size_.y() * c.z()))]; }
 
   void draw(const Triangle& triangle) {
-    Eigen::AlignedBox3d box(triangle[0]);
-    box.extend(triangle[1]);
-    box.extend(triangle[2]);
-    // One cell more to each side: `touches` decides.
-    const Cell first = ((box.min() / resolution_m_).array().floor().cast<std::int64_t>() - 1).matrix() - low_;
-    const Cell last = ((box.max() / resolution_m_).array().floor().cast<std::int64_t>() + 1).matrix() - low_;
-    draw(triangle, first.cwiseMax(Cell::Zero()), last.cwiseMin(size_ - Cell::Ones()));
+    for_each_cell_of(triangle, resolution_m_, {low_, low_ + size_ - Cell::Ones()},
+                     [this](const Cell& cell) { at(cell - low_) = Kind::kSurface; });
   }
 
   /// Makes water of all that is connected with a cell by faces, within the range of cells from `first` to `last`.
@@ -90,27 +65,6 @@ class Grid {
   }
 
  private:
-  /// Halves the range of cells until one is left: most of a large triangle's box is far from it.
-  void draw(const Triangle& triangle, const Cell& first, const Cell& last) {
-    if ((first.array() > last.array()).any()) return;
-    // A face belongs to the cell above it. So does what rounding puts a hair below it.
-    const Vector3d low = (low_ + first).cast<double>() * resolution_m_ - Vector3d::Constant(1e-9);
-    const Vector3d half = 0.5 * resolution_m_ * (last - first + Cell::Ones()).cast<double>();
-    if (!touches(triangle, low + half, half - Vector3d::Constant(1e-12))) return;
-    Eigen::Index axis = 0;
-    const std::int64_t longest = (last - first).maxCoeff(&axis);
-    if (longest == 0) {
-      at(first) = Kind::kSurface;
-      return;
-    }
-    Cell middle = last;
-    middle[axis] = first[axis] + longest / 2;
-    draw(triangle, first, middle);
-    Cell behind = first;
-    behind[axis] = middle[axis] + 1;
-    draw(triangle, behind, last);
-  }
-
   Cell low_, size_;
   double resolution_m_;
   std::vector<Kind> kinds_;

@@ -10,14 +10,16 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
-      options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
+      options+=(--poses --mount --origin --beam --beam-width --beam-height --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
     compare) options+=(--json --quiet) ;;
-    convert) options+=(--output --format --strict --quiet) ;;
+    convert) options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height) ;;
     render)
-      options+=(--output --size --sweep --min-z --max-z --strict --quiet --config)
+      options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
+      options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
+      options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
@@ -44,8 +46,15 @@ _pingvox_words() {
     --trajectory) printf '%s\n' still line lawn-mower loop ;;
     --format)
       [[ $2 != convert ]] || echo csv
-      printf '%s\n' bt ot pvx ply
+      printf '%s\n' bt ot pvx ply pcd
+      [[ $2 != convert ]] || printf '%s\n' pgm yaml asc
       ;;
+    --view) printf '%s\n' polar cartesian above side slice ;;
+    --from) printf '%s\n' right left front behind ;;
+    --show) printf '%s\n' raw filtered ;;
+    --echoes) printf '%s\n' on off ;;
+    --between) printf '%s\n' interpolate nothing ;;
+    --height) printf '%s\n' highest lowest ;;
     --progress) printf '%s\n' auto always never ;;
   esac
 }
@@ -75,8 +84,8 @@ _pingvox() {
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
-        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --min-z | --max-z)
-        return # a number: nothing to offer
+        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --z | --min-z | --max-z | --caption | --title | --beside)
+        return # a number or a text: nothing to offer
         ;;
     esac
     if [[ $current == -* ]]; then

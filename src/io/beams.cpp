@@ -30,7 +30,16 @@ std::string_view described(Format format) {
     case Format::kTum:
       return "a trajectory";
     case Format::kPly:
+    case Format::kPcd:
+    case Format::kXyz:
       return "a point cloud";
+    case Format::kPlyMesh:
+    case Format::kOff:
+    case Format::kStl:
+      return "a mesh";
+    case Format::kGrid:
+    case Format::kAsc:
+      return "a grid";
     case Format::kPng:
       break;
   }
@@ -52,10 +61,14 @@ Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage) {
   return not_this(file.name, "a log of beams", format);
 }
 
-Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage) {
+Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
+                                               const std::optional<Eigen::Vector3d>& cloud_origin_m) {
   const std::optional<Format> format = format_of(file.view());
   if (format == Format::kScanGraph) return open_scan_graph(std::move(file), damage);
   if (format == Format::kScanLog) return open_scan_log(std::move(file), damage);
+  if (format == Format::kPly) return open_ply_cloud(std::move(file), damage, cloud_origin_m);
+  if (format == Format::kPcd) return open_pcd(std::move(file), damage, cloud_origin_m);
+  if (format == Format::kXyz) return open_xyz(std::move(file), damage, cloud_origin_m);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   return not_this(file.name, "a log of scans", format);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/byte_reader.hpp"
+#include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
 
@@ -42,7 +43,16 @@ FormatKind kind_of(Format format) {
     case Format::kTum:
       return FormatKind::kTrajectory;
     case Format::kPly:
+    case Format::kPcd:
+    case Format::kXyz:
       return FormatKind::kCloud;
+    case Format::kPlyMesh:
+    case Format::kOff:
+    case Format::kStl:
+      return FormatKind::kMesh;
+    case Format::kGrid:
+    case Format::kAsc:
+      return FormatKind::kGrid;
     case Format::kPng:
       break;
   }
@@ -68,7 +78,20 @@ std::string_view name_of(Format format) {
     case Format::kTum:
       return "tum";
     case Format::kPly:
+    case Format::kPlyMesh:
       return "ply";
+    case Format::kPcd:
+      return "pcd";
+    case Format::kXyz:
+      return "xyz";
+    case Format::kOff:
+      return "off";
+    case Format::kStl:
+      return "stl";
+    case Format::kGrid:
+      return "pgm";
+    case Format::kAsc:
+      return "asc";
     case Format::kPng:
       break;
   }
@@ -80,20 +103,27 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (text.starts_with("# Octomap OcTree binary file")) return Format::kBt;
   if (text.starts_with("# Octomap OcTree file")) return Format::kOt;
   if (text.starts_with("PINGVOXM")) return Format::kPvx;
+  if (looks_like_ply(bytes)) return is_ply_with_faces(bytes) ? Format::kPlyMesh : Format::kPly;
+  if (looks_like_pcd(bytes)) return Format::kPcd;
   if (looks_like_mat(bytes)) return Format::kMat;
   if (looks_like_oldest_bt(bytes)) return Format::kBt;
   if (looks_like_scan_graph(bytes)) return Format::kScanGraph;
   if (looks_like_scan_log(bytes)) return Format::kScanLog;
   if (looks_like_csv(bytes)) return Format::kCsv;
+  if (looks_like_off(bytes)) return Format::kOff;
+  if (looks_like_binary_stl(bytes) || looks_like_stl_text(bytes)) return Format::kStl;
   if (looks_like_tum(bytes)) return Format::kTum;
+  if (looks_like_xyz(bytes)) return Format::kXyz;
   return std::nullopt;
 }
 
 std::optional<Format> format_for_writing(std::string_view path) {
   constexpr std::array kSuffixes = {
-      std::pair{std::string_view(".bt"), Format::kBt},   std::pair{std::string_view(".ot"), Format::kOt},
-      std::pair{std::string_view(".pvx"), Format::kPvx}, std::pair{std::string_view(".ply"), Format::kPly},
-      std::pair{std::string_view(".csv"), Format::kCsv}, std::pair{std::string_view(".png"), Format::kPng}};
+      std::pair{std::string_view(".bt"), Format::kBt},    std::pair{std::string_view(".ot"), Format::kOt},
+      std::pair{std::string_view(".pvx"), Format::kPvx},  std::pair{std::string_view(".ply"), Format::kPly},
+      std::pair{std::string_view(".pcd"), Format::kPcd},  std::pair{std::string_view(".csv"), Format::kCsv},
+      std::pair{std::string_view(".pgm"), Format::kGrid}, std::pair{std::string_view(".yaml"), Format::kGrid},
+      std::pair{std::string_view(".asc"), Format::kAsc},  std::pair{std::string_view(".png"), Format::kPng}};
   const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
   for (const auto& [suffix, format] : kSuffixes) {
     if (path.size() < suffix.size()) continue;

@@ -8,6 +8,7 @@
 
 #include "io/octomap_bt.hpp"
 #include "io/octomap_ot.hpp"
+#include "io/pcd.hpp"
 #include "io/ply.hpp"
 #include "io/pvx.hpp"
 
@@ -45,16 +46,14 @@ Result<void> write_map(const OccupancyMap& map, Format format, std::string_view 
       return write_pvx(map, made_by, out);
     case Format::kPly:
       return write_ply(map, out);
-    case Format::kMat:
-    case Format::kCsv:
-    case Format::kScanGraph:
-    case Format::kScanLog:
-    case Format::kTum:
-    case Format::kPng:
+    case Format::kPcd:
+      return write_pcd(map, out);
+    default:
       break;
   }
-  return fail(Error::Code::kUnsupported,
-              fmt::format("a map cannot be written as .{}: .bt, .ot, .pvx and .ply can hold it", name_of(format)));
+  return fail(
+      Error::Code::kUnsupported,
+      fmt::format("a map cannot be written as .{}: .bt, .ot, .pvx, .ply and .pcd can hold it", name_of(format)));
 }
 
 }  // namespace pingvox

@@ -4,19 +4,19 @@
 
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "io/byte_reader.hpp"
 #include "io/byte_writer.hpp"
+#include "io/ply_header.hpp"
+#include "io/readers.hpp"
 #include "io/text.hpp"
 
 namespace pingvox {
@@ -27,15 +27,6 @@ using Bytes = std::span<const std::uint8_t>;
 
 tl::unexpected<Error> corrupt(const std::string& file, std::string_view place, std::string_view what) {
   return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, what));
-}
-
-/// All of `text` as a whole number without a sign.
-std::optional<std::uint64_t> count_in(std::string_view text) {
-  std::uint64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (text.empty() || stop != end || error != std::errc{}) return std::nullopt;
-  return value;
 }
 
 /// A face, as a fan of triangles around its first corner.
@@ -95,9 +86,7 @@ class Words {
 
 Result<TriangleMesh> read_off(const FileBytes& file) {
   Words words{Lines(text_of(file.view()))};
-  std::string_view first = words.next().value_or("");
-  // Some write the counts into the same line: OFF8 6 0 is not among them.
-  if (first != "OFF") return corrupt(file.name, words.place(), fmt::format("'{}' instead of OFF", printable(first)));
+  words.next();  // OFF; some write the counts into the same line
   std::array<std::uint64_t, 3> counts{};
   for (std::uint64_t& count : counts) {
     const auto word = words.next();
@@ -161,12 +150,6 @@ Result<TriangleMesh> read_stl_text(const FileBytes& file) {
 
 constexpr std::size_t kStlHead = 80, kStlFacet = 50;
 
-bool is_binary_stl(Bytes bytes) {
-  if (bytes.size() < kStlHead + 4) return false;
-  const auto count = value_from<std::uint32_t>(bytes.subspan(kStlHead, 4), std::endian::little);
-  return bytes.size() - kStlHead - 4 == std::uint64_t{count} * kStlFacet;
-}
-
 Result<TriangleMesh> read_stl_binary(const FileBytes& file) {
   ByteReader reader(file.view());
   reader.take(kStlHead + 4);
@@ -189,105 +172,6 @@ Result<TriangleMesh> read_stl_binary(const FileBytes& file) {
 
 // --- PLY.
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
-std::optional<PlyType> ply_type(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames = {{{"char", PlyType::kInt8},
-                                                                            {"int8", PlyType::kInt8},
-                                                                            {"uchar", PlyType::kUint8},
-                                                                            {"uint8", PlyType::kUint8},
-                                                                            {"short", PlyType::kInt16},
-                                                                            {"int16", PlyType::kInt16},
-                                                                            {"ushort", PlyType::kUint16},
-                                                                            {"uint16", PlyType::kUint16},
-                                                                            {"int", PlyType::kInt32},
-                                                                            {"int32", PlyType::kInt32},
-                                                                            {"uint", PlyType::kUint32},
-                                                                            {"uint32", PlyType::kUint32},
-                                                                            {"float", PlyType::kFloat},
-                                                                            {"float32", PlyType::kFloat},
-                                                                            {"double", PlyType::kDouble},
-                                                                            {"float64", PlyType::kDouble}}};
-  for (const auto& [known, type] : kNames) {
-    if (known == name) return type;
-  }
-  return std::nullopt;
-}
-
-struct PlyProperty {
-  std::string name;
-  PlyType type = PlyType::kFloat;
-  std::optional<PlyType> list_count;  ///< a list, whose length is of this type
-};
-
-struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<PlyProperty> properties;
-};
-
-enum class PlyFormat { kText, kLittle, kBig };
-
-struct PlyHeader {
-  std::optional<PlyFormat> format;
-  std::vector<PlyElement> elements;
-  std::size_t size = 0;   ///< bytes
-  std::size_t lines = 0;  ///< of text
-};
-
-Result<PlyHeader> read_ply_header(const FileBytes& file) {
-  const std::string_view text = text_of(file.view());
-  PlyHeader header;
-  while (header.size < text.size()) {
-    const std::size_t end = text.find('\n', header.size);
-    if (end == std::string_view::npos) break;
-    std::string_view line = text.substr(header.size, end - header.size);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    header.size = end + 1;
-    ++header.lines;
-    const auto off = [&](std::string_view what) {
-      return corrupt(file.name, fmt::format("line {}", header.lines), fmt::format("'{}': {}", printable(line), what));
-    };
-    std::string_view rest = line;
-    const std::string_view word = cut_word(rest).value_or("");
-    if (word == "end_header") {
-      if (!header.format) return off("the format was not said");
-      return header;
-    }
-    if (word == "format") {
-      const std::string_view name = cut_word(rest).value_or("");
-      if (name == "ascii") header.format = PlyFormat::kText;
-      if (name == "binary_little_endian") header.format = PlyFormat::kLittle;
-      if (name == "binary_big_endian") header.format = PlyFormat::kBig;
-      if (!header.format) return off("an unknown format");
-    } else if (word == "element") {
-      const std::string_view name = cut_word(rest).value_or("");
-      const auto count = count_in(cut_word(rest).value_or(""));
-      if (name.empty() || !count) return off("an element needs a name and a number");
-      header.elements.push_back({std::string(name), *count, {}});
-    } else if (word == "property") {
-      if (header.elements.empty()) return off("a property before any element");
-      PlyProperty property;
-      std::optional<PlyType> type;
-      std::string_view type_name = cut_word(rest).value_or("");
-      if (type_name == "list") {
-        property.list_count = ply_type(cut_word(rest).value_or(""));
-        if (!property.list_count || *property.list_count == PlyType::kFloat ||
-            *property.list_count == PlyType::kDouble) {
-          return off("a list needs a whole number for its length");
-        }
-        type_name = cut_word(rest).value_or("");
-      }
-      type = ply_type(type_name);
-      property.name = std::string(cut_word(rest).value_or(""));
-      if (!type || property.name.empty()) return off("an unknown type, or no name");
-      property.type = *type;
-      header.elements.back().properties.push_back(std::move(property));
-    }
-  }
-  return corrupt(file.name, fmt::format("line {}", header.lines), "the header has no end");
-}
-
 /// The values of a PLY file one after the other, from text or bytes.
 class PlyValues {
  public:
@@ -297,53 +181,32 @@ class PlyValues {
         reader_(bytes.subspan(header.size), header.format == PlyFormat::kBig ? std::endian::big : std::endian::little) {
   }
 
-  std::optional<double> next(PlyType type) {
+  std::optional<double> next(Scalar type) {
     if (is_text_) {
       const auto word = words_.next();
       return word ? number_in(*word) : std::nullopt;
     }
-    switch (type) {
-      case PlyType::kInt8:
-        return read<std::int8_t>();
-      case PlyType::kUint8:
-        return read<std::uint8_t>();
-      case PlyType::kInt16:
-        return read<std::int16_t>();
-      case PlyType::kUint16:
-        return read<std::uint16_t>();
-      case PlyType::kInt32:
-        return read<std::int32_t>();
-      case PlyType::kUint32:
-        return read<std::uint32_t>();
-      case PlyType::kFloat:
-        return read<float>();
-      case PlyType::kDouble:
-        return read<double>();
-    }
-    return std::nullopt;
+    return with_scalar(type, [this]<class T>() -> std::optional<double> {
+      const auto value = reader_.read<T>();
+      if (!value) return std::nullopt;
+      return static_cast<double>(*value);
+    });
   }
   /// The same as a whole number from 0 to 2^32 - 1.
-  std::optional<std::uint64_t> next_count(PlyType type) {
+  std::optional<std::uint64_t> next_count(Scalar type) {
     const auto value = next(type);
     if (!value || !(*value >= 0.0 && *value < 0x1p32) || *value != std::floor(*value)) return std::nullopt;
     return static_cast<std::uint64_t>(*value);
   }
 
  private:
-  template <class T>
-  std::optional<double> read() {
-    const auto value = reader_.read<T>();
-    if (!value) return std::nullopt;
-    return static_cast<double>(*value);
-  }
-
   bool is_text_;
   Words words_;
   ByteReader reader_;
 };
 
 Result<TriangleMesh> read_ply(const FileBytes& file) {
-  const Result<PlyHeader> header = read_ply_header(file);
+  const Result<PlyHeader> header = read_ply_header(file.name, file.view());
   if (!header) return tl::unexpected(header.error());
   PlyValues values(file.view(), *header);
   TriangleMesh mesh;
@@ -390,14 +253,32 @@ Result<TriangleMesh> read_ply(const FileBytes& file) {
 
 }  // namespace
 
+bool looks_like_binary_stl(Bytes bytes) {
+  if (bytes.size() < kStlHead + 4) return false;
+  const auto count = value_from<std::uint32_t>(bytes.subspan(kStlHead, 4), std::endian::little);
+  return count > 0 && bytes.size() - kStlHead - 4 == std::uint64_t{count} * kStlFacet;
+}
+
+bool looks_like_stl_text(Bytes bytes) {
+  Lines lines(text_of(bytes));
+  std::string_view first = lines.next_with_content().value_or(""), second = lines.next_with_content().value_or("");
+  const std::string_view word = cut_word(second).value_or("");
+  return cut_word(first) == "solid" && (word == "facet" || word == "endsolid");
+}
+
+bool looks_like_off(Bytes bytes) {
+  Lines lines(text_of(bytes));
+  std::string_view first = lines.next_with_content().value_or("");
+  return cut_word(first) == "OFF";
+}
+
 Result<TriangleMesh> read_mesh(const FileBytes& file) {
   const std::string_view text = text_of(file.view());
   const auto read = [&]() -> Result<TriangleMesh> {
-    if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) return read_ply(file);
-    if (is_binary_stl(file.view())) return read_stl_binary(file);
+    if (looks_like_ply(file.view())) return read_ply(file);
+    if (looks_like_binary_stl(file.view())) return read_stl_binary(file);
     if (text.starts_with("solid")) return read_stl_text(file);
-    Lines lines(text);
-    if (lines.next_with_content().value_or("").starts_with("OFF")) return read_off(file);
+    if (looks_like_off(file.view())) return read_off(file);
     return fail(Error::Code::kUnsupported, fmt::format("{}: is no mesh that we know: OFF, PLY or STL", file.name));
   };
   Result<TriangleMesh> mesh = read();

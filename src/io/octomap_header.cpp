@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
 #include <optional>
 
 #include "io/map_files.hpp"
@@ -38,13 +37,6 @@ class HeaderWords {
   std::string_view text_;
   std::size_t at_ = 0;
 };
-
-std::optional<std::uint64_t> count_in(std::string_view word) {
-  std::uint64_t value = 0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || stop != word.data() + word.size()) return std::nullopt;
-  return value;
-}
 
 }  // namespace
 

@@ -1,14 +1,16 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/bytes.hpp"
 
-// The readers behind open_beams and open_scans, and how format_of knows their formats.
+// The readers behind open_beams, open_scans and read_mesh, and how format_of knows their formats.
 namespace pingvox {
 
 bool looks_like_mat(std::span<const std::uint8_t> bytes);
@@ -24,6 +26,21 @@ bool looks_like_scan_log(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<ScanSource>> open_scan_log(FileBytes file, Damage damage);
 
 bool looks_like_tum(std::span<const std::uint8_t> bytes);
+
+/// Clouds: one scan, seen from `origin_m` (map frame), or from where the file says, or from 0, 0, 0.
+using CloudOrigin = std::optional<Eigen::Vector3d>;
+
+Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage, const CloudOrigin& origin_m);
+
+bool looks_like_pcd(std::span<const std::uint8_t> bytes);
+Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, const CloudOrigin& origin_m);
+
+bool looks_like_xyz(std::span<const std::uint8_t> bytes);
+Result<std::unique_ptr<ScanSource>> open_xyz(FileBytes file, Damage damage, const CloudOrigin& origin_m);
+
+bool looks_like_off(std::span<const std::uint8_t> bytes);
+bool looks_like_binary_stl(std::span<const std::uint8_t> bytes);
+bool looks_like_stl_text(std::span<const std::uint8_t> bytes);
 
 /// What happened to a damaged piece of a log: nothing (it is counted) or, with Damage::kFail, the error.
 Result<void> skipped_or_failed(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,

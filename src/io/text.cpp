@@ -93,5 +93,12 @@ std::optional<double> number_in(std::string_view text) {
 std::optional<float> float_in(std::string_view text) {
   return parsed<float>(text);
 }
+std::optional<std::uint64_t> count_in(std::string_view text) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (text.empty() || stop != end || error != std::errc{}) return std::nullopt;
+  return value;
+}
 
 }  // namespace pingvox

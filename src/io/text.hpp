@@ -48,5 +48,7 @@ std::string printable(std::string_view text);
 /// All of `text` as a finite decimal number, rounded once to the type, in any locale. nullopt: it is none.
 std::optional<double> number_in(std::string_view text);
 std::optional<float> float_in(std::string_view text);
+/// All of `text` as a whole number without a sign. nullopt: it is none.
+std::optional<std::uint64_t> count_in(std::string_view text);
 
 }  // namespace pingvox

@@ -48,13 +48,20 @@ std::string time_text(double time_s) {
 
 bool looks_like_tum(std::span<const std::uint8_t> bytes) {
   Lines lines(text_of(bytes));
-  std::string_view line = lines.next_with_content().value_or("");
+  std::string_view first = lines.next_with_content().value_or("");
+  std::string_view rest = first;
   std::size_t count = 0;
-  while (const auto word = cut_word(line)) {
+  while (const auto word = cut_word(rest)) {
     if (++count > kNumbers + 1 || !number_in(*word)) return false;
   }
-  // One more or less is a trajectory with a damaged first line.
-  return count + 1 >= kNumbers;
+  // One more or less is a trajectory with a damaged first line. But a cloud may have as many columns: then there is no
+  // rotation in any of them.
+  if (count + 1 < kNumbers) return false;
+  std::optional<std::string_view> line = first;
+  for (int looked_at = 0; line && looked_at < 10; ++looked_at, line = lines.next_with_content()) {
+    if (pose_in(*line)) return true;
+  }
+  return false;
 }
 
 Result<Trajectory> read_tum(const FileBytes& file) {

@@ -145,7 +145,8 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
 Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, OccupancyMap& map,
                               const Progress& progress) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-  const PointScanOptions how{options.model.ray, options.model.hit, options.model.max_range_m};
+  const PointScanOptions how{
+      .ray = options.model.ray, .hit = options.model.hit, .max_range_m = options.model.max_range_m};
   ScanUpdate scan(options.model.miss);
   BuildReport report;
   std::size_t unplaced = 0;

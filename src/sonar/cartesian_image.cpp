@@ -32,12 +32,12 @@ void dot_axes(const PolarImage& image, const Sweep& sweep, CartesianImage& out) 
   const auto last = static_cast<double>(out.size_px - 1);
   for (std::size_t n = 0; n < image.rows(); ++n) {
     const Beam& beam = sweep.beams[n];
-    const double ahead = std::cos(beam.bearing_rad) / out.pixel_m;
-    const double left = std::sin(beam.bearing_rad) / out.pixel_m;
+    const double ahead = std::cos(beam.bearing_rad), left = std::sin(beam.bearing_rad);
     for (std::size_t i = 0; i < image.bins_in(n); ++i) {
-      const double range_m = (static_cast<double>(i) + 0.5) * beam.bin_length_m;
-      const auto row = static_cast<std::size_t>(std::clamp(half - range_m * ahead, 0.0, last));
-      const auto column = static_cast<std::size_t>(std::clamp(half - range_m * left, 0.0, last));
+      // Divided first: the inverse of a tiny pixel is no number.
+      const double range_px = (static_cast<double>(i) + 0.5) * beam.bin_length_m / out.pixel_m;
+      const auto row = static_cast<std::size_t>(std::clamp(half - range_px * ahead, 0.0, last));
+      const auto column = static_cast<std::size_t>(std::clamp(half - range_px * left, 0.0, last));
       std::uint8_t& pixel = out.pixels[row * out.size_px + column];
       pixel = std::max(pixel, image.row(n)[i]);
     }
@@ -108,7 +108,7 @@ CartesianImage cartesian_image(const PolarImage& image, const Sweep& sweep, cons
   }
   CartesianImage out{options.size_px, 2.0 * range_m / static_cast<double>(options.size_px), {}};
   out.pixels.resize(options.size_px * options.size_px);
-  if (range_m == 0.0) return out;
+  if (out.pixel_m == 0.0) return out;  // no bins, or too short for numbers
   if (options.between == BetweenBeams::kNothing) {
     dot_axes(image, sweep, out);
     return out;

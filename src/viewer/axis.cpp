@@ -1,5 +1,7 @@
 #include "viewer/axis.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,11 +17,14 @@ std::vector<Tick> linear_ticks(const AxisScale& scale, std::size_t most) {
   if (!std::isfinite(span) || !(span > 0.0) || span < 1e-12 * std::max(std::abs(low), std::abs(high))) return {};
   const double step = round_length_above(span / static_cast<double>(most));
   if (!(step > 0.0) || !std::isfinite(step)) return {};
+  // As many digits as tell neighbours apart.
+  const double places = std::log10(std::max(std::abs(low), std::abs(high)) / step);
+  const int digits = std::clamp(static_cast<int>(std::ceil(places)) + 1, 6, 15);
   std::vector<Tick> ticks;
   const double first = std::ceil(low / step - 1e-9);
   for (double n = first; n * step <= high + 1e-9 * span && ticks.size() <= most + 1; ++n) {
     const double value = n == 0.0 ? 0.0 : n * step;  // no "-0"
-    ticks.push_back({scale.share_of(value), length_text(value)});
+    ticks.push_back({scale.share_of(value), fmt::format("{:.{}g}", value, digits)});
   }
   return ticks;
 }
@@ -38,8 +43,8 @@ std::vector<Tick> logarithmic_ticks(const AxisScale& scale, std::size_t most) {
   for (int power = static_cast<int>(std::floor(low)); power <= last; power += skip) {
     add(std::pow(10.0, power));
     // Few powers leave room for what lies between them.
-    if (2 * powers <= most) add(2.0 * std::pow(10.0, power));
-    if (2 * powers <= most) add(5.0 * std::pow(10.0, power));
+    if (2 * powers < most) add(2.0 * std::pow(10.0, power));
+    if (2 * powers < most) add(5.0 * std::pow(10.0, power));
   }
   return ticks;
 }

@@ -31,7 +31,7 @@ std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most);
 
 inline constexpr std::ptrdiff_t kTextScale = 2, kTick = 8, kGap = 6;
 /// Height of what stands below an area: ticks, their texts, a title.
-inline constexpr std::ptrdiff_t kBottomAxis = 62;
+inline constexpr std::ptrdiff_t kBottomAxis = 68;
 
 /// Width of what stands left of an area.
 std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks);

@@ -5,18 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
+#include "viewer/echo_look.hpp"
 #include "viewer/label.hpp"
 
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kLeft = 110, kRight = 40, kTop = 24, kBottom = 92;
+constexpr std::ptrdiff_t kLeft = 110, kRight = 96, kTop = 24, kBottom = 96;
 constexpr std::size_t kMostRows = 2000, kHighEnough = 800;
+constexpr std::size_t kLeastWidth = static_cast<std::size_t>(kEchoLegendWidth);
 constexpr std::ptrdiff_t kMarkWidth = 3;
 
 /// Where beams and ranges are in the picture.
@@ -96,7 +99,7 @@ void draw_axes(Picture& picture, const Scale& scale) {
     const std::string text = length_text(range_m);
     draw_label(picture, x - label_width(text, kTextScale) / 2 + 1, below + kTick + kGap, text, kTextScale, kInk);
   }
-  draw_label(picture, kLeft, below + kTick + 2 * kGap + kTextScale * kLetterHeight, "range in m", kTextScale, kInk);
+  draw_centred(picture, kLeft + width / 2, below + kTick + 2 * kGap + kTextScale * kLetterHeight, "range in m", kInk);
 
   const auto step = static_cast<std::size_t>(std::max(1.0, round_length(static_cast<double>(scale.beams) / 3.0)));
   for (std::size_t beam = 0; beam < scale.beams; beam += step) {
@@ -108,13 +111,48 @@ void draw_axes(Picture& picture, const Scale& scale) {
   draw_label(picture, kGap, below + kTick + kGap, "beam", kTextScale, kInk);
 }
 
-void draw_legend(Picture& picture, std::ptrdiff_t below, Rgb echo) {
-  const std::string text = "detected echo";
-  const auto x = static_cast<std::ptrdiff_t>(picture.width()) - kRight - label_width(text, kTextScale);
-  const std::ptrdiff_t y = below + kTick + 2 * kGap + kTextScale * kLetterHeight;
-  draw_label(picture, x, y, text, kTextScale, kInk);
-  picture.fill(x - 26, y, 18, 15, Rgb{30, 30, 30});
-  picture.fill(x - 19, y, kMarkWidth + 1, 15, echo);
+double turned_by(const Beam& from, const Beam& to) {
+  return std::remainder(to.bearing_rad - from.bearing_rad, 2.0 * std::numbers::pi);
+}
+
+/// Round bearings at the right, each where the head passes it.
+void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& scale) {
+  double turned_rad = 0.0;
+  for (std::size_t b = 1; b < beams.size(); ++b) turned_rad += std::abs(turned_by(beams[b - 1], beams[b]));
+  // So many degrees apart that about ten are passed.
+  constexpr double kDegree_rad = std::numbers::pi / 180.0;
+  constexpr std::array kSteps = {10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0};
+  double step_rad = kSteps.back() * kDegree_rad;
+  for (const double step_deg : kSteps) {
+    step_rad = step_deg * kDegree_rad;
+    if (turned_rad <= 13.0 * step_rad) break;
+  }
+  const auto x = kLeft + static_cast<std::ptrdiff_t>(scale.columns) + 2;
+  constexpr std::ptrdiff_t kRoom = kTextScale * kLetterHeight + 4;
+  std::ptrdiff_t free_from = kTop - kRoom;
+  const auto mark = [&](std::size_t beam, double passed) {
+    const auto y = kTop + static_cast<std::ptrdiff_t>(scale.row_of(beam) * scale.row_px);
+    if (y < free_from) return;
+    const auto degrees = static_cast<long>(std::lround(passed * step_rad / kDegree_rad)) % 360;
+    picture.fill(x, y, kTick, 2, kInk);
+    draw_label(picture, x + kTick + kGap, y - 6, std::to_string(degrees < 0 ? degrees + 360 : degrees), kTextScale,
+               kInk);
+    free_from = y + kRoom;
+  };
+  // The bearing goes on counting beyond a turn, so that passing 0 is like passing any other.
+  double bearing = beams.empty() ? 0.0 : beams[0].bearing_rad / step_rad;
+  if (!beams.empty() && std::abs(bearing - std::round(bearing)) < 1e-6) mark(0, std::round(bearing));
+  for (std::size_t b = 1; b < beams.size(); ++b) {
+    const double before = bearing;
+    bearing += turned_by(beams[b - 1], beams[b]) / step_rad;
+    // A beam on a round bearing is where it is passed, whatever rounding says.
+    constexpr double kNear = 1e-6;
+    const bool is_rising = bearing >= before;
+    const double passed = is_rising ? std::floor(bearing + kNear) : std::ceil(bearing - kNear);
+    if (is_rising ? passed > before + kNear : passed < before - kNear) mark(b, passed);
+  }
+  const std::ptrdiff_t below = kTop + static_cast<std::ptrdiff_t>(scale.rows * scale.row_px) + 2;
+  draw_label(picture, x + kTick - kGap, below + kTick + kGap, "deg", kTextScale, kInk);
 }
 
 }  // namespace
@@ -138,15 +176,9 @@ Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional
     draw_label(picture, 24, 30, "nothing was heard", kTextScale, kInk);
     return picture;
   }
-  std::array<Rgb, 256> greys;
-  for (std::size_t i = 0; i < greys.size(); ++i) {
-    const auto grey =
-        static_cast<std::uint8_t>(std::lround(255.0 * std::pow(static_cast<double>(i) / 255.0, options.gamma)));
-    greys[i] = {grey, grey, grey};
-  }
-
+  const std::array<Rgb, 256> greys = greys_of(options);
   const std::size_t height = scale.rows * scale.row_px;
-  Picture picture(kLeft + scale.columns + kRight, kTop + height + kBottom, kPaper);
+  Picture picture(std::max(kLeft + scale.columns + kRight, kLeastWidth), kTop + height + kBottom, kPaper);
   const auto row_px = static_cast<std::ptrdiff_t>(scale.row_px);
   const std::vector<int> pixels = loudest(beams, scale);
   for (std::size_t row = 0; row < scale.rows; ++row) {
@@ -163,7 +195,9 @@ Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional
     picture.fill(std::max(x - kMarkWidth / 2, kLeft), y, kMarkWidth, row_px, options.echo);
   }
   draw_axes(picture, scale);
-  if (!echoes.empty()) draw_legend(picture, kTop + static_cast<std::ptrdiff_t>(height) + 2, options.echo);
+  draw_bearings(picture, beams, scale);
+  draw_echo_legend(picture, kGap, kTop + static_cast<std::ptrdiff_t>(height) + kBottom - kEchoLegendHeight, options,
+                   echoes.empty() ? Marked::kNothing : Marked::kEchoes);
   return picture;
 }
 

@@ -20,29 +20,58 @@ namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-constexpr std::ptrdiff_t kMargin = 24, kFooter = 56, kBorder = 2;
-constexpr std::ptrdiff_t kLeastWidth = 640;  ///< room for scale bar and legend
+constexpr std::ptrdiff_t kMargin = 24, kNote = 26, kFooterRow = 28, kBorder = 2;
+constexpr std::ptrdiff_t kLeastWidth = 480;  ///< room for scale bar and legend
 constexpr Rgb kCross{230, 120, 0};
 
-/// The highest belief of each column of cells. Cells are square, (0, 0) has the lowest x and y; kNothing is unknown.
+/// Which axes of the map frame (0 x, 1 y, 2 z) lie across and up in the picture; up always grows upwards.
+struct Look {
+  std::size_t across, up;
+  enum class Across { kGrowsRightwards, kGrowsLeftwards } grows;
+  std::string_view note;
+};
+
+Look look_of(MapView view) {
+  using enum Look::Across;
+  switch (view) {
+    case MapView::kRight:
+      return {0, 2, kGrowsRightwards, "from the right"};
+    case MapView::kLeft:
+      return {0, 2, kGrowsLeftwards, "from the left"};
+    case MapView::kFront:
+      return {1, 2, kGrowsRightwards, "from the front"};
+    case MapView::kBehind:
+      return {1, 2, kGrowsLeftwards, "from behind"};
+    case MapView::kAbove:
+      break;
+  }
+  return {1, 0, kGrowsLeftwards, "from above"};
+}
+
+WideWord word_along(const WideKey& key, std::size_t axis) {
+  return axis == 0 ? key.x : (axis == 1 ? key.y : key.z);
+}
+
+/// The highest belief of each line of cells along the look. Cells are square, (0, 0) is the lowest; kNothing is
+/// unknown.
 struct Columns {
-  std::size_t nx = 0, ny = 0;
+  std::size_t across = 0, up = 0;  ///< how many
   double cell_m = 0.0;
-  double min_x_m = 0.0, min_y_m = 0.0;
+  double least_across_m = 0.0, least_up_m = 0.0;
   std::vector<float> belief;
 
-  float at(std::size_t x, std::size_t y) const { return belief[y * nx + x]; }
+  float at(std::size_t a, std::size_t u) const { return belief[u * across + a]; }
 };
 
 /// Cells of one size: those of the next finer grid in fours. A leaf is one entry of the grid of its own size, so a leaf
 /// that covers the whole picture costs as little as a small one.
 struct Grid {
-  WideWord min_x, min_y;  ///< words of the lowest cell
-  std::size_t nx, ny;
+  WideWord least_across, least_up;  ///< words of the lowest cell
+  std::size_t across, up;
   std::vector<float> belief;
 
-  void raise(WideWord x, WideWord y, float value) {
-    float& cell = belief[static_cast<std::size_t>(y - min_y) * nx + static_cast<std::size_t>(x - min_x)];
+  void raise(WideWord a, WideWord u, float value) {
+    float& cell = belief[static_cast<std::size_t>(u - least_up) * across + static_cast<std::size_t>(a - least_across)];
     cell = std::max(cell, value);
   }
 };
@@ -52,63 +81,110 @@ WideWord shifted(WideWord word, int bits) {
   return bits < kMaxDepth ? word >> bits : 0;
 }
 
+/// The heights of the layer of cells that holds `z_m`; nullopt outside of the lattice.
+std::optional<std::pair<double, double>> layer_at(const Lattice& lattice, double z_m) {
+  const auto key = lattice.key_of<WideWord>({0.0, 0.0, z_m});
+  if (!key) return std::nullopt;
+  const double low_m = lattice.lowest_corner_of(*key, lattice.depth()).z();
+  return std::pair(low_m, low_m + lattice.resolution_m());
+}
+
 template <class Visitor>
 void for_each_shown(const OccupancyMap& map, const MapPictureOptions& options, Visitor visit) {
   LeafQuery query;
-  if (options.min_z_m || options.max_z_m) {
-    const double inf = std::numeric_limits<double>::infinity();
+  const double inf = std::numeric_limits<double>::infinity();
+  if (options.layer_z_m) {
+    const auto layer = layer_at(map.lattice(), *options.layer_z_m);
+    if (!layer) return;
+    // Half way up, so that no rounding reaches a neighbour.
+    const double middle_m = layer->first + 0.5 * (layer->second - layer->first);
+    query.box = Box{{-inf, -inf, middle_m}, {inf, inf, middle_m}};
+  } else if (options.min_z_m || options.max_z_m) {
     query.box = Box{{-inf, -inf, options.min_z_m.value_or(-inf)}, {inf, inf, options.max_z_m.value_or(inf)}};
   }
   for_each_leaf<WideWord>(map, query, visit);
 }
 
-/// Columns of the shown part, at most `most` of them along each side.
-Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
-  const Lattice& lattice = map.lattice();
-  const int levels = lattice.depth();
-  WideKey low{~WideWord{0}, ~WideWord{0}, 0}, high{0, 0, 0};
+/// The lowest and the highest cell of the shown part.
+struct Corners {
+  WideKey low, high;
+};
+
+std::optional<Corners> corners_of(const OccupancyMap& map, const MapPictureOptions& options) {
+  const int levels = map.lattice().depth();
+  WideKey low{~WideWord{0}, ~WideWord{0}, ~WideWord{0}}, high{0, 0, 0};
   for_each_shown(map, options, [&](const Leaf<WideWord>& leaf) {
     const int bits = levels - leaf.depth;
     const WideWord last = bits == 0 ? 0 : (~WideWord{0} >> (kMaxDepth - bits));
-    low.x = std::min(low.x, leaf.key.x);
-    low.y = std::min(low.y, leaf.key.y);
-    high.x = std::max(high.x, leaf.key.x + last);
-    high.y = std::max(high.y, leaf.key.y + last);
+    low = {std::min(low.x, leaf.key.x), std::min(low.y, leaf.key.y), std::min(low.z, leaf.key.z)};
+    high = {std::max(high.x, leaf.key.x + last), std::max(high.y, leaf.key.y + last),
+            std::max(high.z, leaf.key.z + last)};
   });
-  if (low.x > high.x) return {};
+  if (low.x > high.x) return std::nullopt;
+  return Corners{low, high};
+}
 
+/// Corners moved out to a box, as far as the lattice reaches.
+Corners widened(const Corners& corners, const Box& box, const Lattice& lattice) {
+  Corners wide = corners;
+  const auto low = lattice.key_of<WideWord>(box.min);
+  // The upper face belongs to the cells beyond it.
+  const auto high = lattice.key_of<WideWord>(box.max.array() - 0.5 * lattice.resolution_m());
+  if (low) wide.low = {std::min(wide.low.x, low->x), std::min(wide.low.y, low->y), std::min(wide.low.z, low->z)};
+  if (high)
+    wide.high = {std::max(wide.high.x, high->x), std::max(wide.high.y, high->y), std::max(wide.high.z, high->z)};
+  return wide;
+}
+
+/// Columns of the shown part, at most `most` of them along each side.
+Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
+  const Look look = look_of(options.view);
+  const Lattice& lattice = map.lattice();
+  const int levels = lattice.depth();
+  const std::optional<Corners> known = corners_of(map, options);
+  if (!known) return {};
+  const auto [low, high] = options.at_least ? widened(*known, *options.at_least, lattice) : *known;
+
+  const WideWord low_across = word_along(low, look.across), low_up = word_along(low, look.up);
+  const WideWord high_across = word_along(high, look.across), high_up = word_along(high, look.up);
   int shift = 0;
   const auto cells = [&](WideWord from, WideWord to) { return shifted(to, shift) - shifted(from, shift); };
-  while (cells(low.x, high.x) >= most || cells(low.y, high.y) >= most) ++shift;
+  while (cells(low_across, high_across) >= most || cells(low_up, high_up) >= most) ++shift;
 
   std::vector<Grid> grids;
   for (int bits = shift; bits <= levels; ++bits) {
-    const WideWord min_x = shifted(low.x, bits), min_y = shifted(low.y, bits);
-    const auto nx = static_cast<std::size_t>(shifted(high.x, bits) - min_x) + 1;
-    const auto ny = static_cast<std::size_t>(shifted(high.y, bits) - min_y) + 1;
-    grids.push_back({min_x, min_y, nx, ny, std::vector<float>(nx * ny, kNothing)});
+    const WideWord least_across = shifted(low_across, bits), least_up = shifted(low_up, bits);
+    const auto across = static_cast<std::size_t>(shifted(high_across, bits) - least_across) + 1;
+    const auto up = static_cast<std::size_t>(shifted(high_up, bits) - least_up) + 1;
+    grids.push_back({least_across, least_up, across, up, std::vector<float>(across * up, kNothing)});
   }
   for_each_shown(map, options, [&](const Leaf<WideWord>& leaf) {
     const int bits = std::max(levels - leaf.depth, shift);
-    grids[static_cast<std::size_t>(bits - shift)].raise(shifted(leaf.key.x, bits), shifted(leaf.key.y, bits),
+    grids[static_cast<std::size_t>(bits - shift)].raise(shifted(word_along(leaf.key, look.across), bits),
+                                                        shifted(word_along(leaf.key, look.up), bits),
                                                         leaf.belief.value());
   });
   for (std::size_t g = grids.size() - 1; g > 0; --g) {
     const Grid& coarse = grids[g];
     Grid& fine = grids[g - 1];
-    for (std::size_t y = 0; y < fine.ny; ++y) {
-      for (std::size_t x = 0; x < fine.nx; ++x) {
-        const auto above_x = static_cast<std::size_t>(((fine.min_x + x) >> 1) - coarse.min_x);
-        const auto above_y = static_cast<std::size_t>(((fine.min_y + y) >> 1) - coarse.min_y);
-        float& cell = fine.belief[y * fine.nx + x];
-        cell = std::max(cell, coarse.belief[above_y * coarse.nx + above_x]);
+    for (std::size_t u = 0; u < fine.up; ++u) {
+      for (std::size_t a = 0; a < fine.across; ++a) {
+        const auto coarse_a = static_cast<std::size_t>(((fine.least_across + a) >> 1) - coarse.least_across);
+        const auto coarse_u = static_cast<std::size_t>(((fine.least_up + u) >> 1) - coarse.least_up);
+        float& cell = fine.belief[u * fine.across + a];
+        cell = std::max(cell, coarse.belief[coarse_u * coarse.across + coarse_a]);
       }
     }
   }
 
-  const Eigen::Vector3d corner_m = lattice.lowest_corner_of(low, levels - std::min(shift, levels));
-  return {grids[0].nx,  grids[0].ny,  lattice.cell_size_m(levels - std::min(shift, levels)),
-          corner_m.x(), corner_m.y(), std::move(grids[0].belief)};
+  const int depth = levels - std::min(shift, levels);
+  const Eigen::Vector3d corner_m = lattice.lowest_corner_of(low, depth);
+  return {grids[0].across,
+          grids[0].up,
+          lattice.cell_size_m(depth),
+          corner_m[static_cast<Eigen::Index>(look.across)],
+          corner_m[static_cast<Eigen::Index>(look.up)],
+          std::move(grids[0].belief)};
 }
 
 /// How far `belief` has come from `from` (0) to `to` (1).
@@ -142,36 +218,49 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
   picture.fill(x - 1, y - kArm, 3, 2 * kArm + 1, kCross);
 }
 
-void draw_footer(Picture& picture, std::ptrdiff_t top, double metres_per_pixel, const MapColours& colours) {
-  constexpr std::ptrdiff_t kSwatch = 18, kGap = 8;
-  constexpr double kScaleBar = 130.0;  // at most, in pixels: the legend needs the rest of the narrowest picture
-  const std::ptrdiff_t text_y = top + 1;
-
+void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, double metres_per_pixel) {
+  constexpr double kLongest = 200.0;  // pixels
   // A lattice may be larger than doubles can say.
-  if (std::isfinite(metres_per_pixel * kScaleBar)) {
-    const double length_m = round_length(metres_per_pixel * kScaleBar);
-    const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
-    picture.fill(kMargin, top + 8, bar, 3, kInk);
-    picture.fill(kMargin, top + 2, 3, 15, kInk);
-    picture.fill(kMargin + bar - 3, top + 2, 3, 15, kInk);
-    draw_label(picture, kMargin + bar + kGap, text_y, length_text(length_m) + " m", kTextScale, kInk);
-  }
+  if (!std::isfinite(metres_per_pixel * kLongest)) return;
+  const double length_m = round_length(metres_per_pixel * kLongest);
+  const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
+  picture.fill(x, top + 8, bar, 3, kInk);
+  picture.fill(x, top + 2, 3, 15, kInk);
+  picture.fill(x + bar - 3, top + 2, 3, 15, kInk);
+  draw_label(picture, x + bar + kGap, top + 2, length_text(length_m) + " m", kTextScale, kInk);
+}
 
+void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const MapOptions& map,
+                 const MapColours& colours) {
+  constexpr std::ptrdiff_t kSwatch = 32, kHigh = 18;
   struct Entry {
     std::string_view text;
-    Rgb colour;
+    Rgb from, to;
   };
-  const std::array legend = {Entry{"occupied", colours.surely_occupied}, Entry{"free", colours.surely_free},
-                             Entry{"unknown", colours.unknown}};
-  std::ptrdiff_t x = static_cast<std::ptrdiff_t>(picture.width()) - kMargin;
-  for (auto entry = legend.rbegin(); entry != legend.rend(); ++entry) {
-    x -= label_width(entry->text, kTextScale);
-    draw_label(picture, x, text_y, entry->text, kTextScale, kInk);
-    x -= kSwatch + kGap;
-    picture.fill(x, top, kSwatch, kSwatch, entry->colour);
-    draw_frame(picture, {x, top, kSwatch, kSwatch}, 1, kInk);
-    x -= 3 * kGap;
+  std::vector<Entry> legend = {{"occupied", colours.barely_occupied, colours.surely_occupied},
+                               {"free", colours.barely_free, colours.surely_free},
+                               {"unknown", colours.unknown, colours.unknown}};
+  if (map.thresholds.lower < map.thresholds.upper) {
+    legend.push_back({"between", colours.undecided, colours.undecided});
   }
+  for (const Entry& entry : legend) {
+    for (std::ptrdiff_t i = 0; i < kSwatch; ++i) {
+      picture.fill(x + i, top, 1, kHigh, mixed(entry.from, entry.to, static_cast<double>(i) / (kSwatch - 1)));
+    }
+    draw_frame(picture, {x, top, kSwatch, kHigh}, 1, kInk);
+    draw_label(picture, x + kSwatch + 8, top + 2, entry.text, kTextScale, kInk);
+    x += kSwatch + 8 + label_width(entry.text, kTextScale) + 16;
+  }
+}
+
+/// What of the map is shown, for people.
+std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, const Look& look) {
+  if (!options.layer_z_m) return std::string(look.note);
+  const auto layer = layer_at(map.lattice(), *options.layer_z_m);
+  if (!layer) return fmt::format("z = {:.6g} m, outside of the map", *options.layer_z_m);
+  // A corner that should be at 0 may be off by a rounding.
+  const auto tidy = [&](double z_m) { return std::abs(z_m) < 1e-6 * map.lattice().resolution_m() ? 0.0 : z_m; };
+  return fmt::format("{}, layer z = {:.6g} to {:.6g} m", look.note, tidy(layer->first), tidy(layer->second));
 }
 
 }  // namespace
@@ -183,51 +272,87 @@ Result<void> MapPictureOptions::validate() const {
       (min_z_m && max_z_m && *min_z_m >= *max_z_m)) {
     bad += " min_z_m must be below max_z_m;";
   }
+  if (layer_z_m && !std::isfinite(*layer_z_m)) bad += " layer_z_m must be finite;";
+  if (layer_z_m && (min_z_m || max_z_m)) bad += " a layer has no min_z_m and max_z_m of its own;";
   if (bad.empty()) return {};
   bad.pop_back();
   return fail(Error::Code::kBadOption, "map picture:" + bad);
 }
 
+std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& options) {
+  assert(options.validate());
+  const std::optional<Corners> corners = corners_of(map, options);
+  if (!corners) return std::nullopt;
+  const Lattice& lattice = map.lattice();
+  const Eigen::Vector3d low_m = lattice.lowest_corner_of(corners->low, lattice.depth());
+  const Eigen::Vector3d high_m = lattice.lowest_corner_of(corners->high, lattice.depth());
+  return Box{low_m, high_m.array() + lattice.resolution_m()};
+}
+
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
+  const Look look = look_of(options.view);
   const Columns columns = columns_of(map, options, options.target_px);
-  const std::size_t longer = std::max({columns.nx, columns.ny, std::size_t{1}});
-  // A single cell need not fill the picture.
-  const auto zoom = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(options.target_px / longer, 1, 64));
-  const auto nx = static_cast<std::ptrdiff_t>(columns.nx), ny = static_cast<std::ptrdiff_t>(columns.ny);
+  const std::size_t longer = std::max({columns.across, columns.up, std::size_t{1}});
+  // A little longer than asked for is better than half of it; and a single cell need not fill the picture.
+  const auto zoom = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(options.target_px * 23 / 20 / longer, 1, 64));
+  const auto across = static_cast<std::ptrdiff_t>(columns.across), up = static_cast<std::ptrdiff_t>(columns.up);
   // Something unknown is left around what is known, so that its outline shows.
   const std::ptrdiff_t halo = std::max<std::ptrdiff_t>(zoom, 8);
-  const std::ptrdiff_t known_width = ny * zoom + 2 * halo, known_height = nx * zoom + 2 * halo;
-  const std::ptrdiff_t inner_width = std::max(known_width, kLeastWidth - 2 * kMargin), inner_height = known_height;
+  const std::ptrdiff_t width = std::max(across * zoom + 2 * halo, kLeastWidth), height = up * zoom + 2 * halo;
 
-  Picture picture(static_cast<std::size_t>(inner_width + 2 * kMargin),
-                  static_cast<std::size_t>(inner_height + kMargin + kFooter), kPaper);
-  picture.fill(kMargin, kMargin, inner_width, inner_height, options.colours.unknown);
-  const std::ptrdiff_t left = kMargin + (inner_width - ny * zoom) / 2, top = kMargin + halo;
-  for (std::ptrdiff_t x = 0; x < nx; ++x) {
-    for (std::ptrdiff_t y = 0; y < ny; ++y) {
-      const float belief = columns.at(static_cast<std::size_t>(x), static_cast<std::size_t>(y));
-      picture.fill(left + (ny - 1 - y) * zoom, top + (nx - 1 - x) * zoom, zoom, zoom,
+  // From the corner of the area, in pixels.
+  const std::ptrdiff_t known_left = (width - across * zoom) / 2;
+  const bool is_mirrored = look.grows == Look::Across::kGrowsLeftwards;
+  const double metres_per_pixel = columns.cell_m / static_cast<double>(zoom);
+  const auto metres = [&](std::ptrdiff_t pixels) { return static_cast<double>(pixels) * metres_per_pixel; };
+  const std::ptrdiff_t known_right = width - known_left - across * zoom;
+  const double before_m = columns.least_across_m - metres(is_mirrored ? known_right : known_left);
+  const double behind_m = before_m + metres(width);
+  const AxisScale across_scale = is_mirrored ? AxisScale{behind_m, before_m} : AxisScale{before_m, behind_m};
+  const double bottom_m = columns.least_up_m - metres(halo);
+  const AxisScale up_scale{bottom_m, bottom_m + metres(height)};
+  const auto ticks_on = [](std::ptrdiff_t pixels) {
+    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(pixels / 80, 4, 12));
+  };
+  const std::vector<Tick> across_ticks = ticks_of(across_scale, ticks_on(width));
+  const std::vector<Tick> up_ticks = ticks_of(up_scale, ticks_on(height));
+
+  const Area area{kMargin + left_axis_width(up_ticks), kMargin + kNote, width, height};
+  Picture picture(static_cast<std::size_t>(area.right() + kMargin),
+                  static_cast<std::size_t>(area.bottom() + kBottomAxis + 2 * kFooterRow + kMargin / 2), kPaper);
+  picture.fill(area.x, area.y, area.width, area.height, options.colours.unknown);
+  for (std::ptrdiff_t a = 0; a < across; ++a) {
+    const std::ptrdiff_t x = area.x + known_left + (is_mirrored ? across - 1 - a : a) * zoom;
+    for (std::ptrdiff_t u = 0; u < up; ++u) {
+      const float belief = columns.at(static_cast<std::size_t>(a), static_cast<std::size_t>(u));
+      picture.fill(x, area.y + halo + (up - 1 - u) * zoom, zoom, zoom,
                    colour_of(belief, map.options(), options.colours));
     }
   }
-  draw_frame(picture, {kMargin, kMargin, inner_width, inner_height}, kBorder, kInk);
+  draw_frame(picture, area, kBorder, kInk);
+  draw_label(picture, area.x, kMargin, note_of(map, options, look), kTextScale, kInk);
 
-  const std::ptrdiff_t footer = kMargin + inner_height + kMargin;
-  if (nx == 0) {
-    draw_label(picture, kMargin, footer, "nothing is known", kTextScale, kInk);
+  if (across == 0) {
+    draw_label(picture, area.x, area.bottom() + kGap, "nothing is known", kTextScale, kInk);
     return picture;
   }
-  const double metres_per_pixel = columns.cell_m / static_cast<double>(zoom);
-  const double origin_x = static_cast<double>(left + ny * zoom) + columns.min_y_m / metres_per_pixel;
-  const double origin_y = static_cast<double>(top + nx * zoom) + columns.min_x_m / metres_per_pixel;
-  const auto inside = [](double at, std::ptrdiff_t from, std::ptrdiff_t length) {
-    return at >= static_cast<double>(from) && at < static_cast<double>(from + length);
-  };
-  if (inside(origin_x, kMargin, inner_width) && inside(origin_y, kMargin, inner_height)) {
-    draw_cross(picture, std::lround(origin_x), std::lround(origin_y));
+  constexpr std::array<std::string_view, 3> kAxes = {"x in m", "y in m", "z in m"};
+  draw_bottom_axis(picture, area, across_ticks, kAxes[look.across]);
+  draw_left_axis(picture, area, up_ticks, kAxes[look.up]);
+
+  const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
+  draw_scale_bar(picture, area.x, footer, metres_per_pixel);
+  draw_legend(picture, area.x, footer + kFooterRow, map.options(), options.colours);
+  const double origin_across = across_scale.share_of(0.0), origin_up = up_scale.share_of(0.0);
+  const auto is_inside = [](double share) { return share >= 0.0 && share < 1.0; };
+  if (is_inside(origin_across) && is_inside(origin_up)) {
+    draw_cross(picture, area.x + std::lround(origin_across * static_cast<double>(width)),
+               area.bottom() - std::lround(origin_up * static_cast<double>(height)));
+    const std::ptrdiff_t x = area.right() - label_width("origin", kTextScale);
+    draw_label(picture, x, footer + 2, "origin", kTextScale, kInk);
+    draw_cross(picture, x - 20, footer + 9);
   }
-  draw_footer(picture, footer, metres_per_pixel, options.colours);
   return picture;
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "viewer/axis.hpp"
@@ -13,6 +15,8 @@ namespace pingvox {
 namespace {
 
 constexpr std::size_t kEdge = 24, kBetween = 16;
+/// Wider rows are broken if they can be: smaller on a screen, nobody could read the letters.
+constexpr std::size_t kWidest = 2600;
 constexpr std::size_t kLine = static_cast<std::size_t>(kTextScale * kLetterHeight) + 6;
 
 /// The text in lines of at most `width` pixels, broken between words, and within those that are longer than a line.
@@ -54,51 +58,68 @@ Row row_of(std::span<const Panel> panels, std::size_t first, std::size_t last) {
   return row;
 }
 
-std::vector<Row> rows_of(std::span<const Panel> panels, std::size_t count) {
+/// Where everything goes when the panels stand in so many rows.
+struct Layout {
   std::vector<Row> rows;
-  for (std::size_t r = 0; r < count; ++r) {
-    rows.push_back(row_of(panels, r * panels.size() / count, (r + 1) * panels.size() / count));
+  std::vector<std::string> heading;
+  std::size_t width = 0, height = 0;
+};
+
+std::size_t height_of(const Row& row) {
+  return row.height + (row.lines > 0 ? row.lines * kLine + kBetween : 0);
+}
+
+Layout layout_of(std::span<const Panel> panels, std::string_view title, std::size_t rows) {
+  Layout layout;
+  for (std::size_t r = 0; r < rows; ++r) {
+    layout.rows.push_back(row_of(panels, r * panels.size() / rows, (r + 1) * panels.size() / rows));
+    layout.width = std::max(layout.width, layout.rows.back().width);
+    layout.height += height_of(layout.rows.back());
   }
-  return rows;
+  layout.heading = lines_of(title, text_width(layout.width));
+  if (!layout.heading.empty()) layout.height += kEdge + layout.heading.size() * kLine;
+  return layout;
+}
+
+Picture drawn(std::span<const Panel> panels, const Layout& layout) {
+  Picture picture(layout.width, layout.height, kPaper);
+  const auto write = [&](const std::vector<std::string>& lines, std::size_t x, std::size_t top) {
+    for (const std::string& line : lines) {
+      draw_label(picture, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(top), line, kTextScale, kInk);
+      top += kLine;
+    }
+  };
+  std::size_t y = 0;
+  if (!layout.heading.empty()) {
+    write(layout.heading, kEdge, kEdge);
+    y = kEdge + layout.heading.size() * kLine;
+  }
+  for (const Row& row : layout.rows) {
+    std::size_t x = 0;
+    for (std::size_t i = row.first; i < row.last; ++i) {
+      const Panel& panel = panels[i];
+      paste(picture, panel.picture, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(y));
+      write(lines_of(panel.caption, text_width(panel.picture.width())), x + kEdge, y + row.height);
+      x += panel.picture.width() + kBetween;
+    }
+    y += height_of(row);
+  }
+  return picture;
 }
 
 }  // namespace
 
 Result<Picture> side_by_side(std::span<const Panel> panels, std::string_view title) {
   if (panels.empty()) return fail(Error::Code::kBadOption, "pictures side by side: there are none");
+  std::optional<Layout> chosen;
   for (std::size_t count = 1; count <= panels.size(); ++count) {
-    const std::vector<Row> rows = rows_of(panels, count);
-    std::size_t width = 0, height = 0;
-    for (const Row& row : rows) {
-      width = std::max(width, row.width);
-      height += row.height + (row.lines > 0 ? row.lines * kLine + kBetween : 0);
-    }
-    const std::vector<std::string> heading = lines_of(title, text_width(width));
-    if (!heading.empty()) height += kEdge + heading.size() * kLine;
-    if (width > Picture::kMaxSide || height > Picture::kMaxSide) continue;
-
-    Picture picture(width, height, kPaper);
-    std::size_t y = heading.empty() ? 0 : kEdge;
-    const auto write = [&](const std::vector<std::string>& lines, std::size_t x, std::size_t top) {
-      for (const std::string& line : lines) {
-        draw_label(picture, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(top), line, kTextScale, kInk);
-        top += kLine;
-      }
-    };
-    write(heading, kEdge, y);
-    y += heading.size() * kLine;
-    for (const Row& row : rows) {
-      std::size_t x = 0;
-      for (std::size_t i = row.first; i < row.last; ++i) {
-        const Panel& panel = panels[i];
-        paste(picture, panel.picture, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(y));
-        write(lines_of(panel.caption, text_width(panel.picture.width())), x + kEdge, y + row.height);
-        x += panel.picture.width() + kBetween;
-      }
-      y += row.height + (row.lines > 0 ? row.lines * kLine + kBetween : 0);
-    }
-    return picture;
+    Layout layout = layout_of(panels, title, count);
+    if (layout.width > Picture::kMaxSide || layout.height > Picture::kMaxSide) continue;
+    const bool is_readable = layout.width <= kWidest;
+    if (!chosen || is_readable) chosen = std::move(layout);
+    if (is_readable) break;
   }
+  if (chosen) return drawn(panels, *chosen);
   return fail(Error::Code::kLimit,
               fmt::format("{} pictures side by side need more than {} pixels: make them smaller, or draw fewer",
                           panels.size(), Picture::kMaxSide));

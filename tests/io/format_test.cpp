@@ -31,6 +31,48 @@ TEST(Format, IsToldByContent) {
   EXPECT_EQ(format_of(from_hex("00000000 00000000")), Format::kScanGraph);
 }
 
+TEST(Format, TellsCloudsFromMeshes) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n";
+  EXPECT_EQ(format_of_text(head + "end_header\n"), Format::kPly);
+  EXPECT_EQ(format_of_text(head + "element face 0\nproperty list uchar int vertex_indices\nend_header\n"),
+            Format::kPly);
+  EXPECT_EQ(format_of_text(head + "element face 1\nproperty list uchar int vertex_indices\nend_header\n"),
+            Format::kPlyMesh);
+  EXPECT_EQ(format_of_text("ply\r\nelement vertex"), Format::kPly) << "its reader says what is wrong with it";
+  EXPECT_EQ(format_of_text("plywood\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("# .PCD v.7 - Point Cloud Data file format\n"), Format::kPcd);
+  EXPECT_EQ(format_of_text("# mine\nVERSION .5\nCOLUMNS x y z\n"), Format::kPcd);
+  EXPECT_EQ(format_of_text("VERSION 3 of my diary\nDear diary\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("# a hull\nOFF\n8 6 0\n"), Format::kOff);
+  EXPECT_EQ(format_of_text("OFFICE hours\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("solid hull\n  facet normal 0 0 1\n"), Format::kStl);
+  EXPECT_EQ(format_of_text("solid ground under my feet\nat last\n"), std::nullopt);
+  std::vector<std::uint8_t> stl(80 + 4 + 50);
+  stl[80] = 1;
+  EXPECT_EQ(format_of(stl), Format::kStl);
+  stl.push_back(0);
+  EXPECT_EQ(format_of(stl), std::nullopt);
+  EXPECT_EQ(format_of(std::vector<std::uint8_t>(84)), std::nullopt) << "nothing but zeros";
+}
+
+TEST(Format, TellsXyzFromOtherColumnsOfNumbers) {
+  EXPECT_EQ(format_of_text("1 2 3\n4 5 6\n"), Format::kXyz);
+  EXPECT_EQ(format_of_text("# X,Y,Z\n1,-2.5,3e2,77\n"), Format::kXyz);
+  EXPECT_EQ(format_of_text("1\t2\t3\n"), Format::kXyz);
+  EXPECT_EQ(format_of_text("1 2\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("10 20 30 and I am coming\n"), std::nullopt);
+  EXPECT_EQ(format_of_text("10.25,3.14,0.0125,0,43,68,90,1,2,3,4,5,6,7,8,9,10\n"), std::nullopt)
+      << "beams without a header";
+  EXPECT_EQ(format_of_text("1 0 2 27 28\n1 1 14 27 28 29 30 31 32 33 34 35 36 37 38 39 40\n"), std::nullopt)
+      << "the same with a short one first";
+  // As many columns as a trajectory has, or one more or less.
+  EXPECT_EQ(format_of_text("1 2 3 0.1 200 10 0 77\n1 2 3 0.2 200 10 0 78\n"), Format::kXyz);
+  EXPECT_EQ(format_of_text("1 2 3 0 0 1 9\n1 2 3 0 1 0 9\n"), Format::kXyz) << "with normals";
+  EXPECT_EQ(format_of_text("1 2 3 0 0 1 255 0 0\n"), Format::kXyz) << "with normals and colours";
+  EXPECT_EQ(format_of_text("1.5 1 2 3 0 0 0\n2.5 1 2 3 0 0 0 1\n"), Format::kTum) << "its first line is damaged";
+  EXPECT_EQ(format_of_text("1.5 1 2 3 0.5 0.5 0.5 0.5\n"), Format::kTum);
+}
+
 TEST(Format, KnowsTheOldestBinaryTree) {
   // i32 3, f64 0.1, u32 9 nodes; a root of eight leaves.
   const auto bytes = from_hex("03000000 9a9999999999b93f 09000000 aaaa");
@@ -54,7 +96,6 @@ TEST(Format, IsNothingForNothing) {
   EXPECT_EQ(format_of_text("\n\n\n"), std::nullopt);
   EXPECT_EQ(format_of_text("# only a comment"), std::nullopt);
   EXPECT_EQ(format_of_text("hello, world\n"), std::nullopt);
-  EXPECT_EQ(format_of_text("1 2 3\n4 5 6\n"), std::nullopt);
   EXPECT_EQ(format_of_text("NODELIST\n"), std::nullopt);
 }
 
@@ -86,6 +127,10 @@ TEST(Format, OfAFileToBeWrittenIsItsSuffix) {
   EXPECT_EQ(format_for_writing("map.ply"), Format::kPly);
   EXPECT_EQ(format_for_writing("log.csv"), Format::kCsv);
   EXPECT_EQ(format_for_writing("picture.png"), Format::kPng);
+  EXPECT_EQ(format_for_writing("cloud.pcd"), Format::kPcd);
+  EXPECT_EQ(format_for_writing("grid.yaml"), Format::kGrid);
+  EXPECT_EQ(format_for_writing("grid.pgm"), Format::kGrid);
+  EXPECT_EQ(format_for_writing("bottom.ASC"), Format::kAsc);
   EXPECT_EQ(format_for_writing("log.mat"), std::nullopt);
   EXPECT_EQ(format_for_writing("bt"), std::nullopt);
   EXPECT_EQ(format_for_writing("-"), std::nullopt);

@@ -58,8 +58,10 @@ TEST_P(Mutation, KeepsItsPromises) {
 INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
                          testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
                                          Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
-                                         Reader{"mesh", fuzz::mesh}, Reader{"tum", fuzz::tum}, Reader{"bt", fuzz::maps},
-                                         Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
+                                         Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
+                                         Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},
+                                         Reader{"tum", fuzz::tum}, Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps},
+                                         Reader{"pvx", fuzz::pvx}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "viewer/picture_text.hpp"
@@ -76,6 +78,33 @@ TEST(RenderEchoes, ManyBeamsShareRowsAndNoEchoIsLost) {
   }
   EXPECT_EQ(bright, kRows * 2);
   EXPECT_EQ(marked, 3U);
+}
+
+/// Rows with a tick at the right of the image.
+std::vector<std::size_t> bearing_ticks(const Picture& picture, std::size_t columns, std::size_t row_px) {
+  std::vector<std::size_t> rows;
+  const std::size_t x = kLeft + columns + 2 + 4;
+  for (std::size_t y = kTop; y < picture.height() - 96; ++y) {
+    const bool is_first = picture.at(x, y) != Rgb{255, 255, 255} && picture.at(x, y - 1) == Rgb{255, 255, 255};
+    if (is_first) rows.push_back((y - kTop) / row_px);
+  }
+  return rows;
+}
+
+TEST(RenderEchoes, MarksRoundBearingsWhereTheHeadPassesThem) {
+  // A turn and a half in steps of 1.8 degrees, clockwise from 45 degrees: 45, 0 (360), 315 ... every 45.
+  std::vector<Beam> beams;
+  for (int n = 0; n < 300; ++n) {
+    beams.push_back(beam_of({0, 0, 0, 0}));
+    const double turned_rad = (45.0 - 1.8 * n) * std::numbers::pi / 180.0;
+    beams.back().bearing_rad = turned_rad - 2.0 * std::numbers::pi * std::floor(turned_rad / (2.0 * std::numbers::pi));
+  }
+  const Picture turning = render_echoes(beams, {}, {.target_px = 16});
+  EXPECT_EQ(bearing_ticks(turning, 16, 2),
+            (std::vector<std::size_t>{0, 25, 50, 75, 100, 125, 150, 175, 200, 225, 250, 275}));
+  // A head that stands still on no round bearing passes none.
+  for (Beam& beam : beams) beam.bearing_rad = 1.234;
+  EXPECT_TRUE(bearing_ticks(render_echoes(beams, {}, {.target_px = 16}), 16, 2).empty());
 }
 
 TEST(RenderEchoes, DrawsWhateverIsValid) {

@@ -16,13 +16,22 @@ namespace {
 const MapColours kColours{};
 const Rgb kCrossColour{230, 120, 0};
 
-/// The picture without its border and what is below it.
+/// What is in the frame: around what is known there is always something unknown.
 struct Inside {
   std::size_t left, top, right, bottom;
 };
 
 Inside inside_of(const Picture& picture) {
-  return {24, 24, picture.width() - 24, picture.height() - 56};
+  Inside in{0, 0, 0, 0};
+  const auto is_unknown = [&](std::size_t x, std::size_t y) { return picture.at(x, y) == kColours.unknown; };
+  for (std::size_t i = 0; i < picture.width() * picture.height(); ++i) {
+    in.left = i % picture.width();
+    in.top = i / picture.width();
+    if (is_unknown(in.left, in.top)) break;
+  }
+  for (in.right = in.left; is_unknown(in.right, in.top);) ++in.right;
+  for (in.bottom = in.top; is_unknown(in.left, in.bottom);) ++in.bottom;
+  return in;
 }
 
 /// Pixels inside of the border that have this colour.
@@ -48,6 +57,11 @@ std::pair<std::size_t, std::size_t> corner_of_known(const Picture& picture) {
   return corner;
 }
 
+/// Pixels along the edge of a cell.
+std::size_t edge_px(std::size_t target_px, std::size_t cells) {
+  return target_px * 23 / 20 / cells;
+}
+
 Key cell(int x, int y, int z) {
   const auto word = [](int c) { return static_cast<std::uint16_t>(32768 + c); };
   return {word(x), word(y), word(z)};
@@ -70,11 +84,87 @@ TEST(RenderMap, PutsXUpAndYLeft) {
   }
   const Picture picture = render_map(map, {.target_px = 80});
   const auto [left, top] = corner_of_known(picture);
-  EXPECT_EQ(drawn(picture, left, top, 5, 4, 16, kLetters),
+  EXPECT_EQ(drawn(picture, left, top, 5, 4, edge_px(80, 5), kLetters),
             "#####\n"
             "#  . \n"
             "# #. \n"
             "#  . \n");
+}
+
+TEST(RenderMap, PutsZUpFromEachSide) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    const LogOdds wall = Clamp{}.highest, water = Clamp{}.lowest;
+    for (int x = 200; x < 204; ++x) editor.set(cell(x, 100, 50), 16, water);  // a bottom of water, and on it
+    editor.set(cell(203, 100, 51), 16, wall);                                 // a step ahead,
+    editor.set(cell(203, 100, 52), 16, wall);
+    editor.set(cell(200, 102, 51), 16, wall);  // and one to the left
+  }
+  const auto seen = [&](MapView view, std::size_t across) {
+    const Picture picture = render_map(map, {.view = view, .target_px = 64});
+    const auto [left, top] = corner_of_known(picture);
+    const std::size_t cell_px = edge_px(64, std::max<std::size_t>(across, 3));
+    return drawn(picture, left, top, across, 3, cell_px, kLetters);
+  };
+  EXPECT_EQ(seen(MapView::kRight, 4),
+            "   #\n"
+            "#  #\n"
+            "....\n");
+  EXPECT_EQ(seen(MapView::kLeft, 4),
+            "#   \n"
+            "#  #\n"
+            "....\n");
+  EXPECT_EQ(seen(MapView::kFront, 3),
+            "#  \n"
+            "# #\n"
+            ".  \n");
+  EXPECT_EQ(seen(MapView::kBehind, 3),
+            "  #\n"
+            "# #\n"
+            "  .\n");
+}
+
+TEST(RenderMap, ShowsOneLayerOfCells) {
+  OccupancyMap map({.resolution_m = 0.05});
+  {
+    Editor editor = map.edit();
+    for (int z = -3; z <= 3; ++z) editor.set(cell(100, 100 + z, z), 16, Clamp{}.highest);
+  }
+  const auto cells_at = [&](double z_m) {
+    const Picture picture = render_map(map, {.target_px = 16, .layer_z_m = z_m});
+    return count_of(picture, kColours.surely_occupied) / 256;
+  };
+  // A height between two layers belongs to the upper one.
+  for (const double z_m : {0.0, 0.02, 0.05, -0.05, -0.15, 0.1, 0.15, 0.199}) EXPECT_EQ(cells_at(z_m), 1U) << z_m;
+  for (const double z_m : {0.21, -0.16, 1e6, -1e300}) {
+    EXPECT_GT(render_map(map, {.layer_z_m = z_m}).width(), 0U) << z_m;
+  }
+  // All of them from above, so that the layer is one of several.
+  EXPECT_EQ(count_of(render_map(map, {.target_px = 16}), kColours.surely_occupied), 7U * 4U);
+}
+
+TEST(RenderMap, ShowsMoreThanIsKnownToBeCompared) {
+  OccupancyMap small({.resolution_m = 1.0}), large({.resolution_m = 1.0});
+  small.edit().set(cell(100, 100, 0), 16, Clamp{}.highest);
+  large.edit().set(cell(98, 101, 0), 16, Clamp{}.highest);
+  large.edit().set(cell(102, 99, 7), 16, Clamp{}.highest);
+  const auto part = shown_part(large, {});
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->min, Eigen::Vector3d(98, 99, 0));
+  EXPECT_EQ(part->max, Eigen::Vector3d(103, 102, 8));
+  EXPECT_FALSE(shown_part(OccupancyMap{}, {}));
+  EXPECT_EQ(shown_part(large, {.layer_z_m = 7.5})->min, Eigen::Vector3d(102, 99, 7));
+
+  const Picture a = render_map(large, {.target_px = 100});
+  const Picture b = render_map(small, {.target_px = 100, .at_least = part});
+  EXPECT_EQ(a.width(), b.width());
+  EXPECT_EQ(a.height(), b.height());
+  // The cell in the middle of five by three.
+  const auto [left, top] = corner_of_known(b);
+  const auto [all_left, all_top] = corner_of_known(a);
+  EXPECT_EQ(left, all_left + edge_px(100, 5));
+  EXPECT_EQ(top, all_top + 2 * edge_px(100, 5));
 }
 
 TEST(RenderMap, ShowsOnlyTheSlab) {
@@ -86,10 +176,10 @@ TEST(RenderMap, ShowsOnlyTheSlab) {
     editor.set(cell(101, 100, 0), 16, Clamp{}.lowest);
   }
   const Picture all = render_map(map, {.target_px = 16});
-  EXPECT_EQ(count_of(all, kColours.surely_occupied), 64U);
+  EXPECT_EQ(count_of(all, kColours.surely_occupied), edge_px(16, 2) * edge_px(16, 2));
   const Picture slab = render_map(map, {.target_px = 16, .min_z_m = 0.0, .max_z_m = 3.0});
   EXPECT_EQ(count_of(slab, kColours.surely_occupied), 0U);
-  EXPECT_EQ(count_of(slab, kColours.surely_free), 128U);
+  EXPECT_EQ(count_of(slab, kColours.surely_free), 2 * edge_px(16, 2) * edge_px(16, 2));
 }
 
 TEST(RenderMap, MarksTheOriginAndWhatIsUndecided) {
@@ -100,9 +190,10 @@ TEST(RenderMap, MarksTheOriginAndWhatIsUndecided) {
   EXPECT_GT(count_of(picture, kColours.undecided), 10'000U);
   // Where the two squares meet, in the middle.
   const auto [left, top] = corner_of_known(picture);
-  EXPECT_EQ(picture.at(left + 80, top + 80), kCrossColour);
-  EXPECT_EQ(picture.at(left + 90, top + 80), kCrossColour);
-  EXPECT_NE(picture.at(left + 93, top + 80), kCrossColour);
+  const std::size_t x = left + 8 * edge_px(160, 16), y = top + 8 * edge_px(160, 16);
+  EXPECT_EQ(picture.at(x, y), kCrossColour);
+  EXPECT_EQ(picture.at(x + 10, y), kCrossColour);
+  EXPECT_NE(picture.at(x + 13, y), kCrossColour);
 }
 
 TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
@@ -142,7 +233,7 @@ TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
       }
       expected += '\n';
     }
-    EXPECT_EQ(drawn(picture, left, top, ny, nx, 256 / std::max(nx, ny), kLetters), expected);
+    EXPECT_EQ(drawn(picture, left, top, ny, nx, edge_px(256, std::max(nx, ny)), kLetters), expected);
   }
   EXPECT_GT(checked, 30'000U);
 }
@@ -156,7 +247,7 @@ TEST(RenderMap, LosesNoThinWallWhereAPixelIsManyCells) {
   }
   const Picture picture = render_map(map, {.target_px = 500});
   EXPECT_LE(picture.width(), 700U);
-  EXPECT_EQ(count_of(picture, kColours.surely_occupied), 4096U / 16U);
+  EXPECT_EQ(count_of(picture, kColours.surely_occupied), 4096U / 16U * edge_px(500, 256) * edge_px(500, 256));
 }
 
 TEST(RenderMap, DrawsMapsOfAnyDepthAndSize) {
@@ -172,6 +263,12 @@ TEST(RenderMap, DrawsMapsOfAnyDepthAndSize) {
       const Picture corners = render_map(map);
       EXPECT_GT(count_of(corners, kColours.surely_occupied), 0U);
       EXPECT_GT(count_of(corners, kColours.surely_free), 0U);
+      for (const MapView view : {MapView::kRight, MapView::kLeft, MapView::kFront, MapView::kBehind}) {
+        const Picture side = render_map(map, {.view = view, .at_least = shown_part(map, {})});
+        EXPECT_GT(count_of(side, kColours.surely_occupied), 0U);
+      }
+      const Picture layer = render_map(map, {.layer_z_m = 0.0, .at_least = Box{{-1e308, -1, 0}, {1e308, 1, 1e-320}}});
+      EXPECT_LE(layer.width(), Picture::kMaxSide);
       map.edit().set(WideKey{}, 0, Clamp{}.highest);
       EXPECT_GT(count_of(render_map(map), kColours.surely_occupied), 0U);
     }
@@ -183,6 +280,7 @@ TEST(MapPictureOptions, RefuseSenselessValues) {
   EXPECT_FALSE(MapPictureOptions{.target_px = 0}.validate());
   EXPECT_FALSE(MapPictureOptions{.target_px = 4000}.validate());
   EXPECT_FALSE((MapPictureOptions{.min_z_m = 1.0, .max_z_m = 1.0}).validate());
+  EXPECT_FALSE((MapPictureOptions{.min_z_m = 1.0, .layer_z_m = 1.0}).validate());
 }
 
 }  // namespace

@@ -27,12 +27,12 @@ TEST(SideBySide, PutsPicturesIntoARow) {
 }
 
 TEST(SideBySide, BreaksRowsThatWouldBeTooWide) {
-  const std::vector<Panel> four(4, Panel{Picture(1500, 100, kRed), ""});
+  const std::vector<Panel> four(4, Panel{Picture(1200, 100, kRed), ""});
   const auto picture = side_by_side(four);
   ASSERT_TRUE(picture);
-  EXPECT_EQ(picture->width(), 3016U);
+  EXPECT_EQ(picture->width(), 2416U);
   EXPECT_EQ(picture->height(), 200U);
-  EXPECT_EQ(picture->at(1516, 100), kRed);
+  EXPECT_EQ(picture->at(1216, 100), kRed);
   const auto titled = side_by_side(four, "all of them");
   ASSERT_TRUE(titled);
   EXPECT_GT(titled->height(), 230U);

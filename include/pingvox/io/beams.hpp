@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <ostream>
 
 #include "pingvox/io/bytes.hpp"
@@ -19,8 +21,11 @@ enum class Damage {
 /// Any log that holds beams, told by content. kUnsupported when it holds none, kCorrupt when its frame is broken.
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = Damage::kSkip);
 
-/// Any log that holds point scans, told by content.
-Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip);
+/// Any log that holds point scans, told by content, or a cloud of points (PLY, PCD, XYZ), which is one scan.
+/// @param cloud_origin_m  from where the points of a cloud were seen (map frame); nullopt: what a PCD's VIEWPOINT says,
+///                        else 0, 0, 0. Logs know the places of their scans, and nothing happens to those
+Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip,
+                                               const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);
 
 /// Writes all beams of a source as CSV (docs/formats.md). Numbers are written so that reading gives the same beams to
 /// the last bit.

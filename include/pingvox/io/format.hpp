@@ -18,20 +18,28 @@ enum class Format {
   kOt,         ///< OctoMap's tree with log-odds
   kPvx,        ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
   kTum,        ///< a trajectory
-  kPly,        ///< points, written only
+  kPly,        ///< a cloud of points
+  kPcd,        ///< a cloud of points, PCL's
+  kXyz,        ///< a cloud of points as text, read only
+  kPlyMesh,    ///< PLY with faces: a mesh
+  kOff,        ///< a mesh, read only
+  kStl,        ///< a mesh, read only
+  kGrid,       ///< a slice of a map for ROS's map_server, written only: a picture (PGM) and a YAML file beside it
+  kAsc,        ///< heights over a grid, ESRI's ASCII form, written only
   kPng,        ///< pictures, written only
 };
 
-enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kCloud, kPicture };
+enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kCloud, kMesh, kGrid, kPicture };
 
 FormatKind kind_of(Format format);
 /// Short lower-case name, as in "csv".
 std::string_view name_of(Format format);
 
-/// Told by content, not by name. nullopt: none of those that we read.
+/// Told by content, not by name (in which order, says docs/formats.md). nullopt: none of those that we read.
 std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
 
-/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .csv .png); nullopt: none that we write.
+/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .csv .pgm .yaml .asc .png); nullopt: none
+/// that we write.
 std::optional<Format> format_for_writing(std::string_view path);
 
 }  // namespace pingvox

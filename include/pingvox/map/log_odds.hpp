@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <compare>
+#include <cstdint>
 
 namespace pingvox {
 
@@ -47,7 +48,7 @@ constexpr LogOdds updated_by(LogOdds belief, LogOdds evidence, const Clamp& clam
   return sum < clamp.lowest ? clamp.lowest : (sum > clamp.highest ? clamp.highest : sum);
 }
 
-enum class Occupancy { kUnknown, kFree, kOccupied };
+enum class Occupancy : std::uint8_t { kUnknown, kFree, kOccupied };
 
 /// The paper's classification (section 5.2): occupied from `upper` on, free below `lower`, in between not known well
 /// enough. With both at 0 (the default) it is liboctomap's single threshold of probability 0.5.

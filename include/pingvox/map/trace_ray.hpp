@@ -18,10 +18,17 @@ enum class RayAlgorithm { kDda, kBresenham };
 bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
                RayAlgorithm algorithm, ScanUpdate& scan);
 
+/// Where the rays of a point scan end.
+enum class EndPoints {
+  kExact,  ///< in each point
+  kCells,  ///< in the middle of each cell with a point, once: fewer rays, a little less exact (OctoMap's `discretize`)
+};
+
 struct PointScanOptions {
   RayAlgorithm ray = RayAlgorithm::kDda;
   LogOdds hit = LogOdds::from_probability(0.7);
   double max_range_m = std::numeric_limits<double>::infinity();  ///< rays farther than this free, and hit nothing
+  EndPoints ends = EndPoints::kExact;
 };
 
 /// Marks each point of a scan as hit and the cells before it as missed: the sets of liboctomap's insertPointCloud.

@@ -1,0 +1,48 @@
+#include "map_log.hpp"
+
+#include <fmt/core.h>
+
+#include <limits>
+#include <string_view>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/tum.hpp"
+
+namespace pingvox::app {
+namespace {
+
+Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const BuildOptions& options, OccupancyMap& map,
+                          const Progress& progress) {
+  if (const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) {
+    return build_map(**beams, trajectory, options, map, progress);
+  }
+  return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
+}
+
+}  // namespace
+
+Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
+  if (!poses) return Trajectory::still(Pose::Identity());
+  const Result<FileBytes> file = read_file(*poses);
+  if (!file) return tl::unexpected(file.error());
+  return read_tum(*file);
+}
+
+Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
+                            const BuildOptions& options, OccupancyMap& map, const Progress& progress) {
+  Result<BuildReport> report = build(log, trajectory, options, map, progress);
+  if (!report) {
+    // Errors of the map itself name no file.
+    if (report.error().code != Error::Code::kLimit) return report;
+    return fail(Error::Code::kLimit, fmt::format("{}: {}", name, report.error().message));
+  }
+  if (report->beams == 0) {
+    const bool stood_still = trajectory.at(std::numeric_limits<double>::lowest()).has_value();
+    const std::string_view hint = stood_still ? "" : "; do the times of the poses fit?";
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{}: nothing in it could be mapped ({} left out{})", name, report->skipped, hint));
+  }
+  return report;
+}
+
+}  // namespace pingvox::app

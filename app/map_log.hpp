@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "open_log.hpp"
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/mapping/build_map.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// The trajectory in a file of TUM lines; without one the vehicle stood still at the origin.
+Result<Trajectory> trajectory_of(const std::optional<std::string>& poses);
+
+/// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
+/// @param name  of the log, for messages
+Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
+                            const BuildOptions& options, OccupancyMap& map, const Progress& progress = {});
+
+}  // namespace pingvox::app

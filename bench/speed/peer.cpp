@@ -1,0 +1,38 @@
+#include "peer.hpp"
+
+#include "bench/duel.hpp"
+
+namespace pingvox::bench {
+
+std::vector<octomap::Pointcloud> clouds_of(std::span<const PointScan> scans) {
+  std::vector<octomap::Pointcloud> clouds(scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    clouds[i].reserve(scans[i].points_m.size());
+    for (const Eigen::Vector3d& point : scans[i].points_m) {
+      clouds[i].push_back(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()));
+    }
+  }
+  return clouds;
+}
+
+void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, PeerEnds ends, PeerMode mode) {
+  const bool lazy = mode == PeerMode::kLazy;
+  for (const octomap::Pointcloud& cloud : clouds) {
+    tree.insertPointCloud(cloud, octomap::point3d(0.0F, 0.0F, 0.0F), -1.0, lazy, ends == PeerEnds::kCells);
+  }
+  if (!lazy) return;
+  tree.updateInnerOccupancy();
+  tree.prune();
+}
+
+PeerMode faster_mode(double resolution_m, std::span<const octomap::Pointcloud> clouds, PeerEnds ends) {
+  const auto time_of = [&](PeerMode mode) {
+    octomap::OcTree tree(resolution_m);
+    const double started = cpu_time_s();
+    insert(tree, clouds, ends, mode);
+    return cpu_time_s() - started;
+  };
+  return time_of(PeerMode::kEager) < time_of(PeerMode::kLazy) ? PeerMode::kEager : PeerMode::kLazy;
+}
+
+}  // namespace pingvox::bench

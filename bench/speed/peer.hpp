@@ -1,0 +1,29 @@
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <span>
+#include <vector>
+
+#include "pingvox/map/point_scan.hpp"
+
+namespace pingvox::bench {
+
+/// How liboctomap is called.
+enum class PeerMode {
+  kEager,  ///< parents right and pruned after each update
+  kLazy,   ///< settled and pruned once, after all scans
+};
+enum class PeerEnds {
+  kExact,  ///< a ray to each point
+  kCells,  ///< a ray to the middle of each cell with a point: `discretize`
+};
+
+std::vector<octomap::Pointcloud> clouds_of(std::span<const PointScan> scans);
+
+void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, PeerEnds ends, PeerMode mode);
+
+/// The mode that is faster for this work, by one run of each.
+PeerMode faster_mode(double resolution_m, std::span<const octomap::Pointcloud> clouds, PeerEnds ends);
+
+}  // namespace pingvox::bench

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Which layers of cells: those that the range of heights reaches into by more than a face, and at least the one that
+/// holds the lower end.
+struct SliceOptions {
+  std::optional<double> min_z_m, max_z_m;  ///< map frame [m]; nullopt: all that is known
+
+  Result<void> validate() const;  ///< kBadOption when one is not finite, or they are the wrong way round
+};
+
+/// A map seen from above: one value for each column of cells of the finest resolution, around all columns in which
+/// anything is known.
+template <class T>
+struct Raster {
+  std::size_t columns = 0, rows = 0;  ///< along x, along y
+  double cell_m = 0.0;
+  Eigen::Vector2d corner_m = Eigen::Vector2d::Zero();  ///< the lowest x and y, map frame
+  std::vector<T> values;                               ///< row by row, x fastest, the row of the lowest y first
+
+  const T& at(std::size_t column, std::size_t row) const { return values[row * columns + column]; }
+};
+
+/// The largest raster that is made.
+inline constexpr std::size_t kMostRasterCells = std::size_t{1} << 28;
+
+/// A column of the slice is occupied when any of its cells is, free when at least one is and none is occupied, else
+/// unknown: where nothing was observed, or nothing that the map's thresholds decide.
+/// @return kUnsupported when nothing is known there; kLimit beyond kMostRasterCells
+Result<Raster<Occupancy>> slice_of(const OccupancyMap& map, const SliceOptions& options);
+
+enum class Surface {
+  kHighest,  ///< what is seen from above: a bottom
+  kLowest,
+};
+
+/// Where the highest (lowest) occupied cell of each column of the slice has its upper face [m, map frame]; NaN in a
+/// column without one. The raster is that of `slice_of`.
+/// @return kUnsupported when nothing is occupied there; kLimit beyond a quarter of kMostRasterCells
+Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& options, Surface surface);
+
+}  // namespace pingvox

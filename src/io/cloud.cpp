@@ -1,0 +1,168 @@
+#include "io/cloud.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "io/byte_reader.hpp"
+
+namespace pingvox {
+namespace {
+
+/// "nan" in any case and with any sign, which is how a point without a place is written.
+bool is_nan(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  constexpr std::string_view kNan = "nan";
+  return word.size() == kNan.size() &&
+         std::equal(word.begin(), word.end(), kNan.begin(), [](char c, char wanted) { return (c | 0x20) == wanted; });
+}
+
+/// The words of a line that are coordinates; NaN where there is none that is finite.
+class LineOfPoint {
+ public:
+  explicit LineOfPoint(const std::array<TextCloud::Column, 3>& xyz)
+      : xyz_(xyz), words_(std::max({xyz[0].word, xyz[1].word, xyz[2].word}) + 1) {}
+
+  Eigen::Vector3d point_in(std::string_view line) {
+    Eigen::Vector3d point = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    has_nan_ = false;
+    for (std::size_t i = 0; i < words_; ++i) {
+      const auto word = cut_word(line);
+      if (!word) break;
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const auto& [place, type] = xyz_[static_cast<std::size_t>(axis)];
+        if (place != i) continue;
+        const auto value = type == Scalar::kFloat ? widened(float_in(*word)) : number_in(*word);
+        if (value) point[axis] = *value;
+        has_nan_ = has_nan_ || is_nan(*word);
+      }
+    }
+    return point;
+  }
+  /// Whether the last line said that a coordinate is NaN.
+  bool has_nan() const { return has_nan_; }
+
+ private:
+  static std::optional<double> widened(std::optional<float> value) {
+    return value ? std::optional<double>(*value) : std::nullopt;
+  }
+
+  std::array<TextCloud::Column, 3> xyz_;
+  std::size_t words_;
+  bool has_nan_ = false;
+};
+
+/// A source of one scan, made at once. What is damaged is left out and counted.
+class CloudSource : public ScanSource {
+ public:
+  CloudSource(std::string name, Damage damage, NanPoint nan, Eigen::Vector3d origin_m)
+      : name_(std::move(name)), damage_(damage), nan_(nan), origin_m_(std::move(origin_m)) {}
+
+  Result<std::optional<PointScan>> next() final {
+    if (is_read_) return std::nullopt;
+    is_read_ = true;
+    PointScan scan;
+    scan.origin_m = origin_m_;
+    if (const auto read = read_points(scan.points_m); !read) return tl::unexpected(read.error());
+    return scan;
+  }
+  std::size_t skipped() const final { return skipped_; }
+  std::optional<double> share_read() const final { return is_read_ ? 1.0 : 0.0; }
+
+ protected:
+  virtual Result<void> read_points(std::vector<Eigen::Vector3d>& points_m) = 0;
+
+  /// @param has_nan  the point is none because one of its coordinates is NaN
+  Result<void> left_out(const std::string& place, bool has_nan) {
+    const bool is_usual = has_nan && nan_ == NanPoint::kNoReturn;
+    return skipped_or_failed(is_usual ? Damage::kSkip : damage_, skipped_, name_, place,
+                             "is not a point of three finite numbers");
+  }
+  Result<void> cut_off(std::uint64_t points, std::uint64_t wanted) {
+    return skipped_or_failed(damage_, skipped_, name_, "end", fmt::format("holds {} of {} points", points, wanted));
+  }
+
+ private:
+  std::string name_;
+  Damage damage_;
+  NanPoint nan_;
+  Eigen::Vector3d origin_m_;
+  bool is_read_ = false;
+  std::size_t skipped_ = 0;
+};
+
+class TextCloudSource : public CloudSource {
+ public:
+  TextCloudSource(FileBytes file, Lines lines, const TextCloud& cloud, Damage damage, const Eigen::Vector3d& origin_m)
+      : CloudSource(file.name, damage, cloud.nan, origin_m), file_(std::move(file)), lines_(lines), cloud_(cloud) {}
+
+ private:
+  Result<void> read_points(std::vector<Eigen::Vector3d>& points_m) override {
+    LineOfPoint reader(cloud_.xyz);
+    std::uint64_t count = 0;
+    for (; !cloud_.points || count < *cloud_.points; ++count) {
+      const auto line = lines_.next_with_content();
+      if (!line) break;
+      const Eigen::Vector3d point = reader.point_in(*line);
+      if (point.allFinite()) {
+        points_m.push_back(point);
+        continue;
+      }
+      const auto counted = left_out(fmt::format("line {}", lines_.number()), reader.has_nan());
+      if (!counted) return counted;
+    }
+    if (cloud_.points && count < *cloud_.points) return cut_off(count, *cloud_.points);
+    return {};
+  }
+
+  FileBytes file_;  ///< what `lines_` looks into: a vector that moves keeps its bytes where they are
+  Lines lines_;
+  TextCloud cloud_;
+};
+
+class ByteCloudSource : public CloudSource {
+ public:
+  ByteCloudSource(std::string name, std::vector<std::uint8_t> bytes, const ByteCloud& cloud, Damage damage,
+                  const Eigen::Vector3d& origin_m)
+      : CloudSource(std::move(name), damage, cloud.nan, origin_m), bytes_(std::move(bytes)), cloud_(cloud) {}
+
+ private:
+  Result<void> read_points(std::vector<Eigen::Vector3d>& points_m) override {
+    points_m.reserve(cloud_.points);
+    for (std::size_t n = 0; n < cloud_.points; ++n) {
+      const Eigen::Vector3d point(value(0, n), value(1, n), value(2, n));
+      if (point.allFinite()) {
+        points_m.push_back(point);
+        continue;
+      }
+      const auto counted = left_out(fmt::format("point {}", n), point.hasNaN());
+      if (!counted) return counted;
+    }
+    return {};
+  }
+
+  double value(std::size_t axis, std::size_t n) const {
+    const auto& [first, step, type] = cloud_.xyz[axis];
+    const auto bytes = std::span(bytes_).subspan(first + n * step);
+    return with_scalar(type, [&]<class T>() { return static_cast<double>(value_from<T>(bytes, cloud_.order)); });
+  }
+
+  std::vector<std::uint8_t> bytes_;
+  ByteCloud cloud_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScanSource> text_cloud(FileBytes file, Lines lines, const TextCloud& cloud, Damage damage,
+                                       const Eigen::Vector3d& origin_m) {
+  return std::make_unique<TextCloudSource>(std::move(file), lines, cloud, damage, origin_m);
+}
+
+std::unique_ptr<ScanSource> byte_cloud(std::string name, std::vector<std::uint8_t> bytes, const ByteCloud& cloud,
+                                       Damage damage, const Eigen::Vector3d& origin_m) {
+  return std::make_unique<ByteCloudSource>(std::move(name), std::move(bytes), cloud, damage, origin_m);
+}
+
+}  // namespace pingvox

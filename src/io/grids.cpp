@@ -1,0 +1,99 @@
+#include "pingvox/io/grids.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <string>
+
+namespace pingvox {
+namespace {
+
+constexpr char kOccupied = '\0', kFree = '\xfe', kUnknown = '\xcd';  // 0, 254, 205
+
+Result<void> finished(std::ostream& out) {
+  if (!out.flush()) return fail(Error::Code::kIo, "the grid could not be written");
+  return {};
+}
+
+/// A length without the last digits, which are rounding.
+std::string length(double value_m) {
+  return fmt::format("{:.12g}", value_m);
+}
+
+/// The same without an exponent, which some readers of YAML take for a word.
+std::string decimal(double value_m) {
+  const std::string text = length(value_m);
+  return text.find('e') == std::string::npos ? text : fmt::format("{:.20f}", value_m);
+}
+
+/// A file's name as a string of YAML.
+std::string quoted(std::string_view name) {
+  std::string out = "\"";
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      out += fmt::format("\\x{:02X}", byte);
+      continue;
+    }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+bool is_plain(std::string_view name) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+  return !name.empty() && name.front() != '-' && name.find_first_not_of(kPlain) == std::string_view::npos;
+}
+
+}  // namespace
+
+Result<void> write_grid_pgm(const Raster<Occupancy>& slice, std::ostream& out) {
+  out << fmt::format("P5\n# pingvox, {} m a pixel\n{} {}\n255\n", length(slice.cell_m), slice.columns, slice.rows);
+  std::string line(slice.columns, kUnknown);
+  for (std::size_t row = slice.rows; row-- > 0;) {
+    for (std::size_t column = 0; column < slice.columns; ++column) {
+      const Occupancy value = slice.at(column, row);
+      line[column] = value == Occupancy::kOccupied ? kOccupied : value == Occupancy::kFree ? kFree : kUnknown;
+    }
+    out.write(line.data(), static_cast<std::streamsize>(line.size()));
+  }
+  return finished(out);
+}
+
+Result<void> write_grid_yaml(const Raster<Occupancy>& slice, std::string_view image, std::ostream& out) {
+  // map_server and nav2 take a pixel p for free when (255 - p) / 255 < free_thresh, and 205 comes to 0.19608.
+  out << fmt::format(
+      "image: {}\nmode: trinary\nresolution: {}\norigin: [{}, {}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
+      "free_thresh: 0.196\n",
+      is_plain(image) ? std::string(image) : quoted(image), decimal(slice.cell_m), decimal(slice.corner_m.x()),
+      decimal(slice.corner_m.y()));
+  return finished(out);
+}
+
+Result<void> write_heights_asc(const Raster<float>& heights, std::ostream& out) {
+  float lowest = std::numeric_limits<float>::infinity();
+  for (const float height : heights.values) lowest = std::fmin(lowest, height);
+  // What everybody takes, unless it could be a height.
+  const float nodata = lowest > -9999.0F ? -9999.0F : -3.4e38F;
+  out << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {}\nNODATA_value {}\n", heights.columns,
+                     heights.rows, length(heights.corner_m.x()), length(heights.corner_m.y()), length(heights.cell_m),
+                     nodata);
+  fmt::memory_buffer line;
+  for (std::size_t row = heights.rows; row-- > 0;) {
+    line.clear();
+    for (std::size_t column = 0; column < heights.columns; ++column) {
+      const float height = heights.at(column, row);
+      fmt::format_to(std::back_inserter(line), "{}{}", column > 0 ? " " : "", std::isnan(height) ? nodata : height);
+    }
+    line.push_back('\n');
+    out.write(line.data(), static_cast<std::streamsize>(line.size()));
+  }
+  return finished(out);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,34 @@
+#include "io/lzf.hpp"
+
+#include <algorithm>
+
+namespace pingvox {
+
+bool lzf_decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> out) {
+  std::size_t from = 0, to = 0;
+  while (from < compressed.size()) {
+    const std::size_t control = compressed[from++];
+    if (control < 32) {  // the next bytes as they are
+      const std::size_t length = control + 1;
+      if (length > compressed.size() - from || length > out.size() - to) return false;
+      std::copy_n(compressed.data() + from, length, out.data() + to);
+      from += length;
+      to += length;
+      continue;
+    }
+    // Bytes that were there before: three bits of length (7: there is a byte more of it), 13 of how far back.
+    std::size_t length = (control >> 5) + 2;
+    if (control >> 5 == 7) {
+      if (from == compressed.size()) return false;
+      length += compressed[from++];
+    }
+    if (from == compressed.size()) return false;
+    const std::size_t back = ((control & 31) << 8) + compressed[from++] + 1;
+    if (back > to || length > out.size() - to) return false;
+    // One by one: what is repeated may reach into what it makes.
+    for (; length > 0; --length, ++to) out[to] = out[to - back];
+  }
+  return to == out.size();
+}
+
+}  // namespace pingvox

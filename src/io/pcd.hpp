@@ -1,0 +1,13 @@
+#pragma once
+
+#include <ostream>
+
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// The occupied leaves of a map as a cloud of points, PCD 0.7, binary: the values of write_ply.
+Result<void> write_pcd(const OccupancyMap& map, std::ostream& out);
+
+}  // namespace pingvox

@@ -1,0 +1,107 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "call.hpp"
+
+using namespace pingvox::test;
+using ::testing::HasSubstr;
+
+namespace {
+
+struct Size {
+  unsigned width = 0, height = 0;
+};
+
+/// Of a PNG, from its header.
+Size size_of(const std::string& png) {
+  if (!png.starts_with("\x89PNG\r\n") || png.size() < 24) return {};
+  const auto number = [&](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(png[i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+/// Calls `render` with these words and gives the picture's bytes.
+std::string rendered(const Workplace& here, std::vector<std::string> words, const Streams& streams = {}) {
+  words.insert(words.begin(), "render");
+  words.insert(words.end(), {"-o", "picture.png"});
+  const Outcome outcome = here.call(words, streams);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return here.read("picture.png");
+}
+
+TEST(Render, EachViewIsAnotherPicture) {
+  const Workplace here;
+  here.simulate_tank();
+  const std::vector<std::vector<std::string>> views = {{},
+                                                       {"--view", "cartesian"},
+                                                       {"--view", "cartesian", "--between", "nothing"},
+                                                       {"--view", "cartesian", "--show", "filtered"},
+                                                       {"--view", "cartesian", "--echoes", "off"},
+                                                       {"--view", "above"},
+                                                       {"--view", "side"},
+                                                       {"--view", "side", "--from", "behind"},
+                                                       {"--view", "slice", "--z", "0"}};
+  std::vector<std::string> pictures;
+  for (std::vector<std::string> words : views) {
+    SCOPED_TRACE(::testing::PrintToString(words));
+    words.insert(words.end(), {"tank.csv", "--size", "200", "--beam", "cone"});
+    pictures.push_back(rendered(here, words));
+    EXPECT_GT(size_of(pictures.back()).width, 200U);
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i) EXPECT_NE(pictures.back(), pictures[i]) << i;
+  }
+}
+
+TEST(Render, ALogIsDrawnAsTheMapThatItMakes) {
+  const Workplace here;
+  here.simulate_tank();
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.pvx", "--beam", "fan", "--threshold", "40"}).status, 0);
+  EXPECT_EQ(rendered(here, {"tank.csv", "--view", "above", "--beam", "fan", "--threshold", "40"}),
+            rendered(here, {"tank.pvx"}));
+}
+
+TEST(Render, SettingsStandSideBySide) {
+  const Workplace here;
+  here.simulate_tank();
+  const Size one = size_of(rendered(here, {"tank.csv", "--view", "above", "--size", "300"}));
+  const Size two = size_of(
+      rendered(here, {"tank.csv", "--view", "above", "--size", "300", "--beside", "--filter none --threshold 60"}));
+  EXPECT_GE(two.width, 2 * one.width);
+  EXPECT_GT(two.height, one.height);  // by the captions
+  const Outcome four = here.call({"render", "tank.csv", "tank.csv", "-o", "four.png", "--size", "200", "--title", "All",
+                                  "--beside", "--caption 'as it is, filtered' --show filtered", "--quiet"});
+  EXPECT_EQ(four.status, 0) << four.err;
+  const Outcome three = here.call(
+      {"render", "tank.csv", "-o", "three.png", "--size", "200", "--beside", "--sweep 1", "--beside", "--sweep 2"});
+  EXPECT_THAT(three.out, HasSubstr("three.png: 3 pictures"));
+  // The same setting in a configuration file.
+  here.write("pair.toml", "view = \"above\"\nsize = 300\nbeside = [\"--filter none --threshold 60\"]\n");
+  EXPECT_EQ(
+      rendered(here, {"tank.csv", "--config", "pair.toml"}),
+      rendered(here, {"tank.csv", "--view", "above", "--size", "300", "--beside", "--filter none --threshold 60"}));
+}
+
+TEST(Render, ReadsStandardInputOnceForAllPanels) {
+  const Workplace here;
+  here.simulate_tank();
+  EXPECT_EQ(rendered(here, {"-", "--size", "200", "--beside", "--view cartesian"}, {.in = here.read("tank.csv")}),
+            rendered(here, {"tank.csv", "--size", "200", "--beside", "--view cartesian"}));
+}
+
+TEST(Render, SaysWhatAFileHasNoPictureOf) {
+  const Workplace here;
+  here.simulate_tank();
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt"}).status, 0);
+  expect_complaint(here.call({"render", "tank.bt", "-o", "p.png", "--view", "polar"}), 2, {"tank.bt", "a map"});
+  expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--view", "cartesian", "--sweep", "99"}), 2,
+                   {"tank.csv", "no sweep 99"});
+  expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--view", "above", "--poses", "none.tum"}), 1,
+                   {"none.tum"});
+  EXPECT_FALSE(here.has("p.png"));
+}
+
+}  // namespace

@@ -1,0 +1,231 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <octomap/OcTree.h>
+
+#include <cstring>
+#include <random>
+#include <sstream>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/map/compare.hpp"
+#include "pingvox/map/trace_ray.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using Eigen::Vector3d;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+FileBytes sample(const std::string& name) {
+  auto file = read_file(PINGVOX_FUZZ_CORPUS "/" + name);
+  EXPECT_TRUE(file) << name;
+  return file.value_or(FileBytes{});
+}
+
+/// The one scan of a cloud. kFail: nothing in it may be damaged.
+PointScan cloud_in(const FileBytes& file, Damage damage = Damage::kFail) {
+  const auto all = all_scans(file, damage);
+  EXPECT_EQ(all.error, "") << file.name;
+  EXPECT_EQ(all.items.size(), 1U) << file.name;
+  return all.items.empty() ? PointScan{} : all.items[0];
+}
+
+std::string complaint(std::string_view text) {
+  return all_scans({"bad", bytes_of(text)}, Damage::kFail).error;
+}
+
+double as_float(float value) {
+  return value;
+}
+
+TEST(PlyCloud, IsReadInAllThreeForms) {
+  const std::vector<Vector3d> points = {
+      {as_float(0.1F), 0.1, -3.0}, {1.0, 2.0, 3.0}, {-1000.0, 4.5, 7.0}};  // x is a float, y is a double
+  for (const std::string name : {"text", "little", "big"}) {
+    SCOPED_TRACE(name);
+    const PointScan cloud = cloud_in(sample("ply/" + name));
+    EXPECT_EQ(cloud.points_m, points);
+    EXPECT_EQ(cloud.origin_m, Vector3d::Zero());
+  }
+}
+
+TEST(PlyCloud, LeavesOutDamagedPointsAndNamesTheFirstWhenAsked) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  const std::string body = "1 2 3\n1 2\nnan 2 3\n1 2 1e39\n4 5 6\n";
+  const auto all = all_scans({"bad", bytes_of(head + body)});
+  EXPECT_EQ(all.skipped, 3U);
+  ASSERT_EQ(all.items.size(), 1U);
+  EXPECT_THAT(all.items[0].points_m, ElementsAre(Vector3d(1, 2, 3), Vector3d(4, 5, 6)));
+  EXPECT_EQ(complaint(head + body), "bad: line 9: is not a point of three finite numbers");
+  EXPECT_EQ(complaint(head + "1 2 3\n4 5 6\n"), "bad: end: holds 2 of 5 points");
+  EXPECT_EQ(all_scans({"bad", bytes_of(head + "1 2 3\n4 5 6\n")}).items.at(0).points_m.size(), 2U);
+
+  FileBytes file = sample("ply/little");
+  const std::uint8_t nan[] = {0, 0, 0xc0, 0x7f};
+  std::memcpy(file.bytes.data() + file.bytes.size() - 14, nan, 4);  // x of the last of three
+  EXPECT_EQ(cloud_in(file, Damage::kSkip).points_m.size(), 2U);
+  EXPECT_THAT(all_scans(file, Damage::kFail).error, HasSubstr("point 2: is not a point"));
+}
+
+TEST(PlyCloud, RefusesWhatItsBytesDoNotHold) {
+  FileBytes file = sample("ply/little");
+  file.bytes.pop_back();
+  EXPECT_THAT(all_scans(file).error, HasSubstr("3 vertices of 15 bytes do not fit into the 44 left"));
+  const std::string binary = "ply\nformat binary_little_endian 1.0\n";
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  EXPECT_THAT(complaint(binary + "element vertex 18446744073709551615\n" + xyz + "end_header\n"), HasSubstr("fit"));
+  EXPECT_THAT(
+      complaint(binary + "element a 9223372036854775807\nproperty double b\nelement vertex 0\n" + xyz + "end_header\n"),
+      HasSubstr("ends before its vertices"));
+  EXPECT_THAT(complaint(binary + "element a 1\nproperty list uchar int b\nelement vertex 0\n" + xyz + "end_header\n"),
+              HasSubstr("lists before the vertices"));
+  EXPECT_THAT(complaint(binary + "element vertex 0\n" + xyz + "property list uchar int b\nend_header\n"),
+              HasSubstr("vertices with lists"));
+  EXPECT_THAT(complaint("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n"),
+              HasSubstr("no x, y and z"));
+  EXPECT_THAT(complaint("ply\nformat ascii 1.0\nend_header\n"), HasSubstr("no vertices"));
+  EXPECT_THAT(complaint("ply\nformat ascii 1.0\nelement vertex x\n"), HasSubstr("line 3"));
+}
+
+TEST(XyzCloud, IsReadWithAnySeparatorAndAnythingBehind) {
+  EXPECT_THAT(cloud_in(sample("xyz/blanks")).points_m,
+              ElementsAre(Vector3d(1, 2, 3), Vector3d(-4.5, 0.5, 6), Vector3d(0, 0, -0.25)));
+  EXPECT_THAT(cloud_in(sample("xyz/commas")).points_m, ElementsAre(Vector3d(1.5, 2.5, 3.5), Vector3d(-1, -2, -3)));
+  EXPECT_THAT(cloud_in({"a", bytes_of("0.1\t0.2\t0.3\n1 2 3 wall\n")}).points_m,
+              ElementsAre(Vector3d(0.1, 0.2, 0.3), Vector3d(1, 2, 3)));
+}
+
+TEST(XyzCloud, LeavesOutDamagedLinesAndNamesTheFirstWhenAsked) {
+  const std::string text = "1 2 3\n# a comment\n\n1 2\nX Y Z\n1 nan 3\n1 2 3e999\n4 5 6";
+  const auto all = all_scans({"bad", bytes_of(text)});
+  EXPECT_EQ(all.skipped, 4U);
+  EXPECT_EQ(all.items.at(0).points_m.size(), 2U);
+  EXPECT_EQ(complaint(text), "bad: line 4: is not a point of three finite numbers");
+}
+
+TEST(PcdCloud, IsReadAsText) {
+  const PointScan cloud = cloud_in(sample("pcd/ascii"));  // NaN is no damage here
+  EXPECT_EQ(cloud.origin_m, Vector3d(1, 2, 3));
+  EXPECT_THAT(cloud.points_m, ElementsAre(Vector3d(1, 2, 3), Vector3d(as_float(0.1F), as_float(0.2F), 0.3)));
+  EXPECT_EQ(all_scans(sample("pcd/ascii"), Damage::kFail).skipped, 1U);
+}
+
+TEST(PcdCloud, IsReadAsPclWroteItBinaryAndCompressed) {
+  // Both by pcl_convert_pcd_ascii_binary of PCL 1.13, without the zeros that it fills the last page with.
+  const Vector3d usual(1, 2, 3);
+  for (const std::string name : {"binary", "compressed"}) {
+    SCOPED_TRACE(name);
+    const auto all = all_scans(sample("pcd/" + name), Damage::kFail);
+    EXPECT_EQ(all.skipped, 1U);
+    ASSERT_EQ(all.items.size(), 1U) << all.error;
+    EXPECT_EQ(all.items[0].origin_m, Vector3d(0.5, -1, 0.25));
+    EXPECT_THAT(all.items[0].points_m, ElementsAre(usual, usual, usual, Vector3d(-0.5, 0.25, 8), usual, usual, usual));
+  }
+}
+
+TEST(PcdCloud, OfTheFirstVersionsIsReadToo) {
+  const PointScan cloud = cloud_in(sample("pcd/oldest"));
+  EXPECT_EQ(cloud.origin_m, Vector3d::Zero());
+  EXPECT_THAT(cloud.points_m, ElementsAre(Vector3d(1, -2, 3), Vector3d(400, 500, -600)));
+}
+
+TEST(PcdCloud, RefusesWhatItsBytesDoNotHold) {
+  for (const std::string name : {"binary", "compressed", "oldest"}) {
+    SCOPED_TRACE(name);
+    const FileBytes whole = sample("pcd/" + name);
+    const std::string text(whole.bytes.begin(), whole.bytes.end());
+    const std::size_t head = text.find('\n', text.find("\nDATA") + 1) + 1;
+    for (std::size_t size = head; size < whole.bytes.size(); ++size) {
+      FileBytes cut = whole;
+      cut.bytes.resize(size);
+      const auto all = all_scans(cut);
+      EXPECT_THAT(all.items, IsEmpty()) << size;
+      EXPECT_THAT(all.error, HasSubstr(whole.name)) << size;
+    }
+  }
+  FileBytes file = sample("pcd/compressed");
+  file.bytes[file.bytes.size() - 67] = 0x3f;  // its first word: repeat what stands before the start
+  EXPECT_THAT(all_scans(file).error, HasSubstr("broken LZF data"));
+
+  const std::string xyz = "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  const auto with = [&](std::string_view more) { return complaint(xyz + std::string(more)); };
+  EXPECT_THAT(with("WIDTH 4294967296\nHEIGHT 4294967296\nDATA binary\n"), HasSubstr("no number of points"));
+  EXPECT_THAT(with("POINTS 18446744073709551615\nDATA binary\n"), HasSubstr("do not fit into the 0 left"));
+  EXPECT_THAT(with("POINTS 1000000\nDATA binary_compressed\n01234567890"), HasSubstr("do not fit"));
+  EXPECT_THAT(with("WIDTH 2\nHEIGHT 2\nPOINTS 5\nDATA ascii\n"), HasSubstr("5 POINTS are not WIDTH 2 times HEIGHT 2"));
+  EXPECT_THAT(with("WIDTH 2\nHEIGHT 1\nDATA ascii\n1 2 3\n"), HasSubstr("holds 1 of 2 points"));
+  EXPECT_THAT(with("DATA ascii\n"), HasSubstr("how many POINTS"));
+  EXPECT_THAT(with("POINTS 1\n"), HasSubstr("no line DATA"));
+  EXPECT_THAT(with("POINTS 1\nDATA morse\n"), HasSubstr("line 7: 'DATA morse' must be ascii, binary or"));
+  EXPECT_THAT(with("VIEWPOINT 1 2 3\n"), HasSubstr("line 6: 'VIEWPOINT 1 2 3' must be seven numbers"));
+  EXPECT_THAT(with("FIELDS x\n"), HasSubstr("is there twice"));
+  EXPECT_THAT(with("SIZE 4\n"), HasSubstr("as much as FIELDS"));
+  EXPECT_THAT(with("SIZE 4 4 0\n"), HasSubstr("line 6"));
+  EXPECT_THAT(with("SIZE 4 4 3\nPOINTS 0\nDATA ascii\n"), HasSubstr("the field z is of no type of number"));
+  EXPECT_THAT(with("HIGHT 1\n"), HasSubstr("belongs in no header"));
+  EXPECT_THAT(with(" , \n"), HasSubstr("belongs in no header"));
+  EXPECT_THAT(complaint("# .PCD\nFIELDS x y\nPOINTS 0\nDATA ascii\n"), HasSubstr("no x, y and z"));
+}
+
+TEST(Cloud, IsSeenFromWhereTheCallerSays) {
+  const Vector3d place(7, 8, 9);
+  for (const std::string name : {"ply/text", "ply/big", "pcd/ascii", "pcd/binary", "pcd/compressed", "xyz/commas"}) {
+    const auto source = open_scans(sample(name), Damage::kSkip, place);
+    ASSERT_TRUE(source) << source.error().message;
+    const auto scan = (*source)->next();
+    ASSERT_TRUE(scan && *scan) << name;
+    EXPECT_EQ((*scan)->origin_m, place) << name;
+  }
+}
+
+TEST(Cloud, BecomesTheMapThatOctomapMakesOfIt) {
+  constexpr double kResolution_m = 0.125;
+  std::uint64_t cells = 0, different = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto coordinate = [&] { return static_cast<float>(random() % 10'000) / 1000.0F - 5.0F; };
+    octomap::Pointcloud cloud;
+    std::ostringstream text;
+    text.precision(9);
+    text << "ply\nformat ascii 1.0\nelement vertex 500\nproperty float x\nproperty float y\nproperty float z\n"
+            "end_header\n";
+    for (int i = 0; i < 500; ++i) {
+      const float x = coordinate(), y = coordinate(), z = coordinate();
+      cloud.push_back(x, y, z);
+      text << x << ' ' << y << ' ' << z << '\n';
+    }
+    const octomap::point3d origin(0.5F, -0.25F, 0.3F);
+    octomap::OcTree tree(kResolution_m);
+    tree.insertPointCloud(cloud, origin);
+
+    const auto source =
+        open_scans({"cloud", bytes_of(text.str())}, Damage::kFail, Vector3d(0.5, -0.25, as_float(0.3F)));
+    ASSERT_TRUE(source) << source.error().message;
+    const auto scan = (*source)->next();
+    ASSERT_TRUE(scan && *scan);
+    OccupancyMap map({.resolution_m = kResolution_m});
+    ScanUpdate update(LogOdds::from_probability(0.4));
+    EXPECT_EQ(trace_points(map.lattice(), **scan, {}, update), 0U);
+    ASSERT_TRUE(map.apply(update));
+
+    std::ostringstream bytes;
+    ASSERT_TRUE(tree.write(bytes));
+    const auto theirs = read_map({"OctoMap's", bytes_of(bytes.str())});
+    ASSERT_TRUE(theirs) << theirs.error().message;
+    const auto compared = compare_maps(map, theirs->map, Sameness::kLogOdds);
+    ASSERT_TRUE(compared) << compared.error().message;
+    cells += compared->cells();
+    different += compared->cells() - compared->same;
+  }
+  EXPECT_GT(cells, 200'000U);
+  EXPECT_LT(different * 5'000, cells);  // OctoMap computes rays in single precision
+}
+
+}  // namespace
+}  // namespace pingvox
