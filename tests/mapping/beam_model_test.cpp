@@ -181,6 +181,41 @@ TEST(BeamModel, FanStaysInThePlaneOfTheHeadWithoutGaps) {
   EXPECT_GT(inside, 500U);
 }
 
+// Kills a beam that frees what sound already came back from: the near edge of a slanting wall.
+TEST(BeamModel, NothingIsFreedBetweenTheEchosFirstBinAndItsRange) {
+  const Lattice lattice(0.05);
+  Echo echo = echo_at(2.02);
+  echo.first = 180;  // of 1 cm
+  for (const BeamShape shape : {BeamShape::kRay, BeamShape::kFan, BeamShape::kCone}) {
+    BeamModelOptions options;
+    options.shape = shape;
+    ScanUpdate scan;
+    trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo, options, scan);
+    const auto mark_at = [&](double x) { return mark_of(scan, *lattice.key_of(Eigen::Vector3d(x, 0.01, 0.01))); };
+    EXPECT_EQ(mark_at(1.72), Mark::kMissed);
+    EXPECT_EQ(mark_at(1.87), Mark::kNone);
+    EXPECT_EQ(mark_at(1.97), Mark::kNone);
+    EXPECT_EQ(mark_at(2.02), Mark::kHit);
+  }
+}
+
+// Kills a cone that frees its edges, where an echo is too weak to be missed, or hits without them.
+TEST(BeamModel, TheConesEdgeIsHitAndNotFreed) {
+  const Lattice lattice(0.05);
+  BeamModelOptions options;
+  options.shape = BeamShape::kCone;
+  ScanUpdate scan;
+  trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo_at(3.02), options, scan);
+  const auto mark_at = [&](double range_m, double elevation_deg) {
+    const double elevation = elevation_deg * kDegree;
+    const Eigen::Vector3d at(range_m * std::cos(elevation), 0.01, range_m * std::sin(elevation));
+    return mark_of(scan, *lattice.key_of(at));
+  };
+  EXPECT_EQ(mark_at(2.0, 11.0), Mark::kMissed);
+  EXPECT_EQ(mark_at(2.0, 16.0), Mark::kNone);
+  EXPECT_EQ(mark_at(3.02, 16.0), Mark::kHit);
+}
+
 // Kills a ray that frees its end cell, or hits another than the echo's.
 TEST(BeamModel, RayFreesUpToItsEchoAndHitsThere) {
   const Lattice lattice(0.1);
