@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -145,22 +144,14 @@ Row map_row(const Recording& recording, const MapCase& which, const MapScore& sc
       .add("resolution_m", which.resolution_m)
       .add("occupied", score.occupied)
       .add("visible", score.visible)
-      .add("free", score.free);
-  const auto add_share = [&row](const char* name, double value) {
-    // Of no cells there is no share.
-    if (std::isnan(value)) {
-      row.add_nothing(name);
-    } else {
-      row.add(name, value);
-    }
-  };
-  add_share("precision", score.precision());
-  add_share("recall", score.recall());
-  add_share("sure_precision", sure.precision());
-  add_share("sure_recall", sure.recall());
-  add_share("free_true", score.free_share());
-  add_share("free_true_1_cell", score.free_share_near());
-  row.add("seconds", seconds);
+      .add("free", score.free)
+      .add("precision", score.precision())
+      .add("recall", score.recall())
+      .add("sure_precision", sure.precision())
+      .add("sure_recall", sure.recall())
+      .add("free_true", score.free_share())
+      .add("free_true_1_cell", score.free_share_near())
+      .add("seconds", seconds);
   return row;
 }
 
