@@ -1,9 +1,12 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include "commands.hpp"
 #include "json.hpp"
+#include "map_agreement.hpp"
 #include "map_report.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
@@ -18,14 +21,33 @@ Result<MapFile> map_at(const std::string& path) {
   return read_map(*file);
 }
 
-std::string json_of(const MapComparison& found) {
-  JsonObject json;
+void add_share(JsonObject& json, std::string_view key, const std::optional<double>& share) {
+  if (share) {
+    json.add(key, *share);
+  } else {
+    json.add_null(key);
+  }
+}
+
+std::string json_of(const MapComparison& found, const MapAgreement& agreement) {
+  JsonObject classes, against_b, json;
+  classes.add("occupied_a", agreement.occupied_a)
+      .add("occupied_b", agreement.occupied_b)
+      .add("occupied_both", agreement.occupied_both)
+      .add("free_a", agreement.free_a)
+      .add("free_b", agreement.free_b)
+      .add("free_both", agreement.free_both);
+  add_share(against_b, "precision", agreement.precision());
+  add_share(against_b, "recall", agreement.recall());
+  add_share(against_b, "free_true", agreement.free_true());
   json.add("cells", found.cells())
       .add("same", found.same)
       .add("different", found.different)
       .add("only_a", found.only_a)
       .add("only_b", found.only_b)
-      .add("max_log_odds_difference", found.max_log_odds_difference);
+      .add("max_log_odds_difference", found.max_log_odds_difference)
+      .add("classes", classes)
+      .add("against_b", against_b);
   return json.text() + "\n";
 }
 
@@ -35,7 +57,11 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
   return fmt::format("{:.4f}", std::floor(static_cast<double>(part) / static_cast<double>(whole) * 1e6) / 1e4);
 }
 
-std::string text_of(const MapComparison& found, Sameness sameness) {
+std::string share_text(const std::optional<double>& share) {
+  return share ? fmt::format("{:.4g} %", 100.0 * *share) : "-";
+}
+
+std::string text_of(const MapComparison& found, const MapAgreement& agreement, Sameness sameness) {
   const std::uint64_t cells = found.cells();
   const char* by = sameness == Sameness::kLogOdds ? "by log-odds" : "by occupied or free";
   return fmt::format("{} % of {} cells are the same ({})\n", share_text(found.same, cells), cells, by) +
@@ -43,7 +69,14 @@ std::string text_of(const MapComparison& found, Sameness sameness) {
          report_line("different", fmt::format("{}", found.different)) +
          report_line("only in A", fmt::format("{}", found.only_a)) +
          report_line("only in B", fmt::format("{}", found.only_b)) +
-         report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference));
+         report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference)) +
+         report_line("occupied", fmt::format("{} in A, {} in B, {} in both", agreement.occupied_a, agreement.occupied_b,
+                                             agreement.occupied_both)) +
+         report_line("free", fmt::format("{} in A, {} in B, {} in both", agreement.free_a, agreement.free_b,
+                                         agreement.free_both)) +
+         report_line("B as truth", fmt::format("precision {}, recall {} (occupied, within one cell); free {}",
+                                               share_text(agreement.precision()), share_text(agreement.recall()),
+                                               share_text(agreement.free_true())));
 }
 
 }  // namespace
@@ -60,8 +93,10 @@ Result<int> run(const CompareCommand& command, Console& console) {
   if (!found) {
     return fail(found.error().code, fmt::format("{}: {}: {}", command.a, command.b, found.error().message));
   }
-  const Result<void> told = command.manner.report == Report::kJson ? console.print(json_of(*found))
-                                                                   : console.summarise(text_of(*found, sameness), "");
+  const MapAgreement agreement = agreement_of(a->map, b->map);
+  const Result<void> told = command.manner.report == Report::kJson
+                                ? console.print(json_of(*found, agreement))
+                                : console.summarise(text_of(*found, agreement, sameness), "");
   if (!told) return tl::unexpected(told.error());
   return found->equal() ? 0 : 1;
 }

@@ -566,7 +566,8 @@ Result<Command> compare_command(const Words& words) {
   const OptionTable table{"compare",
                           "Compares two maps cell by cell, at the finest resolution. Cells are the same when their "
                           "log-odds are; when one of\n"
-                          "the files is a .bt, which holds no log-odds, when both are free or both are occupied.",
+                          "the files is a .bt, which holds no log-odds, when both are free or both are occupied.\n"
+                          "Also says how right A is if B is the truth: occupied cells within one cell, and free ones.",
                           {{"A", Positional::Count::kOne, "a map; - is standard input", into(command.a)},
                            {"B", Positional::Count::kOne, "another of the same resolution and depth", into(command.b)}},
                           {{"Options", {json_option(command.manner), quiet_option(command.manner)}}},

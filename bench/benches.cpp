@@ -1,5 +1,6 @@
 #include <array>
 
+#include "accuracy/accuracy.hpp"
 #include "bench.hpp"
 #include "paper/bits.hpp"
 #include "paper/bytes.hpp"
@@ -37,6 +38,20 @@ std::span<const Bench> benches() {
       Bench{"tank-3d", "3 sweeps, each beam a bundle of 32 x 64 rays, cells of 5 cm", Family::kSpeed, &tank_3d},
       Bench{"tank-3d-cells", "the same, end points made cells first", Family::kSpeed, &tank_3d_cells},
       Bench{"tank-fine", "one sweep of bundles in cells of 1.25 cm", Family::kSpeed, &tank_fine},
+      Bench{"tank-cone", "3 sweeps, each beam a cone by geometry against a bundle of rays", Family::kSpeed, &tank_cone},
+      Bench{"rays", "131,072 random rays made keys", Family::kSpeed, &rays},
+      Bench{"look-up", "what a million keys are in the map of tank-3d", Family::kSpeed, &look_up},
+      Bench{"cast-ray", "what 100,000 rays hit in the map of tank-3d", Family::kSpeed, &cast_rays},
+      Bench{"leaves", "once over all leaves of the map of tank-3d", Family::kSpeed, &leaves},
+      Bench{"bt-write", "the map of tank-3d as .bt, to memory", Family::kSpeed, &bt_write},
+      Bench{"bt-read", "the same from memory", Family::kSpeed, &bt_read},
+      Bench{"memory", "what the map of tank-3d takes in memory", Family::kSpeed, &memory},
+      Bench{"command", "a million points in 20 scans: pingvox map against graph2tree", Family::kSpeed, &command},
+      Bench{"realtime", "the tank recording beam by beam: time until each is in the map", Family::kVehicle, &realtime},
+      Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
+      Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
+      Bench{"accuracy", "echoes and maps of simulated recordings, held against what is true", Family::kAccuracy,
+            &accuracy},
       Bench{"paper", "what the paper says and what we get, all of it; with --pictures its figures", Family::kPaper,
             &paper},
       Bench{"paper-keys", "section 5.1: keys of 8 to 128 bits", Family::kPaper, &paper_key_width},
@@ -51,18 +66,6 @@ std::span<const Bench> benches() {
             &paper_thresholds},
       Bench{"paper-canny", "figure 21", Family::kPaper, &paper_canny},
       Bench{"paper-figures", "the figures only, into --pictures DIR", Family::kPaper, &paper_figures},
-      Bench{"tank-cone", "3 sweeps, each beam a cone by geometry against a bundle of rays", Family::kSpeed, &tank_cone},
-      Bench{"rays", "131,072 random rays made keys", Family::kSpeed, &rays},
-      Bench{"look-up", "what a million keys are in the map of tank-3d", Family::kSpeed, &look_up},
-      Bench{"cast-ray", "what 100,000 rays hit in the map of tank-3d", Family::kSpeed, &cast_rays},
-      Bench{"leaves", "once over all leaves of the map of tank-3d", Family::kSpeed, &leaves},
-      Bench{"bt-write", "the map of tank-3d as .bt, to memory", Family::kSpeed, &bt_write},
-      Bench{"bt-read", "the same from memory", Family::kSpeed, &bt_read},
-      Bench{"memory", "what the map of tank-3d takes in memory", Family::kSpeed, &memory},
-      Bench{"command", "a million points in 20 scans: pingvox map against graph2tree", Family::kSpeed, &command},
-      Bench{"realtime", "the tank recording beam by beam: time until each is in the map", Family::kVehicle, &realtime},
-      Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
-      Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
   };
   return kBenches;
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 namespace pingvox::bench {
@@ -17,7 +18,7 @@ std::string text_of(const Value& value) {
         } else if constexpr (std::is_same_v<V, bool>) {
           return v ? "yes" : "NO";
         } else if constexpr (std::is_same_v<V, double>) {
-          return fmt::format("{:.4g}", v);
+          return std::isfinite(v) ? fmt::format("{:.4g}", v) : "-";  // null in JSON
         } else {
           return fmt::format("{}", v);
         }

@@ -29,6 +29,30 @@ double height_of(const BeamModelOptions& options) {
   return options.shape == BeamShape::kCone ? options.height_rad : 0.0;
 }
 
+/// The part of the beam within which silence means that nothing is there.
+BeamModelOptions passed_part(BeamModelOptions options) {
+  options.width_rad *= options.free_share;
+  options.height_rad *= options.free_share;
+  return options;
+}
+
+/// @return how many rays were left out because an end of them lies outside of the lattice
+std::size_t add_misses(const Lattice& lattice, const Pose& map_from_sensor, double bearing_rad, double range_m,
+                       const BeamModelOptions& options, ScanUpdate& scan) {
+  if (options.shape != BeamShape::kRay && options.tracing == Tracing::kGeometry) {
+    const InsonifiedVolume volume{map_from_sensor, bearing_rad, width_of(options), height_of(options), range_m};
+    if (trace_volume(lattice, volume, nullptr, scan)) return 0;
+    // Near the border of the lattice single rays can still be told from those that leave it.
+  }
+  std::size_t outside = 0;
+  const Eigen::Vector3d origin_m = map_from_sensor.translation();
+  for (const BundleRay& ray : beam_bundle(options, bearing_rad, range_m, lattice.resolution_m())) {
+    const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * range_m);
+    outside += !trace_ray(lattice, origin_m, end_m, options.ray, scan);
+  }
+  return outside;
+}
+
 }  // namespace
 
 Result<void> BeamModelOptions::validate() const {
@@ -39,6 +63,7 @@ Result<void> BeamModelOptions::validate() const {
   if (!(height_rad > 0.0 && height_rad < std::numbers::pi)) {
     bad += fmt::format(" beam height must be in (0, 180) degrees, is {};", height_rad * 180.0 / std::numbers::pi);
   }
+  if (!(free_share > 0.0 && free_share <= 1.0)) bad += fmt::format(" free share must be in (0, 1], is {};", free_share);
   if (!(hit > LogOdds(0.0F)) || !std::isfinite(hit.value())) {
     bad += fmt::format(" hit must be a probability in (0.5, 1), is {};", hit.probability());
   }
@@ -57,7 +82,7 @@ LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
 
 double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc) {
   const double off_axis = height_rad > 0.0 ? std::clamp(2.0 * elevation_rad / height_rad, -1.0, 1.0) : 0.0;
-  return std::exp2(-off_axis * off_axis) / std::sqrt(std::max(1.0, cells_on_arc));
+  return std::exp2(-off_axis * off_axis) / std::pow(std::max(1.0, cells_on_arc), 0.25);
 }
 
 std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
@@ -92,38 +117,26 @@ std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, cons
   if (!echo && options.silent == Silent::kNothing) return 0;
   const double heard_m = echo ? echo->range_m : static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
   const bool is_hit = echo && heard_m <= options.max_range_m;
-  const double range_m = std::min(heard_m, options.max_range_m);
-  if (!(range_m > 0.0)) return 0;
-  const LogOdds evidence = echo && options.hit_from == HitFrom::kIntensity
-                               ? evidence_of_intensity(echo->intensity, options.hit)
-                               : options.hit;
-
-  const double arc_rad = std::max(width_of(options), height_of(options));
-  const double cells_on_arc = arc_rad * range_m / lattice.resolution_m();
-  if (options.shape != BeamShape::kRay && options.tracing == Tracing::kGeometry) {
-    const InsonifiedVolume volume{map_from_sensor, beam.bearing_rad, width_of(options), height_of(options), range_m};
-    const auto evidence_of = [&](double elevation_rad) {
-      const double share = share_on_arc(elevation_rad, height_of(options), cells_on_arc);
-      return LogOdds(evidence.value() * static_cast<float>(share));
-    };
-    if (is_hit ? trace_volume(lattice, volume, evidence_of, scan) : trace_volume(lattice, volume, nullptr, scan)) {
-      return 0;
-    }
-    // Near the border of the lattice single rays can still be told from those that leave it.
-  }
-
+  // Sound came back from the echo's first bin on: only what lies before is sure to have been passed.
+  const double passed_m = echo ? std::min(heard_m, static_cast<double>(echo->first) * beam.bin_length_m) : heard_m;
+  const double free_m = std::min(passed_m, options.max_range_m);
   std::size_t outside = 0;
-  const Eigen::Vector3d origin_m = map_from_sensor.translation();
-  for (const BundleRay& ray : beam_bundle(options, beam.bearing_rad, range_m, lattice.resolution_m())) {
-    const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * range_m);
-    if (!trace_ray(lattice, origin_m, end_m, options.ray, scan)) {
-      ++outside;
-    } else if (is_hit) {
-      const auto share = static_cast<float>(ray.share);
-      scan.add_hit(*lattice.key_of<WideWord>(end_m), LogOdds(evidence.value() * share));
+  if (free_m > 0.0)
+    outside = add_misses(lattice, map_from_sensor, beam.bearing_rad, free_m, passed_part(options), scan);
+  if (!is_hit || !(heard_m > 0.0)) return outside;
+
+  const LogOdds evidence =
+      options.hit_from == HitFrom::kIntensity ? evidence_of_intensity(echo->intensity, options.hit) : options.hit;
+  std::size_t unplaced = 0;
+  for (const BundleRay& ray : beam_bundle(options, beam.bearing_rad, heard_m, lattice.resolution_m())) {
+    const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * heard_m);
+    if (const auto key = lattice.key_of<WideWord>(end_m)) {
+      scan.add_hit(*key, LogOdds(evidence.value() * static_cast<float>(ray.share)));
+    } else {
+      ++unplaced;
     }
   }
-  return outside;
+  return std::max(outside, unplaced);
 }
 
 }  // namespace pingvox

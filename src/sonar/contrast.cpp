@@ -15,10 +15,11 @@ namespace {
 /// What is to be heard in one beam.
 struct Loudness {
   int rise;      ///< the largest one within kRise_bins
-  double noise;  ///< median difference of bins a few apart
+  double noise;  ///< median difference of bins a few apart, where the beam is noisy
 };
 
-constexpr std::size_t kRise_bins = 48;  // longer than any wall's; a background that grows with the range is none
+// Of noise alone the largest rise is 5 to 9.5 times itself, of the tank recording 11 to 17 times.
+constexpr double kUsualOfNoise = 9.7, kMiddleOfNoise = 8.5, kAboveNoise = 15.0;
 constexpr std::size_t kApart_bins = 6;  // beyond the usual filter's window
 
 int largest_rise(std::span<const std::uint8_t> bins) {
@@ -55,13 +56,27 @@ T ranked(std::vector<T>& values, std::size_t rank) {
   return *place;
 }
 
+/// Noise grows with the range, as the gain does: of four parts of the beam (fewer of a short one) the noisiest but one,
+/// so that it is not the wall's own.
+double noise_of(std::span<const std::uint8_t> bins) {
+  constexpr std::size_t kLeastPart_bins = 60, kMostParts = 4;
+  std::vector<double> noises(std::clamp<std::size_t>(bins.size() / kLeastPart_bins, 1, kMostParts));
+  for (std::size_t part = 0; part < noises.size(); ++part) {
+    const std::size_t first = bins.size() * part / noises.size();
+    noises[part] = median_difference(bins.subspan(first, bins.size() * (part + 1) / noises.size() - first));
+  }
+  return ranked(noises, std::max<std::size_t>(noises.size(), 2) - 2);
+}
+
 int contrast_of(std::vector<int>& rises, std::vector<double>& noises) {
   constexpr int kLeastRise = 14;  // of 255, where there is no noise at all
   if (rises.empty()) return kLeastRise;
   const int rise = ranked(rises, rises.size() * 3 / 4);
   const double noise = ranked(noises, noises.size() / 2);
-  if (rise >= std::max<double>(kLeastRise, 10.0 * noise)) return (rise + 1) / 2;
-  return std::max(kLeastRise, static_cast<int>(std::ceil(20.0 * noise)));
+  const int half = std::max(kLeastRise, (rise + 1) / 2);
+  // Where most beams hear something, what comes before is no echo of noise. Elsewhere each beam must tell one.
+  if (rise >= kUsualOfNoise * noise && ranked(rises, rises.size() / 2) >= kMiddleOfNoise * noise) return half;
+  return std::max(half, static_cast<int>(std::ceil(kAboveNoise * noise)));
 }
 
 }  // namespace
@@ -72,7 +87,7 @@ std::vector<int> usual_contrasts(const PolarImage& image, const std::vector<BinW
     const auto [begin, end] = windows[n];
     if (begin >= end) continue;
     const std::span<const std::uint8_t> bins = image.row(n).subspan(begin, end - begin);
-    heard[n] = Loudness{largest_rise(bins), median_difference(bins)};
+    heard[n] = Loudness{largest_rise(bins), noise_of(bins)};
   }
   const auto rows = static_cast<std::ptrdiff_t>(image.rows());
   constexpr auto kReach = static_cast<std::ptrdiff_t>(kContrastReach_beams);

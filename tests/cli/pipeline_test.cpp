@@ -83,7 +83,10 @@ TEST(Pipeline, FromTheSimulatedTankToItsPictures) {
     const Outcome converted = here.call({"convert", "tank.ot", "-o", name});
     EXPECT_EQ(converted.status, 0) << converted.err;
     const Outcome compared = here.call({"compare", "tank.ot", name, "--json"});
-    FlatJson found = json_with(compared, {"cells", "same", "different", "only_a", "only_b", "max_log_odds_difference"});
+    FlatJson found = json_with(
+        compared, {"cells", "same", "different", "only_a", "only_b", "max_log_odds_difference", "classes.occupied_a",
+                   "classes.occupied_b", "classes.occupied_both", "classes.free_a", "classes.free_b",
+                   "classes.free_both", "against_b.precision", "against_b.recall", "against_b.free_true"});
     EXPECT_EQ(found["same"], found["cells"]);
     EXPECT_EQ(found["different"], "0");
     EXPECT_EQ(found["only_a"], "0");
@@ -165,6 +168,14 @@ TEST(Compare, SaysWhatDiffers) {
   EXPECT_EQ((*json)["only_a"], "0");
   EXPECT_EQ((*json)["only_b"], "1");
   EXPECT_THAT(here.call({"compare", "a.ot", "b.ot"}).out, ::testing::HasSubstr("83.3333 % of 12 cells"));
+  EXPECT_EQ((*json)["classes.occupied_a"], "1");
+  EXPECT_EQ((*json)["classes.occupied_b"], "1");
+  EXPECT_EQ((*json)["classes.occupied_both"], "0");
+  EXPECT_EQ((*json)["classes.free_a"], "10");
+  EXPECT_EQ((*json)["classes.free_b"], "11");
+  EXPECT_EQ((*json)["against_b.precision"], "1");  // one cell off is within one cell
+  EXPECT_EQ((*json)["against_b.recall"], "1");
+  EXPECT_EQ((*json)["against_b.free_true"], "1");
 
   ASSERT_EQ(here.call({"map", "b.txt", "-o", "fine.ot", "--resolution", "0.05"}).status, 0);
   expect_complaint(here.call({"compare", "a.ot", "fine.ot"}), 2, {"a.ot", "fine.ot", "0.05"});
@@ -211,7 +222,7 @@ TEST(Map, ProgressGoesToStandardErrorOnlyWhenWanted) {
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt"}).err, "");
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "never"}).err, "");
   const Outcome shown =
-      here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always", "--beam", "cone", "--resolution", "0.02"});
+      here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always", "--beam", "cone", "--resolution", "0.01"});
   EXPECT_THAT(shown.err, ::testing::HasSubstr(" %  "));
   EXPECT_THAT(shown.err, ::testing::HasSubstr("beams"));
   EXPECT_TRUE(shown.err.ends_with("\r\x1b[K")) << "the line is left behind";

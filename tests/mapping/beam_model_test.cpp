@@ -34,6 +34,7 @@ Beam beam_of(double bearing_rad, std::size_t bins) {
 Echo echo_at(double range_m, std::uint8_t intensity = 200) {
   Echo echo;
   echo.range_m = range_m;
+  echo.first = echo.peak = echo.last = static_cast<std::size_t>(range_m / 0.01);
   echo.intensity = intensity;
   return echo;
 }
@@ -82,6 +83,7 @@ TEST_P(Cone, TakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
     BeamModelOptions options;
     options.shape = BeamShape::kCone;
     options.tracing = GetParam();
+    options.free_share = 1.0;
     options.width_rad = uniform(random, 1, 12) * kDegree;
     options.height_rad = uniform(random, 10, 50) * kDegree;
     ScanUpdate scan;
@@ -90,7 +92,8 @@ TEST_P(Cone, TakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
     const double half_diagonal = 0.5 * std::sqrt(3.0) * lattice.resolution_m();
     for_each_cell_near(lattice, map_from_sensor, bearing, range, [&](const Key& key, const Polar& cell) {
       const Mark mark = mark_of(scan, key);
-      if (cell.range_m <= range && std::abs(cell.off_bearing_rad) <= options.width_rad / 2 &&
+      // Where the echo's first bin ends what was passed, a cell before the hit ones may be left out.
+      if (cell.range_m <= range - lattice.resolution_m() && std::abs(cell.off_bearing_rad) <= options.width_rad / 2 &&
           std::abs(cell.elevation_rad) <= options.height_rad / 2) {
         EXPECT_NE(mark, Mark::kNone) << "a hole at range " << cell.range_m << " of " << range;
         ++inside;
@@ -129,6 +132,7 @@ TEST(BeamModel, GeometryMarksEachCellThatTheBundleMarks) {
                       uniform(random, -1.5, 1.5), uniform(random, -3, 3));
     BeamModelOptions options;
     options.shape = seed % 4 == 0 ? BeamShape::kFan : BeamShape::kCone;
+    options.free_share = 1.0;
     options.width_rad = uniform(random, 1, 30) * kDegree;
     options.height_rad = uniform(random, 5, 60) * kDegree;
     const double bearing = uniform(random, 0, 6), range = uniform(random, 0.1, 1.5);
@@ -160,6 +164,7 @@ TEST(BeamModel, FanStaysInThePlaneOfTheHeadWithoutGaps) {
   BeamModelOptions options;
   options.shape = BeamShape::kFan;
   options.width_rad = 20.0 * kDegree;
+  options.free_share = 1.0;
   const Pose sensor = pose_from_rpy({0.025, 0.025, 0.025}, 0, 0, 0);
   ScanUpdate scan;
   trace_beam(lattice, sensor, beam_of(1.0, 400), echo_at(3.0), options, scan);
@@ -174,6 +179,41 @@ TEST(BeamModel, FanStaysInThePlaneOfTheHeadWithoutGaps) {
     }
   });
   EXPECT_GT(inside, 500U);
+}
+
+// Kills a beam that frees what sound already came back from: the near edge of a slanting wall.
+TEST(BeamModel, NothingIsFreedBetweenTheEchosFirstBinAndItsRange) {
+  const Lattice lattice(0.05);
+  Echo echo = echo_at(2.02);
+  echo.first = 180;  // of 1 cm
+  for (const BeamShape shape : {BeamShape::kRay, BeamShape::kFan, BeamShape::kCone}) {
+    BeamModelOptions options;
+    options.shape = shape;
+    ScanUpdate scan;
+    trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo, options, scan);
+    const auto mark_at = [&](double x) { return mark_of(scan, *lattice.key_of(Eigen::Vector3d(x, 0.01, 0.01))); };
+    EXPECT_EQ(mark_at(1.72), Mark::kMissed);
+    EXPECT_EQ(mark_at(1.87), Mark::kNone);
+    EXPECT_EQ(mark_at(1.97), Mark::kNone);
+    EXPECT_EQ(mark_at(2.02), Mark::kHit);
+  }
+}
+
+// Kills a cone that frees its edges, where an echo is too weak to be missed, or hits without them.
+TEST(BeamModel, TheConesEdgeIsHitAndNotFreed) {
+  const Lattice lattice(0.05);
+  BeamModelOptions options;
+  options.shape = BeamShape::kCone;
+  ScanUpdate scan;
+  trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo_at(3.02), options, scan);
+  const auto mark_at = [&](double range_m, double elevation_deg) {
+    const double elevation = elevation_deg * kDegree;
+    const Eigen::Vector3d at(range_m * std::cos(elevation), 0.01, range_m * std::sin(elevation));
+    return mark_of(scan, *lattice.key_of(at));
+  };
+  EXPECT_EQ(mark_at(2.0, 11.0), Mark::kMissed);
+  EXPECT_EQ(mark_at(2.0, 16.0), Mark::kNone);
+  EXPECT_EQ(mark_at(3.02, 16.0), Mark::kHit);
 }
 
 // Kills a ray that frees its end cell, or hits another than the echo's.
@@ -250,7 +290,7 @@ TEST(BeamModel, EvidenceGrowsWithTheEchoAndFallsOffTheAxis) {
   EXPECT_GT(evidence_of_intensity(0, hit), LogOdds(0.0F));
   EXPECT_DOUBLE_EQ(share_on_arc(0.0, 0.6, 1.0), 1.0);
   EXPECT_DOUBLE_EQ(share_on_arc(0.3, 0.6, 1.0), 0.5);
-  EXPECT_DOUBLE_EQ(share_on_arc(0.0, 0.6, 25.0), 0.2);
+  EXPECT_DOUBLE_EQ(share_on_arc(0.0, 0.6, 16.0), 0.5);
   EXPECT_DOUBLE_EQ(share_on_arc(0.0, 0.0, 0.1), 1.0);
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "pingvox/sonar/filters.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -32,8 +34,25 @@ TEST(Rise, OfOneStepIsTheDifferenceOfTwoBins) {
   EXPECT_EQ(echo->peak, 2U) << "the nearest of two equal ones";
   EXPECT_EQ(echo->last, 3U);
   EXPECT_EQ(echo->intensity, 80);
-  EXPECT_DOUBLE_EQ(echo->range_m, 0.3) << "the middle between the two strong bins";
+  EXPECT_DOUBLE_EQ(echo->range_m, 0.25) << "a bin before the middle of the crest, and not before the first bin";
   EXPECT_FALSE(echo_of({10, 10, 79, 79, 10, 10})) << "one less than the threshold";
+}
+
+// Kills a range taken from the image, where a window across beams has moved a slanting wall.
+TEST(Rise, TakesTheRangeFromTheBeamsOwnBins) {
+  Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(5)};
+  for (std::size_t n = 0; n < 5; ++n) {
+    sweep.beams[n].bin_length_m = 0.1;
+    sweep.beams[n].intensities.assign(60, 0);
+    const std::size_t wall = 20 + n * n;  // farther and farther
+    for (std::size_t bin = wall; bin < wall + 5; ++bin) sweep.beams[n].intensities[bin] = 200;
+  }
+  EchoOptions options;
+  options.threshold = 70;
+  options.min_range_m = 0.0;
+  const auto echoes = detect_echoes(filtered(PolarImage(sweep), {}), sweep, options);
+  ASSERT_TRUE(echoes[3]);
+  EXPECT_NEAR(echoes[3]->range_m, 0.1 * (29 + 2.5 - 1.0), 0.03);
 }
 
 TEST(Rise, AddsUpTheDifferencesOfASlope) {

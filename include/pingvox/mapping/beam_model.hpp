@@ -49,6 +49,10 @@ struct BeamModelOptions {
   Tracing tracing = Tracing::kGeometry;
   double width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontal, full angle; Micron data sheet
   double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, full angle; Micron data sheet
+  /// Of width and height, about the axis: where an echo's silence before it frees cells. They are those of half power
+  /// one way; within 0.72 of them (sin(u) / u again) it is half power both ways. What stands farther out answers with
+  /// less than half and may not be heard. An echo may come from all of the beam nevertheless.
+  double free_share = 0.72;
   RayAlgorithm ray = RayAlgorithm::kDda;
   HitFrom hit_from = HitFrom::kIntensity;
   LogOdds hit = LogOdds::from_probability(0.7);  ///< evidence of an echo; with kIntensity of the strongest possible one
@@ -64,9 +68,9 @@ struct BeamModelOptions {
 LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit);
 
 /// Share of an echo's evidence for a cell of its arc. The arc is `cells_on_arc` cells long and sound came back from at
-/// least one of them, so the evidence is thinned by the root of their number (between 1, as if it came from all, and
-/// 1/n, as if from one), and by the vertical beam pattern: half at the edge, where the beam is 3 dB weaker. A cell that
-/// lies on the edge may have its middle beyond it.
+/// least one of them, so the evidence is thinned by the fourth root of their number (between 1, as if it came from all,
+/// and 1/n, as if from one; judged by simulated truth, docs/decisions.md), and by the vertical beam pattern: half at
+/// the edge, where the beam is 3 dB weaker. A cell that lies on the edge may have its middle beyond it.
 double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc);
 
 /// Directions (unit, sensor frame) that fill the beam so densely that each cell whose centre lies in the insonified
@@ -84,7 +88,8 @@ double cells_in_beam(const BeamModelOptions& options, double range_m, double res
 /// The most that `build_map` takes for one beam: such a scan needs some hundred megabytes.
 inline constexpr double kMostCellsInBeam = 3e8;
 
-/// Adds to `scan` what one beam says: cells freed up to the echo, cells hit with their share of the evidence.
+/// Adds to `scan` what one beam says: cells freed up to the first bin of the echo (from there on sound came back),
+/// cells hit at its range with their share of the evidence. What lies between the two stays as it was.
 /// @param map_from_sensor  the head's pose when the beam was heard
 /// @return the number of rays left out because an end of them lies outside of the lattice
 std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, const Beam& beam,

@@ -17,14 +17,15 @@ struct Echo {
   std::size_t first = 0;       ///< bin where it was detected
   std::size_t peak = 0;        ///< its strongest bin (the nearest one of several)
   std::size_t last = 0;        ///< its last bin
-  double range_m = 0.0;        ///< where we take the wall to be, from the transducer: the middle of the crest
+  double range_m = 0.0;        ///< where we take the wall to be, from the transducer: a bin before the crest's middle
   std::uint8_t intensity = 0;  ///< of the peak, 0..255, as it was detected (after filtering)
 };
 
 /// How an echo is found. Whatever finds its first bin, it runs from there to the last bin before the beam has fallen by
-/// more than half the contrast below its peak, and its range is the middle of its crest: the mean of its bins, weighted
-/// with what they stand above a quarter of the contrast below the peak. The contrast is the threshold of kRise, or what
-/// that would be by default; no more than a given threshold of kLevel, kMax or kCfar.
+/// more than half the contrast below its peak. Its range is the middle of its crest, less the bin by which a crest lies
+/// behind its wall: the mean of its bins as they were heard, smoothed along the beam only, weighted with what they
+/// stand above half of the contrast below the highest; not before the middle of its first bin. The contrast is the
+/// threshold of kRise, or what that would be by default; no more than a given threshold of kLevel, kMax or kCfar.
 enum class Detector {
   /// Differences of successive bins, as in the paper (section 8.2), summed over a rise: a bin is an echo's first when
   /// the differences from bin to bin, added up since the last valley, reach the threshold. Without noise and smoothing
@@ -77,9 +78,8 @@ struct EchoOptions {
   /// kRise: the least sum of differences over a rise, 1..255. kLevel, kMax: the least intensity, 1..255. kCanny: the
   /// gradient that a strong edge exceeds, 1..2040. kCfar: how far above the noise around it an echo must stand, 1..255.
   /// nullopt: by the gain that the beam was heard with. kRise: half of the largest rise (within 48 bins) that is usual
-  /// in the 33 beams around, 70 in the tank recording; where that rise is less than ten times the noise, a rise of
-  /// twenty times the noise. kLevel, kMax: as much above the lower quartile of the beam. kCanny: 1.6 times, kCfar: as
-  /// much.
+  /// in the 33 beams around, 70 in the tank recording; where those are mostly noise, a rise of fifteen times the noise.
+  /// kLevel, kMax: as much above the lower quartile of the beam. kCanny: 1.6 times, kCfar: as much.
   std::optional<int> threshold = std::nullopt;
   CannyOptions canny = {};
   CfarOptions cfar = {};

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "accuracy/recording.hpp"
+
+namespace pingvox::bench {
+
+/// Ranges from `first_m` to `last_m`.
+struct Span {
+  double first_m = 0.0, last_m = 0.0;
+};
+
+/// What there is for one beam to hear, by geometry alone.
+struct TrueReturns {
+  /// To the first surface along the middle of the beam; nullopt: none within the bins.
+  std::optional<double> axis_m;
+  /// Ranges at which a surface in line of sight lies within the cone of half power (one way), in order, apart from each
+  /// other: sound comes back from each of them. Empty: a silent beam.
+  std::vector<Span> returns;
+  /// The same of all the main lobe, out to where it hears nothing: more than twice as wide and high.
+  std::vector<Span> lobe;
+  /// Points on those surfaces [m, map frame], as dense as the rays that found them.
+  std::vector<Eigen::Vector3d> seen_m;
+};
+
+/// How far a range is from the nearest of some spans; nullopt: there are none.
+std::optional<double> off_m(double range_m, const std::vector<Span>& spans);
+
+/// Joins spans that overlap or touch.
+std::vector<Span> joined(std::vector<Span> spans);
+
+/// What is true of each ping of a recording.
+std::vector<TrueReturns> true_returns(const Recording& recording);
+
+/// Where rays in the plane of the head first meet a surface, from each ping's bearing half a step to either side
+/// [m, map frame]: all that lies in line of sight and in range, as far as the head's steps leave no gap.
+std::vector<Eigen::Vector3d> seen_in_plane_m(const Recording& recording, double least_range_m);
+
+}  // namespace pingvox::bench
