@@ -37,6 +37,9 @@ std::vector<ConeSweep> cones_of(const TankEchoes& tank) {
     for (const BeamEcho& echo : sweep) {
       Cone& cone = cones.emplace_back();
       cone.beam.bearing_rad = echo.bearing_rad;
+      // Free up to the echo's range, and as wide as it may come from: what the bundle of rays says.
+      cone.beam.bin_length_m = echo.range_m;
+      cone.echo.first = 1;
       cone.echo.range_m = echo.range_m;
       cone.echo.intensity = echo.intensity;
     }
@@ -45,7 +48,7 @@ std::vector<ConeSweep> cones_of(const TankEchoes& tank) {
 }
 
 void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const ConeSweep> sweeps) {
-  const BeamModelOptions model{.shape = BeamShape::kCone, .hit_from = HitFrom::kFixed};
+  const BeamModelOptions model{.shape = BeamShape::kCone, .free_share = 1.0, .hit_from = HitFrom::kFixed};
   for (const ConeSweep& sweep : sweeps) {
     for (const Cone& cone : sweep) {
       trace_beam(map.lattice(), Pose::Identity(), cone.beam, cone.echo, model, scan);

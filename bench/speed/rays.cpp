@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "bench/duel.hpp"
-#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/map/trace_ray.hpp"
 #include "pingvox/sim/random.hpp"
 
 namespace pingvox::bench {
@@ -17,10 +17,6 @@ constexpr double kCell_m = 0.05, kHalfBox_m = 10.0;
 constexpr std::size_t kRays = 131'072;
 /// liboctomap adds up floats as it goes: the most rays (as a share) that may take another way past an edge.
 constexpr double kMostOther = 0.01;
-
-struct Segment {
-  Eigen::Vector3d from_m, to_m;  ///< coordinates are those of floats
-};
 
 std::vector<Segment> random_segments() {
   Random random(11);
@@ -35,18 +31,21 @@ std::vector<Segment> random_segments() {
   return segments;
 }
 
-void keys_of(const Lattice& lattice, const Segment& segment, std::vector<Key>& keys) {
-  keys.clear();
-  const auto ray = dda<std::uint16_t>(lattice, segment.from_m, segment.to_m);
-  if (!ray) return;
-  for (const Key key : *ray) keys.push_back(key);
+/// Calls f(ray's number, its keys) for each ray, a few hundred at a time.
+template <class F>
+void for_each_ray(const Lattice& lattice, std::span<const Segment> segments, RayKeys& keys, F&& f) {
+  constexpr std::size_t kAtOnce = 256;
+  for (std::size_t first = 0; first < segments.size(); first += kAtOnce) {
+    trace_keys(lattice, segments.subspan(first, std::min(kAtOnce, segments.size() - first)), keys);
+    for (std::size_t i = 0; i < keys.size(); ++i) f(first + i, keys[i]);
+  }
 }
 
 octomap::point3d as_peer(const Eigen::Vector3d& point_m) {
   return {static_cast<float>(point_m.x()), static_cast<float>(point_m.y()), static_cast<float>(point_m.z())};
 }
 
-bool are_same(const std::vector<Key>& ours, const octomap::KeyRay& peer) {
+bool are_same(std::span<const Key> ours, const octomap::KeyRay& peer) {
   return std::equal(ours.begin(), ours.end(), peer.begin(), peer.end(), [](const Key& a, const octomap::OcTreeKey& b) {
     return a.x == b[0] && a.y == b[1] && a.z == b[2];
   });
@@ -61,16 +60,15 @@ Result<std::vector<Row>> rays(const BenchOptions&) {
   std::vector<std::pair<octomap::point3d, octomap::point3d>> peer_segments;
   peer_segments.reserve(segments.size());
   for (const Segment& s : segments) peer_segments.emplace_back(as_peer(s.from_m), as_peer(s.to_m));
-  std::vector<Key> keys;
+  RayKeys keys;
   octomap::KeyRay peer_keys;
 
   std::size_t same = 0, cells = 0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    keys_of(lattice, segments[i], keys);
+  for_each_ray(lattice, segments, keys, [&](std::size_t i, std::span<const Key> ray) {
     tree.computeRayKeys(peer_segments[i].first, peer_segments[i].second, peer_keys);
-    same += are_same(keys, peer_keys);
-    cells += keys.size();
-  }
+    same += are_same(ray, peer_keys);
+    cells += ray.size();
+  });
   const double share = static_cast<double>(same) / static_cast<double>(segments.size());
   if (share < 1.0 - kMostOther) {
     return fail(Error::Code::kCorrupt, fmt::format("only {} of {} rays have liboctomap's keys", same, segments.size()));
@@ -79,10 +77,8 @@ Result<std::vector<Row>> rays(const BenchOptions&) {
   // The sums keep the compiler from leaving the work out.
   std::size_t ours_cells = 0, peer_cells = 0;
   const Side ours{{}, [&] {
-                    for (const Segment& segment : segments) {
-                      keys_of(lattice, segment, keys);
-                      ours_cells += keys.size();
-                    }
+                    for_each_ray(lattice, segments, keys,
+                                 [&](std::size_t, std::span<const Key> ray) { ours_cells += ray.size(); });
                   }};
   const Side peer{{}, [&] {
                     for (const auto& [from, to] : peer_segments) {

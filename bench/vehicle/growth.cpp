@@ -84,17 +84,17 @@ InsonifiedVolume beam_at(std::size_t n) {
   return beam;
 }
 
-/// A small scan: one beam of 3 x 35 degrees with an echo at 2 m, some 1500 cells.
+/// A small scan: the water before an echo at 2 m, in a beam of 3 x 35 degrees: some 1500 cells.
 ScanUpdate probe(const Lattice& lattice, std::size_t n) {
   ScanUpdate scan;
-  trace_volume(lattice, beam_at(n), [](double) { return LogOdds::from_probability(0.7); }, scan);
+  trace_volume(lattice, beam_at(n), scan);
   return scan;
 }
 
 /// Takes back what a probe said of the water, so that it can be said again.
 ScanUpdate unsaid(const Lattice& lattice, std::size_t n) {
   ScanUpdate scan(LogOdds(-ScanUpdate().miss().value()));
-  trace_volume(lattice, beam_at(n), nullptr, scan);
+  trace_volume(lattice, beam_at(n), scan);
   return scan;
 }
 

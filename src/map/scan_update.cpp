@@ -24,12 +24,21 @@ std::size_t hashed(const WideKey& key) {
   return static_cast<std::size_t>(sum ^ (sum >> 29));
 }
 
-/// Bits of the cells first..last (of 0..3) of a brick's lowest row along an axis.
-constexpr std::uint64_t run_in_brick(int axis, unsigned first, unsigned last) {
-  std::uint64_t bits = 0;
-  for (unsigned i = first; i <= last; ++i) bits |= std::uint64_t{1} << (((i >> 1) * 8U + (i & 1U)) << axis);
-  return bits;
-}
+/// Bits of the cells first..last (of 0..3) of a brick's lowest row along an axis, by [axis][first][last].
+using RunsInBrick = std::array<std::array<std::array<std::uint64_t, 4>, 4>, 3>;
+constexpr RunsInBrick kRunsInBrick = [] {
+  RunsInBrick runs{};
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    for (unsigned first = 0; first < 4; ++first) {
+      std::uint64_t bits = 0;
+      for (unsigned last = first; last < 4; ++last) {
+        bits |= std::uint64_t{1} << (((last >> 1) * 8U + (last & 1U)) << axis);
+        runs[axis][first][last] = bits;
+      }
+    }
+  }
+  return runs;
+}();
 
 }  // namespace
 
@@ -41,13 +50,14 @@ void ScanUpdate::add_missed_run(const WideKey& first, int axis, std::uint64_t le
   (axis == 0 ? across.x : (axis == 1 ? across.y : across.z)) = 0;
   const std::size_t brick_row = cell_in_page(across) / 64;
   const int cell_row = detail::cell_in_brick(across);
+  const auto& runs = kRunsInBrick[static_cast<std::size_t>(axis)];
   while (length > 0) {
     Page& page = pages_[page_of(key)];
     for (auto in_page = static_cast<unsigned>(word & 15); in_page < 16 && length > 0;) {
       const unsigned brick = in_page / 4, from = in_page % 4;
       const auto cells = static_cast<unsigned>(std::min<std::uint64_t>(4 - from, length));
       const std::size_t brick_along = ((brick >> 1) * 8U + (brick & 1U)) << axis;
-      page.missed[brick_row | brick_along] |= run_in_brick(axis, from, from + cells - 1) << cell_row;
+      page.missed[brick_row | brick_along] |= runs[from][from + cells - 1] << cell_row;
       in_page += cells;
       word += cells;
       length -= cells;
@@ -68,9 +78,16 @@ void ScanUpdate::rehash(std::size_t slots) {
 }
 
 std::uint32_t ScanUpdate::page_of(const WideKey& key) {
-  if (slots_.size() < 2 * (used_ + 1)) rehash(std::max<std::size_t>(64, 2 * slots_.size()));
   const auto lowest = [](WideWord word) { return word >> kPageBits << kPageBits; };
   const WideKey corner{lowest(key.x), lowest(key.y), lowest(key.z)};
+  const auto place = [](WideWord word) { return static_cast<std::size_t>(word >> kPageBits) & 3U; };
+  std::uint32_t& recent = recent_[place(key.x) | place(key.y) << 2 | place(key.z) << 4];
+  if (recent >= used_ || pages_[recent].lowest != corner) recent = page_at(corner);
+  return recent;
+}
+
+std::uint32_t ScanUpdate::page_at(const WideKey& corner) {
+  if (slots_.size() < 2 * (used_ + 1)) rehash(std::max<std::size_t>(64, 2 * slots_.size()));
   const std::size_t slot = slot_of(corner);
   if (slots_[slot] != kFree) return slots_[slot] - 1;
   if (used_ == pages_.size()) pages_.emplace_back();

@@ -1,6 +1,7 @@
 #include "pingvox/map/trace_ray.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -230,6 +231,39 @@ class FanTracer {
 bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
                RayAlgorithm algorithm, ScanUpdate& scan) {
   return with_key_word(lattice.depth(), [&]<KeyWord W>() { return trace<W>(lattice, from_m, to_m, algorithm, scan); });
+}
+
+void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& into) {
+  assert(lattice.depth() <= kLevelsOf<std::uint16_t>);
+  const double cells_per_m = 1.0 / lattice.resolution_m();
+  into.ends_.clear();
+  std::vector<detail::ReadyRay> ready;
+  std::vector<std::size_t> ready_begins;
+  std::size_t begin = 0;
+  std::vector<std::size_t> others;
+  for (const Segment& ray : rays) {
+    const auto start = lattice.key_of(ray.from_m);
+    if (start && lattice.key_of(ray.to_m)) {
+      const FaceCrossings crossings(ray.from_m * cells_per_m, ray.to_m * cells_per_m);
+      if (const auto one = detail::ready_ray(*start, crossings)) {
+        ready.push_back(*one);
+        ready_begins.push_back(begin);
+      } else {
+        others.push_back(into.ends_.size());
+      }
+      begin += crossings.left();
+    }
+    into.ends_.push_back(begin++);
+  }
+  into.keys_.resize(begin + 1);
+  std::vector<Key*> places;
+  for (const std::size_t at : ready_begins) places.push_back(into.keys_.data() + at);
+  detail::write_keys(detail::widest_lanes(), ready, places);
+  for (const std::size_t i : others) {
+    std::size_t at = i == 0 ? 0 : into.ends_[i - 1] + 1;
+    const auto ray = dda<std::uint16_t>(lattice, rays[i].from_m, rays[i].to_m);
+    for (const Key key : *ray) into.keys_[at++] = key;
+  }
 }
 
 std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,

@@ -41,7 +41,7 @@ std::size_t add_misses(const Lattice& lattice, const Pose& map_from_sensor, doub
                        const BeamModelOptions& options, ScanUpdate& scan) {
   if (options.shape != BeamShape::kRay && options.tracing == Tracing::kGeometry) {
     const InsonifiedVolume volume{map_from_sensor, bearing_rad, width_of(options), height_of(options), range_m};
-    if (trace_volume(lattice, volume, nullptr, scan)) return 0;
+    if (trace_volume(lattice, volume, scan)) return 0;
     // Near the border of the lattice single rays can still be told from those that leave it.
   }
   std::size_t outside = 0;
@@ -95,13 +95,14 @@ std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double beari
   const std::vector<double> azimuths = spread(width, apart_rad), elevations = spread(height, apart_rad);
   std::vector<BundleRay> bundle;
   bundle.reserve(azimuths.size() * elevations.size());
+  std::vector<Eigen::Vector2d> level;
+  for (const double azimuth : azimuths) {
+    level.emplace_back(std::cos(bearing_rad + azimuth), std::sin(bearing_rad + azimuth));
+  }
   for (const double elevation : elevations) {
-    for (const double azimuth : azimuths) {
-      const double bearing = bearing_rad + azimuth;
-      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing), std::cos(elevation) * std::sin(bearing),
-                                      std::sin(elevation));
-      bundle.push_back({direction, share_on_arc(elevation, height, cells_on_arc)});
-    }
+    const double share = share_on_arc(elevation, height, cells_on_arc);
+    const double across = std::cos(elevation), up = std::sin(elevation);
+    for (const Eigen::Vector2d& way : level) bundle.push_back({{across * way.x(), across * way.y(), up}, share});
   }
   return bundle;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace pingvox {
@@ -19,12 +20,12 @@ constexpr double kGrazing = 1e-9;
 
 /// The half-space normal * p >= 0, for whole cells: one with its middle at c touches it when normal * c >= -reach.
 /// Cells are closed below and open above, so a fan that lies exactly between two layers of cells belongs to the upper
-/// one.
-struct HalfSpace {
-  explicit HalfSpace(const Vector& n)
-      : normal(n), reach(0.5 * n.cwiseAbs().sum() + ((n.array() <= 0.0).all() ? kGrazing : -kGrazing)) {}
-  Vector normal;
-  double reach;
+/// one. Axes are those of the walk: of layers, of rows in a layer, of cells in a row.
+struct Face {
+  double layer = 0.0, row = 0.0, cell = 0.0;  ///< components of the normal
+  double row_way = 0.0, cell_way = 0.0;       ///< 1 / row, 1 / cell
+  double reach = 0.0;
+  double most_along_row = 0.0;  ///< the most that `cell` times a place within the box can be
 };
 
 /// Cells first..last along an axis.
@@ -49,9 +50,9 @@ class Piece {
     const Vector up = map_from_sensor.linear() * Vector::UnitZ();
     const double half_width = width_rad / 2, half_height = height_rad / 2;
     const double slope = std::tan(half_height) / std::cos(half_width);
-    faces_ = {HalfSpace(ahead), HalfSpace(std::sin(half_width) * ahead - std::cos(half_width) * left),
-              HalfSpace(std::sin(half_width) * ahead + std::cos(half_width) * left),
-              HalfSpace((slope * ahead - up).normalized()), HalfSpace((slope * ahead + up).normalized())};
+    const std::array<Vector, 5> normals{ahead, std::sin(half_width) * ahead - std::cos(half_width) * left,
+                                        std::sin(half_width) * ahead + std::cos(half_width) * left,
+                                        (slope * ahead - up).normalized(), (slope * ahead + up).normalized()};
 
     const Vector& tall = height_rad >= width_rad ? up : ahead;
     const Vector& deep = height_rad >= width_rad ? ahead : left;
@@ -74,6 +75,7 @@ class Piece {
     const double bulge = range * (1.0 - std::cos(step)) + 1.0;
     box_min_.array() -= bulge;
     box_max_.array() += bulge;
+    for (std::size_t i = 0; i < faces_.size(); ++i) faces_[i] = face_of(normals[i]);
   }
 
   const Vector& box_min() const { return box_min_; }
@@ -82,32 +84,23 @@ class Piece {
   /// Calls f(first cell, axis, number of cells) for each row of cells that the piece touches.
   template <class F>
   void for_each_row(F&& f) const {
-    Vector at = Vector::Zero();
     std::array<std::int64_t, 3> cell{};
-    const Run outer = cells_between(box_min_[outer_], box_max_[outer_], outer_);
-    for (std::int64_t i = outer.first; i <= outer.last; ++i) {
+    std::array<double, 5> needed{};
+    const Run layers = cells_between(box_min_[outer_], box_max_[outer_], outer_);
+    for (std::int64_t i = layers.first; i <= layers.last; ++i) {
       cell[index(outer_)] = i;
-      at[outer_] = middle_of(i, outer_);
-      at[middle_] = 0.0;
-      const Run middle = touched(middle_, at, along_);
-      for (std::int64_t j = middle.first; j <= middle.last; ++j) {
+      const double layer = middle_of(i, outer_);
+      for (std::size_t n = 0; n < faces_.size(); ++n) needed[n] = -faces_[n].reach - faces_[n].layer * layer;
+      const Run rows = rows_touched(needed);
+      for (std::int64_t j = rows.first; j <= rows.last; ++j) {
         cell[index(middle_)] = j;
-        at[middle_] = middle_of(j, middle_);
-        const Run row = in_sphere(at, touched(along_, at, -1));
-        if (row.empty()) continue;
-        cell[index(along_)] = row.first;
-        f(cell, along_, static_cast<std::uint64_t>(row.last - row.first + 1));
+        const double row = middle_of(j, middle_);
+        const Run cells = in_sphere(layer, row, cells_touched(needed, row));
+        if (cells.empty()) continue;
+        cell[index(along_)] = cells.first;
+        f(cell, along_, static_cast<std::uint64_t>(cells.last - cells.first + 1));
       }
     }
-  }
-
-  Vector middle_of(const std::array<std::int64_t, 3>& cell) const {
-    return {middle_of(cell[0], 0), middle_of(cell[1], 1), middle_of(cell[2], 2)};
-  }
-
-  /// Whether some part of a cell lies at the range of the echo or beyond.
-  bool reaches_far_end(const Vector& middle) const {
-    return (middle.cwiseAbs().array() + (0.5 + kGrazing)).matrix().squaredNorm() >= range_ * range_;
   }
 
  private:
@@ -119,46 +112,61 @@ class Piece {
             static_cast<std::int64_t>(std::floor(high - 0.5 + in_cell_[axis]))};
   }
 
-  /// Cells of the line along `axis` through `at` (whose component along it must be 0) that touch all half-spaces; with
-  /// an `open` axis (else -1): that do so somewhere along that one, too.
-  Run touched(int axis, const Vector& at, int open) const {
-    double low = box_min_[axis], high = box_max_[axis];
-    for (const HalfSpace& face : faces_) {
-      double needed = -face.reach - face.normal.dot(with_zero(at, axis, open));
-      if (open >= 0) needed -= std::max(face.normal[open] * box_min_[open], face.normal[open] * box_max_[open]);
-      const double slope = face.normal[axis];
-      if (slope > 0.0) {
-        low = std::max(low, needed / slope);
-      } else if (slope < 0.0) {
-        high = std::min(high, needed / slope);
-      } else if (needed > 0.0) {
-        return {0, -1};
-      }
+  Face face_of(const Vector& normal) const {
+    Face face;
+    face.layer = normal[outer_];
+    face.row = normal[middle_];
+    face.cell = normal[along_];
+    face.row_way = 1.0 / face.row;
+    face.cell_way = 1.0 / face.cell;
+    face.reach = 0.5 * normal.cwiseAbs().sum() + ((normal.array() <= 0.0).all() ? kGrazing : -kGrazing);
+    face.most_along_row = std::max(face.cell * box_min_[along_], face.cell * box_max_[along_]);
+    return face;
+  }
+
+  /// Narrows low..high to where slope * place >= needed; `way` is 1 / slope.
+  static void narrow(double slope, double way, double needed, double& low, double& high) {
+    if (slope > 0.0) {
+      low = std::max(low, needed * way);
+    } else if (slope < 0.0) {
+      high = std::min(high, needed * way);
+    } else if (needed > 0.0) {
+      high = -std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// Rows of a layer that touch all half-spaces somewhere. @param needed  of each face, what the layer leaves to reach
+  Run rows_touched(const std::array<double, 5>& needed) const {
+    double low = box_min_[middle_], high = box_max_[middle_];
+    for (std::size_t n = 0; n < faces_.size(); ++n) {
+      narrow(faces_[n].row, faces_[n].row_way, needed[n] - faces_[n].most_along_row, low, high);
+    }
+    return low > high ? Run{0, -1} : cells_between(low, high, middle_);
+  }
+
+  /// Cells of a row that touch all half-spaces.
+  Run cells_touched(const std::array<double, 5>& needed, double row) const {
+    double low = box_min_[along_], high = box_max_[along_];
+    for (std::size_t n = 0; n < faces_.size(); ++n) {
+      narrow(faces_[n].cell, faces_[n].cell_way, needed[n] - faces_[n].row * row, low, high);
     }
     // Outside of the box nothing is meant, and huge numbers are no cells.
-    return low > high ? Run{0, -1} : cells_between(low, high, axis);
+    return low > high ? Run{0, -1} : cells_between(low, high, along_);
   }
 
-  static Vector with_zero(Vector at, int axis, int other) {
-    at[axis] = 0.0;
-    if (other >= 0) at[other] = 0.0;
-    return at;
-  }
-
-  /// What of a row along along_ the sphere touches.
-  Run in_sphere(const Vector& at, Run row) const {
-    const double outer = std::max(0.0, std::abs(at[outer_]) - 0.5), middle = std::max(0.0, std::abs(at[middle_]) - 0.5);
+  /// What of a row the sphere touches.
+  Run in_sphere(double layer, double row, const Run& cells) const {
+    const double outer = std::max(0.0, std::abs(layer) - 0.5), middle = std::max(0.0, std::abs(row) - 0.5);
     const double left = range_ * range_ - outer * outer - middle * middle;
-    if (left < 0.0 || row.empty()) return {0, -1};
+    if (left < 0.0 || cells.empty()) return {0, -1};
     const double reach = std::sqrt(left) + 0.5 + kGrazing;
     const Run sphere = cells_between(-reach, reach, along_);
-    return {std::max(row.first, sphere.first), std::min(row.last, sphere.last)};
+    return {std::max(cells.first, sphere.first), std::min(cells.last, sphere.last)};
   }
 
   double range_;
   Vector in_cell_;  ///< the sensor in its cell, each component in [0, 1)
-  std::array<HalfSpace, 5> faces_{HalfSpace(Vector::Zero()), HalfSpace(Vector::Zero()), HalfSpace(Vector::Zero()),
-                                  HalfSpace(Vector::Zero()), HalfSpace(Vector::Zero())};
+  std::array<Face, 5> faces_;
   int outer_ = 0, middle_ = 1, along_ = 2;  ///< map axes: of layers, of rows in them, of rows' cells
   Vector box_min_, box_max_;
 };
@@ -172,8 +180,7 @@ WideKey moved(const WideKey& from, const std::array<std::int64_t, 3>& by) {
 
 }  // namespace
 
-bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume,
-                  const std::function<LogOdds(double elevation_rad)>& evidence_of, ScanUpdate& scan) {
+bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume, ScanUpdate& scan) {
   assert(volume.range_m > 0.0 && volume.width_rad >= 0.0 && volume.height_rad >= 0.0);
   const Vector origin_m = volume.map_from_sensor.translation();
   const auto origin_key = lattice.key_of<WideWord>(origin_m);
@@ -181,7 +188,6 @@ bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume,
   const double edge_m = lattice.resolution_m();
   const Vector origin = origin_m / edge_m;
   const Vector in_cell = origin.array() - origin.array().floor();
-  const Vector up = volume.map_from_sensor.linear() * Vector::UnitZ();
 
   const auto count = static_cast<int>(std::max(1.0, std::ceil(volume.width_rad / kWidestPiece_rad)));
   std::vector<Piece> pieces;
@@ -193,21 +199,9 @@ bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume,
     const Vector high_m = origin_m + (pieces.back().box_max().array() + 1.0).matrix() * edge_m;
     if (!lattice.key_of<WideWord>(low_m) || !lattice.key_of<WideWord>(high_m)) return false;
   }
-
   for (const Piece& piece : pieces) {
-    piece.for_each_row([&](std::array<std::int64_t, 3> cell, int axis, std::uint64_t length) {
+    piece.for_each_row([&](const std::array<std::int64_t, 3>& cell, int axis, std::uint64_t length) {
       scan.add_missed_run(moved(*origin_key, cell), axis, length);
-      const Vector first = piece.middle_of(cell);
-      Vector last = first;
-      last[axis] += static_cast<double>(length - 1);
-      // The farthest cell of a row is at one of its ends.
-      if (!evidence_of || !(piece.reaches_far_end(first) || piece.reaches_far_end(last))) return;
-      for (std::uint64_t i = 0; i < length; ++i, ++cell[static_cast<std::size_t>(axis)]) {
-        const Vector middle = piece.middle_of(cell);
-        if (!piece.reaches_far_end(middle)) continue;
-        const double elevation = std::asin(std::clamp(up.dot(middle.normalized()), -1.0, 1.0));
-        scan.add_hit(moved(*origin_key, cell), evidence_of(elevation));
-      }
     });
   }
   return true;

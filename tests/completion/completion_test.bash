@@ -51,7 +51,7 @@ offers "tank|harbour|seabed|cave" pingvox simulate ""
 offers "tank.csv" pingvox simulate tank.
 offers "lawn-mower" pingvox simulate harbour --trajectory la
 offers "--json" pingvox compare a b --j
-offers "all" pingvox bench a
+offers "all|accuracy" pingvox bench a
 offers "tank-3d|tank-3d-cells" pingvox bench rays tank-3
 offers "--pictures" pingvox bench --p
 offers "tank.csv" pingvox bench all --pictures tank

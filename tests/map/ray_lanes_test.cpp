@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pingvox/map/ray_dda.hpp"
+#include "pingvox/map/trace_ray.hpp"
 
 namespace pingvox::detail {
 namespace {
@@ -124,6 +125,60 @@ TEST(RayLanes, MarkTheCellsOfFaceCrossings) {
   EXPECT_GT(marked, 100'000U);
   EXPECT_GT(taken, 10'000U);
   EXPECT_GT(left_out, 500U);
+}
+
+// Kills keys that spill over into the ray behind, a lane that goes on when its ray has ended, a borrow that runs from
+// one component of a packed key into the next.
+TEST(RayLanes, KeysAreThoseOfTheStepper) {
+  const Lattice lattice(0.6);
+  std::size_t compared = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::vector<Segment> segments;
+    const std::vector<Eigen::Vector3d> ends = ends_around({0.3, 0.4, 0.1}, random, 40);
+    for (std::size_t i = 0; i < ends.size(); ++i) segments.push_back({ends[random() % ends.size()], ends[i]});
+    segments.push_back({Eigen::Vector3d::Constant(-19'660.0), Eigen::Vector3d::Constant(19'660.0)});  // to the borders
+
+    std::vector<std::vector<Key>> expected;
+    for (const Segment& segment : segments) {
+      auto& keys = expected.emplace_back();
+      const auto ray = dda<std::uint16_t>(lattice, segment.from_m, segment.to_m);
+      if (!ray) continue;
+      for (const Key key : *ray) keys.push_back(key);
+      compared += keys.size();
+    }
+    RayKeys found;
+    trace_keys(lattice, segments, found);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_TRUE(std::equal(found[i].begin(), found[i].end(), expected[i].begin(), expected[i].end())) << i;
+    }
+
+    for (const Lanes lanes : lanes_here()) {
+      std::vector<ReadyRay> ready;
+      std::vector<std::vector<Key>> written;
+      std::vector<std::size_t> number;
+      for (std::size_t i = 0; i < segments.size(); ++i) {
+        const auto start = lattice.key_of(segments[i].from_m);
+        if (!start || !lattice.key_of(segments[i].to_m)) continue;
+        const double cells_per_m = 1.0 / lattice.resolution_m();
+        const auto ray = ready_ray(*start, {segments[i].from_m * cells_per_m, segments[i].to_m * cells_per_m});
+        if (!ray) continue;
+        ready.push_back(*ray);
+        written.emplace_back(ray->left + 1);
+        number.push_back(i);
+      }
+      std::vector<Key*> places;
+      for (auto& keys : written) places.push_back(keys.data());
+      write_keys(lanes, ready, places);
+      for (std::size_t i = 0; i < ready.size(); ++i) {
+        written[i].pop_back();
+        ASSERT_EQ(written[i], expected[number[i]]) << number[i];
+      }
+    }
+  }
+  EXPECT_GT(compared, 100'000U);
 }
 
 TEST(RayLanes, SpreadBitsAreGatheredAgain) {

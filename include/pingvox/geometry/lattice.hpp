@@ -71,9 +71,14 @@ class Lattice {
   template <KeyWord W>
   std::optional<W> word_of(double m) const {
     // Times the inverse, as OctoMap does: dividing puts 0.3 m at 0.1 m cells one cell lower.
-    const double cell = std::floor(m * cells_per_m_);
+    const double cell = m * cells_per_m_;
     if (!(cell >= -half_ && cell < half_)) return std::nullopt;  // this way round NaN fails too
-    return static_cast<W>(static_cast<W>(static_cast<SignedWide>(cell)) + (W{1} << (depth_ - 1)));
+    const W centre = static_cast<W>(W{1} << (depth_ - 1));
+    if (depth_ > 62) return static_cast<W>(static_cast<W>(static_cast<SignedWide>(std::floor(cell))) + centre);
+    // The same by the processor's own conversion, which rounds towards zero: many times faster.
+    auto whole = static_cast<std::int64_t>(cell);
+    if (static_cast<double>(whole) > cell) --whole;
+    return static_cast<W>(static_cast<W>(whole) + centre);
   }
 
   template <KeyWord W>

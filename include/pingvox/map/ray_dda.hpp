@@ -49,6 +49,11 @@ class FaceCrossings {
     if (next_[0] < next_[1]) return next_[0] < next_[2] ? 0 : 2;
     return next_[1] < next_[2] ? 1 : 2;
   }
+  /// Of an axis: where its next face lies, and how far apart its faces are, in units of 2^-62 of the segment; how many
+  /// are left.
+  std::uint64_t next(std::size_t axis) const { return next_[axis]; }
+  std::uint64_t apart(std::size_t axis) const { return static_cast<std::uint64_t>(apart_[axis] >> 64); }
+  std::uint64_t left(std::size_t axis) const { return left_[axis]; }
   /// Whether the key component grows along an axis.
   bool is_ahead(std::size_t axis) const { return ahead_[axis]; }
   /// Crosses the next face, which must be that of `axis`. REQUIRES left() > 0.

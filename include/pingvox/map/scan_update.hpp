@@ -85,6 +85,7 @@ class ScanUpdate {
 
   /// Gives the hits of a brick evidence of their own.
   void spread_evidence(Page& page, std::size_t brick);
+  std::uint32_t page_at(const WideKey& corner);
   void rehash(std::size_t slots);
   std::size_t slot_of(const WideKey& lowest) const;
 
@@ -96,6 +97,8 @@ class ScanUpdate {
   bool has_hits_ = false;
   LogOdds usual_hit_{};  ///< of the first hit: most scans have no other
   detail::ScanWindow window_;
+  /// Pages that were asked for, by the lowest bits of their place: neighbours are asked for again and again.
+  std::array<std::uint32_t, 64> recent_{};
   std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free
 };
 

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "pingvox/geometry/lattice.hpp"
 #include "pingvox/map/point_scan.hpp"
@@ -17,6 +19,33 @@ enum class RayAlgorithm { kDda, kBresenham };
 /// @return false, and nothing is marked, when an end lies outside of the lattice
 bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
                RayAlgorithm algorithm, ScanUpdate& scan);
+
+/// Two ends of a ray [m, map frame].
+struct Segment {
+  Eigen::Vector3d from_m = Eigen::Vector3d::Zero(), to_m = Eigen::Vector3d::Zero();
+};
+
+/// The cells of many rays, one after the other.
+class RayKeys {
+ public:
+  std::size_t size() const { return ends_.size(); }
+  /// Cells of ray i: what `dda` walks over; none when an end of it lies outside of the lattice.
+  std::span<const Key> operator[](std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : ends_[i - 1] + 1;
+    return {keys_.data() + begin, ends_[i] - begin};
+  }
+
+ private:
+  friend void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& into);
+  std::vector<std::size_t> ends_;  ///< behind the last key of each ray; then there is room for one that is none
+  std::vector<Key> keys_;
+};
+
+/// Walks many rays at once, several side by side: much faster than `dda` for one after the other. A few hundred at a
+/// time keep their keys in the cache.
+/// @param into  what it held is forgotten, its memory used again
+/// REQUIRES lattice.depth() <= 16
+void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& into);
 
 /// Where the rays of a point scan end.
 enum class EndPoints {

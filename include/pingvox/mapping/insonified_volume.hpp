@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "pingvox/geometry/lattice.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -17,13 +15,10 @@ struct InsonifiedVolume {
   double range_m = 0.0;     ///< > 0
 };
 
-/// Marks the cells that the volume touches: hit where its far end, the sphere of `range_m`, passes through them, missed
-/// before it. By geometry, row by row of cells, instead of by rays: it marks each cell that a ray inside of the volume
-/// would, and none farther from the volume than half a cell's diagonal.
-/// @param evidence_of  evidence of a hit by its elevation [rad] above the plane of the head; nullptr: nothing is hit
+/// Marks the cells that the volume touches as missed. By geometry, row by row of cells, instead of by rays: it marks
+/// each cell that a ray inside of the volume would, and none farther from the volume than half a cell's diagonal.
 /// @return false, and nothing is marked, when the volume's box reaches out of the lattice
 /// REQUIRES 0 <= width_rad <= pi, 0 <= height_rad < pi
-bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume,
-                  const std::function<LogOdds(double elevation_rad)>& evidence_of, ScanUpdate& scan);
+bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume, ScanUpdate& scan);
 
 }  // namespace pingvox

@@ -76,6 +76,30 @@ class ByLength {
   std::vector<std::uint32_t> order_;
 };
 
+/// What one face along an axis adds to a packed key.
+std::int64_t key_step(std::size_t axis, const ReadyRay& ray) {
+  const std::int64_t one = std::int64_t{1} << (16 * axis);
+  return ((ray.ahead >> axis) & 1U) != 0 ? one : -one;
+}
+
+/// Writes a packed key, and two bytes behind it that the next one overwrites.
+inline void put(std::uint64_t key, Key* to) {
+  static_assert(sizeof(Key) == 6);
+  std::memcpy(static_cast<void*>(to), &key, sizeof key);
+}
+
+void write_one(const ReadyRay& ray, Key* keys) {
+  std::array<std::int64_t, 3> next = ray.next;
+  const std::array<std::int64_t, 3> step{key_step(0, ray), key_step(1, ray), key_step(2, ray)};
+  auto at = static_cast<std::int64_t>(ray.end);
+  for (std::uint32_t n = 0; n < ray.left; ++n) {
+    put(static_cast<std::uint64_t>(at), keys + n);
+    const std::size_t axis = next[0] < next[1] ? (next[0] < next[2] ? 0U : 2U) : (next[1] < next[2] ? 1U : 2U);
+    next[axis] += ray.apart[axis];
+    at += step[axis];
+  }
+}
+
 // The same loops for each kind of machine.
 namespace plain {
 constexpr std::size_t kLanes = 2;
@@ -165,5 +189,41 @@ void mark_rays(Lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanW
 }
 
 #endif
+
+std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossings) {
+  if (crossings.left() > FaceCrossings::kFewFaces) return std::nullopt;
+  ReadyRay ray{};
+  ray.left = static_cast<std::uint32_t>(crossings.left());
+  ray.end = packed(start);
+  std::int64_t last_crossing = std::numeric_limits<std::int64_t>::min(), beyond_end = kNever;
+  for (std::size_t a = 0; a < 3; ++a) {
+    ray.ahead |= static_cast<std::uint32_t>(crossings.is_ahead(a)) << a;
+    const std::uint64_t faces = crossings.left(a), next = crossings.next(a), apart = crossings.apart(a);
+    if (faces == 0) {
+      ray.next[a] = kNever;
+      continue;
+    }
+    ray.next[a] = static_cast<std::int64_t>(next);
+    ray.apart[a] = faces > 1 ? static_cast<std::int64_t>(apart) : kNever - ray.next[a];
+    last_crossing = std::max(last_crossing, static_cast<std::int64_t>(next + (faces - 1) * apart));
+    if (faces > 1) beyond_end = std::min(beyond_end, static_cast<std::int64_t>(next + faces * apart));
+  }
+  if (beyond_end <= last_crossing) return std::nullopt;
+  return ray;
+}
+
+void write_keys(Lanes lanes, std::span<const ReadyRay> rays, std::span<Key* const> keys) {
+  assert(rays.size() == keys.size());
+  switch (lanes) {
+#ifdef PINGVOX_X86_LANES
+    case Lanes::kAvx512:
+      return avx512::write_all(rays, keys);
+    case Lanes::kAvx2:
+      return avx2::write_all(rays, keys);
+#endif
+    default:
+      for (std::size_t i = 0; i < rays.size(); ++i) write_one(rays[i], keys[i]);
+  }
+}
 
 }  // namespace pingvox::detail

@@ -4,9 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "pingvox/geometry/key.hpp"
+#include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/scan_window.hpp"
 
 /// Rays from one place, several at a time, into the bit masks of a ScanWindow. The cells are those of FaceCrossings, to
@@ -55,5 +58,18 @@ void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d>
 /// Marks the cells of each ray as missed, its first one included, its last one not.
 /// @param start  place of the cell where all of them begin
 void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window);
+
+/// A key of 16-bit components in one word: x in the lowest bits.
+constexpr std::uint64_t packed(const Key& key) {
+  return std::uint64_t{key.x} | std::uint64_t{key.y} << 16 | std::uint64_t{key.z} << 32;
+}
+
+/// Makes a ray ready that begins anywhere; `end` becomes the packed key where it begins.
+/// @return nullopt: only FaceCrossings can walk it (see prepare_rays)
+std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossings);
+
+/// Writes the keys of each ray, its first one included, its last one not: ray i from keys[i] on.
+/// REQUIRES rays by ready_ray, and room for one key more than the faces of each
+void write_keys(Lanes lanes, std::span<const ReadyRay> rays, std::span<Key* const> keys);
 
 }  // namespace pingvox::detail

@@ -178,3 +178,54 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     order = order.subspan(lanes);
   }
 }
+
+/// Writes the keys of up to kLanes rays of about the same length: together while all go on, then each by itself.
+inline void write_some(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order,
+                       std::span<Key* const> keys) {
+  std::array<Words, 3> next{}, apart{}, step{};
+  Words at{};
+  std::array<Key*, kLanes> out{};
+  std::array<Key, 2> nowhere;
+  std::uint32_t together = rays[order.back()].left;
+  if (order.size() < kLanes) together = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    out[l] = l < order.size() ? keys[order[l]] : nowhere.data();
+    const ReadyRay& ray = rays[order[std::min(l, order.size() - 1)]];
+    for (std::size_t a = 0; a < 3; ++a) {
+      next[a][l] = ray.next[a];
+      apart[a][l] = ray.apart[a];
+      step[a][l] = key_step(a, ray);
+    }
+    at[l] = static_cast<std::int64_t>(ray.end);
+  }
+  std::array<std::uint64_t, kLanes> words;
+  for (std::uint32_t n = 0; n < together; ++n) {
+    std::memcpy(words.data(), &at, sizeof at);
+    for (std::size_t l = 0; l < kLanes; ++l) put(words[l], out[l] + n);
+    const Words is_0_first = next[0] < next[1];
+    const std::array<Words, 3> along{is_0_first & (next[0] < next[2]), ~is_0_first & (next[1] < next[2]),
+                                     ~((is_0_first & (next[0] < next[2])) | (~is_0_first & (next[1] < next[2])))};
+    for (std::size_t a = 0; a < 3; ++a) {
+      next[a] += along[a] & apart[a];
+      at += along[a] & step[a];
+    }
+  }
+  for (std::size_t l = 0; l < order.size(); ++l) {
+    const ReadyRay& ray = rays[order[l]];
+    ReadyRay rest = ray;
+    for (std::size_t a = 0; a < 3; ++a) rest.next[a] = next[a][l];
+    rest.end = static_cast<std::uint64_t>(at[l]);
+    rest.left = ray.left - together;
+    write_one(rest, out[l] + together);
+  }
+}
+
+inline void write_all(std::span<const ReadyRay> rays, std::span<Key* const> keys) {
+  const ByLength by_length(rays);
+  std::span<const std::uint32_t> order = by_length.order();
+  while (!order.empty()) {
+    const std::size_t lanes = std::min(kLanes, order.size());
+    write_some(rays, order.first(lanes), keys);
+    order = order.subspan(lanes);
+  }
+}
