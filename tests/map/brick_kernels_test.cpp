@@ -3,6 +3,7 @@
 #include <random>
 
 #include "map/kernels/brick.hpp"
+#include "support/lanes.hpp"
 
 namespace pingvox::detail {
 namespace {
@@ -36,8 +37,10 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
       if ((brick.known >> i) & 1) highest = std::max(highest, brick.value[i]);
       equal &= brick.value[i] == brick.value[0];
     }
-    EXPECT_EQ(highest_of(brick), highest);
-    EXPECT_EQ(are_equal(brick), equal);
+    for (const Lanes lanes : lanes_here()) {
+      EXPECT_EQ(highest_of(brick, lanes), highest);
+      EXPECT_EQ(are_equal(brick, lanes), equal);
+    }
     uniform += equal;
 
     const std::uint64_t missed = seed % 7 == 0 ? 0 : random() & random();
@@ -50,8 +53,11 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
       changed |= after != plain.value[i];
       plain.value[i] = after;
     }
-    EXPECT_EQ(add_alike(brick, missed, evidence.value(), kClamp), changed);
-    EXPECT_EQ(brick.value, plain.value);
+    for (const Lanes lanes : lanes_here()) {
+      Brick voted = brick;
+      EXPECT_EQ(add_alike(voted, missed, evidence.value(), kClamp, lanes), changed);
+      EXPECT_EQ(voted.value, plain.value);
+    }
     unchanged += !changed;
   }
   EXPECT_GT(uniform, 100U);

@@ -10,16 +10,10 @@
 
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/trace_ray.hpp"
+#include "support/lanes.hpp"
 
 namespace pingvox::detail {
 namespace {
-
-std::vector<Lanes> lanes_here() {
-  std::vector<Lanes> lanes{Lanes::kOne};
-  if (widest_lanes() != Lanes::kOne) lanes.push_back(Lanes::kAvx2);
-  if (widest_lanes() == Lanes::kAvx512) lanes.push_back(Lanes::kAvx512);
-  return lanes;
-}
 
 constexpr int kBits = 7;  // a window of 128 cells, from -64 to 63
 constexpr std::int64_t kHalf = 64;

@@ -8,11 +8,6 @@
 
 #include "pingvox/map/ray_dda.hpp"
 
-// clang has no such pragmas; there the plain loops do.
-#if defined(__x86_64__) && !defined(__clang__)
-#define PINGVOX_X86_LANES
-#endif
-
 namespace pingvox::detail {
 namespace {
 
@@ -127,12 +122,6 @@ constexpr std::size_t kLanes = 8;
 
 #ifdef PINGVOX_X86_LANES
 
-Lanes widest_lanes() {
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    return Lanes::kAvx512;
-  return __builtin_cpu_supports("avx2") ? Lanes::kAvx2 : Lanes::kOne;
-}
-
 void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
                   std::vector<std::uint32_t>& others) {
   switch (lanes) {
@@ -170,10 +159,6 @@ void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start,
 }
 
 #else
-
-Lanes widest_lanes() {
-  return Lanes::kOne;
-}
 
 void prepare_rays(Lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
                   std::vector<std::uint32_t>& others) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "map/kernels/lanes.hpp"
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/scan_window.hpp"
@@ -15,15 +16,6 @@
 /// Rays from one place, several at a time, into the bit masks of a ScanWindow. The cells are those of FaceCrossings, to
 /// the last one: the same sums of the same whole numbers (tests/map/ray_lanes_test.cpp).
 namespace pingvox::detail {
-
-/// The instructions that a loop over lanes is written for. Each gives the same marks.
-enum class Lanes {
-  kOne,     ///< plain C++, one ray at a time
-  kAvx2,    ///< 8 rays as two vectors of four
-  kAvx512,  ///< 8 rays as one vector
-};
-/// The widest that this machine has.
-Lanes widest_lanes();
 
 /// Where the window lies and where rays begin, in cells as the lattice counts them: cell 0 has its lowest corner at the
 /// origin of the map.

@@ -1,0 +1,28 @@
+#pragma once
+
+// clang has no pragmas to compile for another machine; there the plain loops do.
+#if defined(__x86_64__) && !defined(__clang__)
+#define PINGVOX_X86_LANES
+#endif
+
+namespace pingvox::detail {
+
+/// The machines that loops over lanes are compiled for. Each gives the same results.
+enum class Lanes {
+  kOne,     ///< what every machine has
+  kAvx2,    ///< vectors of 32 bytes
+  kAvx512,  ///< vectors of 64 bytes
+};
+
+/// The widest that this machine has.
+inline Lanes widest_lanes() {
+#ifdef PINGVOX_X86_LANES
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
+    return Lanes::kAvx512;
+  }
+  if (__builtin_cpu_supports("avx2")) return Lanes::kAvx2;
+#endif
+  return Lanes::kOne;
+}
+
+}  // namespace pingvox::detail
