@@ -459,13 +459,14 @@ Result<Command> map_command(const Words& words) {
   MapCommand command;
   std::string output;
   std::optional<Format> asked_format;
-  int threads = 1;
   BuildWords build;
   MapOptions& map = build.map;
   const Take thread_count = [&](const std::string& text) -> Result<void> {
-    Result<void> taken = into_number(threads)(text);
-    if (taken && threads < 1) return off(fmt::format("{} is less than 1", text));
-    return taken;
+    int threads = 0;
+    if (auto taken = into_number(threads)(text); !taken) return taken;
+    if (threads < 1 || threads > 256) return off(fmt::format("{} is not in 1..256", text));
+    build.build.threads = static_cast<std::size_t>(threads);
+    return {};
   };
   const Take origin = [&](const std::string& text) -> Result<void> {
     const auto n = numbers_from<3>(text);
@@ -489,7 +490,7 @@ Result<Command> map_command(const Words& words) {
   OptionTable::Group map_options = map_group(build);
   map_options.options.push_back(choice("--parents", kParents, "what inner nodes say of their children", map.parents));
   map_options.options.push_back({"--threads", 0, "N",
-                                 "threads that may be used, 1 or more; the result does not depend on it", "1",
+                                 "threads that trace a sweep or scan together, 1..256; the map is the same", "1",
                                  thread_count});
   OptionTable::Group sensor_options = sensor_group(build);
   sensor_options.options.push_back({"--origin", 0, "X,Y,Z", "from where the points of a cloud were seen, in the map",

@@ -24,6 +24,7 @@
 #include "vehicle/growth.hpp"
 #include "vehicle/realtime.hpp"
 #include "vehicle/startup.hpp"
+#include "vehicle/threads.hpp"
 
 namespace pingvox::bench {
 
@@ -49,6 +50,7 @@ std::span<const Bench> benches() {
       Bench{"command", "a million points in 20 scans: pingvox map against graph2tree", Family::kSpeed, &command},
       Bench{"realtime", "the tank recording beam by beam: time until each is in the map", Family::kVehicle, &realtime},
       Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
+      Bench{"threads", "the bundles of tank-fine by two threads against one", Family::kVehicle, &threads},
       Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
       Bench{"accuracy", "echoes and maps of simulated recordings, held against what is true", Family::kAccuracy,
             &accuracy},

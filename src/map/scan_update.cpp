@@ -122,6 +122,23 @@ void ScanUpdate::mark_hit(std::uint32_t page_index, std::size_t cell, LogOdds ev
   surest = std::max(surest, evidence.value());
 }
 
+void ScanUpdate::add(const ScanUpdate& other) {
+  for (std::size_t i = 0; i < other.used_; ++i) {
+    const Page& from = other.pages_[i];
+    const std::uint32_t index = page_of(from.lowest);
+    for (std::size_t brick = 0; brick < from.hit.size(); ++brick) {
+      pages_[index].missed[brick] |= from.missed[brick];
+      if (from.hit[brick] == 0) continue;
+      const Hits evidence = other.hits(from, brick);
+      for (std::uint64_t left = from.hit[brick]; left != 0; left &= left - 1) {
+        const auto cell = static_cast<std::size_t>(std::countr_zero(left));
+        mark_hit(index, brick * 64 + cell,
+                 evidence.of_cell == nullptr ? evidence.all : LogOdds(evidence.of_cell[cell]));
+      }
+    }
+  }
+}
+
 detail::ScanWindow& ScanUpdate::window(int bits) {
   window_.open(bits);
   return window_;

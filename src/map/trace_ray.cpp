@@ -268,10 +268,15 @@ void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& 
 
 std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
                          ScanUpdate& scan) {
-  FanTracer tracer(lattice, points.origin_m, options, points.points_m, scan);
+  return trace_points(lattice, points.origin_m, points.points_m, options, scan);
+}
+
+std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
+                         std::span<const Eigen::Vector3d> points_m, const PointScanOptions& options, ScanUpdate& scan) {
+  FanTracer tracer(lattice, origin_m, options, points_m, scan);
   std::vector<Eigen::Vector3d> middles_m;
-  if (options.ends == EndPoints::kCells) middles_m = tracer.cells_of(points.points_m);
-  const std::vector<Eigen::Vector3d>& ends_m = options.ends == EndPoints::kCells ? middles_m : points.points_m;
+  if (options.ends == EndPoints::kCells) middles_m = tracer.cells_of(points_m);
+  const std::span<const Eigen::Vector3d> ends_m = options.ends == EndPoints::kCells ? middles_m : points_m;
 
   std::size_t outside = 0;
   if (!std::isfinite(options.max_range_m)) {
@@ -279,10 +284,10 @@ std::size_t trace_points(const Lattice& lattice, const PointScan& points, const 
   } else {
     std::vector<Eigen::Vector3d> near_m, cut_m;
     for (const Eigen::Vector3d& end_m : ends_m) {
-      const Eigen::Vector3d way_m = end_m - points.origin_m;
+      const Eigen::Vector3d way_m = end_m - origin_m;
       const double range_m = way_m.norm();
       if (range_m > options.max_range_m) {
-        cut_m.emplace_back(points.origin_m + way_m * (options.max_range_m / range_m));
+        cut_m.emplace_back(origin_m + way_m * (options.max_range_m / range_m));
       } else {
         near_m.push_back(end_m);
       }

@@ -2,9 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <atomic>
 #include <chrono>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "mapping/parts.hpp"
 #include "pingvox/map/trace_ray.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -65,6 +69,28 @@ Result<void> check_size(const Beam& beam, const std::optional<Echo>& echo, const
                   range_m, beam.time_s, cells, lattice.resolution_m(), kMostCellsInBeam));
 }
 
+/// A beam of a sweep, and where the head was when it was heard.
+struct PlacedBeam {
+  std::size_t number;
+  Pose map_from_sensor;
+};
+
+/// Each beam where it was heard: de-skew. Those that the trajectory has no place for are left out.
+Result<std::vector<PlacedBeam>> placed_beams(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,
+                                             const Trajectory& map_from_body, const BuildOptions& options,
+                                             const Lattice& lattice) {
+  std::vector<PlacedBeam> placed;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const std::optional<Pose> body = map_from_body.at(beams[i].time_s);
+    if (!body) continue;
+    if (const auto fits = check_size(beams[i], echoes[i], options.model, lattice); !fits) {
+      return tl::unexpected(fits.error());
+    }
+    placed.push_back({i, *body * options.body_from_sensor});
+  }
+  return placed;
+}
+
 /// Applies the scan and empties it.
 Result<void> apply(ScanUpdate& scan, OccupancyMap& map, BuildReport& report) {
   const Result<ApplyReport> applied = map.apply(scan);
@@ -87,6 +113,9 @@ Result<void> BuildOptions::validate() const {
     bad += fmt::format("{}sound speed must be within a tenth and ten times of what the device assumed, is {} times",
                        bad.empty() ? "" : "; ", sound_speed_ratio);
   }
+  if (threads < 1 || threads > 256) {
+    bad += fmt::format("{}threads must be in 1..256, are {}", bad.empty() ? "" : "; ", threads);
+  }
   if (bad.empty()) return {};
   return fail(Error::Code::kBadOption, bad);
 }
@@ -96,6 +125,7 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   SweepReader sweeps(source, options.sound_speed_ratio);
   ScanUpdate scan(options.model.miss);
+  ScanParts parts(options.threads);
   BuildReport report;
   std::size_t unplaced = 0;  // beams that the trajectory or the lattice has no place for
   Stopwatch watch;
@@ -110,21 +140,24 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
     const std::vector<std::optional<Echo>> echoes = detect_echoes(image, **sweep, options.echo);
     watch.lap(report.seconds.detect);
 
-    for (std::size_t i = 0; i < beams.size(); ++i) {
-      const std::optional<Pose> body = map_from_body.at(beams[i].time_s);  // each beam where it was heard: de-skew
-      if (!body) {
-        ++unplaced;
-        continue;
-      }
-      if (const auto fits = check_size(beams[i], echoes[i], options.model, map.lattice()); !fits) {
-        return tl::unexpected(fits.error());
-      }
-      if (trace_beam(map.lattice(), *body * options.body_from_sensor, beams[i], echoes[i], options.model, scan) > 0) {
-        ++unplaced;
-      }
-      ++report.beams;
-      report.echoes += echoes[i].has_value();
-      if (options.vote == Vote::kPerBeam) {
+    const Result<std::vector<PlacedBeam>> placed = placed_beams(beams, echoes, map_from_body, options, map.lattice());
+    if (!placed) return tl::unexpected(placed.error());
+    unplaced += beams.size() - placed->size();
+    report.beams += placed->size();
+    for (const PlacedBeam& beam : *placed) report.echoes += echoes[beam.number].has_value();
+    const auto trace = [&](const PlacedBeam& beam, ScanUpdate& into) -> std::size_t {
+      const std::size_t i = beam.number;
+      return trace_beam(map.lattice(), beam.map_from_sensor, beams[i], echoes[i], options.model, into) > 0 ? 1 : 0;
+    };
+    if (options.vote == Vote::kPerSweep) {
+      std::atomic<std::size_t> outside = 0;
+      parts.run(placed->size(), scan, [&](std::size_t first, std::size_t last, ScanUpdate& part) {
+        for (std::size_t i = first; i < last; ++i) outside += trace((*placed)[i], part);
+      });
+      unplaced += outside;
+    } else {
+      for (const PlacedBeam& beam : *placed) {
+        unplaced += trace(beam, scan);
         watch.lap(report.seconds.trace);
         if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
         watch.lap(report.seconds.apply);
@@ -148,6 +181,7 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
   const PointScanOptions how{
       .ray = options.model.ray, .hit = options.model.hit, .max_range_m = options.model.max_range_m};
   ScanUpdate scan(options.model.miss);
+  ScanParts parts(options.threads);
   BuildReport report;
   std::size_t unplaced = 0;
   Stopwatch watch;
@@ -156,7 +190,12 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
     watch.lap(report.seconds.read);
     if (!points) return tl::unexpected(points.error());
     if (!*points) break;
-    unplaced += trace_points(map.lattice(), **points, how, scan);
+    const std::span<const Eigen::Vector3d> all_m = (*points)->points_m;
+    std::atomic<std::size_t> outside = 0;
+    parts.run(all_m.size(), scan, [&](std::size_t first, std::size_t last, ScanUpdate& part) {
+      outside += trace_points(map.lattice(), (*points)->origin_m, all_m.subspan(first, last - first), how, part);
+    });
+    unplaced += outside;
     watch.lap(report.seconds.trace);
     if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
     watch.lap(report.seconds.apply);

@@ -63,6 +63,9 @@ class ScanUpdate {
   /// Forgets all marks and keeps the memory for the next scan.
   void clear();
 
+  /// Takes over all marks of another scan, of which several threads may each have traced a part.
+  void add(const ScanUpdate& other);
+
   /// For tracers of many rays: a window to mark cells in, empty. REQUIRES 4 <= bits <= ScanWindow::kMostBits.
   detail::ScanWindow& window(int bits);
   /// Takes over what was marked in the window, and empties it.

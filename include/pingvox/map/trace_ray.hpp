@@ -65,5 +65,8 @@ struct PointScanOptions {
 /// then
 std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
                          ScanUpdate& scan);
+/// The same for some of its points.
+std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
+                         std::span<const Eigen::Vector3d> points_m, const PointScanOptions& options, ScanUpdate& scan);
 
 }  // namespace pingvox

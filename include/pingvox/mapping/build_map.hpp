@@ -28,6 +28,7 @@ struct BuildOptions {
   BeamModelOptions model;
   Vote vote = Vote::kPerSweep;
   Pose body_from_sensor = Pose::Identity();  ///< the mount
+  std::size_t threads = 1;                   ///< that trace a sweep (or scan) together, 1..256; the map is the same
   double sound_speed_ratio = 1.0;            ///< true sound speed / the one the device assumed: scales every range
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
