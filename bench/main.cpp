@@ -8,6 +8,7 @@
 
 #include "app/suggest.hpp"
 #include "bench.hpp"
+#include "speed/draw_ratios.hpp"
 
 namespace {
 
@@ -121,6 +122,12 @@ int run(const Call& call) {
       continue;
     }
     rows.insert(rows.end(), result->begin(), result->end());
+  }
+  if (call.options.pictures) {
+    if (const auto drawn = draw_ratios(rows, *call.options.pictures); !drawn) {
+      complain(drawn.error().message);
+      status = kCouldNotBeDone;
+    }
   }
   const std::string out = call.form == Form::kJson       ? json_of(rows)
                           : call.form == Form::kMarkdown ? markdown_of(rows)
