@@ -385,6 +385,7 @@ void Editor::synchronize() {
 }
 
 // The five widths, compiled once here.
+// NOLINTBEGIN(bugprone-macro-parentheses): W is a type
 #define PINGVOX_FOR_KEY_WORD(W)                                                          \
   template std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>&) const;            \
   template std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>&, int) const; \
@@ -398,5 +399,6 @@ PINGVOX_FOR_KEY_WORD(std::uint32_t)
 PINGVOX_FOR_KEY_WORD(std::uint64_t)
 PINGVOX_FOR_KEY_WORD(WideWord)
 #undef PINGVOX_FOR_KEY_WORD
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace pingvox
