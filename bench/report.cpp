@@ -48,11 +48,6 @@ void for_each_stretch(const std::vector<Row>& rows, F&& f) {
 }  // namespace
 
 // Not in the header: inlined, g++ 12 takes the other alternatives of the variant for uninitialized.
-Row& Row::put(std::string name, Value value) {
-  fields_.emplace_back(std::move(name), std::move(value));
-  return *this;
-}
-
 Row& Row::add(std::string name, std::string_view value) {
   fields_.emplace_back(std::move(name), std::string(value));
   return *this;
