@@ -203,6 +203,11 @@ OccupancyMap::OccupancyMap(const MapOptions& options)
   assert(options.validate());
 }
 
+OccupancyMap::OccupancyMap(const MapOptions& options, detail::BrickTree tree)
+    : options_(options), lattice_(options.resolution_m, options.depth), tree_(std::move(tree)) {
+  assert(options.validate() && tree_.levels - tree_.extra_levels == options.depth && tree_.pruned);
+}
+
 std::optional<NodeView> OccupancyMap::root() const {
   return NodeView::of(tree_, tree_.root, 0, options_.parents);
 }

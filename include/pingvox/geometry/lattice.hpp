@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/result.hpp"
@@ -28,7 +29,12 @@ class Lattice {
   int depth() const { return depth_; }
 
   /// Edge [m] of a cell at `depth`. REQUIRES 0 <= depth <= this->depth().
-  double cell_size_m(int depth) const { return std::ldexp(resolution_m_, depth_ - depth); }
+  double cell_size_m(int depth) const {
+    const int levels = depth_ - depth;
+    // Times a power of two is exact too, and quicker.
+    return levels < 63 ? resolution_m_ * static_cast<double>(std::int64_t{1} << levels)
+                       : std::ldexp(resolution_m_, levels);
+  }
 
   /// The cell of the finest resolution that holds a point.
   /// @param point_m  map frame [m]
@@ -72,8 +78,9 @@ class Lattice {
   std::optional<W> word_of(double m) const {
     // Times the inverse, as OctoMap does: dividing puts 0.3 m at 0.1 m cells one cell lower.
     const double cell = std::floor(m * cells_per_m_);
-    if (!(cell >= -half_ && cell < half_)) return std::nullopt;  // this way round NaN fails too
-    return static_cast<W>(static_cast<W>(static_cast<SignedWide>(cell)) + (W{1} << (depth_ - 1)));
+    if (!(cell >= -half_ && cell < half_)) return std::nullopt;                   // this way round NaN fails too
+    using Signed = std::conditional_t<sizeof(W) <= 8, std::int64_t, SignedWide>;  // the wide one takes a call
+    return static_cast<W>(static_cast<W>(static_cast<Signed>(cell)) + (W{1} << (depth_ - 1)));
   }
 
   template <KeyWord W>
