@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <ostream>
-#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -38,16 +37,6 @@ class ByteWriter {
     drain();
   }
 
-  /// All of them as one block.
-  void put(std::span<const std::uint16_t> words) {
-    if constexpr (std::endian::native != std::endian::little) {
-      for (const std::uint16_t word : words) put(word);
-      return;
-    }
-    drain();
-    pass_on({reinterpret_cast<const std::uint8_t*>(words.data()), words.size_bytes()});
-  }
-
   /// CRC-32, as zlib counts it, of all bytes so far.
   std::uint32_t crc32() {
     drain();
@@ -66,13 +55,9 @@ class ByteWriter {
   static constexpr std::size_t kPiece = std::size_t{1} << 16;
 
   void drain() {
-    pass_on(buffer_);
+    crc_ = crc32_z(crc_, buffer_.data(), buffer_.size());
+    out_.write(reinterpret_cast<const char*>(buffer_.data()), static_cast<std::streamsize>(buffer_.size()));
     buffer_.clear();
-  }
-
-  void pass_on(std::span<const std::uint8_t> bytes) {
-    crc_ = crc32_z(crc_, bytes.data(), bytes.size());
-    out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
 
   std::ostream& out_;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstddef>
 #include <span>
@@ -10,7 +11,6 @@
 #include <vector>
 
 #include "io/byte_reader.hpp"
-#include "io/byte_writer.hpp"
 #include "io/map_files.hpp"
 #include "io/octomap_header.hpp"
 
@@ -185,6 +185,7 @@ class TreeWords {
     const std::size_t at = words_.size();
     words_.push_back(0);
     const detail::Group& group = tree_.groups[entry.link];
+    if (depth + 1 == kBrickDepth) detail::fetch_bricks(tree_, group);
     unsigned word = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) word |= add(group.child[octant], depth + 1) << (2 * octant);
     if (is_alike(word)) {
@@ -258,10 +259,16 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
 Result<void> write_bt(const OccupancyMap& map, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".bt"); !fits) return fits;
   const TreeWords tree(map);
-  ByteWriter writer(out);
-  writer.put(octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m()));
-  writer.put(std::span(tree.words()));
-  return writer.finish();
+  // As one block, and without the checksum that a ByteWriter keeps: the format has none.
+  out << octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m());
+  std::vector<std::uint16_t> words = tree.words();
+  if constexpr (std::endian::native != std::endian::little) {
+    for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(word >> 8 | word << 8);
+  }
+  out.write(reinterpret_cast<const char*>(words.data()), static_cast<std::streamsize>(words.size() * sizeof words[0]));
+  out.flush();
+  if (!out) return fail(Error::Code::kIo, "the map could not be written");
+  return {};
 }
 
 }  // namespace pingvox

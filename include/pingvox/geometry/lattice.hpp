@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -30,10 +31,8 @@ class Lattice {
 
   /// Edge [m] of a cell at `depth`. REQUIRES 0 <= depth <= this->depth().
   double cell_size_m(int depth) const {
-    const int levels = depth_ - depth;
-    // Times a power of two is exact too, and quicker.
-    return levels < 63 ? resolution_m_ * static_cast<double>(std::int64_t{1} << levels)
-                       : std::ldexp(resolution_m_, levels);
+    // A factor of 2^levels, by its exponent: exact, and quicker than ldexp.
+    return resolution_m_ * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + depth_ - depth) << 52);
   }
 
   /// The cell of the finest resolution that holds a point.

@@ -111,6 +111,16 @@ struct BrickTree {
   }
 };
 
+/// Asks for the bricks below a group: they lie anywhere, and are there when a walk over them comes to the next one.
+inline void fetch_bricks(const BrickTree& tree, const Group& group) {
+  constexpr std::size_t kLine = 64;
+  for (const Entry& child : group.child) {
+    if (!child.is_inner()) continue;
+    const auto* const first = reinterpret_cast<const std::byte*>(&tree.bricks[child.link]);
+    for (std::size_t byte = 0; byte < sizeof(Brick); byte += kLine) __builtin_prefetch(first + byte);
+  }
+}
+
 /// What a group says of its children. REQUIRES at least one known child.
 float summary_of(const Group& group, Parents parents);
 /// What an octant of a brick says of its cells. REQUIRES a known cell in it.

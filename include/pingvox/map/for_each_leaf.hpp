@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +28,18 @@ struct LeafQuery {
 
 namespace detail {
 
+/// Where the cells of a brick lie in it.
+inline constexpr auto kPlaces = [] {
+  std::array<BasicKey<std::uint8_t>, 64> places{};
+  for (std::size_t cell = 0; cell < places.size(); ++cell) {
+    const auto word = [&](int axis) {
+      return static_cast<std::uint8_t>((cell >> axis & 1) | (cell >> (axis + 2) & 2));
+    };
+    places[cell] = {word(0), word(1), word(2)};
+  }
+  return places;
+}();
+
 /// Goes down a tree, entry by entry; in a brick from bit to bit. Depths are those of the lattice: a lattice of one
 /// level has a brick at depth -1, of which only octant 0 is used.
 template <KeyWord W, class Visitor>
@@ -46,6 +59,7 @@ class LeafWalk {
       return;
     }
     const Group& group = tree_.groups[entry.link];
+    if (depth == lattice_.depth() - 3) fetch_bricks(tree_, group);
     for (std::size_t octant = 0; octant < 8; ++octant) over(group.child[octant], below(key, depth, octant), depth + 1);
   }
 
@@ -91,10 +105,8 @@ class LeafWalk {
 
   /// The cell of a brick whose lowest one is `key`.
   static BasicKey<W> cell_below(const BasicKey<W>& key, std::size_t cell) {
-    const auto with_bits = [&](W word, int axis) {
-      return static_cast<W>(word | ((cell >> axis) & 1) | ((cell >> (axis + 2)) & 2));
-    };
-    return {with_bits(key.x, 0), with_bits(key.y, 1), with_bits(key.z, 2)};
+    const BasicKey<std::uint8_t>& place = kPlaces[cell];
+    return {static_cast<W>(key.x | place.x), static_cast<W>(key.y | place.y), static_cast<W>(key.z | place.z)};
   }
 
   BasicKey<W> below(const BasicKey<W>& key, int depth, std::size_t octant) const {

@@ -117,7 +117,7 @@ inline unsigned full_bytes(std::uint64_t word) {
 
 /// for each bit b of a byte: all bits of byte b set where it is
 inline std::uint64_t cells_of_octants(unsigned octants) {
-  const std::uint64_t one_bit_each = (octants & 0xFF) * 0x0101010101010101 & 0x8040201008040201;
+  const std::uint64_t one_bit_each = std::uint64_t{octants & 0xFF} * 0x0101010101010101 & 0x8040201008040201;
   // Moves whichever bit of a byte is set to its lowest; no byte carries into the next.
   return ((one_bit_each + 0x7F7F7F7F7F7F7F7F) >> 7 & 0x0101010101010101) * 0xFF;
 }
