@@ -79,7 +79,7 @@ Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& t
       continue;
     }
     const auto bin = static_cast<std::size_t>(*truth.axis_m / recording.sonar.bin_length_m);
-    echoes.push_back(Echo{.first = bin, .peak = bin, .last = bin, .range_m = *truth.axis_m, .intensity = 160});
+    echoes.emplace_back(Echo{.first = bin, .peak = bin, .last = bin, .range_m = *truth.axis_m, .intensity = 160});
   }
   return echoes;
 }

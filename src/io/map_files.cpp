@@ -10,6 +10,11 @@ tl::unexpected<Error> damaged(const FileBytes& file, std::size_t byte, std::stri
   return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", file.name, byte, reason));
 }
 
+tl::unexpected<Error> over_limit(const FileBytes& file, std::size_t byte, std::size_t limit) {
+  return fail(Error::Code::kLimit,
+              fmt::format("{}: byte {}: the map needs more than its limit of {} bytes", file.name, byte, limit));
+}
+
 Result<void> check_octomap_depth(const OccupancyMap& map, std::string_view suffix) {
   if (map.lattice().depth() == kOctomapDepth) return {};
   return fail(
@@ -30,8 +35,7 @@ Result<void> LeafBuilder::add(const WideKey& key, int depth, float belief, std::
   if (!std::isfinite(belief)) return damaged(file_, byte, fmt::format("a log-odds of {}", belief));
   editor_.set(key, depth, LogOdds(belief));
   if (memory_limit_bytes_ > 0 && map_.memory_bytes() > memory_limit_bytes_) {
-    return fail(Error::Code::kLimit, fmt::format("{}: byte {}: the map needs more than its limit of {} bytes",
-                                                 file_.name, byte, memory_limit_bytes_));
+    return over_limit(file_, byte, memory_limit_bytes_);
   }
   return {};
 }

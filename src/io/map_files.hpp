@@ -20,6 +20,9 @@ inline constexpr int kOctomapDepth = 16;
 /// kCorrupt: the file, the place in it, the reason.
 tl::unexpected<Error> damaged(const FileBytes& file, std::size_t byte, std::string_view reason);
 
+/// kLimit: the file, the place in it, the limit [bytes] that its map would pass.
+tl::unexpected<Error> over_limit(const FileBytes& file, std::size_t byte, std::size_t limit);
+
 /// kUnsupported, with a format that can hold the map, unless it has 16 levels.
 Result<void> check_octomap_depth(const OccupancyMap& map, std::string_view suffix);
 

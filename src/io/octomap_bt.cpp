@@ -2,11 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <array>
+#include <bit>
 #include <cassert>
+#include <cstddef>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "io/byte_reader.hpp"
-#include "io/byte_writer.hpp"
 #include "io/map_files.hpp"
 #include "io/octomap_header.hpp"
 
@@ -17,67 +21,147 @@ namespace {
 constexpr unsigned kUnknown = 0, kFree = 1, kOccupied = 2, kInner = 3;
 constexpr unsigned kAllFree = 0x5555, kAllOccupied = 0xAAAA;
 
-constexpr unsigned state_of(unsigned word, int octant) {
+constexpr int kBrickDepth = kOctomapDepth - 2;
+
+constexpr unsigned state_of(unsigned word, std::size_t octant) {
   return (word >> (2 * octant)) & 3U;
 }
 
+/// Children that a word names.
+constexpr unsigned children_of(unsigned word) {
+  unsigned children = (word | word >> 1) & 0x5555U;
+  children = (children & 0x3333U) + (children >> 2 & 0x3333U);
+  children = (children + (children >> 4)) & 0x0F0FU;
+  return (children + (children >> 8)) & 0xFU;
+}
+
+/// The word of eight children without children, of which these bits are free and occupied.
+constexpr unsigned word_of(unsigned free, unsigned occupied) {
+  unsigned bits = free | occupied << 16;  // both at once: bit i of each half goes to bit 2 i
+  bits = (bits | bits << 4) & 0x0F0F0F0FU;
+  bits = (bits | bits << 2) & 0x33333333U;
+  bits = (bits | bits << 1) & 0x55555555U;
+  return (bits | bits >> 15) & 0xFFFFU;
+}
+
+struct States {
+  unsigned free, occupied;  ///< inner children are in both
+};
+/// What word_of was made of.
+constexpr States states_of(unsigned word) {
+  unsigned bits = (word & 0x5555U) | (word & 0xAAAAU) << 15;
+  bits = (bits | bits >> 1) & 0x33333333U;
+  bits = (bits | bits >> 2) & 0x0F0F0F0FU;
+  bits = (bits | bits >> 4) & 0x00FF00FFU;
+  return {bits & 0xFFU, bits >> 16};
+}
+
+/// Builds the tree from below, whole groups and bricks at a time.
 class TreeReader {
  public:
-  TreeReader(const FileBytes& file, std::size_t tree_at, OccupancyMap& map, std::size_t memory_limit_bytes)
+  /// @param map  an empty one of a .bt file's kind
+  TreeReader(const FileBytes& file, std::size_t tree_at, const OccupancyMap& map)
       : file_(file),
         tree_at_(tree_at),
         reader_(file.view().subspan(tree_at)),
-        builder_(map, file, memory_limit_bytes),
-        clamp_(map.options().clamp) {}
+        options_(map.options()),
+        tree_(map.options().depth) {}
 
-  Result<void> read(std::uint64_t nodes) {
+  Result<OccupancyMap> read(std::uint64_t nodes) {
     if (nodes > 0) {
       nodes_ = 1;
-      if (const auto done = read_inner(WideKey{}, 0); !done) return done;
+      const auto root = read_group(0);
+      if (!root) return tl::unexpected(root.error());
+      tree_.root = *root;
     }
     if (nodes_ != nodes) {
       return damaged(file_, position(), fmt::format("the tree has {} nodes and the header says {}", nodes_, nodes));
     }
     if (reader_.left() > 0) return damaged(file_, position(), fmt::format("{} bytes after the tree", reader_.left()));
-    return {};
+    return OccupancyMap(options_, std::move(tree_));
   }
 
  private:
   std::size_t position() const { return tree_at_ + reader_.position(); }
 
-  Result<void> read_inner(const WideKey& key, int depth) {
-    const std::size_t at = position();
-    if (depth == kOctomapDepth) return damaged(file_, at, "an inner node below the 16th level");
+  /// The word of an inner node.
+  Result<unsigned> read_word() {
     const auto word = reader_.read<std::uint16_t>();
-    if (!word) return damaged(file_, at, "the file ends inside of the tree");
-    if (*word == 0) return damaged(file_, at, "an inner node without children");
-    for (int octant = 0; octant < 8; ++octant) {
+    if (!word) return damaged(file_, position(), "the file ends inside of the tree");
+    if (*word == 0) return damaged(file_, position() - sizeof *word, "an inner node without children");
+    nodes_ += children_of(*word);
+    return *word;
+  }
+
+  /// The node at `depth` whose word is next, with all below it.
+  Result<detail::Entry> read_group(int depth) {
+    const std::size_t at = position();
+    const auto word = read_word();
+    if (!word) return tl::unexpected(word.error());
+    detail::Group group;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
       const unsigned state = state_of(*word, octant);
       if (state == kUnknown) continue;
-      ++nodes_;
-      const WideKey child = child_key(key, depth, kOctomapDepth, octant);
-      const float belief = (state == kOccupied ? clamp_.highest : clamp_.lowest).value();
-      const auto done = state == kInner ? read_inner(child, depth + 1) : builder_.add(child, depth + 1, belief, at);
-      if (!done) return done;
+      if (state != kInner) {
+        group.child[octant] = detail::Entry::leaf(belief_of(state));
+        continue;
+      }
+      const auto child = depth + 1 == kBrickDepth ? read_brick() : read_group(depth + 1);
+      if (!child) return child;
+      group.child[octant] = *child;
     }
-    return {};
+    return within_limit(detail::built(tree_, group, options_.parents), at);
+  }
+
+  /// The node of a brick, whose word is next, and its cells.
+  Result<detail::Entry> read_brick() {
+    const std::size_t at = position();
+    const auto word = read_word();
+    if (!word) return tl::unexpected(word.error());
+    detail::CellStates cells;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      const unsigned state = state_of(*word, octant);
+      States below{state == kFree ? 0xFFU : 0U, state == kOccupied ? 0xFFU : 0U};
+      if (state == kInner) {
+        const auto octant_word = read_word();
+        if (!octant_word) return tl::unexpected(octant_word.error());
+        below = states_of(*octant_word);
+        if ((below.free & below.occupied) != 0) {
+          return damaged(file_, position(), "an inner node below the 16th level");
+        }
+      }
+      cells.free |= std::uint64_t{below.free} << (octant * 8);
+      cells.occupied |= std::uint64_t{below.occupied} << (octant * 8);
+    }
+    return within_limit(detail::built(tree_, cells, options_.clamp, options_.parents), at);
+  }
+
+  float belief_of(unsigned state) const {
+    return (state == kOccupied ? options_.clamp.highest : options_.clamp.lowest).value();
+  }
+
+  /// The entry, when the tree with it is within the limit.
+  Result<detail::Entry> within_limit(detail::Entry entry, std::size_t byte) const {
+    const std::size_t limit = options_.memory_limit_bytes;
+    if (limit > 0 && tree_.groups.bytes() + tree_.bricks.bytes() > limit) return over_limit(file_, byte, limit);
+    return entry;
   }
 
   const FileBytes& file_;
   std::size_t tree_at_;
   ByteReader reader_;
-  LeafBuilder builder_;
-  Clamp clamp_;
+  MapOptions options_;
+  detail::BrickTree tree_;
   std::uint64_t nodes_ = 0;
 };
 
 /// Makes the words of a tree as they would be if each leaf were as sure as it can be and equal ones were joined.
 class TreeWords {
  public:
-  explicit TreeWords(const OccupancyMap& map) : thresholds_(map.options().thresholds) {
-    const auto root = map.root();
-    if (!root) return;
-    const unsigned state = add(*root);
+  explicit TreeWords(const OccupancyMap& map) : tree_(map.tree()), thresholds_(map.options().thresholds) {
+    words_.reserve(tree_.groups.bytes() / sizeof(detail::Group) +
+                   tree_.bricks.bytes() / sizeof(detail::Brick) * kMostBrickWords);
+    const unsigned state = add(tree_.root, 0);
     // The format cannot say what a root without children is: liboctomap reads it as occupied.
     if (state == kFree || state == kOccupied) words_.push_back(state == kFree ? kAllFree : kAllOccupied);
   }
@@ -86,33 +170,25 @@ class TreeWords {
 
   std::uint64_t nodes() const {
     std::uint64_t nodes = words_.empty() ? 0 : 1;
-    for (const std::uint16_t word : words_) {
-      for (int octant = 0; octant < 8; ++octant) nodes += state_of(word, octant) != kUnknown ? 1 : 0;
-    }
+    for (const std::uint16_t word : words_) nodes += children_of(word);
     return nodes;
   }
 
  private:
+  static constexpr std::size_t kMostBrickWords = 9;  ///< its own and those of its octants
+
   /// The state of a node, after its words and those below it, if there are any.
-  unsigned add(const NodeView& node) {
-    if (node.is_leaf()) {
-      switch (classified(node.belief(), thresholds_)) {
-        case Occupancy::kOccupied:
-          return kOccupied;
-        case Occupancy::kFree:
-          return kFree;
-        case Occupancy::kUnknown:
-          break;
-      }
-      return kUnknown;
-    }
+  unsigned add(const detail::Entry& entry, int depth) {
+    if (entry.is_none()) return kUnknown;
+    if (entry.is_leaf()) return state_of_leaf(LogOdds(entry.value));
+    if (depth == kBrickDepth) return add(tree_.bricks[entry.link]);
     const std::size_t at = words_.size();
     words_.push_back(0);
+    const detail::Group& group = tree_.groups[entry.link];
+    if (depth + 1 == kBrickDepth) detail::fetch_bricks(tree_, group);
     unsigned word = 0;
-    for (int octant = 0; octant < 8; ++octant) {
-      if (const auto child = node.child(octant)) word |= add(*child) << (2 * octant);
-    }
-    if (word == 0 || word == kAllFree || word == kAllOccupied) {
+    for (std::size_t octant = 0; octant < 8; ++octant) word |= add(group.child[octant], depth + 1) << (2 * octant);
+    if (is_alike(word)) {
       assert(words_.size() == at + 1);
       words_.pop_back();
       return word & 3U;
@@ -121,6 +197,41 @@ class TreeWords {
     return kInner;
   }
 
+  unsigned add(const detail::Brick& brick) {
+    const detail::CellStates cells = detail::classified(brick, thresholds_);
+    std::array<std::uint16_t, kMostBrickWords> words;
+    std::ptrdiff_t count = 1;
+    unsigned word = 0;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      const auto byte_of = [&](std::uint64_t mask) { return static_cast<unsigned>(mask >> (octant * 8)) & 0xFFU; };
+      const unsigned below = word_of(byte_of(cells.free), byte_of(cells.occupied));
+      const bool is_inner = !is_alike(below);
+      words[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(below);
+      count += is_inner ? 1 : 0;
+      word |= (is_inner ? kInner : below & 3U) << (2 * octant);
+    }
+    if (is_alike(word)) return word & 3U;
+    words[0] = static_cast<std::uint16_t>(word);
+    words_.insert(words_.end(), words.begin(), words.begin() + count);
+    return kInner;
+  }
+
+  /// Whether all children are in the same state, and have no children.
+  static bool is_alike(unsigned word) { return word == 0 || word == kAllFree || word == kAllOccupied; }
+
+  unsigned state_of_leaf(LogOdds belief) const {
+    switch (classified(belief, thresholds_)) {
+      case Occupancy::kOccupied:
+        return kOccupied;
+      case Occupancy::kFree:
+        return kFree;
+      case Occupancy::kUnknown:
+        break;
+    }
+    return kUnknown;
+  }
+
+  const detail::BrickTree& tree_;
   Thresholds thresholds_;
   std::vector<std::uint16_t> words_;
 };
@@ -142,18 +253,22 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
   }
   auto map = empty_octomap(file, header.resolution_m, memory_limit_bytes);
   if (!map) return map;
-  const auto done = TreeReader(file, header.tree_at, *map, memory_limit_bytes).read(header.nodes);
-  if (!done) return tl::unexpected(done.error());
-  return map;
+  return TreeReader(file, header.tree_at, *map).read(header.nodes);
 }
 
 Result<void> write_bt(const OccupancyMap& map, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".bt"); !fits) return fits;
   const TreeWords tree(map);
-  ByteWriter writer(out);
-  writer.put(octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m()));
-  for (const std::uint16_t word : tree.words()) writer.put(word);
-  return writer.finish();
+  // As one block, and without the checksum that a ByteWriter keeps: the format has none.
+  out << octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m());
+  std::vector<std::uint16_t> words = tree.words();
+  if constexpr (std::endian::native != std::endian::little) {
+    for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(word >> 8 | word << 8);
+  }
+  out.write(reinterpret_cast<const char*>(words.data()), static_cast<std::streamsize>(words.size() * sizeof words[0]));
+  out.flush();
+  if (!out) return fail(Error::Code::kIo, "the map could not be written");
+  return {};
 }
 
 }  // namespace pingvox

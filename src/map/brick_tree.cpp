@@ -141,6 +141,33 @@ Brick brick_of(Entry entry) {
   return brick;
 }
 
+CellStates classified(const Brick& brick, const Thresholds& thresholds) {
+  const std::uint64_t occupied = brick.known & cells_from(brick, thresholds.upper.value());
+  const std::uint64_t lower =
+      thresholds.lower == thresholds.upper ? occupied : cells_from(brick, thresholds.lower.value());
+  return {brick.known & ~lower & ~occupied, occupied};
+}
+
+Entry built(BrickTree& tree, const Group& group, Parents parents) {
+  if (std::all_of(group.child.begin(), group.child.end(), [](const Entry& child) { return child.is_none(); })) {
+    return {};
+  }
+  if (is_uniform(group)) return group.child[0];
+  return {tree.groups.allocate(group), summary_of(group, parents)};
+}
+
+Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents) {
+  assert((cells.free & cells.occupied) == 0);
+  const float lowest = clamp.lowest.value(), highest = clamp.highest.value();
+  if (cells.free == kAllCells || cells.occupied == kAllCells) return Entry::leaf(cells.free != 0 ? lowest : highest);
+  Brick brick;
+  brick.known = cells.free | cells.occupied;
+  if (brick.known == 0) return {};
+  fill(brick, cells.free, lowest, cells.occupied, highest);
+  const float most = cells.occupied != 0 ? highest : lowest;
+  return {tree.bricks.allocate(brick), parents == Parents::kMax ? most : summary_of(brick, parents)};
+}
+
 bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
   assert((votes.missed & votes.hit) == 0);
   bool changed = false;
@@ -218,9 +245,8 @@ bool is_uniform(const Brick& brick) {
   return brick.known == kAllCells && are_equal(brick);
 }
 
-bool is_uniform_octant(const Brick& brick, int octant) {
-  const float* const value = brick.value.data() + octant * 8;
-  return octant_known(brick, octant) == 0xFF && std::all_of(value, value + 8, [&](float v) { return v == value[0]; });
+std::uint64_t cells_of_uniform_octants(const Brick& brick) {
+  return cells_of_octants(full_bytes(brick.known) & ~octants_that_differ(brick));
 }
 
 void release_below(BrickTree& tree, Entry entry, int depth) {
@@ -523,9 +549,10 @@ std::optional<NodeView> NodeView::child(int octant) const {
     case Kind::kBrick: {
       const detail::Brick& brick = tree_->bricks[index_];
       if (detail::octant_known(brick, octant) == 0) return std::nullopt;
-      const bool joined = tree_->pruned && detail::is_uniform_octant(brick, octant);
+      const bool joined = tree_->pruned && ((detail::cells_of_uniform_octants(brick) >> (octant * 8)) & 1) != 0;
       NodeView view(*tree_, joined ? Kind::kLeaf : Kind::kOctant, depth_ + 1, parents_, index_,
-                    detail::summary_of_octant(brick, octant, parents_));
+                    joined ? brick.value[static_cast<std::size_t>(octant) * 8]
+                           : detail::summary_of_octant(brick, octant, parents_));
       view.octant_ = static_cast<std::uint8_t>(octant);
       return view;
     }

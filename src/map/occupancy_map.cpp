@@ -50,6 +50,46 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   }
 }
 
+/// Bits 0..15 of a word, three apart.
+std::uint64_t spread(std::uint64_t word) {
+  word = (word | word << 16) & 0x0000FF0000FF;
+  word = (word | word << 8) & 0x00F00F00F00F;
+  word = (word | word << 4) & 0x0C30C30C30C3;
+  return (word | word << 2) & 0x249249249249;
+}
+
+/// The octants of a key, deepest lowest: three bits each.
+template <KeyWord W>
+class Octants {
+ public:
+  explicit Octants(const BasicKey<W>& key) : key_(key) {}
+  std::size_t at(int level) const { return static_cast<std::size_t>(key_.octant(level)); }
+
+ private:
+  BasicKey<W> key_;
+};
+template <KeyWord W>
+  requires(sizeof(W) <= 2)
+class Octants<W> {
+ public:
+  explicit Octants(const BasicKey<W>& key) : code_(spread(key.x) | spread(key.y) << 1 | spread(key.z) << 2) {}
+  std::size_t at(int level) const { return static_cast<std::size_t>(code_ >> (3 * level) & 7); }
+
+ private:
+  std::uint64_t code_;
+};
+
+/// The deepest entry that holds a key.
+template <KeyWord W>
+detail::Entry entry_above(const detail::BrickTree& tree, const BasicKey<W>& key) {
+  const Octants<W> octants(key);
+  detail::Entry entry = tree.root;
+  for (int level = tree.levels - 1; level >= 2 && entry.is_inner(); --level) {
+    entry = tree.groups[entry.link].child[octants.at(level)];
+  }
+  return entry;
+}
+
 /// Calls f.operator()<W>() with the width of the cursor that a lattice of `depth` needs.
 template <class F>
 auto with_cursor_word(int depth, F&& f) {
@@ -203,6 +243,11 @@ OccupancyMap::OccupancyMap(const MapOptions& options)
   assert(options.validate());
 }
 
+OccupancyMap::OccupancyMap(const MapOptions& options, detail::BrickTree tree)
+    : options_(options), lattice_(options.resolution_m, options.depth), tree_(std::move(tree)) {
+  assert(options.validate() && tree_.levels - tree_.extra_levels == options.depth && tree_.pruned);
+}
+
 std::optional<NodeView> OccupancyMap::root() const {
   return NodeView::of(tree_, tree_.root, 0, options_.parents);
 }
@@ -219,10 +264,7 @@ std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>& key, int depth)
 
 template <KeyWord W>
 std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
-  detail::Entry entry = tree_.root;
-  for (int depth = 0; depth < tree_.brick_depth() && entry.is_inner(); ++depth) {
-    entry = tree_.groups[entry.link].child[static_cast<std::size_t>(tree_.octant_below(key, depth))];
-  }
+  const detail::Entry entry = entry_above(tree_, key);
   if (entry.is_none()) return std::nullopt;
   if (entry.is_leaf()) return LogOdds(entry.value);
   const detail::Brick& brick = tree_.bricks[entry.link];

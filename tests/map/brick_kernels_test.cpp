@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
 #include <random>
 
 #include "map/kernels/brick.hpp"
@@ -62,6 +66,62 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
   }
   EXPECT_GT(uniform, 100U);
   EXPECT_GT(unchanged, 1'000U);
+}
+
+TEST(BrickKernels, MasksAreWhatThePlainLoopsGive) {
+  std::size_t octants = 0, uniform = 0, from = 0;
+  for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    Brick brick = random_brick(random);
+    if (seed % 3 == 0) {
+      for (std::size_t o = 0; o < 8; ++o) {
+        if (random() % 2 == 0) std::fill_n(brick.value.begin() + static_cast<std::ptrdiff_t>(o * 8), 8, -2.0F);
+        if (random() % 2 == 0) brick.known |= std::uint64_t{0xFF} << (o * 8);
+      }
+    }
+
+    unsigned differ = 0, full = 0;
+    std::uint64_t joined = 0;
+    for (std::size_t o = 0; o < 8; ++o) {
+      const auto first = brick.value.begin() + static_cast<std::ptrdiff_t>(o * 8);
+      const bool is_equal = std::all_of(first, first + 8, [&](float value) { return value == *first; });
+      const bool is_full = (brick.known >> (o * 8) & 0xFF) == 0xFF;
+      differ |= static_cast<unsigned>(!is_equal) << o;
+      full |= static_cast<unsigned>(is_full) << o;
+      if (is_equal && is_full) joined |= std::uint64_t{0xFF} << (o * 8);
+      octants += is_full;
+      uniform += is_equal && is_full;
+    }
+    EXPECT_EQ(octants_that_differ(brick), differ);
+    EXPECT_EQ(full_bytes(brick.known), full);
+    EXPECT_EQ(cells_of_uniform_octants(brick), joined);
+
+    for (const float threshold : {-2.0F, -0.0F, 0.85F}) {
+      std::uint64_t cells = 0;
+      for (std::size_t i = 0; i < 64; ++i) cells |= std::uint64_t{brick.value[i] >= threshold} << i;
+      EXPECT_EQ(cells_from(brick, threshold), cells);
+      from += static_cast<std::size_t>(std::popcount(cells));
+    }
+
+    const std::uint64_t a = random() & random(), b = random() & ~a;
+    std::array<float, 64> filled{};
+    for (std::size_t i = 0; i < 64; ++i) filled[i] = (a >> i & 1) != 0 ? -2.0F : ((b >> i & 1) != 0 ? 3.5F : 0.0F);
+    fill(brick, a, -2.0F, b, 3.5F);
+    EXPECT_EQ(brick.value, filled);
+  }
+  EXPECT_GT(octants, 10'000U);
+  EXPECT_GT(uniform, 1'000U);
+  EXPECT_GT(from, 100'000U);
+}
+
+TEST(BrickKernels, MasksOfOctantsAreTheirBytes) {
+  for (unsigned octants = 0; octants < 256; ++octants) {
+    std::uint64_t cells = 0;
+    for (std::size_t o = 0; o < 8; ++o) cells |= (octants >> o & 1) != 0 ? std::uint64_t{0xFF} << (o * 8) : 0;
+    EXPECT_EQ(cells_of_octants(octants), cells);
+    EXPECT_EQ(full_bytes(cells), octants);
+  }
 }
 
 }  // namespace

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <random>
+
+#include "pingvox/map/ray_dda.hpp"
 
 using namespace pingvox;
 
@@ -79,6 +84,98 @@ TEST(CastRay, FromOutsideOfTheLatticeSeesNothing) {
     const RayEnd end = cast_ray(map, {x, 0.0, 0.0}, {1.0, 1.0, 0.0}, 10.0);
     EXPECT_EQ(end.what, Occupancy::kUnknown);
     EXPECT_EQ(end.range_m, 0.0);
+  }
+}
+
+/// Cell by cell from the root, as the contract reads.
+RayEnd plain_cast(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction,
+                  double max_range_m, UnknownCells unknown) {
+  const Lattice& lattice = map.lattice();
+  const auto start = lattice.key_of<WideWord>(origin_m);
+  if (!start) return {Occupancy::kUnknown, {}, 0.0};
+  const double border_m = 0.5 * lattice.cell_size_m(0);
+  const Eigen::Vector3d way_m = direction.normalized() * max_range_m;
+  double share = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double room_m = way_m[axis] > 0.0 ? border_m - origin_m[axis] : border_m + origin_m[axis];
+    if (std::abs(way_m[axis]) > room_m) share = std::min(share, std::max(0.0, room_m / std::abs(way_m[axis])));
+  }
+  const Eigen::Vector3d inside_m = way_m * share;
+  const double range_m = inside_m.norm(), cells_per_m = 1.0 / lattice.resolution_m();
+  FaceCrossings crossings(origin_m * cells_per_m, (origin_m + inside_m) * cells_per_m);
+  const WideWord half = WideWord{1} << (lattice.depth() - 1), last = half - 1 + half;
+  WideKey key = *start;
+  for (double entered_m = 0.0;; crossings.cross(crossings.next_axis())) {
+    const Occupancy what = map.classify(key);
+    const bool blocks = what == Occupancy::kUnknown && unknown == UnknownCells::kBlock;
+    if (what == Occupancy::kOccupied || blocks) return {what, key, entered_m};
+    if (crossings.left() == 0) return {Occupancy::kFree, key, range_m};
+    entered_m = crossings.share_at_next() * range_m;
+    const std::size_t axis = crossings.next_axis();
+    WideWord& word = component(key, axis);
+    if (word == (crossings.is_ahead(axis) ? last : 0)) return {Occupancy::kFree, key, entered_m};
+    word = crossings.is_ahead(axis) ? word + 1 : word - 1;
+  }
+}
+
+/// Leaves of all sizes around the middle, most of them free, few occupied.
+OccupancyMap random_map(int depth, std::mt19937_64& random) {
+  OccupancyMap map({.resolution_m = 0.5, .depth = depth, .thresholds = {LogOdds(-0.5F), LogOdds(0.5F)}});
+  const WideWord middle = WideWord{1} << (depth - 1);
+  const WideWord reach = std::min<WideWord>(middle, 40);
+  Editor editor = map.edit(random() % 4 == 0 ? Pruning::kNever : Pruning::kWhenSettled);
+  for (int i = 0; i < 300; ++i) {
+    const auto word = [&] { return middle - reach + static_cast<WideWord>(random()) % (2 * reach); };
+    const int levels = static_cast<int>(random() % 4);
+    const float belief = random() % 12 == 0 ? 1.0F : (random() % 12 == 0 ? 0.0F : -1.0F);
+    editor.set(WideKey{word(), word(), word()}, std::max(0, depth - levels), LogOdds(belief));
+  }
+  return map;
+}
+
+TEST(CastRay, EndsWhereTheWalkFromCellToCellEnds) {
+  std::size_t ends[3] = {}, border = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const int depths[] = {1, 2, 3, 5, 8, 16, 33, 52, 64, 65, 128};
+    const int depth = depths[seed % std::size(depths)];
+    const OccupancyMap map = seed % 50 == 0 ? OccupancyMap({.depth = depth}) : random_map(depth, random);
+    const double reach_m = std::min(std::ldexp(0.5, depth - 1), 30.0);
+    std::uniform_real_distribution<double> place(-reach_m, reach_m);
+    for (int ray = 0; ray < 60; ++ray) {
+      SCOPED_TRACE(ray);
+      Eigen::Vector3d origin_m(place(random), place(random), place(random));
+      Eigen::Vector3d way(place(random), place(random), place(random));
+      // Onto faces and centres, along axes and diagonals: many faces at once.
+      if (ray % 3 == 0) origin_m = (origin_m * 4.0).array().floor() / 4.0;
+      if (ray % 4 == 0) way = way.array().sign();
+      if (ray % 8 == 0) way[static_cast<int>(random() % 3)] = 0.0;
+      if (way.norm() == 0.0) continue;
+      const double range_m = ray % 5 == 0 ? 5000.0 : place(random) + reach_m + 0.1;
+      const UnknownCells unknown = ray % 7 == 0 ? UnknownCells::kBlock : UnknownCells::kPass;
+      const RayEnd plain = plain_cast(map, origin_m, way, range_m, unknown);
+      const RayEnd end = cast_ray(map, origin_m, way, range_m, unknown);
+      ASSERT_EQ(end.what, plain.what);
+      ASSERT_EQ(end.key, plain.key);
+      ASSERT_EQ(end.range_m, plain.range_m);
+      ++ends[static_cast<std::size_t>(end.what)];
+      border += end.what == Occupancy::kFree && end.range_m < range_m - 1e-9;
+    }
+  }
+  EXPECT_GT(ends[0], 1'000U);
+  EXPECT_GT(ends[1], 1'000U);
+  EXPECT_GT(ends[2], 500U);
+  EXPECT_GT(border, 500U);
+}
+
+// The longest that is walked node by node, and the first that is not.
+TEST(CastRay, FarAndNearRaysEndAlike) {
+  const OccupancyMap map = map_with(20, {(1U << 19) + 32'767, 1U << 19, 1U << 19}, 1.0F);
+  for (const double range_m : {32'766.0, 32'767.0, 32'768.0, 32'769.0, 40'000.0}) {
+    const RayEnd end = cast_ray(map, {0.5, 0.5, 0.5}, {1.0, 0.0, 0.0}, range_m);
+    EXPECT_EQ(end.what, range_m < 32'767.0 ? Occupancy::kFree : Occupancy::kOccupied) << range_m;
+    EXPECT_NEAR(end.range_m, std::min(range_m, 32'766.5), 1e-5) << range_m;
   }
 }
 

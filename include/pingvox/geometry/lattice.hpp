@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/result.hpp"
@@ -28,7 +30,10 @@ class Lattice {
   int depth() const { return depth_; }
 
   /// Edge [m] of a cell at `depth`. REQUIRES 0 <= depth <= this->depth().
-  double cell_size_m(int depth) const { return std::ldexp(resolution_m_, depth_ - depth); }
+  double cell_size_m(int depth) const {
+    // A factor of 2^levels, by its exponent: exact, and quicker than ldexp.
+    return resolution_m_ * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + depth_ - depth) << 52);
+  }
 
   /// The cell of the finest resolution that holds a point.
   /// @param point_m  map frame [m]

@@ -111,6 +111,16 @@ struct BrickTree {
   }
 };
 
+/// Asks for the bricks below a group: they lie anywhere, and are there when a walk over them comes to the next one.
+inline void fetch_bricks(const BrickTree& tree, const Group& group) {
+  constexpr std::size_t kLine = 64;
+  for (const Entry& child : group.child) {
+    if (!child.is_inner()) continue;
+    const auto* const first = reinterpret_cast<const std::byte*>(&tree.bricks[child.link]);
+    for (std::size_t byte = 0; byte < sizeof(Brick); byte += kLine) __builtin_prefetch(first + byte);
+  }
+}
+
 /// What a group says of its children. REQUIRES at least one known child.
 float summary_of(const Group& group, Parents parents);
 /// What an octant of a brick says of its cells. REQUIRES a known cell in it.
@@ -121,8 +131,8 @@ float summary_of(const Brick& brick, Parents parents);
 bool is_uniform(const Group& group);
 /// All cells known, and equal.
 bool is_uniform(const Brick& brick);
-/// All cells of an octant known, and equal.
-bool is_uniform_octant(const Brick& brick, int octant);
+/// The cells of those octants of which all cells are known, and equal.
+std::uint64_t cells_of_uniform_octants(const Brick& brick);
 
 /// Evidence for the cells of one brick: `miss` where a bit of `missed` is set; where bit i of `hit` is set hits[i], or
 /// `all_hits` when there are none. REQUIRES missed and hit to be disjoint.
@@ -138,6 +148,18 @@ bool add(const Votes& votes, const Clamp& clamp, Brick& brick);
 
 /// A brick that stands for an entry without one: of an unknown or a joined cell.
 Brick brick_of(Entry entry);
+
+/// Which cells of a brick are what. Those in neither mask are unknown, or in between the thresholds.
+struct CellStates {
+  std::uint64_t free = 0, occupied = 0;
+};
+CellStates classified(const Brick& brick, const Thresholds& thresholds);
+
+/// For readers that build a tree from below: the entry for what they put together, which is stored unless that is
+/// uniform, or nothing is known in it. Throws std::bad_alloc.
+Entry built(BrickTree& tree, const Group& group, Parents parents);
+/// The same for a brick of cells that are as sure as can be. REQUIRES masks without a common bit.
+Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
 
 /// Frees all that hangs below an entry of `depth`.
 void release_below(BrickTree& tree, Entry entry, int depth);

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "pingvox/map/occupancy_map.hpp"
@@ -24,31 +28,101 @@ struct LeafQuery {
 
 namespace detail {
 
+/// Where the cells of a brick lie in it.
+inline constexpr auto kPlaces = [] {
+  std::array<BasicKey<std::uint8_t>, 64> places{};
+  for (std::size_t cell = 0; cell < places.size(); ++cell) {
+    const auto word = [&](int axis) {
+      return static_cast<std::uint8_t>((cell >> axis & 1) | (cell >> (axis + 2) & 2));
+    };
+    places[cell] = {word(0), word(1), word(2)};
+  }
+  return places;
+}();
+
+/// Goes down a tree, entry by entry; in a brick from bit to bit. Depths are those of the lattice: a lattice of one
+/// level has a brick at depth -1, of which only octant 0 is used.
 template <KeyWord W, class Visitor>
-void visit_leaves(const NodeView& node, const BasicKey<W>& key, const Lattice& lattice, const LeafQuery& query,
-                  Visitor& visit) {
-  if (query.box) {
-    const Eigen::Vector3d corner = lattice.lowest_corner_of(key, node.depth());
-    const double edge = lattice.cell_size_m(node.depth());
-    const bool overlaps =
-        (corner.array() < query.box->max.array()).all() && (corner.array() + edge > query.box->min.array()).all();
-    if (!overlaps) return;
+class LeafWalk {
+ public:
+  LeafWalk(const OccupancyMap& map, const LeafQuery& query, Visitor& visit)
+      : tree_(map.tree()), lattice_(map.lattice()), parents_(map.options().parents), query_(query), visit_(visit) {}
+
+  void over(const Entry& entry, const BasicKey<W>& key, int depth) {
+    if (entry.is_none() || !is_wanted(key, depth)) return;
+    if (entry.is_leaf() || depth == query_.max_depth) {
+      visit_(Leaf<W>{key, depth, LogOdds(entry.value)});
+      return;
+    }
+    if (depth == lattice_.depth() - 2) {
+      over(tree_.bricks[entry.link], key, depth);
+      return;
+    }
+    const Group& group = tree_.groups[entry.link];
+    if (depth == lattice_.depth() - 3) fetch_bricks(tree_, group);
+    for (std::size_t octant = 0; octant < 8; ++octant) over(group.child[octant], below(key, depth, octant), depth + 1);
   }
-  if (node.is_leaf() || node.depth() == query.max_depth) {
-    visit(Leaf<W>{key, node.depth(), node.belief()});
-    return;
+
+ private:
+  static constexpr std::uint64_t kFirstCells = 0x0101010101010101;  ///< of each octant
+
+  void over(const Brick& brick, const BasicKey<W>& key, int depth) {
+    if (depth + 1 == query_.max_depth) {
+      over_octants(brick, key, depth);
+      return;
+    }
+    const std::uint64_t joined = tree_.pruned ? cells_of_uniform_octants(brick) : 0;
+    // Of joined cells the first stands for all.
+    for (std::uint64_t left = brick.known & (~joined | kFirstCells); left != 0; left &= left - 1) {
+      const auto cell = static_cast<std::size_t>(std::countr_zero(left));
+      const int leaf_depth = depth + ((joined >> cell) & 1 ? 1 : 2);
+      const BasicKey<W> leaf_key = cell_below(key, cell);
+      if (query_.box &&
+          !(is_wanted(cell_below(key, cell & ~std::size_t{7}), depth + 1) && is_wanted(leaf_key, leaf_depth))) {
+        continue;
+      }
+      visit_(Leaf<W>{leaf_key, leaf_depth, LogOdds(brick.value[cell])});
+    }
   }
-  const int bit = lattice.depth() - 1 - node.depth();
-  for (int octant = 0; octant < 8; ++octant) {
-    const auto child = node.child(octant);
-    if (!child) continue;
+
+  void over_octants(const Brick& brick, const BasicKey<W>& key, int depth) {
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      if ((brick.known >> (octant * 8) & 0xFF) == 0) continue;
+      const BasicKey<W> octant_key = cell_below(key, octant * 8);
+      if (!is_wanted(octant_key, depth + 1)) continue;
+      const float summary = summary_of_octant(brick, static_cast<int>(octant), parents_);
+      visit_(Leaf<W>{octant_key, depth + 1, LogOdds(summary)});
+    }
+  }
+
+  bool is_wanted(const BasicKey<W>& key, int depth) const { return !query_.box || depth < 0 || overlaps(key, depth); }
+
+  bool overlaps(const BasicKey<W>& key, int depth) const {
+    const Eigen::Vector3d corner = lattice_.lowest_corner_of(key, depth);
+    const double edge = lattice_.cell_size_m(depth);
+    return (corner.array() < query_.box->max.array()).all() && (corner.array() + edge > query_.box->min.array()).all();
+  }
+
+  /// The cell of a brick whose lowest one is `key`.
+  static BasicKey<W> cell_below(const BasicKey<W>& key, std::size_t cell) {
+    const BasicKey<std::uint8_t>& place = kPlaces[cell];
+    return {static_cast<W>(key.x | place.x), static_cast<W>(key.y | place.y), static_cast<W>(key.z | place.z)};
+  }
+
+  BasicKey<W> below(const BasicKey<W>& key, int depth, std::size_t octant) const {
+    const int bit = lattice_.depth() - 1 - depth;
     const auto with_bit = [&](W word, int axis) {
       return static_cast<W>(word | static_cast<W>(static_cast<W>((octant >> axis) & 1) << bit));
     };
-    visit_leaves(*child, BasicKey<W>{with_bit(key.x, 0), with_bit(key.y, 1), with_bit(key.z, 2)}, lattice, query,
-                 visit);
+    return {with_bit(key.x, 0), with_bit(key.y, 1), with_bit(key.z, 2)};
   }
-}
+
+  const BrickTree& tree_;
+  const Lattice& lattice_;
+  Parents parents_;
+  const LeafQuery& query_;
+  Visitor& visit_;
+};
 
 }  // namespace detail
 
@@ -57,7 +131,8 @@ void visit_leaves(const NodeView& node, const BasicKey<W>& key, const Lattice& l
 template <KeyWord W, class Visitor>
 void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& visit) {
   assert(map.lattice().depth() <= kLevelsOf<W>);
-  if (const auto root = map.root()) detail::visit_leaves(*root, BasicKey<W>{}, map.lattice(), query, visit);
+  const detail::BrickTree& tree = map.tree();
+  detail::LeafWalk<W, Visitor>(map, query, visit).over(tree.root, BasicKey<W>{}, -tree.extra_levels);
 }
 
 }  // namespace pingvox

@@ -55,6 +55,8 @@ class OccupancyMap {
   static Result<OccupancyMap> make(const MapOptions& options);
   /// REQUIRES options that validate.
   explicit OccupancyMap(const MapOptions& options = {});
+  /// For readers. REQUIRES a tree of options.depth levels whose parents are right and whose equal leaves are joined.
+  OccupancyMap(const MapOptions& options, detail::BrickTree tree);
 
   const Lattice& lattice() const { return lattice_; }
   const MapOptions& options() const { return options_; }
@@ -105,6 +107,9 @@ class OccupancyMap {
 
   /// Forgets everything and gives the storage back.
   void clear();
+
+  /// The storage, for those parts of the library that go over whole bricks.
+  const detail::BrickTree& tree() const { return tree_; }
 
  private:
   friend class Editor;

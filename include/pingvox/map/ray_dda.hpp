@@ -66,8 +66,19 @@ class FaceCrossings {
   /// Where the next face lies along the segment, 0..1. REQUIRES left() > 0.
   double share_at_next() const { return std::ldexp(static_cast<double>(next_[next_axis()]), -62); }
 
+  /// What is ahead along one axis, for walkers that count by themselves.
+  struct OneAxis {
+    static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t next = kNever;  ///< the next face, in units of 2^-62 of the segment; kNever: none left
+    std::uint64_t apart = 0;      ///< from face to face; right up to kFewFaces
+    std::uint64_t left = 0;
+  };
+  OneAxis along(std::size_t axis) const {
+    return {next_[axis], static_cast<std::uint64_t>(apart_[axis] >> 64), left_[axis]};
+  }
+
  private:
-  static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+  static constexpr std::uint64_t kNever = OneAxis::kNever;
   std::array<std::uint64_t, 3> next_{kNever, kNever, kNever}, below_next_{}, left_{};
   std::array<WideWord, 3> apart_{};
   std::array<bool, 3> ahead_{};
