@@ -57,7 +57,11 @@ double AxisScale::share_of(double value) const {
 }
 
 std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most) {
-  return scale.spacing == Spacing::kLinear ? linear_ticks(scale, most) : logarithmic_ticks(scale, most);
+  std::vector<Tick> ticks =
+      scale.spacing == Spacing::kLinear ? linear_ticks(scale, most) : logarithmic_ticks(scale, most);
+  // Between numbers whose difference is none, no place is a share of the way.
+  std::erase_if(ticks, [](const Tick& tick) { return !std::isfinite(tick.share); });
+  return ticks;
 }
 
 std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks) {

@@ -6,6 +6,12 @@
 using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
+/// Adds without minding the sign: a sum that does not fit wraps around.
+inline void add_wrapping(Words& to, const Words& what) {
+  using Unsigned = std::uint64_t __attribute__((vector_size(kLanes * sizeof(std::uint64_t))));
+  to = reinterpret_cast<Words>(reinterpret_cast<Unsigned>(to) + reinterpret_cast<Unsigned>(what));
+}
+
 /// kLanes points from `first` on; of fewer that are left the last one again and again.
 inline const Eigen::Vector3d* some_from(std::span<const Eigen::Vector3d> points_m, std::size_t first,
                                         std::array<Eigen::Vector3d, kLanes>& padded) {
@@ -69,8 +75,10 @@ inline void prepare_some(const RayFan& fan, const Eigen::Vector3d* ends_m, Prepa
     const Words apart = __builtin_convertvector(several ? between : Doubles{}, Words);
     out.next[a] = some ? next : Words{} + kNever;
     out.apart[a] = several ? apart : (some ? kNever - next : Words{});
-    // What does not fit becomes negative (the compiler's vectors wrap around), and the ray is not taken.
-    const Words last = next + (faces - 1) * apart, beyond = last + apart;
+    // What does not fit becomes negative, and the ray is not taken.
+    const Words last = next + (faces - 1) * apart;
+    Words beyond = last;
+    add_wrapping(beyond, apart);
     last_crossing = (some & (last > last_crossing)) ? last : last_crossing;
     beyond_end = (several & (beyond < beyond_end)) ? beyond : beyond_end;
     out.left += faces;
@@ -162,7 +170,7 @@ inline void mark_some(std::span<const ReadyRay> rays, std::span<const std::uint3
     const std::array<Words, 3> along{is_0_first & (next[0] < next[2]), ~is_0_first & (next[1] < next[2]),
                                      ~((is_0_first & (next[0] < next[2])) | (~is_0_first & (next[1] < next[2])))};
     for (std::size_t a = 0; a < 3; ++a) {
-      next[a] += along[a] & apart[a];
+      add_wrapping(next[a], along[a] & apart[a]);  // those of rays that have ended mean nothing
       place[a] = (place[a] + (along[a] & step[a])) & bits[a];
     }
     for (const std::uint64_t of_one : places) mark(of_one, missed, touched);
