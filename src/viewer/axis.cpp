@@ -52,16 +52,14 @@ std::vector<Tick> logarithmic_ticks(const AxisScale& scale, std::size_t most) {
 }  // namespace
 
 double AxisScale::share_of(double value) const {
-  if (spacing == Spacing::kLinear) return (value - at_start) / (at_end - at_start);
-  return std::log(value / at_start) / std::log(at_end / at_start);
+  // By halves, and by differences of logarithms: what is between the largest numbers is itself no number.
+  const auto place = [this](double number) { return spacing == Spacing::kLinear ? 0.5 * number : std::log(number); };
+  const double share = (place(value) - place(at_start)) / (place(at_end) - place(at_start));
+  return std::isfinite(share) ? share : 0.0;
 }
 
 std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most) {
-  std::vector<Tick> ticks =
-      scale.spacing == Spacing::kLinear ? linear_ticks(scale, most) : logarithmic_ticks(scale, most);
-  // Between numbers whose difference is none, no place is a share of the way.
-  std::erase_if(ticks, [](const Tick& tick) { return !std::isfinite(tick.share); });
-  return ticks;
+  return scale.spacing == Spacing::kLinear ? linear_ticks(scale, most) : logarithmic_ticks(scale, most);
 }
 
 std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks) {
