@@ -29,7 +29,7 @@ Result<void> draw_ratios(const std::vector<Row>& rows, const std::string& folder
   chart.y_label = "times OctoMap";
   chart.y_spacing = Spacing::kLogarithmic;
   chart.y_mark = 1.0;
-  chart.width = 1600;
+  chart.width = 2400;
   Series series{.name = "pingvox", .y = {}};
   for (const Row& row : rows) {
     const auto* const name = field<std::string>(row, "name");
