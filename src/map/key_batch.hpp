@@ -12,7 +12,6 @@
 #include "map/tree_order.hpp"
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/brick_tree.hpp"
-#include "pingvox/map/scan_window.hpp"
 
 namespace pingvox::detail {
 
@@ -45,7 +44,7 @@ inline void sort_by_code(std::vector<BrickCells>& all, std::vector<BrickCells>& 
 /// need no sorting for.
 class CountWindow {
  public:
-  /// Edge in cells, and in bricks.
+  /// Edge in cells.
   static constexpr unsigned kEdge = 128;
 
   /// Puts the window around a key. REQUIRES nothing counted in it.
@@ -74,9 +73,8 @@ class CountWindow {
       for (std::uint64_t left = touched_[word]; left != 0; left &= left - 1) {
         const std::uint64_t brick = word * 64 + static_cast<std::uint64_t>(std::countr_zero(left));
         const std::span<std::uint8_t, 64> counts(counts_.data() + brick * 64, 64);
-        f(BasicKey<std::uint64_t>{lowest_.x + 4 * gathered_bits(brick), lowest_.y + 4 * gathered_bits(brick >> 1),
-                                  lowest_.z + 4 * gathered_bits(brick >> 2)},
-          counts);
+        const BasicKey<std::uint64_t> at = key_of_code(brick);
+        f(BasicKey<std::uint64_t>{lowest_.x + 4 * at.x, lowest_.y + 4 * at.y, lowest_.z + 4 * at.z}, counts);
         std::fill(counts.begin(), counts.end(), std::uint8_t{0});
       }
       touched_[word] = 0;
@@ -151,8 +149,8 @@ class KeyBatch {
         }
         once |= entries_[i].cells;
       }
-      f(BasicKey<std::uint64_t>{gathered_bits(code) << 2, gathered_bits(code >> 1) << 2, gathered_bits(code >> 2) << 2},
-        Cells{once, more, times});
+      const BasicKey<std::uint64_t> brick = key_of_code(code);
+      f(BasicKey<std::uint64_t>{brick.x << 2, brick.y << 2, brick.z << 2}, Cells{once, more, times});
     }
     entries_.clear();
   }
@@ -184,7 +182,7 @@ class KeyBatch {
 
   void add_entry() {
     if (cells_ == 0) return;
-    entries_.push_back({spread_bits(brick_.x) | spread_bits(brick_.y) << 1 | spread_bits(brick_.z) << 2, cells_});
+    entries_.push_back({code_of(brick_), cells_});
     cells_ = 0;
   }
 

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "map/key_batch.hpp"
+#include "map/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
 
@@ -50,14 +51,6 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   }
 }
 
-/// Bits 0..15 of a word, three apart.
-std::uint64_t spread(std::uint64_t word) {
-  word = (word | word << 16) & 0x0000FF0000FF;
-  word = (word | word << 8) & 0x00F00F00F00F;
-  word = (word | word << 4) & 0x0C30C30C30C3;
-  return (word | word << 2) & 0x249249249249;
-}
-
 /// The octants of a key, deepest lowest: three bits each.
 template <KeyWord W>
 class Octants {
@@ -72,7 +65,7 @@ template <KeyWord W>
   requires(sizeof(W) <= 2)
 class Octants<W> {
  public:
-  explicit Octants(const BasicKey<W>& key) : code_(spread(key.x) | spread(key.y) << 1 | spread(key.z) << 2) {}
+  explicit Octants(const BasicKey<W>& key) : code_(detail::code_of(key)) {}
   std::size_t at(int level) const { return static_cast<std::size_t>(code_ >> (3 * level) & 7); }
 
  private:

@@ -149,9 +149,9 @@ void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
   for (std::size_t word = 0; word < window_.touched_words(); ++word) {
     for (std::uint64_t left = touched[word]; left != 0; left &= left - 1) {
       const std::uint64_t number = word * 64 + static_cast<std::uint64_t>(std::countr_zero(left));
-      const std::uint32_t index = page_of({lowest.x + (detail::gathered_bits(number) << kPageBits),
-                                           lowest.y + (detail::gathered_bits(number >> 1) << kPageBits),
-                                           lowest.z + (detail::gathered_bits(number >> 2) << kPageBits)});
+      const BasicKey<std::uint64_t> at = detail::key_of_code(number);
+      const std::uint32_t index =
+          page_of({lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)});
       Page& page = pages_[index];
       std::uint64_t* const missed = window_.missed() + number * 64;
       std::uint64_t* const hits = window_.hit() + number * 64;
@@ -189,11 +189,8 @@ std::vector<std::uint32_t> ScanUpdate::pages_in_order() const {
   }
   std::vector<std::uint64_t> code(used_);
   for (std::size_t i = 0; i < used_; ++i) {
-    const auto spread = [](WideWord word) {
-      return detail::spread_bits(static_cast<std::uint64_t>(word) >> kPageBits);
-    };
     const WideKey& lowest = pages_[i].lowest;
-    code[i] = spread(lowest.x) | spread(lowest.y) << 1 | spread(lowest.z) << 2;
+    code[i] = detail::code_of(WideKey{lowest.x >> kPageBits, lowest.y >> kPageBits, lowest.z >> kPageBits});
   }
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return code[a] < code[b]; });
   return order;

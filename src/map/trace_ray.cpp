@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "map/kernels/ray_lanes.hpp"
+#include "map/tree_order.hpp"
 #include "pingvox/map/ray_bresenham.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
@@ -154,15 +155,7 @@ class FanTracer {
   }
 
   /// @return whether it was not marked before
-  bool mark_hit(std::uint64_t place) {
-    std::uint64_t& word = window_->hit()[place / 64];
-    const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-    if ((word & bit) != 0) return false;
-    word |= bit;
-    const std::uint64_t page = place >> detail::ScanWindow::kPageCellBits;
-    window_->touched()[page / 64] |= std::uint64_t{1} << (page % 64);
-    return true;
-  }
+  bool mark_hit(std::uint64_t place) { return detail::mark_place(place, window_->hit(), window_->touched()); }
 
   /// Of a window that holds the rays: a guess from some of them. More than there may be where it is of no use.
   int window_bits(std::span<const Eigen::Vector3d> ends_m) const {
@@ -208,9 +201,9 @@ class FanTracer {
   }
 
   WideKey key_at(std::uint64_t place) const {
-    std::array<std::int64_t, 3> cell = fan_.window_lowest;
-    for (std::size_t a = 0; a < 3; ++a) cell[a] += static_cast<std::int64_t>(detail::gathered_bits(place >> a));
-    return key_of(cell);
+    const BasicKey<std::uint64_t> at = detail::key_of_code(place);
+    const WideKey lowest = key_of(fan_.window_lowest);
+    return {lowest.x + at.x, lowest.y + at.y, lowest.z + at.z};
   }
 
   const Lattice& lattice_;

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "map/tree_order.hpp"
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/trace_ray.hpp"
 #include "support/lanes.hpp"

@@ -12,6 +12,13 @@
 
 namespace pingvox {
 
+/// Axis of the least of three numbers; of equal ones the one that liboctomap takes, the last.
+template <class Number>
+constexpr std::size_t axis_of_least(const std::array<Number, 3>& next) {
+  if (next[0] < next[1]) return next[0] < next[2] ? 0 : 2;
+  return next[1] < next[2] ? 1 : 2;
+}
+
 /// The order in which a segment crosses the faces between cells (Amanatides & Woo 1987), on integers: crossings of an
 /// axis lie at first + n * apart along the segment, and each axis has a known number of them. So no rounding can miss
 /// the end or run past it, which is what goes wrong in the paper's figures 11 and 12. They are compared in units of
@@ -45,15 +52,7 @@ class FaceCrossings {
   /// Faces that are left to cross: the Manhattan distance of the two cells.
   std::uint64_t left() const { return total_; }
   /// Axis of the next face; of several crossed at once the one that liboctomap takes. REQUIRES left() > 0.
-  std::size_t next_axis() const {
-    if (next_[0] < next_[1]) return next_[0] < next_[2] ? 0 : 2;
-    return next_[1] < next_[2] ? 1 : 2;
-  }
-  /// Of an axis: where its next face lies, and how far apart its faces are, in units of 2^-62 of the segment; how many
-  /// are left.
-  std::uint64_t next(std::size_t axis) const { return next_[axis]; }
-  std::uint64_t apart(std::size_t axis) const { return static_cast<std::uint64_t>(apart_[axis] >> 64); }
-  std::uint64_t left(std::size_t axis) const { return left_[axis]; }
+  std::size_t next_axis() const { return axis_of_least(next_); }
   /// Whether the key component grows along an axis.
   bool is_ahead(std::size_t axis) const { return ahead_[axis]; }
   /// Crosses the next face, which must be that of `axis`. REQUIRES left() > 0.

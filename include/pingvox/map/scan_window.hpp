@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -42,24 +41,17 @@ class ScanWindow {
   Arena missed_{Arena::Pages::kSmall}, hit_{Arena::Pages::kSmall}, touched_{Arena::Pages::kSmall};
 };
 
-/// A number of up to 11 bits with two zero bits between its bits: x, y << 1 and z << 2 of a cell make its place in the
-/// tree's order.
-constexpr std::uint64_t spread_bits(std::uint64_t word) {
-  word = (word | word << 32) & 0x1F00000000FFFFU;
-  word = (word | word << 16) & 0x1F0000FF0000FFU;
-  word = (word | word << 8) & 0x100F00F00F00F00FU;
-  word = (word | word << 4) & 0x10C30C30C30C30C3U;
-  return (word | word << 2) & 0x1249249249249249U;
-}
-
-/// Takes every third bit.
-constexpr std::uint64_t gathered_bits(std::uint64_t code) {
-  code &= 0x1249249249249249U;
-  code = (code | code >> 2) & 0x10C30C30C30C30C3U;
-  code = (code | code >> 4) & 0x100F00F00F00F00FU;
-  code = (code | code >> 8) & 0x1F0000FF0000FFU;
-  code = (code | code >> 16) & 0x1F00000000FFFFU;
-  return (code | code >> 32) & 0x1FFFFFU;
+/// Sets the bit of a cell in one of a window's masks, and that of its page. @return whether it was not set before
+inline __attribute__((always_inline)) bool mark_place(std::uint64_t place, std::uint64_t* mask,
+                                                      std::uint64_t* touched) {
+  std::uint64_t& word = mask[place / 64];
+  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
+  // Most cells are crossed by many rays: reading is cheaper than writing the same again.
+  if ((word & bit) != 0) return false;
+  word |= bit;
+  const std::uint64_t page = place >> ScanWindow::kPageCellBits;
+  touched[page / 64] |= std::uint64_t{1} << (page % 64);
+  return true;
 }
 
 }  // namespace pingvox::detail

@@ -33,31 +33,14 @@ constexpr std::size_t kValues = 16;
 
 }  // namespace
 
-#ifdef PINGVOX_X86_LANES
-#define PINGVOX_BY_LANES(CALL) \
-  switch (lanes) {             \
-    case Lanes::kAvx512:       \
-      return avx512::CALL;     \
-    case Lanes::kAvx2:         \
-      return avx2::CALL;       \
-    case Lanes::kOne:          \
-      break;                   \
-  }                            \
-  return plain::CALL
-#else
-#define PINGVOX_BY_LANES(CALL) \
-  static_cast<void>(lanes);    \
-  return plain::CALL
-#endif
-
 bool add_alike(Brick& brick, std::uint64_t cells, float evidence, const Clamp& clamp, Lanes lanes) {
-  PINGVOX_BY_LANES(add_alike(brick, cells, evidence, clamp));
+  PINGVOX_BY_LANES(lanes, add_alike(brick, cells, evidence, clamp), plain::add_alike(brick, cells, evidence, clamp));
 }
 float highest_of(const Brick& brick, Lanes lanes) {
-  PINGVOX_BY_LANES(highest_of(brick));
+  PINGVOX_BY_LANES(lanes, highest_of(brick), plain::highest_of(brick));
 }
 bool are_equal(const Brick& brick, Lanes lanes) {
-  PINGVOX_BY_LANES(are_equal(brick));
+  PINGVOX_BY_LANES(lanes, are_equal(brick), plain::are_equal(brick));
 }
 
 }  // namespace pingvox::detail

@@ -25,4 +25,22 @@ inline Lanes widest_lanes() {
   return Lanes::kOne;
 }
 
+/// Returns what CALL gives in the namespace of the loops for `lanes`, or what PLAIN gives where there are no others.
+#ifdef PINGVOX_X86_LANES
+#define PINGVOX_BY_LANES(lanes, CALL, PLAIN) \
+  switch (lanes) {                           \
+    case Lanes::kAvx512:                     \
+      return avx512::CALL;                   \
+    case Lanes::kAvx2:                       \
+      return avx2::CALL;                     \
+    case Lanes::kOne:                        \
+      break;                                 \
+  }                                          \
+  return PLAIN
+#else
+#define PINGVOX_BY_LANES(lanes, CALL, PLAIN) \
+  static_cast<void>(lanes);                  \
+  return PLAIN
+#endif
+
 }  // namespace pingvox::detail

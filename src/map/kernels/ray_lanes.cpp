@@ -24,16 +24,6 @@ constexpr std::uint64_t step_of(std::size_t axis, bool is_ahead) {
   return is_ahead ? ~kAxisBits[axis] + 1 : ~(std::uint64_t{1} << axis) + 1;
 }
 
-inline __attribute__((always_inline)) void mark(std::uint64_t place, std::uint64_t* missed, std::uint64_t* touched) {
-  std::uint64_t& word = missed[place / 64];
-  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-  // Most cells are crossed by many rays: reading is cheaper than writing the same again.
-  if ((word & bit) != 0) return;
-  word |= bit;
-  const std::uint64_t page = place >> ScanWindow::kPageCellBits;
-  touched[page / 64] |= std::uint64_t{1} << (page % 64);
-}
-
 void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
   std::uint64_t* const missed = window.missed();
   std::uint64_t* const touched = window.touched();
@@ -45,8 +35,8 @@ void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
       place[a] = start & kAxisBits[a];
     }
     for (std::uint32_t left = ray.left; left > 0; --left) {
-      mark(place[0] | place[1] | place[2], missed, touched);
-      const std::size_t axis = next[0] < next[1] ? (next[0] < next[2] ? 0U : 2U) : (next[1] < next[2] ? 1U : 2U);
+      mark_place(place[0] | place[1] | place[2], missed, touched);
+      const std::size_t axis = axis_of_least(next);
       next[axis] += ray.apart[axis];
       place[axis] = (place[axis] + step[axis]) & kAxisBits[axis];
     }
@@ -89,10 +79,14 @@ void write_one(const ReadyRay& ray, Key* keys) {
   auto at = static_cast<std::int64_t>(ray.end);
   for (std::uint32_t n = 0; n < ray.left; ++n) {
     put(static_cast<std::uint64_t>(at), keys + n);
-    const std::size_t axis = next[0] < next[1] ? (next[0] < next[2] ? 0U : 2U) : (next[1] < next[2] ? 1U : 2U);
+    const std::size_t axis = axis_of_least(next);
     next[axis] += ray.apart[axis];
     at += step[axis];
   }
+}
+
+void write_one_by_one(std::span<const ReadyRay> rays, std::span<Key* const> keys) {
+  for (std::size_t i = 0; i < rays.size(); ++i) write_one(rays[i], keys[i]);
 }
 
 // The same loops for each kind of machine.
@@ -120,60 +114,20 @@ constexpr std::size_t kLanes = 8;
 
 }  // namespace
 
-#ifdef PINGVOX_X86_LANES
-
 void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
                   std::vector<std::uint32_t>& others) {
-  switch (lanes) {
-    case Lanes::kAvx512:
-      return avx512::prepare(fan, ends_m, ready, others);
-    case Lanes::kAvx2:
-      return avx2::prepare(fan, ends_m, ready, others);
-    case Lanes::kOne:
-      return plain::prepare(fan, ends_m, ready, others);
-  }
+  PINGVOX_BY_LANES(lanes, prepare(fan, ends_m, ready, others), plain::prepare(fan, ends_m, ready, others));
 }
 
 void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
                 std::span<std::uint64_t> places) {
   assert(places.size() == points_m.size());
-  switch (lanes) {
-    case Lanes::kAvx512:
-      return avx512::find(fan, points_m, places);
-    case Lanes::kAvx2:
-      return avx2::find(fan, points_m, places);
-    case Lanes::kOne:
-      return plain::find(fan, points_m, places);
-  }
+  PINGVOX_BY_LANES(lanes, find(fan, points_m, places), plain::find(fan, points_m, places));
 }
 
 void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
-  switch (lanes) {
-    case Lanes::kAvx512:
-      return avx512::mark_all(rays, start, window);
-    case Lanes::kAvx2:
-      return avx2::mark_all(rays, start, window);
-    case Lanes::kOne:
-      return mark_one_by_one(rays, start, window);
-  }
+  PINGVOX_BY_LANES(lanes, mark_all(rays, start, window), mark_one_by_one(rays, start, window));
 }
-
-#else
-
-void prepare_rays(Lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
-                  std::vector<std::uint32_t>& others) {
-  plain::prepare(fan, ends_m, ready, others);
-}
-
-void find_cells(Lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m, std::span<std::uint64_t> places) {
-  plain::find(fan, points_m, places);
-}
-
-void mark_rays(Lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
-  mark_one_by_one(rays, start, window);
-}
-
-#endif
 
 std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossings) {
   if (crossings.left() > FaceCrossings::kFewFaces) return std::nullopt;
@@ -183,7 +137,7 @@ std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossin
   std::int64_t last_crossing = std::numeric_limits<std::int64_t>::min(), beyond_end = kNever;
   for (std::size_t a = 0; a < 3; ++a) {
     ray.ahead |= static_cast<std::uint32_t>(crossings.is_ahead(a)) << a;
-    const std::uint64_t faces = crossings.left(a), next = crossings.next(a), apart = crossings.apart(a);
+    const auto [next, apart, faces] = crossings.along(a);
     if (faces == 0) {
       ray.next[a] = kNever;
       continue;
@@ -199,16 +153,7 @@ std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossin
 
 void write_keys(Lanes lanes, std::span<const ReadyRay> rays, std::span<Key* const> keys) {
   assert(rays.size() == keys.size());
-  switch (lanes) {
-#ifdef PINGVOX_X86_LANES
-    case Lanes::kAvx512:
-      return avx512::write_all(rays, keys);
-    case Lanes::kAvx2:
-      return avx2::write_all(rays, keys);
-#endif
-    default:
-      for (std::size_t i = 0; i < rays.size(); ++i) write_one(rays[i], keys[i]);
-  }
+  PINGVOX_BY_LANES(lanes, write_all(rays, keys), write_one_by_one(rays, keys));
 }
 
 }  // namespace pingvox::detail

@@ -140,6 +140,14 @@ inline void find(const RayFan& fan, std::span<const Eigen::Vector3d> points_m, s
   }
 }
 
+/// axis_of_least for each lane: all bits set of the axis that is next, none of the others.
+inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& along) {
+  const Words is_0_first = next[0] < next[1];
+  along[0] = is_0_first & (next[0] < next[2]);
+  along[1] = ~is_0_first & (next[1] < next[2]);
+  along[2] = ~(along[0] | along[1]);
+}
+
 /// Walks up to kLanes rays of about the same length, face by face.
 inline void mark_some(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order, std::uint64_t start,
                       std::uint64_t* missed, std::uint64_t* touched) {
@@ -160,20 +168,19 @@ inline void mark_some(std::span<const ReadyRay> rays, std::span<const std::uint3
     bits[a] = Words{} + static_cast<std::int64_t>(kAxisBits[a]);
     place[a] = begin & bits[a];
   }
+  std::array<Words, 3> along{};
   std::array<std::uint64_t, kLanes> places;
   for (std::int64_t most = rays[order.front()].left; most > 0; --most) {
     // A ray that has ended marks where it began once more.
     const Words at = left > 0 ? place[0] | place[1] | place[2] : begin;
     std::memcpy(places.data(), &at, sizeof at);
     left -= 1;
-    const Words is_0_first = next[0] < next[1];
-    const std::array<Words, 3> along{is_0_first & (next[0] < next[2]), ~is_0_first & (next[1] < next[2]),
-                                     ~((is_0_first & (next[0] < next[2])) | (~is_0_first & (next[1] < next[2])))};
+    choose_axes(next, along);
     for (std::size_t a = 0; a < 3; ++a) {
       add_wrapping(next[a], along[a] & apart[a]);  // those of rays that have ended mean nothing
       place[a] = (place[a] + (along[a] & step[a])) & bits[a];
     }
-    for (const std::uint64_t of_one : places) mark(of_one, missed, touched);
+    for (const std::uint64_t of_one : places) mark_place(of_one, missed, touched);
   }
 }
 
@@ -187,18 +194,13 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
   }
 }
 
-/// Writes the keys of up to kLanes rays of about the same length: together while all go on, then each by itself.
+/// Writes the keys of kLanes rays of about the same length: together while all go on, then each by itself.
 inline void write_some(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order,
                        std::span<Key* const> keys) {
-  std::array<Words, 3> next{}, apart{}, step{};
+  std::array<Words, 3> next{}, apart{}, step{}, along{};
   Words at{};
-  std::array<Key*, kLanes> out{};
-  std::array<Key, 2> nowhere;
-  std::uint32_t together = rays[order.back()].left;
-  if (order.size() < kLanes) together = 0;
   for (std::size_t l = 0; l < kLanes; ++l) {
-    out[l] = l < order.size() ? keys[order[l]] : nowhere.data();
-    const ReadyRay& ray = rays[order[std::min(l, order.size() - 1)]];
+    const ReadyRay& ray = rays[order[l]];
     for (std::size_t a = 0; a < 3; ++a) {
       next[a][l] = ray.next[a];
       apart[a][l] = ray.apart[a];
@@ -206,34 +208,29 @@ inline void write_some(std::span<const ReadyRay> rays, std::span<const std::uint
     }
     at[l] = static_cast<std::int64_t>(ray.end);
   }
+  const std::uint32_t together = rays[order.back()].left;  // the shortest: they are sorted
   std::array<std::uint64_t, kLanes> words;
   for (std::uint32_t n = 0; n < together; ++n) {
     std::memcpy(words.data(), &at, sizeof at);
-    for (std::size_t l = 0; l < kLanes; ++l) put(words[l], out[l] + n);
-    const Words is_0_first = next[0] < next[1];
-    const std::array<Words, 3> along{is_0_first & (next[0] < next[2]), ~is_0_first & (next[1] < next[2]),
-                                     ~((is_0_first & (next[0] < next[2])) | (~is_0_first & (next[1] < next[2])))};
+    for (std::size_t l = 0; l < kLanes; ++l) put(words[l], keys[order[l]] + n);
+    choose_axes(next, along);
     for (std::size_t a = 0; a < 3; ++a) {
       next[a] += along[a] & apart[a];
       at += along[a] & step[a];
     }
   }
-  for (std::size_t l = 0; l < order.size(); ++l) {
-    const ReadyRay& ray = rays[order[l]];
-    ReadyRay rest = ray;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    ReadyRay rest = rays[order[l]];
     for (std::size_t a = 0; a < 3; ++a) rest.next[a] = next[a][l];
     rest.end = static_cast<std::uint64_t>(at[l]);
-    rest.left = ray.left - together;
-    write_one(rest, out[l] + together);
+    rest.left -= together;
+    write_one(rest, keys[order[l]] + together);
   }
 }
 
 inline void write_all(std::span<const ReadyRay> rays, std::span<Key* const> keys) {
   const ByLength by_length(rays);
   std::span<const std::uint32_t> order = by_length.order();
-  while (!order.empty()) {
-    const std::size_t lanes = std::min(kLanes, order.size());
-    write_some(rays, order.first(lanes), keys);
-    order = order.subspan(lanes);
-  }
+  for (; order.size() >= kLanes; order = order.subspan(kLanes)) write_some(rays, order.first(kLanes), keys);
+  for (const std::uint32_t i : order) write_one(rays[i], keys[i]);
 }
