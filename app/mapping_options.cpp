@@ -1,0 +1,139 @@
+#include "mapping_options.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "option_values.hpp"
+#include "pingvox/geometry/pose.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// What sonar heads assume when they turn times into bin lengths.
+constexpr double kAssumedSoundSpeed_m_s = 1500.0;
+
+constexpr std::array kFilters = {Word<Filter>{"none", Filter::kNone}, Word<Filter>{"mean", Filter::kMean},
+                                 Word<Filter>{"median", Filter::kMedian}, Word<Filter>{"gaussian", Filter::kGaussian}};
+constexpr std::array kDetectors = {Word<Detector>{"rise", Detector::kRise}, Word<Detector>{"level", Detector::kLevel},
+                                   Word<Detector>{"max", Detector::kMax}, Word<Detector>{"canny", Detector::kCanny},
+                                   Word<Detector>{"cfar", Detector::kCfar}};
+constexpr std::array kCfars = {Word<CfarOptions::Noise>{"ca", CfarOptions::Noise::kCellAveraging},
+                               Word<CfarOptions::Noise>{"so", CfarOptions::Noise::kSmallestOf},
+                               Word<CfarOptions::Noise>{"os", CfarOptions::Noise::kOrdered}};
+constexpr std::array kShapes = {Word<BeamShape>{"ray", BeamShape::kRay}, Word<BeamShape>{"fan", BeamShape::kFan},
+                                Word<BeamShape>{"cone", BeamShape::kCone}};
+constexpr std::array kRays = {Word<RayAlgorithm>{"dda", RayAlgorithm::kDda},
+                              Word<RayAlgorithm>{"bresenham", RayAlgorithm::kBresenham}};
+constexpr std::array kVotes = {Word<Vote>{"sweep", Vote::kPerSweep}, Word<Vote>{"beam", Vote::kPerBeam}};
+constexpr std::array kHitsFrom = {Word<HitFrom>{"fixed", HitFrom::kFixed},
+                                  Word<HitFrom>{"intensity", HitFrom::kIntensity}};
+constexpr std::array kSilents = {Word<Silent>{"nothing", Silent::kNothing}, Word<Silent>{"free", Silent::kFree}};
+
+Take into_sound_speed_ratio(double& ratio) {
+  return [&ratio](const std::string& text) -> Result<void> {
+    const Result<double> speed = number_from<double>(text);
+    if (!speed) return tl::unexpected(speed.error());
+    if (!(*speed > 0.0) || !std::isfinite(*speed)) return off(fmt::format("{} is no speed above 0", text));
+    ratio = *speed / kAssumedSoundSpeed_m_s;
+    return {};
+  };
+}
+
+Take into_min_range(std::optional<double>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    if (text != "auto") return into_optional(target)(text);
+    target.reset();
+    return {};
+  };
+}
+
+Take into_clamp(Clamp& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const auto p = numbers_from<2>(text);
+    if (!p) return tl::unexpected(p.error());
+    const auto& [lowest, highest] = *p;
+    if (!(lowest > 0.0 && lowest < highest && highest < 1.0)) {
+      return off(fmt::format("'{}': must be two probabilities between 0 and 1, the smaller one first", text));
+    }
+    target = {LogOdds::from_probability(lowest), LogOdds::from_probability(highest)};
+    return {};
+  };
+}
+
+Take into_mount(Pose& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const auto n = numbers_from<6>(text);
+    if (!n) return off(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
+    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); })) {
+      return off(fmt::format("'{}': must be finite", text));
+    }
+    const auto& [x, y, z, roll, pitch, yaw] = *n;
+    target = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
+    return {};
+  };
+}
+
+}  // namespace
+
+OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const Take& max_range) {
+  EchoOptions& echo = words.echo;
+  return {
+      "Echoes",
+      {{"--min-range", 0, "M|auto", "nearer bins are the head's own ringing, and no evidence; auto: as it is found",
+        shown(EchoOptions::kUsualBlanking_m), into_min_range(echo.min_range_m)},
+       {"--min-bin", 0, "N", "nor are those before this one, counted from 0", fmt::format("{}", echo.min_bin),
+        into_number(echo.min_bin)},
+       {"--max-range", 0, "M", "farther bins and cells are left alone", "none", max_range},
+       {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
+        into_sound_speed_ratio(sound_speed_ratio)},
+       choice("--filter", kFilters, "how sweeps are smoothed before echoes are looked for", words.filter),
+       {"--kernel", 0, "N", "edge of the filter's window in beams and bins, odd", "5, canny: 11",
+        into_optional(words.kernel)},
+       {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
+        into_optional(words.sigma)},
+       choice("--detect", kDetectors, "how echoes are found", echo.detector),
+       {"--threshold", 0, "T", "the rise, level or gradient (canny) that makes an echo", "by the gain",
+        into_optional(echo.threshold)},
+       choice("--cfar", kCfars, "noise of cfar: cell-averaging, smallest-of or ordered-statistic", echo.cfar.noise)}};
+}
+
+OptionTable::Group map_group(BuildWords& words) {
+  MapOptions& map = words.map;
+  BeamModelOptions& model = words.build.model;
+  return {
+      "Map",
+      {{"--resolution", 0, "M", "edge of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
+       {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot hold 16", fmt::format("{}", map.depth),
+        into_number(map.depth)},
+       {"--hit", 0, "P", "probability that an echo gives a cell", shown(model.hit.probability()),
+        into_probability(model.hit)},
+       {"--miss", 0, "P", "probability that sound passing gives a cell", shown(model.miss.probability()),
+        into_probability(model.miss)},
+       {"--clamp", 0, "P,P", "probabilities beyond which a cell does not go",
+        shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), into_clamp(map.clamp)},
+       choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", words.build.vote),
+       {"--memory-limit", 0, "BYTES", "stop when the map would grow past it; also 512M, 2G", "none",
+        into_bytes(map.memory_limit_bytes)}}};
+}
+
+OptionTable::Group sensor_group(BuildWords& words) {
+  BeamModelOptions& model = words.build.model;
+  return {"Sensor",
+          {{"--poses", 0, "FILE", "where the vehicle was, as TUM lines 't x y z qx qy qz qw'", "it stood still",
+            into(words.poses)},
+           {"--mount", 0, "X,Y,Z,R,P,Y", "the head on the vehicle: metres, then roll, pitch, yaw in degrees",
+            "0,0,0,0,0,0", into_mount(words.build.body_from_sensor)},
+           choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
+           {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
+            into_number(model.width_rad, kDegree_rad)},
+           {"--beam-height", 0, "DEG", "vertically, full angle", shown(model.height_rad / kDegree_rad),
+            into_number(model.height_rad, kDegree_rad)},
+           choice("--ray", kRays, "how rays go from cell to cell", model.ray),
+           choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
+           choice("--silent", kSilents, "what a beam without an echo says", model.silent)}};
+}
+
+}  // namespace pingvox::app

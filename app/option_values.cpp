@@ -1,0 +1,57 @@
+#include "option_values.hpp"
+
+#include <limits>
+
+namespace pingvox::app {
+
+Result<std::size_t> bytes_from(std::string_view text) {
+  constexpr std::string_view kUnits = "KMGT";
+  std::string_view digits = text;
+  unsigned shift = 0;
+  if (!digits.empty()) {
+    const char unit =
+        digits.back() >= 'a' && digits.back() <= 'z' ? static_cast<char>(digits.back() - 'a' + 'A') : digits.back();
+    if (const std::size_t power = kUnits.find(unit); power != std::string_view::npos) {
+      shift = 10 * (static_cast<unsigned>(power) + 1);
+      digits.remove_suffix(1);
+    }
+  }
+  const Result<std::size_t> count = number_from<std::size_t>(digits);
+  if (!count) return off(fmt::format("'{}' is no number of bytes, as in 512M or 2G", text));
+  if (*count > std::numeric_limits<std::size_t>::max() >> shift) return off(fmt::format("'{}' is out of range", text));
+  return *count << shift;
+}
+
+Take into(std::string& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    if (text.empty()) return off("is empty");
+    target = text;
+    return {};
+  };
+}
+
+Take into_probability(LogOdds& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const Result<double> value = number_from<double>(text);
+    if (!value) return tl::unexpected(value.error());
+    if (!(*value > 0.0 && *value < 1.0)) return off(fmt::format("{} is no probability between 0 and 1", text));
+    target = LogOdds::from_probability(*value);
+    return {};
+  };
+}
+
+Take into_bytes(std::size_t& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const Result<std::size_t> bytes = bytes_from(text);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (*bytes == 0) return off("must be more than 0");
+    target = *bytes;
+    return {};
+  };
+}
+
+std::string shown(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+}  // namespace pingvox::app

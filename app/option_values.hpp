@@ -1,0 +1,159 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "option_table.hpp"
+#include "pingvox/map/log_odds.hpp"
+#include "pingvox/result.hpp"
+#include "suggest.hpp"
+
+/// Values from the text of a call (no locale, nothing left over), and options that put them into their place.
+namespace pingvox::app {
+
+using Words = std::vector<std::string>;
+
+inline constexpr double kDegree_rad = std::numbers::pi / 180.0;
+
+/// The words of the call are off: kBadOption.
+inline tl::unexpected<Error> off(std::string what) {
+  return fail(Error::Code::kBadOption, std::move(what));
+}
+
+template <class Number>
+Result<Number> number_from(std::string_view text) {
+  std::string_view digits = text;
+  if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  constexpr bool kReal = std::is_floating_point_v<Number>;
+  if (error == std::errc::result_out_of_range) return off(fmt::format("'{}' is out of range", text));
+  if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty()) {
+    return off(fmt::format("'{}' is no {}", text, kReal ? "number" : "whole number"));
+  }
+  if constexpr (kReal) {
+    if (std::isnan(value)) return off(fmt::format("'{}' is no number", text));
+  }
+  return value;
+}
+
+template <std::size_t N>
+Result<std::array<double, N>> numbers_from(std::string_view text) {
+  std::array<double, N> values{};
+  std::size_t count = 0;
+  for (std::string_view rest = text;; ++count) {
+    const std::size_t comma = rest.find(',');
+    if (count < N) {
+      const Result<double> value = number_from<double>(rest.substr(0, comma));
+      if (!value) return tl::unexpected(value.error());
+      values[count] = *value;
+    }
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (count + 1 != N) return off(fmt::format("'{}': must be {} numbers with commas between them", text, N));
+  return values;
+}
+
+/// A number of bytes, also with K, M, G or T behind it.
+Result<std::size_t> bytes_from(std::string_view text);
+
+/// Any text but an empty one.
+Take into(std::string& target);
+
+/// A number of any kind; typed in units of `unit`.
+template <class Number>
+Take into_number(Number& target, Number unit = Number{1}) {
+  return [&target, unit](const std::string& text) -> Result<void> {
+    const Result<Number> value = number_from<Number>(text);
+    if (!value) return tl::unexpected(value.error());
+    target = static_cast<Number>(*value * unit);
+    return {};
+  };
+}
+
+template <class Number>
+Take into_optional(std::optional<Number>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const Result<Number> value = number_from<Number>(text);
+    if (!value) return tl::unexpected(value.error());
+    target = *value;
+    return {};
+  };
+}
+
+Take into_probability(LogOdds& target);
+/// More than none.
+Take into_bytes(std::size_t& target);
+
+/// One of the words that an option takes, and what it means.
+template <class Enum>
+struct Word {
+  std::string_view word;
+  Enum value;
+};
+
+/// For the help: the words with | between them.
+template <class Enum, std::size_t N>
+std::string words_of(const std::array<Word<Enum>, N>& words) {
+  std::string out;
+  for (const auto& word : words) out += fmt::format("{}{}", out.empty() ? "" : "|", word.word);
+  return out;
+}
+
+template <class Enum, std::size_t N>
+std::string word_of(const std::array<Word<Enum>, N>& words, Enum value) {
+  for (const auto& word : words) {
+    if (word.value == value) return std::string(word.word);
+  }
+  return {};
+}
+
+template <class Enum, std::size_t N>
+Result<Enum> value_of(const std::array<Word<Enum>, N>& words, const std::string& text) {
+  Words known;
+  for (const auto& word : words) {
+    if (word.word == text) return word.value;
+    known.emplace_back(word.word);
+  }
+  return off(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
+}
+
+/// An option that takes one of `words`, which must outlive it. What is in `target` is the default.
+template <class Enum, std::size_t N>
+Option choice(std::string name, const std::array<Word<Enum>, N>& words, std::string help, Enum& target) {
+  const Take take = [&target, &words](const std::string& text) -> Result<void> {
+    const Result<Enum> value = value_of(words, text);
+    if (!value) return tl::unexpected(value.error());
+    target = *value;
+    return {};
+  };
+  return {std::move(name), 0, words_of(words), std::move(help), word_of(words, target), take};
+}
+
+/// An option without a value: sets `target` to `value`.
+template <class Enum>
+Option flag(std::string name, std::string help, Enum& target, Enum value) {
+  const Take take = [&target, value](const std::string&) -> Result<void> {
+    target = value;
+    return {};
+  };
+  return {std::move(name), 0, "", std::move(help), "", take};
+}
+
+/// A default as typed.
+std::string shown(double value);
+
+}  // namespace pingvox::app

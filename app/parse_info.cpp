@@ -1,0 +1,21 @@
+#include "option_table.hpp"
+#include "option_values.hpp"
+#include "parse_commands.hpp"
+#include "shared_options.hpp"
+
+namespace pingvox::app {
+
+Result<Command> info_command(const Words& words) {
+  InfoCommand command;
+  const OptionTable table{
+      "info",
+      "Says what a file holds: a log of beams or of point scans, a cloud, a map, a mesh, or a trajectory. Told by\n"
+      "content, not by name.",
+      {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", into(command.file)}},
+      {{"Options", {json_option(command.manner), strict_option(command.damage)}}},
+      {"pingvox info tank.mat", "pingvox info tank.bt --json"},
+      ""};
+  return parsed(table, words, [&]() -> Result<Command> { return command; });
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,89 @@
+#include "shared_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "suggest.hpp"
+
+namespace pingvox::app {
+namespace {
+
+tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
+  // A message of the library may begin with the same word: the stage that it is about.
+  const bool is_named = error.message.starts_with(table.command + ":");
+  if (error.code != Error::Code::kBadOption || is_named) return tl::unexpected(error);
+  return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
+}
+
+}  // namespace
+
+Option output_option(std::string& target, std::string help) {
+  return {"--output", 'o', "FILE", std::move(help), "", into(target)};
+}
+
+Option config_option() {
+  // The table reads the file; what is left to take is nothing.
+  return {"--config", 0,
+          "FILE",     "read options from a TOML file, named as here without the dashes; those of the call win",
+          "",         [](const std::string&) -> Result<void> { return {}; }};
+}
+
+Option strict_option(Damage& damage) {
+  return flag("--strict", "stop at the first damage in a log instead of leaving it out", damage, Damage::kFail);
+}
+
+Option json_option(Manner& manner) {
+  return flag("--json", "report as one JSON object on standard output", manner.report, Report::kJson);
+}
+
+Option quiet_option(Manner& manner) {
+  return flag("--quiet", "say nothing but errors", manner.talk, Talk::kQuiet);
+}
+
+Result<Format> output_format(const std::string& path, const std::optional<Format>& asked,
+                             std::span<const Word<Format>> known) {
+  if (path.empty()) return off("-o FILE is missing: where should the result go?");
+  if (asked) return *asked;
+  const std::optional<Format> by_suffix = format_for_writing(path);
+  for (const auto& word : known) {
+    if (word.value == by_suffix) return word.value;
+  }
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  const bool is_nameless = path == "-" || (std::filesystem::exists(status) && std::filesystem::is_other(status));
+  if (is_nameless && !by_suffix) return known.front().value;
+
+  Words suffixes;
+  for (const auto& word : known) suffixes.push_back(fmt::format(".{}", word.word));
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return off(
+      fmt::format("{}: its suffix must be {}{}", path, fmt::join(suffixes, " or "), did_you_mean(ending, suffixes)));
+}
+
+Result<void> check_folder_of(const std::string& path) {
+  if (path == "-") return {};
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (folder.empty() || std::filesystem::is_directory(folder, error)) return {};
+  return fail(Error::Code::kIo, fmt::format("{}: there is no folder '{}'", path, folder.string()));
+}
+
+Result<void> check_standard_input(const Words& files) {
+  if (std::count(files.begin(), files.end(), "-") < 2) return {};
+  return off("'-' twice: standard input can be read only once");
+}
+
+Result<Command> parsed(const OptionTable& table, const Words& words, const std::function<Result<Command>()>& done) {
+  const Result<Parsed> result = parse(table, words);
+  if (!result) return tl::unexpected(result.error());
+  if (*result == Parsed::kHelpWanted) return ShowText{{}, help_of(table)};
+  Result<Command> command = done();
+  if (!command) return in_command(table, command.error());
+  return command;
+}
+
+}  // namespace pingvox::app
