@@ -13,13 +13,9 @@ namespace pingvox::bench {
 namespace {
 
 Result<TankBeams> all_of(std::string input, BeamSource& source) {
-  TankBeams all{std::move(input), {}};
-  for (;;) {
-    Result<std::optional<Beam>> beam = source.next();
-    if (!beam) return tl::unexpected(beam.error());
-    if (!*beam) return all;
-    all.beams.push_back(std::move(**beam));
-  }
+  Result<std::vector<Beam>> beams = read_all(source);
+  if (!beams) return tl::unexpected(beams.error());
+  return TankBeams{std::move(input), std::move(*beams)};
 }
 
 }  // namespace

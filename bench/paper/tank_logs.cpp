@@ -31,32 +31,12 @@ std::optional<double> recorded_wall_m(double bearing_rad) {
   return std::nullopt;
 }
 
-std::vector<Sweep> sweeps_of(const std::vector<Beam>& beams) {
-  SweepAssembler assembler;
-  std::vector<Sweep> sweeps;
-  for (const Beam& beam : beams) {
-    if (auto sweep = assembler.add(beam)) sweeps.push_back(std::move(*sweep));
-  }
-  if (auto sweep = assembler.finish()) sweeps.push_back(std::move(*sweep));
-  return sweeps;
-}
-
-Result<std::vector<Beam>> all_of(BeamSource& source) {
-  std::vector<Beam> beams;
-  for (;;) {
-    Result<std::optional<Beam>> beam = source.next();
-    if (!beam) return tl::unexpected(beam.error());
-    if (!*beam) return beams;
-    beams.push_back(std::move(**beam));
-  }
-}
-
 }  // namespace
 
 TankLog simulated_tank() {
   SonarSimulator sonar(tank_scene({}).world, Trajectory::still(Pose::Identity()), {}, 10);
   TankLog log{.name = "simulated", .beams = {}, .sweeps = {}, .wall_m = &simulated_wall_m};
-  if (auto beams = all_of(sonar)) log.beams = std::move(*beams);  // a simulator does not fail
+  if (auto beams = read_all(sonar)) log.beams = std::move(*beams);  // a simulator does not fail
   log.sweeps = sweeps_of(log.beams);
   return log;
 }
@@ -68,7 +48,7 @@ Result<std::optional<TankLog>> recorded_tank() {
   if (!file) return tl::unexpected(file.error());
   const auto source = open_beams(std::move(*file));
   if (!source) return tl::unexpected(source.error());
-  Result<std::vector<Beam>> beams = all_of(**source);
+  Result<std::vector<Beam>> beams = read_all(**source);
   if (!beams) return tl::unexpected(beams.error());
   TankLog log{.name = "recorded", .beams = std::move(*beams), .sweeps = {}, .wall_m = &recorded_wall_m};
   log.sweeps = sweeps_of(log.beams);

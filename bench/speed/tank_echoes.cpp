@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "bench/tank_beams.hpp"
@@ -14,20 +15,17 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-std::vector<std::vector<BeamEcho>> echoes_of(std::vector<Beam> beams) {
+std::vector<std::vector<BeamEcho>> echoes_of(std::span<const Beam> beams) {
   std::vector<std::vector<BeamEcho>> sweeps;
-  SweepAssembler assembler;
-  const auto add = [&](const std::optional<Sweep>& sweep) {
-    if (!sweep || sweep->extent == Sweep::Extent::kCut) return;
-    const PolarImage image = filtered(PolarImage(*sweep), usual_filter(Detector::kRise));
-    const auto echoes = detect_echoes(image, *sweep, {});
+  for (const Sweep& sweep : sweeps_of(beams)) {
+    if (sweep.extent == Sweep::Extent::kCut) continue;
+    const PolarImage image = filtered(PolarImage(sweep), usual_filter(Detector::kRise));
+    const auto echoes = detect_echoes(image, sweep, {});
     auto& found = sweeps.emplace_back();
     for (std::size_t i = 0; i < echoes.size(); ++i) {
-      if (echoes[i]) found.push_back({sweep->beams[i].bearing_rad, echoes[i]->range_m, echoes[i]->intensity});
+      if (echoes[i]) found.push_back({sweep.beams[i].bearing_rad, echoes[i]->range_m, echoes[i]->intensity});
     }
-  };
-  for (Beam& beam : beams) add(assembler.add(std::move(beam)));
-  add(assembler.finish());
+  }
   return sweeps;
 }
 
@@ -40,7 +38,7 @@ Eigen::Vector3d as_floats(const Eigen::Vector3d& point_m) {
 Result<TankEchoes> tank_echoes() {
   Result<TankBeams> tank = tank_beams();
   if (!tank) return tl::unexpected(tank.error());
-  return TankEchoes{std::move(tank->input), echoes_of(std::move(tank->beams))};
+  return TankEchoes{std::move(tank->input), echoes_of(tank->beams)};
 }
 
 PointScan rays_of(const std::vector<BeamEcho>& sweep) {

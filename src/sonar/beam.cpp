@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace pingvox {
 
@@ -26,6 +27,16 @@ double wrapped_bearing(double angle_rad) {
   const double wrapped = angle_rad - kTurn * std::floor(angle_rad / kTurn);
   // A tiny negative angle rounds up to a whole turn.
   return wrapped >= 0.0 && wrapped < kTurn ? wrapped : 0.0;
+}
+
+Result<std::vector<Beam>> read_all(BeamSource& source) {
+  std::vector<Beam> beams;
+  for (;;) {
+    Result<std::optional<Beam>> beam = source.next();
+    if (!beam) return tl::unexpected(beam.error());
+    if (!*beam) return beams;
+    beams.push_back(std::move(**beam));
+  }
 }
 
 }  // namespace pingvox

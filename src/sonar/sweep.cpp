@@ -103,4 +103,14 @@ std::optional<Sweep> SweepAssembler::close(Sweep::Extent extent) {
   return sweep;
 }
 
+std::vector<Sweep> sweeps_of(std::span<const Beam> beams) {
+  SweepAssembler assembler;
+  std::vector<Sweep> sweeps;
+  for (const Beam& beam : beams) {
+    if (auto sweep = assembler.add(beam)) sweeps.push_back(std::move(*sweep));
+  }
+  if (auto sweep = assembler.finish()) sweeps.push_back(std::move(*sweep));
+  return sweeps;
+}
+
 }  // namespace pingvox

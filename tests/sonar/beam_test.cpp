@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace pingvox {
 namespace {
@@ -42,6 +44,36 @@ TEST(ValidateBeam, RefusesWhatItsCommentsRuleOut) {
     beam.bin_length_m = bad;
     EXPECT_FALSE(validate(beam)) << bad;
   }
+}
+
+/// Three beams, then the end or an error.
+class ThreeBeams : public BeamSource {
+ public:
+  explicit ThreeBeams(Result<void> end) : end_(std::move(end)) {}
+  Result<std::optional<Beam>> next() override {
+    if (given_ < 3) return Beam{.time_s = ++given_, .bearing_rad = 0.0, .bin_length_m = 0.1, .intensities = {}};
+    if (!end_) return tl::unexpected(end_.error());
+    return std::nullopt;
+  }
+
+ private:
+  double given_ = 0.0;
+  Result<void> end_;
+};
+
+TEST(ReadAll, GivesTheBeamsInTheirOrder) {
+  ThreeBeams source{{}};
+  const Result<std::vector<Beam>> beams = read_all(source);
+  ASSERT_TRUE(beams);
+  ASSERT_EQ(beams->size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ((*beams)[n].time_s, static_cast<double>(n + 1));
+}
+
+TEST(ReadAll, DoesNotTakeAnErrorForTheEnd) {
+  ThreeBeams source{fail(Error::Code::kIo, "the disk is gone")};
+  const Result<std::vector<Beam>> beams = read_all(source);
+  ASSERT_FALSE(beams);
+  EXPECT_EQ(beams.error().message, "the disk is gone");
 }
 
 }  // namespace

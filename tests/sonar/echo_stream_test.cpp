@@ -36,16 +36,6 @@ std::vector<Way> all_ways() {
   return ways;
 }
 
-std::vector<Sweep> sweeps_of(const std::vector<Beam>& beams) {
-  SweepAssembler assembler;
-  std::vector<Sweep> sweeps;
-  for (const Beam& beam : beams) {
-    if (auto sweep = assembler.add(beam)) sweeps.push_back(std::move(*sweep));
-  }
-  if (auto sweep = assembler.finish()) sweeps.push_back(std::move(*sweep));
-  return sweeps;
-}
-
 bool same(const std::optional<Echo>& a, const std::optional<Echo>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   return a->first == b->first && a->peak == b->peak && a->last == b->last && a->range_m == b->range_m &&

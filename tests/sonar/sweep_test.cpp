@@ -35,12 +35,8 @@ struct Cut {
 };
 
 std::vector<Cut> cuts_of(const std::vector<Beam>& beams) {
-  SweepAssembler assembler;
   std::vector<Cut> cuts;
-  for (const Beam& beam : beams) {
-    if (const auto sweep = assembler.add(beam)) cuts.push_back({sweep->extent, sweep->beams.size()});
-  }
-  if (const auto sweep = assembler.finish()) cuts.push_back({sweep->extent, sweep->beams.size()});
+  for (const Sweep& sweep : sweeps_of(beams)) cuts.push_back({sweep.extent, sweep.beams.size()});
   return cuts;
 }
 

@@ -25,11 +25,7 @@ class OnTheTankRecording : public testing::Test {
     const std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
     if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
     ASSERT_EQ(beams.size(), 5604U);
-    SweepAssembler assembler;
-    for (const Beam& beam : beams) {
-      if (auto sweep = assembler.add(beam)) sweeps_.push_back(std::move(*sweep));
-    }
-    if (auto sweep = assembler.finish()) sweeps_.push_back(std::move(*sweep));
+    sweeps_ = sweeps_of(beams);
   }
 
   std::vector<Sweep> sweeps_;

@@ -41,4 +41,9 @@ class BeamSource {
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };
 
+/// All beams that a source still has, at once. For what needs them all: a log of hours fits into memory, a live device
+/// has no end.
+/// @return the source's error when it does not come to its end
+Result<std::vector<Beam>> read_all(BeamSource& source);
+
 }  // namespace pingvox

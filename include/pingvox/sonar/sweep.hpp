@@ -67,4 +67,8 @@ class SweepAssembler {
   std::array<double, 2> steps_rad_ = {0.0, 0.0};
 };
 
+/// A whole recording cut into sweeps by a SweepAssembler; what is left at its end is the last one. The beams must be
+/// valid.
+std::vector<Sweep> sweeps_of(std::span<const Beam> beams);
+
 }  // namespace pingvox
