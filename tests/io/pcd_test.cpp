@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "io/map_samples.hpp"
+#include "io/two_occupied_leaves.hpp"
 #include "pingvox/io/beams.hpp"
 
 using namespace pingvox;
@@ -9,22 +10,11 @@ using namespace pingvox::samples;
 namespace {
 
 TEST(Pcd, HoldsTheOccupiedLeavesOnly) {
-  OccupancyMap map({.resolution_m = 0.5, .depth = 16});
-  {
-    Editor editor = map.edit();
-    editor.set(Key{32768, 32768, 32768}, 16, LogOdds(1.0F));   // middle 0.25, 0.25, 0.25
-    editor.set(Key{32770, 32768, 32764}, 15, LogOdds(2.0F));   // edge 1, middle 1.5, 0.5, -1.5
-    editor.set(Key{32780, 32768, 32768}, 16, LogOdds(-1.0F));  // free
-  }
-  Bytes expected = bytes_of(
+  const Bytes expected = cloud_of_two_occupied_leaves(
       "# .PCD v0.7 - Point Cloud Data file format\n# occupied leaves of a map with cells of 0.5 m\nVERSION 0.7\n"
       "FIELDS x y z log_odds size\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
       "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n");
-  const Bytes body = bytes_of_hex(
-      "0000c03f 0000003f 0000c0bf 00000040 0000803f"
-      "0000803e 0000803e 0000803e 0000803f 0000003f");
-  expected.insert(expected.end(), body.begin(), body.end());
-  EXPECT_EQ(written(map, Format::kPcd), expected);
+  EXPECT_EQ(written(map_of_two_occupied_leaves(), Format::kPcd), expected);
 }
 
 /// The points of a cloud that was written.
