@@ -2,14 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <memory>
-#include <optional>
+#include <algorithm>
 #include <span>
+#include <vector>
 
-#include "bench/duel.hpp"
+#include "map_contest.hpp"
 #include "peer.hpp"
 #include "pingvox/mapping/beam_model.hpp"
-#include "same_map.hpp"
 #include "tank_echoes.hpp"
 
 namespace pingvox::bench {
@@ -58,6 +57,23 @@ void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const ConeSweep> swee
   }
 }
 
+/// How the cells of the cones stand to those of the bundles, as shares of these.
+struct ConeCells {
+  std::uint64_t cells = 0;  ///< of either
+  double missing = 0.0, more = 0.0;
+};
+
+Result<ConeCells> compared(const OccupancyMap& map, const octomap::OcTree& tree) {
+  const MapDifference found = difference(map, tree);
+  const auto peer_cells = static_cast<double>(found.cells - found.only_ours);
+  const ConeCells shares{found.cells, static_cast<double>(found.only_peer) / peer_cells,
+                         static_cast<double>(found.only_ours) / peer_cells};
+  if (shares.missing <= kMostMissing && shares.more <= kMostMore) return shares;
+  return fail(Error::Code::kCorrupt,
+              fmt::format("of the {} cells of the bundles {} are not in the cones, which have {} others", peer_cells,
+                          found.only_peer, found.only_ours));
+}
+
 }  // namespace
 
 Result<std::vector<Row>> tank_cone(const BenchOptions&) {
@@ -67,41 +83,25 @@ Result<std::vector<Row>> tank_cone(const BenchOptions&) {
   if (!bundles) return tl::unexpected(bundles.error());
   const std::vector<ConeSweep> sweeps = cones_of(*tank);
   const std::vector<octomap::Pointcloud> clouds = clouds_of(bundles->scans);
-  const PeerMode mode = faster_mode(kCell_m, clouds, PeerEnds::kExact);
-  const MapOptions map_options{.resolution_m = kCell_m};
-  std::optional<OccupancyMap> map;
-  std::unique_ptr<octomap::OcTree> tree;
-  ScanUpdate scan;
-  const Side ours{[&] { map.emplace(map_options); }, [&] { insert(*map, scan, sweeps); }};
-  const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(kCell_m); },
-                  [&] { insert(*tree, clouds, PeerEnds::kExact, mode); }};
-  ours.prepare();
-  ours.work();
-  peer.prepare();
-  peer.work();
-  const MapDifference found = difference(*map, *tree);
-  const auto peer_cells = static_cast<double>(found.cells - found.only_ours);
-  const double missing = static_cast<double>(found.only_peer) / peer_cells;
-  const double more = static_cast<double>(found.only_ours) / peer_cells;
-  if (!(missing <= kMostMissing && more <= kMostMore)) {
-    return fail(Error::Code::kCorrupt, fmt::format("of the {} cells of the bundles {} are not in the cones, which have "
-                                                   "{} others",
-                                                   peer_cells, found.only_peer, found.only_ours));
-  }
-  map.reset();
-  tree.reset();
-  const DuelMemory bytes{peak_memory_bytes([&] {
-                           OccupancyMap fresh(map_options);
-                           ScanUpdate fresh_scan;
-                           insert(fresh, fresh_scan, sweeps);
-                         }),
-                         peak_memory_bytes([&] {
-                           octomap::OcTree fresh(kCell_m);
-                           insert(fresh, clouds, PeerEnds::kExact, mode);
-                         })};
-  Row row = speed_row("tank-cone", duel(ours, peer), bytes);
-  row.add("input", tank->input).add("cells", found.cells).add("share_missing", missing).add("share_more", more);
-  return std::vector{row};
+  const auto fill_peer = [&](octomap::OcTree& tree, PeerMode mode) { insert(tree, clouds, PeerEnds::kExact, mode); };
+  const PeerMode mode = faster_mode(kCell_m, fill_peer);
+  ConeCells found;
+  Result<Row> row = measured({.name = "tank-cone",
+                              .resolution_m = kCell_m,
+                              .ours = [&](OccupancyMap& map, ScanUpdate& scan) { insert(map, scan, sweeps); },
+                              .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); },
+                              .check = [&](const OccupancyMap& map, const octomap::OcTree& tree) -> Result<void> {
+                                const Result<ConeCells> cells = compared(map, tree);
+                                if (!cells) return tl::unexpected(cells.error());
+                                found = *cells;
+                                return {};
+                              }});
+  if (!row) return tl::unexpected(row.error());
+  row->add("input", tank->input)
+      .add("cells", found.cells)
+      .add("share_missing", found.missing)
+      .add("share_more", found.more);
+  return std::vector{*row};
 }
 
 }  // namespace pingvox::bench

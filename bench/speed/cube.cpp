@@ -1,15 +1,11 @@
 #include "cube.hpp"
 
-#include <octomap/OcTree.h>
-
-#include <memory>
-#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "bench/duel.hpp"
-#include "pingvox/map/occupancy_map.hpp"
-#include "same_map.hpp"
+#include "map_contest.hpp"
+#include "peer.hpp"
 
 namespace pingvox::bench {
 namespace {
@@ -48,45 +44,30 @@ void fill_at_once(OccupancyMap& map, std::span<const Key> cells) {
 }
 
 /// The library's own value of a hit is a double's logarithm: the same number is handed in.
-void fill(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> cells, bool lazy) {
+void fill(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> cells, PeerMode mode) {
   const float hit = LogOdds::from_probability(0.7).value();
-  for (const octomap::OcTreeKey& cell : cells) tree.updateNode(cell, hit, lazy);
-  if (!lazy) return;
-  tree.updateInnerOccupancy();
-  tree.prune();
+  for (const octomap::OcTreeKey& cell : cells) tree.updateNode(cell, hit, mode == PeerMode::kLazy);
+  settle(tree, mode);
 }
 
-Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&, std::span<const Key>), bool lazy) {
+Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&, std::span<const Key>), PeerMode mode) {
   const Cells cells = cells_of_cube();
-  std::optional<OccupancyMap> map;
-  std::unique_ptr<octomap::OcTree> tree;
-  const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { fill_ours(*map, cells.ours); }};
-  const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(kCell_m); }, [&] { fill(*tree, cells.peer, lazy); }};
-  ours.prepare();
-  ours.work();
-  peer.prepare();
-  peer.work();
-  if (const auto same = same_to_the_bit(*map, *tree); !same) return tl::unexpected(same.error());
-  const DuelResult result = duel(ours, peer);
-  map.reset();
-  tree.reset();
-  const auto memory = [](const Side& side) {
-    return peak_memory_bytes([&] {
-      side.prepare();
-      side.work();
-    });
-  };
-  return std::vector{speed_row(std::move(name), result, {memory(ours), memory(peer)})};
+  const Result<Row> row = measured({.name = std::move(name),
+                                    .resolution_m = kCell_m,
+                                    .ours = [&](OccupancyMap& map, ScanUpdate&) { fill_ours(map, cells.ours); },
+                                    .peer = [&](octomap::OcTree& tree) { fill(tree, cells.peer, mode); }});
+  if (!row) return tl::unexpected(row.error());
+  return std::vector{*row};
 }
 
 }  // namespace
 
 Result<std::vector<Row>> cube_each(const BenchOptions&) {
-  return cube("cube-each", &fill_each, false);
+  return cube("cube-each", &fill_each, PeerMode::kEager);
 }
 
 Result<std::vector<Row>> cube_lazy(const BenchOptions&) {
-  return cube("cube-lazy", &fill_at_once, true);
+  return cube("cube-lazy", &fill_at_once, PeerMode::kLazy);
 }
 
 }  // namespace pingvox::bench

@@ -1,7 +1,5 @@
 #include "memory.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -36,11 +34,8 @@ Result<std::vector<Row>> memory(const BenchOptions&) {
     insert(*tree, clouds, PeerEnds::kExact, PeerMode::kEager);
     return tree;
   };
-  const MapDifference found = difference(*ours(), *peer());
-  if (found.share() > kTolerated) {
-    return fail(Error::Code::kCorrupt,
-                fmt::format("not what liboctomap makes: {} of {} cells differ", found.differs, found.cells));
-  }
+  const Result<MapDifference> found = alike(*ours(), *peer(), kTolerated);
+  if (!found) return tl::unexpected(found.error());
   std::vector<double> ours_bytes, peer_bytes, ratios;
   for (int run = 0; run < kRuns; ++run) {
     ours_bytes.push_back(static_cast<double>(live_memory_bytes(ours)));
@@ -63,7 +58,7 @@ Result<std::vector<Row>> memory(const BenchOptions&) {
       .add("octomap_bytes", static_cast<std::uint64_t>(octomap_bytes))
       .add("share", bytes / octomap_bytes)
       .add("input", bundles->input)
-      .add("cells", found.cells);
+      .add("cells", found->cells);
   return std::vector{row};
 }
 

@@ -20,16 +20,20 @@ void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, 
   for (const octomap::Pointcloud& cloud : clouds) {
     tree.insertPointCloud(cloud, octomap::point3d(0.0F, 0.0F, 0.0F), -1.0, lazy, ends == PeerEnds::kCells);
   }
-  if (!lazy) return;
+  settle(tree, mode);
+}
+
+void settle(octomap::OcTree& tree, PeerMode mode) {
+  if (mode == PeerMode::kEager) return;
   tree.updateInnerOccupancy();
   tree.prune();
 }
 
-PeerMode faster_mode(double resolution_m, std::span<const octomap::Pointcloud> clouds, PeerEnds ends) {
+PeerMode faster_mode(double resolution_m, const std::function<void(octomap::OcTree&, PeerMode)>& fill) {
   const auto time_of = [&](PeerMode mode) {
     octomap::OcTree tree(resolution_m);
     const double started = cpu_time_s();
-    insert(tree, clouds, ends, mode);
+    fill(tree, mode);
     return cpu_time_s() - started;
   };
   return time_of(PeerMode::kEager) < time_of(PeerMode::kLazy) ? PeerMode::kEager : PeerMode::kLazy;

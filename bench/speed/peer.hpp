@@ -2,6 +2,7 @@
 
 #include <octomap/OcTree.h>
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,7 +24,10 @@ std::vector<octomap::Pointcloud> clouds_of(std::span<const PointScan> scans);
 
 void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, PeerEnds ends, PeerMode mode);
 
-/// The mode that is faster for this work, by one run of each.
-PeerMode faster_mode(double resolution_m, std::span<const octomap::Pointcloud> clouds, PeerEnds ends);
+/// What is left to do when all updates of a map are done.
+void settle(octomap::OcTree& tree, PeerMode mode);
+
+/// The mode in which an empty map is filled faster, by one run of each.
+PeerMode faster_mode(double resolution_m, const std::function<void(octomap::OcTree&, PeerMode)>& fill);
 
 }  // namespace pingvox::bench

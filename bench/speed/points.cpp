@@ -1,19 +1,13 @@
 #include "points.hpp"
 
-#include <octomap/OcTree.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 
-#include "bench/duel.hpp"
+#include "map_contest.hpp"
 #include "peer.hpp"
-#include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/sim/random.hpp"
-#include "same_map.hpp"
 
 namespace pingvox::bench {
 namespace {
@@ -35,26 +29,9 @@ std::vector<Key> normal_keys(double sigma) {
   return keys;
 }
 
-void update(OccupancyMap& map, std::span<const Key> keys, LogOdds hit) {
-  (void)map.update(keys, hit);
-}
-
 void update(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> keys, LogOdds hit, PeerMode mode) {
-  const bool lazy = mode == PeerMode::kLazy;
-  for (const octomap::OcTreeKey& key : keys) tree.updateNode(key, hit.value(), lazy);
-  if (!lazy) return;
-  tree.updateInnerOccupancy();
-  tree.prune();
-}
-
-PeerMode faster_mode(std::span<const octomap::OcTreeKey> keys, LogOdds hit) {
-  const auto time_of = [&](PeerMode mode) {
-    octomap::OcTree tree(kCell_m);
-    const double started = cpu_time_s();
-    update(tree, keys, hit, mode);
-    return cpu_time_s() - started;
-  };
-  return time_of(PeerMode::kEager) < time_of(PeerMode::kLazy) ? PeerMode::kEager : PeerMode::kLazy;
+  for (const octomap::OcTreeKey& key : keys) tree.updateNode(key, hit.value(), mode == PeerMode::kLazy);
+  settle(tree, mode);
 }
 
 Result<std::vector<Row>> points(const std::string& name, double sigma) {
@@ -63,29 +40,16 @@ Result<std::vector<Row>> points(const std::string& name, double sigma) {
   std::vector<octomap::OcTreeKey> peer_keys;
   peer_keys.reserve(keys.size());
   for (const Key& key : keys) peer_keys.emplace_back(key.x, key.y, key.z);
-  const PeerMode mode = faster_mode(peer_keys, hit);
-  std::optional<OccupancyMap> map;
-  std::unique_ptr<octomap::OcTree> tree;
-  const Side ours{[&] { map.emplace(MapOptions{.resolution_m = kCell_m}); }, [&] { update(*map, keys, hit); }};
-  const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(kCell_m); },
-                  [&] { update(*tree, peer_keys, hit, mode); }};
-  ours.prepare();
-  ours.work();
-  peer.prepare();
-  peer.work();
-  if (const auto same = same_to_the_bit(*map, *tree); !same) return tl::unexpected(same.error());
-  map.reset();
-  tree.reset();
-  const auto memory = [](const Side& side) {
-    return peak_memory_bytes([&] {
-      side.prepare();
-      side.work();
-    });
-  };
-  const DuelMemory bytes{memory(ours), memory(peer)};
-  Row row = speed_row(name, duel(ours, peer), bytes);
-  row.add("octomap_mode", mode == PeerMode::kEager ? "eager" : "lazy");
-  return std::vector{row};
+  const auto fill_peer = [&](octomap::OcTree& tree, PeerMode mode) { update(tree, peer_keys, hit, mode); };
+  const PeerMode mode = faster_mode(kCell_m, fill_peer);
+  Result<Row> row =
+      measured({.name = name,
+                .resolution_m = kCell_m,
+                .ours = [&](OccupancyMap& map, ScanUpdate&) { (void)map.update(std::span<const Key>(keys), hit); },
+                .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); }});
+  if (!row) return tl::unexpected(row.error());
+  row->add("octomap_mode", mode == PeerMode::kEager ? "eager" : "lazy");
+  return std::vector{*row};
 }
 
 }  // namespace

@@ -62,6 +62,13 @@ MapDifference difference(const OccupancyMap& ours, const octomap::OcTree& peer) 
   return comparison.result();
 }
 
+Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& peer, double tolerated) {
+  const MapDifference found = difference(ours, peer);
+  if (found.share() <= tolerated) return found;
+  return fail(Error::Code::kCorrupt,
+              fmt::format("not what liboctomap makes: {} of {} cells differ", found.differs, found.cells));
+}
+
 Result<void> same_to_the_bit(const OccupancyMap& ours, const octomap::OcTree& peer) {
   const MapDifference found = difference(ours, peer);
   const std::uint64_t nodes = ours.counts().nodes();

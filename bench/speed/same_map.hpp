@@ -21,6 +21,9 @@ struct MapDifference {
 /// Compares leaf by leaf: values to the last bit.
 MapDifference difference(const OccupancyMap& ours, const octomap::OcTree& peer);
 
+/// The same, or an error when a larger share than `tolerated` differs.
+Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& peer, double tolerated);
+
 /// An error that says how they differ, unless both hold the same cells and values and have the same nodes.
 Result<void> same_to_the_bit(const OccupancyMap& ours, const octomap::OcTree& peer);
 

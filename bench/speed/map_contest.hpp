@@ -1,0 +1,31 @@
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <functional>
+#include <string>
+
+#include "bench/report.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/map/scan_update.hpp"
+#include "pingvox/result.hpp"
+#include "same_map.hpp"
+
+namespace pingvox::bench {
+
+/// Two libraries that make the same map from nothing.
+struct MapContest {
+  std::string name;
+  double resolution_m = 0.05;
+  /// Fills an empty map. The scan is room that is used for all runs, empty before and after.
+  std::function<void(OccupancyMap&, ScanUpdate&)> ours;
+  std::function<void(octomap::OcTree&)> peer;
+  /// Whether the two may be compared: held to one run of each before anything is measured.
+  std::function<Result<void>(const OccupancyMap&, const octomap::OcTree&)> check = &same_to_the_bit;
+};
+
+/// Checks the maps, then measures the peak memory of each side, from nothing in a process of its own, and the times.
+/// @return the row of speed_row, to which the caller may add; the error of `check`
+Result<Row> measured(const MapContest& contest);
+
+}  // namespace pingvox::bench
