@@ -30,7 +30,7 @@ TEST(Lzf, RepeatsWhatWasThere) {
   EXPECT_EQ(decompressed("00 61 e0 ff 00", 265), std::string(265, 'a')) << "the longest";
   // From further back than one byte can say.
   const std::string far = "1f" + std::string(64, '1') + "e0 f7 00 21 16 00 62";
-  EXPECT_EQ(decompressed(far, 32 + 256 + 3 + 1), std::string(32 + 256 + 3, '\x11') + "b");
+  EXPECT_EQ(decompressed(far, 32 + 256 + 3 + 1), std::string(32 + 256 + 3, '\x11').append("b"));
 }
 
 TEST(Lzf, RefusesWhatIsNotThere) {
