@@ -24,46 +24,7 @@ std::size_t hashed(const WideKey& key) {
   return static_cast<std::size_t>(sum ^ (sum >> 29));
 }
 
-/// Bits of the cells first..last (of 0..3) of a brick's lowest row along an axis, by [axis][first][last].
-using RunsInBrick = std::array<std::array<std::array<std::uint64_t, 4>, 4>, 3>;
-constexpr RunsInBrick kRunsInBrick = [] {
-  RunsInBrick runs{};
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    for (unsigned first = 0; first < 4; ++first) {
-      std::uint64_t bits = 0;
-      for (unsigned last = first; last < 4; ++last) {
-        bits |= std::uint64_t{1} << (((last >> 1) * 8U + (last & 1U)) << axis);
-        runs[axis][first][last] = bits;
-      }
-    }
-  }
-  return runs;
-}();
-
 }  // namespace
-
-void ScanUpdate::add_missed_run(const WideKey& first, int axis, std::uint64_t length) {
-  WideKey key = first;
-  WideWord& word = axis == 0 ? key.x : (axis == 1 ? key.y : key.z);
-  // Where a row of bricks begins in a page, and where a row of cells begins in a brick.
-  WideKey across = first;
-  (axis == 0 ? across.x : (axis == 1 ? across.y : across.z)) = 0;
-  const std::size_t brick_row = cell_in_page(across) / 64;
-  const int cell_row = detail::cell_in_brick(across);
-  const auto& runs = kRunsInBrick[static_cast<std::size_t>(axis)];
-  while (length > 0) {
-    Page& page = pages_[page_of(key)];
-    for (auto in_page = static_cast<unsigned>(word & 15); in_page < 16 && length > 0;) {
-      const unsigned brick = in_page / 4, from = in_page % 4;
-      const auto cells = static_cast<unsigned>(std::min<std::uint64_t>(4 - from, length));
-      const std::size_t brick_along = ((brick >> 1) * 8U + (brick & 1U)) << axis;
-      page.missed[brick_row | brick_along] |= runs[from][from + cells - 1] << cell_row;
-      in_page += cells;
-      word += cells;
-      length -= cells;
-    }
-  }
-}
 
 std::size_t ScanUpdate::slot_of(const WideKey& lowest) const {
   const std::size_t mask = slots_.size() - 1;

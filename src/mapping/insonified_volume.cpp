@@ -6,6 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "map/brick_column.hpp"
+#include "map/kernels/convex_rows.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -15,23 +18,19 @@ using Vector = Eigen::Vector3d;
 // A wedge wider than this is cut up: the cones above and below it are taken as planes, which are too wide by
 // tan(height / 2) * (1 / cos(piece / 2) - 1) of the range: 0.3 mm in a metre for 5 degrees and a height of 35.
 constexpr double kWidestPiece_rad = 5.0 * std::numbers::pi / 180.0;
-// Rounding must not decide whether a face touches a cell [cells].
-constexpr double kGrazing = 1e-9;
+using detail::WalkAxes;
 
-/// The half-space normal * p >= 0, for whole cells: one with its middle at c touches it when normal * c >= -reach.
-/// Cells are closed below and open above, so a fan that lies exactly between two layers of cells belongs to the upper
-/// one. Axes are those of the walk: of layers, of rows in a layer, of cells in a row.
-struct Face {
-  double layer = 0.0, row = 0.0, cell = 0.0;  ///< components of the normal
-  double row_way = 0.0, cell_way = 0.0;       ///< 1 / row, 1 / cell
-  double reach = 0.0;
-  double most_along_row = 0.0;  ///< the most that `cell` times a place within the box can be
-};
+constexpr int kPage = 1 << ScanUpdate::kPageBits;
 
 /// Cells first..last along an axis.
 struct Run {
   std::int64_t first, last;
-  bool empty() const { return first > last; }
+};
+
+/// Angles of directions from the sensor, by sine and cosine.
+struct Angle {
+  double cos, sin;
+  explicit Angle(double rad) : cos(std::cos(rad)), sin(std::sin(rad)) {}
 };
 
 /// A convex piece of the volume. Its rows of cells run along the map axis nearest to the head's own up, because a beam
@@ -40,33 +39,37 @@ class Piece {
  public:
   Piece(const Pose& map_from_sensor, double bearing_rad, double width_rad, double height_rad, double range,
         const Vector& in_cell)
-      : range_(range), in_cell_(in_cell) {
-    const auto direction = [&](double azimuth, double elevation) -> Vector {
-      return map_from_sensor.linear() * Vector(std::cos(elevation) * std::cos(bearing_rad + azimuth),
-                                               std::cos(elevation) * std::sin(bearing_rad + azimuth),
-                                               std::sin(elevation));
+      : in_cell_(in_cell) {
+    const auto direction = [&](const Angle& azimuth, const Angle& elevation) -> Vector {
+      return map_from_sensor.linear() * Vector(elevation.cos * azimuth.cos, elevation.cos * azimuth.sin, elevation.sin);
     };
-    const Vector ahead = direction(0.0, 0.0), left = direction(std::numbers::pi / 2, 0.0);
-    const Vector up = map_from_sensor.linear() * Vector::UnitZ();
     const double half_width = width_rad / 2, half_height = height_rad / 2;
+    const Angle level(0.0);
+    const std::array<Angle, 3> azimuths{Angle(bearing_rad - half_width), Angle(bearing_rad),
+                                        Angle(bearing_rad + half_width)};
+    const Vector ahead = direction(azimuths[1], level);
+    const Vector left = direction(Angle(bearing_rad + std::numbers::pi / 2), level);
+    const Vector up = map_from_sensor.linear() * Vector::UnitZ();
     const double slope = std::tan(half_height) / std::cos(half_width);
-    const std::array<Vector, 5> normals{ahead, std::sin(half_width) * ahead - std::cos(half_width) * left,
-                                        std::sin(half_width) * ahead + std::cos(half_width) * left,
-                                        (slope * ahead - up).normalized(), (slope * ahead + up).normalized()};
+    const Angle across(half_width);
+    const std::array<Vector, 5> normals{ahead, across.sin * ahead - across.cos * left,
+                                        across.sin * ahead + across.cos * left, (slope * ahead - up).normalized(),
+                                        (slope * ahead + up).normalized()};
 
     const Vector& tall = height_rad >= width_rad ? up : ahead;
     const Vector& deep = height_rad >= width_rad ? ahead : left;
-    tall.cwiseAbs().maxCoeff(&along_);
-    const int one = (along_ + 1) % 3, other = (along_ + 2) % 3;
-    outer_ = std::abs(deep[one]) >= std::abs(deep[other]) ? one : other;
-    middle_ = outer_ == one ? other : one;
+    tall.cwiseAbs().maxCoeff(&order_.cell);
+    const int one = (order_.cell + 1) % 3, other = (order_.cell + 2) % 3;
+    order_.layer = std::abs(deep[one]) >= std::abs(deep[other]) ? one : other;
+    order_.row = order_.layer == one ? other : one;
 
     // The box around the sensor and the far end. Between samples the sphere bulges by no more than `bulge`.
     constexpr int kSamples = 8;
     box_min_ = box_max_ = Vector::Zero();
     for (int i = 0; i <= kSamples; ++i) {
-      for (const double azimuth : {-half_width, 0.0, half_width}) {
-        const Vector end = range * direction(azimuth, height_rad * (static_cast<double>(i) / kSamples - 0.5));
+      const Angle elevation(height_rad * (static_cast<double>(i) / kSamples - 0.5));
+      for (const Angle& azimuth : azimuths) {
+        const Vector end = range * direction(azimuth, elevation);
         box_min_ = box_min_.cwiseMin(end);
         box_max_ = box_max_.cwiseMax(end);
       }
@@ -75,108 +78,96 @@ class Piece {
     const double bulge = range * (1.0 - std::cos(step)) + 1.0;
     box_min_.array() -= bulge;
     box_max_.array() += bulge;
-    for (std::size_t i = 0; i < faces_.size(); ++i) faces_[i] = face_of(normals[i]);
+
+    body_.range = range;
+    body_.in_cell = in_walk(in_cell);
+    body_.low = in_walk(box_min_);
+    body_.high = in_walk(box_max_);
+    for (std::size_t i = 0; i < normals.size(); ++i) body_.faces[i] = face_of(normals[i]);
   }
 
   const Vector& box_min() const { return box_min_; }
   const Vector& box_max() const { return box_max_; }
 
-  /// Calls f(first cell, axis, number of cells) for each row of cells that the piece touches.
-  template <class F>
-  void for_each_row(F&& f) const {
-    std::array<std::int64_t, 3> cell{};
-    std::array<double, 5> needed{};
-    const Run layers = cells_between(box_min_[outer_], box_max_[outer_], outer_);
-    for (std::int64_t i = layers.first; i <= layers.last; ++i) {
-      cell[index(outer_)] = i;
-      const double layer = middle_of(i, outer_);
-      for (std::size_t n = 0; n < faces_.size(); ++n) needed[n] = -faces_[n].reach - faces_[n].layer * layer;
-      const Run rows = rows_touched(needed);
-      for (std::int64_t j = rows.first; j <= rows.last; ++j) {
-        cell[index(middle_)] = j;
-        const double row = middle_of(j, middle_);
-        const Run cells = in_sphere(layer, row, cells_touched(needed, row));
-        if (cells.empty()) continue;
-        cell[index(along_)] = cells.first;
-        f(cell, along_, static_cast<std::uint64_t>(cells.last - cells.first + 1));
+  /// Marks the cells that the piece touches, by columns of bricks.
+  void mark(const WideKey& origin, ScanUpdate& scan) const {
+    const Run layers = cells_in_box(order_.layer), cells = cells_in_box(order_.cell);
+    // A brick below the lowest cell, where the columns' pages begin.
+    detail::ColumnOfRows column;
+    column.lowest_cell = lowest_together(cells.first - 4, kPage, origin, order_.cell);
+    detail::BrickColumn bricks(order_, static_cast<std::size_t>(cells.last + 1 - column.lowest_cell));
+    column.no_place = bricks.no_place();
+    detail::RowsOfLayers rows;
+    detail::RunsOfRows runs;
+    for (std::int64_t block = lowest_together(layers.first, kPage, origin, order_.layer); block <= layers.last;
+         block += kPage) {
+      detail::find_rows(body_, block, rows);
+      for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; ++l) {
+        const std::int64_t layer = block + static_cast<std::int64_t>(l);
+        if (layer < layers.first || layer > layers.last) rows.last[l] = rows.first[l] - 1.0;
+      }
+      for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; l += 4) {
+        column.first_layer = block + static_cast<std::int64_t>(l);
+        column.first_of_layer = rows.first.data() + l;
+        column.last_of_layer = rows.last.data() + l;
+        double first = std::numeric_limits<double>::infinity(), last = -first;
+        for (std::size_t i = l; i < l + 4; ++i) {
+          if (rows.first[i] > rows.last[i]) continue;
+          first = std::min(first, rows.first[i]);
+          last = std::max(last, rows.last[i]);
+        }
+        if (first > last) continue;
+        for (column.first_row = lowest_together(static_cast<std::int64_t>(first), 4, origin, order_.row);
+             column.first_row <= static_cast<std::int64_t>(last); column.first_row += 4) {
+          detail::find_cells(body_, column, runs);
+          bricks.mark(runs, lowest_key(column, origin), scan);
+        }
       }
     }
   }
 
  private:
-  static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
-  double middle_of(std::int64_t cell, int axis) const { return static_cast<double>(cell) + 0.5 - in_cell_[axis]; }
-  /// Cells along an axis with their middles between two places.
-  Run cells_between(double low, double high, int axis) const {
-    return {static_cast<std::int64_t>(std::ceil(low - 0.5 + in_cell_[axis])),
-            static_cast<std::int64_t>(std::floor(high - 0.5 + in_cell_[axis]))};
+  WalkAxes in_walk(const Vector& v) const { return {v[order_.layer], v[order_.row], v[order_.cell]}; }
+
+  /// Cells along an axis with their middles in the box.
+  Run cells_in_box(int axis) const {
+    return {static_cast<std::int64_t>(std::ceil(box_min_[axis] - 0.5 + in_cell_[axis])),
+            static_cast<std::int64_t>(std::floor(box_max_[axis] - 0.5 + in_cell_[axis]))};
   }
 
-  Face face_of(const Vector& normal) const {
-    Face face;
-    face.layer = normal[outer_];
-    face.row = normal[middle_];
-    face.cell = normal[along_];
-    face.row_way = 1.0 / face.row;
-    face.cell_way = 1.0 / face.cell;
-    face.reach = 0.5 * normal.cwiseAbs().sum() + ((normal.array() <= 0.0).all() ? kGrazing : -kGrazing);
-    face.most_along_row = std::max(face.cell * box_min_[along_], face.cell * box_max_[along_]);
+  /// The lowest of the `size` cells along an axis that belong together, of which this is one.
+  static std::int64_t lowest_together(std::int64_t cell, std::int64_t size, const WideKey& origin, int axis) {
+    const WideWord word = axis == 0 ? origin.x : (axis == 1 ? origin.y : origin.z);
+    return cell - ((cell + static_cast<std::int64_t>(word & (kPage - 1))) & (size - 1));
+  }
+
+  WideKey lowest_key(const detail::ColumnOfRows& column, const WideKey& origin) const {
+    std::array<std::int64_t, 3> cell{};
+    cell[static_cast<std::size_t>(order_.layer)] = column.first_layer;
+    cell[static_cast<std::size_t>(order_.row)] = column.first_row;
+    cell[static_cast<std::size_t>(order_.cell)] = column.lowest_cell;
+    // Unsigned sums wrap: what is below zero is taken away.
+    return {origin.x + static_cast<WideWord>(cell[0]), origin.y + static_cast<WideWord>(cell[1]),
+            origin.z + static_cast<WideWord>(cell[2])};
+  }
+
+  detail::Face face_of(const Vector& normal) const {
+    detail::Face face;
+    face.normal = in_walk(normal);
+    face.row_way = 1.0 / face.normal.row;
+    face.cell_way = 1.0 / face.normal.cell;
+    // Cells are closed below and open above, so a fan that lies exactly between two layers of cells belongs to the
+    // upper one.
+    face.reach = 0.5 * normal.cwiseAbs().sum() + ((normal.array() <= 0.0).all() ? detail::kGrazing : -detail::kGrazing);
+    face.most_along_row = std::max(face.normal.cell * body_.low.cell, face.normal.cell * body_.high.cell);
     return face;
   }
 
-  /// Narrows low..high to where slope * place >= needed; `way` is 1 / slope.
-  static void narrow(double slope, double way, double needed, double& low, double& high) {
-    if (slope > 0.0) {
-      low = std::max(low, needed * way);
-    } else if (slope < 0.0) {
-      high = std::min(high, needed * way);
-    } else if (needed > 0.0) {
-      high = -std::numeric_limits<double>::infinity();
-    }
-  }
-
-  /// Rows of a layer that touch all half-spaces somewhere. @param needed  of each face, what the layer leaves to reach
-  Run rows_touched(const std::array<double, 5>& needed) const {
-    double low = box_min_[middle_], high = box_max_[middle_];
-    for (std::size_t n = 0; n < faces_.size(); ++n) {
-      narrow(faces_[n].row, faces_[n].row_way, needed[n] - faces_[n].most_along_row, low, high);
-    }
-    return low > high ? Run{0, -1} : cells_between(low, high, middle_);
-  }
-
-  /// Cells of a row that touch all half-spaces.
-  Run cells_touched(const std::array<double, 5>& needed, double row) const {
-    double low = box_min_[along_], high = box_max_[along_];
-    for (std::size_t n = 0; n < faces_.size(); ++n) {
-      narrow(faces_[n].cell, faces_[n].cell_way, needed[n] - faces_[n].row * row, low, high);
-    }
-    // Outside of the box nothing is meant, and huge numbers are no cells.
-    return low > high ? Run{0, -1} : cells_between(low, high, along_);
-  }
-
-  /// What of a row the sphere touches.
-  Run in_sphere(double layer, double row, const Run& cells) const {
-    const double outer = std::max(0.0, std::abs(layer) - 0.5), middle = std::max(0.0, std::abs(row) - 0.5);
-    const double left = range_ * range_ - outer * outer - middle * middle;
-    if (left < 0.0 || cells.empty()) return {0, -1};
-    const double reach = std::sqrt(left) + 0.5 + kGrazing;
-    const Run sphere = cells_between(-reach, reach, along_);
-    return {std::max(cells.first, sphere.first), std::min(cells.last, sphere.last)};
-  }
-
-  double range_;
   Vector in_cell_;  ///< the sensor in its cell, each component in [0, 1)
-  std::array<Face, 5> faces_;
-  int outer_ = 0, middle_ = 1, along_ = 2;  ///< map axes: of layers, of rows in them, of rows' cells
+  detail::WalkOrder order_;
   Vector box_min_, box_max_;
+  detail::ConvexBody body_;
 };
-
-WideKey moved(const WideKey& from, const std::array<std::int64_t, 3>& by) {
-  const auto word = [](WideWord w, std::int64_t n) {
-    return n < 0 ? w - static_cast<WideWord>(-n) : w + static_cast<WideWord>(n);
-  };
-  return {word(from.x, by[0]), word(from.y, by[1]), word(from.z, by[2])};
-}
 
 }  // namespace
 
@@ -199,11 +190,7 @@ bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume, ScanUp
     const Vector high_m = origin_m + (pieces.back().box_max().array() + 1.0).matrix() * edge_m;
     if (!lattice.key_of<WideWord>(low_m) || !lattice.key_of<WideWord>(high_m)) return false;
   }
-  for (const Piece& piece : pieces) {
-    piece.for_each_row([&](const std::array<std::int64_t, 3>& cell, int axis, std::uint64_t length) {
-      scan.add_missed_run(moved(*origin_key, cell), axis, length);
-    });
-  }
+  for (const Piece& piece : pieces) piece.mark(*origin_key, scan);
   return true;
 }
 

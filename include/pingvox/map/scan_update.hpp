@@ -48,13 +48,14 @@ class ScanUpdate {
     mark_hit(page_of(key.template as<WideWord>()), cell_in_page(key), evidence);
   }
 
-  /// Marks `length` cells as missed, from `first` upwards along an axis (0 x, 1 y, 2 z).
-  void add_missed_run(const WideKey& first, int axis, std::uint64_t length);
-
   /// For tracers that stay in a page for many cells: its index, made if it is not there.
   std::uint32_t page_of(const WideKey& key);
   void mark_missed(std::uint32_t page, std::size_t cell) {
     pages_[page].missed[cell / 64] |= std::uint64_t{1} << (cell % 64);
+  }
+  /// Marks cells of a brick as missed: a bit each.
+  void mark_missed_in(std::uint32_t page, std::size_t brick, std::uint64_t cells) {
+    pages_[page].missed[brick] |= cells;
   }
   void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence);
 

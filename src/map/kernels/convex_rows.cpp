@@ -1,0 +1,43 @@
+#include "map/kernels/convex_rows.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace pingvox::detail {
+namespace {
+
+namespace plain {
+constexpr std::size_t kLanes = 2;
+#include "map/kernels/convex_rows_loops.hpp"
+}  // namespace plain
+
+#ifdef PINGVOX_X86_LANES
+#pragma GCC push_options
+#pragma GCC target("avx2")
+namespace avx2 {
+constexpr std::size_t kLanes = 4;
+#include "map/kernels/convex_rows_loops.hpp"
+}  // namespace avx2
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512vl")
+namespace avx512 {
+constexpr std::size_t kLanes = 8;
+#include "map/kernels/convex_rows_loops.hpp"
+}  // namespace avx512
+#pragma GCC pop_options
+#endif
+
+}  // namespace
+
+void find_rows(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& rows, Lanes lanes) {
+  PINGVOX_BY_LANES(lanes, find_rows(body, first_layer, rows), plain::find_rows(body, first_layer, rows));
+}
+
+void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs, Lanes lanes) {
+  PINGVOX_BY_LANES(lanes, find_cells(body, column, runs), plain::find_cells(body, column, runs));
+}
+
+}  // namespace pingvox::detail

@@ -1,0 +1,119 @@
+// The loops over layers and rows, included by convex_rows.cpp once for each kind of machine (see ray_lanes_loops.hpp).
+// Numbers of cells stay doubles, in which they are exact: what each machine can round, compare and choose between.
+
+/// As many numbers as the machine's vectors hold.
+using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
+using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+
+/// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
+constexpr double kWhole = 0x1.8p52;
+
+inline void floor_of(const Doubles& numbers, Doubles& whole) {
+  const Doubles near = (numbers + kWhole) - kWhole;
+  whole = near > numbers ? near - 1.0 : near;
+}
+inline void ceil_of(const Doubles& numbers, Doubles& whole) {
+  const Doubles near = (numbers + kWhole) - kWhole;
+  whole = near < numbers ? near + 1.0 : near;
+}
+
+/// Whole numbers as integers: they are in the lowest bits of the sum.
+inline void store(const Doubles& whole, std::int64_t* to) {
+  const Words words = reinterpret_cast<Words>(whole + kWhole) - std::bit_cast<std::int64_t>(kWhole);
+  std::memcpy(to, &words, sizeof words);
+}
+
+inline bool any_of(const Words& lanes) {
+  std::array<std::int64_t, kLanes> words;
+  std::memcpy(words.data(), &lanes, sizeof lanes);
+  std::int64_t any = 0;
+  for (const std::int64_t word : words) any |= word;
+  return any != 0;
+}
+
+/// Narrows low..high to where slope * place >= needed; `way` is 1 / slope.
+inline void narrow(double slope, double way, const Doubles& needed, Doubles& low, Doubles& high) {
+  const Doubles place = needed * way;
+  if (slope > 0.0) {
+    low = low < place ? place : low;
+  } else if (slope < 0.0) {
+    high = place < high ? place : high;
+  } else {
+    high = needed > 0.0 ? Doubles{} - std::numeric_limits<double>::infinity() : high;
+  }
+}
+
+inline void find_rows(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& rows) {
+  Doubles number{};
+  for (std::size_t l = 0; l < kLanes; ++l) number[l] = static_cast<double>(l);
+  for (std::size_t at = 0; at < RowsOfLayers::kLayers; at += kLanes) {
+    const Doubles layer =
+        number + static_cast<double>(first_layer + static_cast<std::int64_t>(at)) + 0.5 - body.in_cell.layer;
+    Doubles low = Doubles{} + body.low.row, high = Doubles{} + body.high.row;
+    for (const Face& face : body.faces) {
+      const Doubles needed = -face.reach - face.normal.layer * layer;
+      narrow(face.normal.row, face.row_way, needed - face.most_along_row, low, high);
+    }
+    Doubles first, last;
+    ceil_of(low - 0.5 + body.in_cell.row, first);
+    floor_of(high - 0.5 + body.in_cell.row, last);
+    // Outside of the box nothing is meant, and huge numbers are no cells.
+    const Words some = low <= high;
+    first = some ? first : Doubles{} + 1.0;
+    last = some ? last : Doubles{};
+    std::memcpy(rows.first.data() + at, &first, sizeof first);
+    std::memcpy(rows.last.data() + at, &last, sizeof last);
+  }
+}
+
+/// Narrows the cells first..last of rows to those that the sphere touches.
+/// @param left  of the square of the sphere's radius, beyond the rows
+inline void cut_by_sphere(double in_cell, const Doubles& left, Doubles& first, Doubles& last) {
+  Doubles reach{};
+  for (std::size_t l = 0; l < kLanes; ++l) reach[l] = left[l] > 0.0 ? std::sqrt(left[l]) : 0.0;
+  reach = reach + 0.5 + kGrazing;
+  Doubles from, to;
+  ceil_of(-reach - 0.5 + in_cell, from);
+  floor_of(reach - 0.5 + in_cell, to);
+  first = first < from ? from : first;
+  last = left < 0.0 ? first - 1.0 : (to < last ? to : last);
+}
+
+inline void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs) {
+  constexpr std::size_t kInLayer = 4;
+  for (std::size_t at = 0; at < RunsOfRows::kRows; at += kLanes) {
+    Doubles layer_number{}, row_number{}, first_row{}, last_row{};
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      layer_number[l] = static_cast<double>((at + l) / kInLayer);
+      row_number[l] = static_cast<double>((at + l) % kInLayer);
+      first_row[l] = column.first_of_layer[(at + l) / kInLayer];
+      last_row[l] = column.last_of_layer[(at + l) / kInLayer];
+    }
+    row_number += static_cast<double>(column.first_row);
+    const Doubles layer = layer_number + static_cast<double>(column.first_layer) + 0.5 - body.in_cell.layer;
+    const Doubles row = row_number + 0.5 - body.in_cell.row;
+    Doubles low = Doubles{} + body.low.cell, high = Doubles{} + body.high.cell;
+    for (const Face& face : body.faces) {
+      const Doubles needed = -face.reach - face.normal.layer * layer;
+      narrow(face.normal.cell, face.cell_way, needed - face.normal.row * row, low, high);
+    }
+    const Words some = (low <= high) & (row_number >= first_row) & (row_number <= last_row);
+    Doubles first, last;
+    ceil_of(low - 0.5 + body.in_cell.cell, first);
+    floor_of(high - 0.5 + body.in_cell.cell, last);
+
+    const Doubles beyond_layer = (layer < 0.0 ? -layer : layer) - 0.5, beyond_row = (row < 0.0 ? -row : row) - 0.5;
+    const Doubles to_layer = beyond_layer > 0.0 ? beyond_layer : Doubles{};
+    const Doubles to_row = beyond_row > 0.0 ? beyond_row : Doubles{};
+    const Doubles left = body.range * body.range - to_layer * to_layer - to_row * to_row;
+    // Most rows end before they come near the sphere, by half a cell at least.
+    const Doubles farthest = high > -low ? high : -low;
+    if (any_of(some & (farthest * farthest > left))) cut_by_sphere(body.in_cell.cell, left, first, last);
+
+    const Words has_cells = some & (first <= last);
+    store(
+        has_cells ? first - static_cast<double>(column.lowest_cell) : Doubles{} + static_cast<double>(column.no_place),
+        runs.begin.data() + at);
+    store(has_cells ? last + 1.0 - static_cast<double>(column.lowest_cell) : Doubles{}, runs.end.data() + at);
+  }
+}
