@@ -5,29 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/add_hits.hpp"
+#include "mapping/bundle_grid.hpp"
 #include "pingvox/mapping/insonified_volume.hpp"
 
 namespace pingvox {
 namespace {
 
-/// Angles from -width / 2 to width / 2, both included, at most `apart` from each other; 0 alone when there is no width.
-std::vector<double> spread(double width_rad, double apart_rad) {
-  if (width_rad <= 0.0) return {0.0};
-  const auto gaps = static_cast<std::size_t>(std::max(1.0, std::ceil(width_rad / apart_rad)));
-  std::vector<double> angles(gaps + 1);
-  for (std::size_t i = 0; i <= gaps; ++i) {
-    angles[i] = width_rad * (static_cast<double>(i) / static_cast<double>(gaps) - 0.5);
-  }
-  return angles;
-}
-
-double width_of(const BeamModelOptions& options) {
-  return options.shape == BeamShape::kRay ? 0.0 : options.width_rad;
-}
-
-double height_of(const BeamModelOptions& options) {
-  return options.shape == BeamShape::kCone ? options.height_rad : 0.0;
-}
+using detail::height_of;
+using detail::width_of;
 
 /// The part of the beam within which silence means that nothing is there.
 BeamModelOptions passed_part(BeamModelOptions options) {
@@ -80,33 +66,6 @@ LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
   return LogOdds(hit.value() * 0.5F * (1.0F + static_cast<float>(intensity) / 255.0F));
 }
 
-double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc) {
-  const double off_axis = height_rad > 0.0 ? std::clamp(2.0 * elevation_rad / height_rad, -1.0, 1.0) : 0.0;
-  return std::exp2(-off_axis * off_axis) / std::pow(std::max(1.0, cells_on_arc), 0.25);
-}
-
-std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
-                                   double resolution_m) {
-  const double width = width_of(options), height = height_of(options);
-  const double apart_rad = resolution_m / (std::numbers::sqrt2 * std::max(range_m, resolution_m));
-  const double arc_rad = std::max(width, height);
-  const double cells_on_arc = arc_rad * range_m / resolution_m;
-
-  const std::vector<double> azimuths = spread(width, apart_rad), elevations = spread(height, apart_rad);
-  std::vector<BundleRay> bundle;
-  bundle.reserve(azimuths.size() * elevations.size());
-  std::vector<Eigen::Vector2d> level;
-  for (const double azimuth : azimuths) {
-    level.emplace_back(std::cos(bearing_rad + azimuth), std::sin(bearing_rad + azimuth));
-  }
-  for (const double elevation : elevations) {
-    const double share = share_on_arc(elevation, height, cells_on_arc);
-    const double across = std::cos(elevation), up = std::sin(elevation);
-    for (const Eigen::Vector2d& way : level) bundle.push_back({{across * way.x(), across * way.y(), up}, share});
-  }
-  return bundle;
-}
-
 double cells_in_beam(const BeamModelOptions& options, double range_m, double resolution_m) {
   const double range = std::min(range_m, options.max_range_m) / resolution_m;
   const double width = std::max(1.0, width_of(options) * range), height = std::max(1.0, height_of(options) * range);
@@ -128,16 +87,8 @@ std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, cons
 
   const LogOdds evidence =
       options.hit_from == HitFrom::kIntensity ? evidence_of_intensity(echo->intensity, options.hit) : options.hit;
-  std::size_t unplaced = 0;
-  for (const BundleRay& ray : beam_bundle(options, beam.bearing_rad, heard_m, lattice.resolution_m())) {
-    const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * heard_m);
-    if (const auto key = lattice.key_of<WideWord>(end_m)) {
-      scan.add_hit(*key, LogOdds(evidence.value() * static_cast<float>(ray.share)));
-    } else {
-      ++unplaced;
-    }
-  }
-  return std::max(outside, unplaced);
+  const detail::BundleGrid rays = detail::bundle_grid(options, beam.bearing_rad, heard_m, lattice.resolution_m());
+  return std::max(outside, detail::add_hits(lattice, map_from_sensor, rays, heard_m, evidence, scan));
 }
 
 }  // namespace pingvox
