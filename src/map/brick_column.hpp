@@ -24,7 +24,7 @@ class BrickColumn {
   /// @param cells  length of the column; places of cells in it are 4..cells-1
   BrickColumn(const WalkOrder& axes, std::size_t cells)
       : cell_axis_(axes.cell), one_(1 << axes.cell), two_(8 << axes.cell), turned_(cells / 4 + 2) {
-    for (unsigned row = 0; row < RunsOfRows::kRows; ++row) {
+    for (unsigned row = 0; row < ColumnOfRows::kRows; ++row) {
       const unsigned first_cell = in_brick(row / 4, axes.layer) + in_brick(row % 4, axes.row);
       first_cells_ |= std::uint64_t{1} << first_cell;
       for (unsigned cell = 0; cell < 4; ++cell) {
@@ -72,7 +72,7 @@ class BrickColumn {
 
   Extent turn(const RunsOfRows& runs) {
     std::int64_t lowest = no_place(), highest = 0;
-    for (std::size_t row = 0; row < RunsOfRows::kRows; ++row) {
+    for (std::size_t row = 0; row < ColumnOfRows::kRows; ++row) {
       const auto begin = static_cast<std::size_t>(runs.begin[row]), end = static_cast<std::size_t>(runs.end[row]);
       turned_[begin / 4] ^= bit_[row][begin % 4];
       turned_[end / 4] ^= bit_[row][end % 4];
@@ -97,7 +97,7 @@ class BrickColumn {
   int cell_axis_;
   int one_, two_;  ///< what one and two cells along a row add to a cell's number in its brick
   std::uint64_t first_cells_ = 0;
-  std::array<std::array<std::uint64_t, 4>, RunsOfRows::kRows> bit_{};
+  std::array<std::array<std::uint64_t, 4>, ColumnOfRows::kRows> bit_{};
   std::vector<std::uint64_t> turned_;
 };
 

@@ -73,9 +73,10 @@ BundleGrid bundle_grid(const BeamModelOptions& options, double bearing_rad, doub
   grid.up.resize(count + kEndsAtOnce);
   grid.shares.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    grid.across[i] = std::cos(elevations[i]);
-    grid.up[i] = std::sin(elevations[i]);
-    grid.shares[i] = pattern(elevations[i], height) / thinned;
+    const double elevation = elevations[i];
+    grid.across[i] = std::cos(elevation);
+    grid.up[i] = std::sin(elevation);
+    grid.shares[i] = pattern(elevation, height) / thinned;
   }
   return grid;
 }

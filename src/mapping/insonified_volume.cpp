@@ -108,17 +108,10 @@ class Piece {
       }
       for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; l += 4) {
         column.first_layer = block + static_cast<std::int64_t>(l);
-        column.first_of_layer = rows.first.data() + l;
-        column.last_of_layer = rows.last.data() + l;
-        double first = std::numeric_limits<double>::infinity(), last = -first;
-        for (std::size_t i = l; i < l + 4; ++i) {
-          if (rows.first[i] > rows.last[i]) continue;
-          first = std::min(first, rows.first[i]);
-          last = std::max(last, rows.last[i]);
-        }
+        const auto [first, last] = take_rows(rows, l, column);
         if (first > last) continue;
-        for (column.first_row = lowest_together(static_cast<std::int64_t>(first), 4, origin, order_.row);
-             column.first_row <= static_cast<std::int64_t>(last); column.first_row += 4) {
+        for (column.first_row = lowest_together(first, 4, origin, order_.row); column.first_row <= last;
+             column.first_row += 4) {
           detail::find_cells(body_, column, runs);
           bricks.mark(runs, lowest_key(column, origin), scan);
         }
@@ -133,6 +126,21 @@ class Piece {
   Run cells_in_box(int axis) const {
     return {static_cast<std::int64_t>(std::ceil(box_min_[axis] - 0.5 + in_cell_[axis])),
             static_cast<std::int64_t>(std::floor(box_max_[axis] - 0.5 + in_cell_[axis]))};
+  }
+
+  /// Tells a column which rows of its four layers count. @return all of them
+  static Run take_rows(const detail::RowsOfLayers& rows, std::size_t first_layer, detail::ColumnOfRows& column) {
+    double first = std::numeric_limits<double>::max(), last = -first;
+    for (std::size_t l = 0; l < 4; ++l) {
+      const double layers_first = rows.first[first_layer + l], layers_last = rows.last[first_layer + l];
+      std::fill_n(column.first_in_layer.begin() + static_cast<std::ptrdiff_t>(l * 4), 4, layers_first);
+      std::fill_n(column.last_in_layer.begin() + static_cast<std::ptrdiff_t>(l * 4), 4, layers_last);
+      if (layers_first > layers_last) continue;
+      first = std::min(first, layers_first);
+      last = std::max(last, layers_last);
+    }
+    if (first > last) return {0, -1};
+    return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(last)};
   }
 
   /// The lowest of the `size` cells along an axis that belong together, of which this is one.

@@ -8,6 +8,10 @@ using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64
 /// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
 constexpr double kWhole = 0x1.8p52;
 
+inline void load(const double* from, Doubles& numbers) {
+  std::memcpy(&numbers, from, sizeof numbers);
+}
+
 inline void floor_of(const Doubles& numbers, Doubles& whole) {
   const Doubles near = (numbers + kWhole) - kWhole;
   whole = near > numbers ? near - 1.0 : near;
@@ -44,11 +48,10 @@ inline void narrow(double slope, double way, const Doubles& needed, Doubles& low
 }
 
 inline void find_rows(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& rows) {
-  Doubles number{};
-  for (std::size_t l = 0; l < kLanes; ++l) number[l] = static_cast<double>(l);
   for (std::size_t at = 0; at < RowsOfLayers::kLayers; at += kLanes) {
-    const Doubles layer =
-        number + static_cast<double>(first_layer + static_cast<std::int64_t>(at)) + 0.5 - body.in_cell.layer;
+    Doubles number;
+    load(kNumbers.data() + at, number);
+    const Doubles layer = number + static_cast<double>(first_layer) + 0.5 - body.in_cell.layer;
     Doubles low = Doubles{} + body.low.row, high = Doubles{} + body.high.row;
     for (const Face& face : body.faces) {
       const Doubles needed = -face.reach - face.normal.layer * layer;
@@ -80,15 +83,12 @@ inline void cut_by_sphere(double in_cell, const Doubles& left, Doubles& first, D
 }
 
 inline void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs) {
-  constexpr std::size_t kInLayer = 4;
-  for (std::size_t at = 0; at < RunsOfRows::kRows; at += kLanes) {
-    Doubles layer_number{}, row_number{}, first_row{}, last_row{};
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      layer_number[l] = static_cast<double>((at + l) / kInLayer);
-      row_number[l] = static_cast<double>((at + l) % kInLayer);
-      first_row[l] = column.first_of_layer[(at + l) / kInLayer];
-      last_row[l] = column.last_of_layer[(at + l) / kInLayer];
-    }
+  for (std::size_t at = 0; at < ColumnOfRows::kRows; at += kLanes) {
+    Doubles layer_number, row_number, first_row, last_row;
+    load(kLayerNumbers.data() + at, layer_number);
+    load(kRowNumbers.data() + at, row_number);
+    load(column.first_in_layer.data() + at, first_row);
+    load(column.last_in_layer.data() + at, last_row);
     row_number += static_cast<double>(column.first_row);
     const Doubles layer = layer_number + static_cast<double>(column.first_layer) + 0.5 - body.in_cell.layer;
     const Doubles row = row_number + 0.5 - body.in_cell.row;
