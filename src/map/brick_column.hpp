@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -39,8 +38,9 @@ class BrickColumn {
   /// Marks the cells of the rows as missed.
   /// @param lowest  key of the place 0 in row 0: the lowest of a brick, and along the column of a page
   void mark(const RunsOfRows& runs, const WideKey& lowest, ScanUpdate& scan) {
-    const auto [begin, end] = turn(runs);
-    if (begin >= end) return;
+    if (runs.lowest_begin >= runs.highest_end) return;
+    turn(runs);
+    const auto begin = static_cast<std::size_t>(runs.lowest_begin), end = static_cast<std::size_t>(runs.highest_end);
     const std::size_t brick_row = ScanUpdate::cell_in_page(lowest) / 64;
     std::uint64_t inside = 0;  // rows that go on, as bits of their first cells in a brick
     std::uint32_t page = 0;
@@ -60,26 +60,18 @@ class BrickColumn {
   }
 
  private:
-  struct Extent {
-    std::size_t begin, end;
-  };
-
   /// Bits that a coordinate 0..3 along an axis adds to the number of a cell in its brick, or of a brick in its page.
   static constexpr unsigned in_brick(unsigned coordinate, int axis) {
     return ((coordinate >> 1) * 8U + (coordinate & 1U)) << axis;
   }
   static constexpr std::uint64_t one_cell(int bit) { return std::uint64_t{1} << bit; }
 
-  Extent turn(const RunsOfRows& runs) {
-    std::int64_t lowest = no_place(), highest = 0;
+  void turn(const RunsOfRows& runs) {
     for (std::size_t row = 0; row < ColumnOfRows::kRows; ++row) {
       const auto begin = static_cast<std::size_t>(runs.begin[row]), end = static_cast<std::size_t>(runs.end[row]);
       turned_[begin / 4] ^= bit_[row][begin % 4];
       turned_[end / 4] ^= bit_[row][end % 4];
-      lowest = std::min(lowest, runs.begin[row]);
-      highest = std::max(highest, runs.end[row]);
     }
-    return {static_cast<std::size_t>(lowest), static_cast<std::size_t>(highest)};
   }
 
   /// For each cell of a brick whether an odd number of bits of its row are set up to it.

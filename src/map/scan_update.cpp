@@ -38,16 +38,9 @@ void ScanUpdate::rehash(std::size_t slots) {
   for (std::size_t i = 0; i < used_; ++i) slots_[slot_of(pages_[i].lowest)] = static_cast<std::uint32_t>(i + 1);
 }
 
-std::uint32_t ScanUpdate::page_of(const WideKey& key) {
+std::uint32_t ScanUpdate::page_at(const WideKey& key) {
   const auto lowest = [](WideWord word) { return word >> kPageBits << kPageBits; };
   const WideKey corner{lowest(key.x), lowest(key.y), lowest(key.z)};
-  const auto place = [](WideWord word) { return static_cast<std::size_t>(word >> kPageBits) & 3U; };
-  std::uint32_t& recent = recent_[place(key.x) | place(key.y) << 2 | place(key.z) << 4];
-  if (recent >= used_ || pages_[recent].lowest != corner) recent = page_at(corner);
-  return recent;
-}
-
-std::uint32_t ScanUpdate::page_at(const WideKey& corner) {
   if (slots_.size() < 2 * (used_ + 1)) rehash(std::max<std::size_t>(64, 2 * slots_.size()));
   const std::size_t slot = slot_of(corner);
   if (slots_[slot] != kFree) return slots_[slot] - 1;
@@ -68,19 +61,6 @@ void ScanUpdate::spread_evidence(Page& page, std::size_t brick) {
   for (std::size_t cell = 0; cell < 64; ++cell) {
     if (((page.hit[brick] >> cell) & 1) != 0) evidence[cell] = usual_hit_.value();
   }
-}
-
-void ScanUpdate::mark_hit(std::uint32_t page_index, std::size_t cell, LogOdds evidence) {
-  Page& page = pages_[page_index];
-  const std::size_t brick = cell / 64;
-  if (!has_hits_) usual_hit_ = evidence;
-  has_hits_ = true;
-  if (page.hit[brick] == 0) page.evidence[brick] = kUsual;
-  if (page.evidence[brick] == kUsual && evidence != usual_hit_) spread_evidence(page, brick);
-  page.hit[brick] |= std::uint64_t{1} << (cell % 64);
-  if (page.evidence[brick] == kUsual) return;
-  float& surest = evidence_[page.evidence[brick]][cell % 64];
-  surest = std::max(surest, evidence.value());
 }
 
 void ScanUpdate::add(const ScanUpdate& other) {

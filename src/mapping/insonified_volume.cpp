@@ -108,7 +108,9 @@ class Piece {
       }
       for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; l += 4) {
         column.first_layer = block + static_cast<std::int64_t>(l);
-        const auto [first, last] = take_rows(rows, l, column);
+        column.first_of_layer = rows.first.data() + l;
+        column.last_of_layer = rows.last.data() + l;
+        const auto [first, last] = rows_of(column);
         if (first > last) continue;
         for (column.first_row = lowest_together(first, 4, origin, order_.row); column.first_row <= last;
              column.first_row += 4) {
@@ -128,16 +130,13 @@ class Piece {
             static_cast<std::int64_t>(std::floor(box_max_[axis] - 0.5 + in_cell_[axis]))};
   }
 
-  /// Tells a column which rows of its four layers count. @return all of them
-  static Run take_rows(const detail::RowsOfLayers& rows, std::size_t first_layer, detail::ColumnOfRows& column) {
+  /// All rows that count in some layer of a column.
+  static Run rows_of(const detail::ColumnOfRows& column) {
     double first = std::numeric_limits<double>::max(), last = -first;
     for (std::size_t l = 0; l < 4; ++l) {
-      const double layers_first = rows.first[first_layer + l], layers_last = rows.last[first_layer + l];
-      std::fill_n(column.first_in_layer.begin() + static_cast<std::ptrdiff_t>(l * 4), 4, layers_first);
-      std::fill_n(column.last_in_layer.begin() + static_cast<std::ptrdiff_t>(l * 4), 4, layers_last);
-      if (layers_first > layers_last) continue;
-      first = std::min(first, layers_first);
-      last = std::max(last, layers_last);
+      if (column.first_of_layer[l] > column.last_of_layer[l]) continue;
+      first = std::min(first, column.first_of_layer[l]);
+      last = std::max(last, column.last_of_layer[l]);
     }
     if (first > last) return {0, -1};
     return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(last)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -49,7 +50,12 @@ class ScanUpdate {
   }
 
   /// For tracers that stay in a page for many cells: its index, made if it is not there.
-  std::uint32_t page_of(const WideKey& key);
+  std::uint32_t page_of(const WideKey& key) {
+    const auto place = [](WideWord word) { return static_cast<std::size_t>(word >> kPageBits) & 3U; };
+    std::uint32_t& recent = recent_[place(key.x) | place(key.y) << 2 | place(key.z) << 4];
+    if (recent >= used_ || !is_in(pages_[recent], key)) recent = page_at(key);
+    return recent;
+  }
   void mark_missed(std::uint32_t page, std::size_t cell) {
     pages_[page].missed[cell / 64] |= std::uint64_t{1} << (cell % 64);
   }
@@ -57,7 +63,18 @@ class ScanUpdate {
   void mark_missed_in(std::uint32_t page, std::size_t brick, std::uint64_t cells) {
     pages_[page].missed[brick] |= cells;
   }
-  void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence);
+  void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence) {
+    Page& in = pages_[page];
+    const std::size_t brick = cell / 64;
+    if (!has_hits_) usual_hit_ = evidence;
+    has_hits_ = true;
+    if (in.hit[brick] == 0) in.evidence[brick] = kUsual;
+    if (in.evidence[brick] == kUsual && evidence != usual_hit_) spread_evidence(in, brick);
+    in.hit[brick] |= std::uint64_t{1} << (cell % 64);
+    if (in.evidence[brick] == kUsual) return;
+    float& surest = evidence_[in.evidence[brick]][cell % 64];
+    surest = std::max(surest, evidence.value());
+  }
 
   LogOdds miss() const { return miss_; }
   bool empty() const { return used_ == 0; }
@@ -89,7 +106,10 @@ class ScanUpdate {
 
   /// Gives the hits of a brick evidence of their own.
   void spread_evidence(Page& page, std::size_t brick);
-  std::uint32_t page_at(const WideKey& corner);
+  static bool is_in(const Page& page, const WideKey& key) {
+    return ((page.lowest.x ^ key.x) | (page.lowest.y ^ key.y) | (page.lowest.z ^ key.z)) >> kPageBits == 0;
+  }
+  std::uint32_t page_at(const WideKey& key);
   void rehash(std::size_t slots);
   std::size_t slot_of(const WideKey& lowest) const;
 

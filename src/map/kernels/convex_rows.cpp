@@ -1,5 +1,6 @@
 #include "map/kernels/convex_rows.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -8,7 +9,8 @@
 namespace pingvox::detail {
 namespace {
 
-// Numbers of layers, and in a column of each row's layer, and of the row in it.
+constexpr std::size_t kRowsInLayer = 4;
+// Numbers of layers; of rows in a column: of their layers, and in these.
 constexpr std::array<double, 16> kNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 constexpr std::array<double, 16> kLayerNumbers{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 constexpr std::array<double, 16> kRowNumbers{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};

@@ -47,13 +47,14 @@ void find_rows(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& r
 struct ColumnOfRows {
   static constexpr std::size_t kRows = 16;
   std::int64_t first_layer = 0, first_row = 0;
-  std::array<double, kRows> first_in_layer{}, last_in_layer{};  ///< of each row's layer: the rows that count
-  std::int64_t lowest_cell = 0;                                 ///< gets the place 0
+  const double *first_of_layer = nullptr, *last_of_layer = nullptr;  ///< rows that count, of each layer
+  std::int64_t lowest_cell = 0;                                      ///< gets the place 0
   std::int64_t no_place = 0;  ///< begin of rows without cells, beyond all places; their end is 0
 };
 /// The cells begin..end-1 of each row, as places in the column.
 struct RunsOfRows {
   std::array<std::int64_t, ColumnOfRows::kRows> begin, end;
+  std::int64_t lowest_begin, highest_end;
 };
 
 /// Finds the cells of rows that touch all half-spaces and the sphere.

@@ -35,6 +35,23 @@ inline bool any_of(const Words& lanes) {
   return any != 0;
 }
 
+inline double least_of(const Doubles& lanes) {
+  std::array<double, kLanes> numbers;
+  std::memcpy(numbers.data(), &lanes, sizeof lanes);
+  for (std::size_t half = kLanes / 2; half > 0; half /= 2) {
+    for (std::size_t l = 0; l < half; ++l) numbers[l] = std::min(numbers[l], numbers[l + half]);
+  }
+  return numbers[0];
+}
+
+/// What each row's layer has, of rows from number `at` on: vectors hold rows of two layers at most.
+inline void load_of_layers(const double* of_layer, std::size_t at, Doubles& numbers) {
+  Doubles in_first;
+  load(kLayerNumbers.data(), in_first);
+  numbers = in_first == 0.0 ? Doubles{} + of_layer[at / kRowsInLayer]
+                            : Doubles{} + of_layer[(at + kLanes - 1) / kRowsInLayer];
+}
+
 /// Narrows low..high to where slope * place >= needed; `way` is 1 / slope.
 inline void narrow(double slope, double way, const Doubles& needed, Doubles& low, Doubles& high) {
   const Doubles place = needed * way;
@@ -83,12 +100,14 @@ inline void cut_by_sphere(double in_cell, const Doubles& left, Doubles& first, D
 }
 
 inline void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs) {
+  const Doubles none = Doubles{} + static_cast<double>(column.no_place);
+  Doubles lowest = none, highest{};
   for (std::size_t at = 0; at < ColumnOfRows::kRows; at += kLanes) {
     Doubles layer_number, row_number, first_row, last_row;
     load(kLayerNumbers.data() + at, layer_number);
     load(kRowNumbers.data() + at, row_number);
-    load(column.first_in_layer.data() + at, first_row);
-    load(column.last_in_layer.data() + at, last_row);
+    load_of_layers(column.first_of_layer, at, first_row);
+    load_of_layers(column.last_of_layer, at, last_row);
     row_number += static_cast<double>(column.first_row);
     const Doubles layer = layer_number + static_cast<double>(column.first_layer) + 0.5 - body.in_cell.layer;
     const Doubles row = row_number + 0.5 - body.in_cell.row;
@@ -111,9 +130,13 @@ inline void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsO
     if (any_of(some & (farthest * farthest > left))) cut_by_sphere(body.in_cell.cell, left, first, last);
 
     const Words has_cells = some & (first <= last);
-    store(
-        has_cells ? first - static_cast<double>(column.lowest_cell) : Doubles{} + static_cast<double>(column.no_place),
-        runs.begin.data() + at);
-    store(has_cells ? last + 1.0 - static_cast<double>(column.lowest_cell) : Doubles{}, runs.end.data() + at);
+    const Doubles begin = has_cells ? first - static_cast<double>(column.lowest_cell) : none;
+    const Doubles end = has_cells ? last + 1.0 - static_cast<double>(column.lowest_cell) : Doubles{};
+    lowest = begin < lowest ? begin : lowest;
+    highest = end > highest ? end : highest;
+    store(begin, runs.begin.data() + at);
+    store(end, runs.end.data() + at);
   }
+  runs.lowest_begin = static_cast<std::int64_t>(least_of(lowest));
+  runs.highest_end = static_cast<std::int64_t>(-least_of(-highest));
 }
