@@ -8,7 +8,8 @@
 
 #include "map_contest.hpp"
 #include "peer.hpp"
-#include "pingvox/mapping/beam_model.hpp"
+#include "pingvox/mapping/beam_tracer.hpp"
+#include "same_map.hpp"
 #include "tank_echoes.hpp"
 
 namespace pingvox::bench {
@@ -48,9 +49,10 @@ std::vector<ConeSweep> cones_of(const TankEchoes& tank) {
 
 void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const ConeSweep> sweeps) {
   const BeamModelOptions model{.shape = BeamShape::kCone, .free_share = 1.0, .hit_from = HitFrom::kFixed};
+  BeamTracer tracer(map.lattice(), model);
   for (const ConeSweep& sweep : sweeps) {
     for (const Cone& cone : sweep) {
-      trace_beam(map.lattice(), Pose::Identity(), cone.beam, cone.echo, model, scan);
+      tracer.trace(Pose::Identity(), cone.beam, cone.echo, scan);
     }
     (void)map.apply(scan);
     scan.clear();

@@ -9,6 +9,7 @@
 #include "bench/duel.hpp"
 #include "bench/tank_beams.hpp"
 #include "pingvox/map/compare.hpp"
+#include "pingvox/mapping/beam_tracer.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 
@@ -57,7 +58,7 @@ class LiveMap {
  private:
   void apply(const std::vector<EchoStream::Heard>& heard) {
     for (const EchoStream::Heard& h : heard) {
-      trace_beam(map_.lattice(), Pose::Identity(), h.beam, h.echo, options_.model, scan_);
+      tracer_.trace(Pose::Identity(), h.beam, h.echo, scan_);
       applied_ += map_.apply(scan_).has_value();
       scan_.clear();
     }
@@ -67,6 +68,7 @@ class LiveMap {
   EchoStream stream_;
   ScanUpdate scan_;
   OccupancyMap map_{{.resolution_m = kCell_m}};
+  BeamTracer tracer_{map_.lattice(), options_.model};
   std::size_t applied_ = 0;
 };
 

@@ -54,20 +54,20 @@ WideKey page_key(const Lattice& lattice, const RayEnds& ends, std::uint64_t page
 std::size_t add_hits(const Lattice& lattice, const Pose& map_from_sensor, const BundleGrid& rays, double range_m,
                      LogOdds evidence, ScanUpdate& scan) {
   const RayEnds ends = ends_of(lattice, map_from_sensor, range_m);
-  const std::size_t elevations = rays.shares.size();
-  std::vector<LogOdds> shares;
-  shares.reserve(elevations);
-  for (const double share : rays.shares) shares.emplace_back(evidence.value() * static_cast<float>(share));
-  std::vector<std::uint64_t> places(elevations + kEndsAtOnce);
+  const Elevations& elevations = rays.elevations;
+  std::vector<float> shares(elevations.count);
+  for (std::size_t i = 0; i < elevations.count; ++i) shares[i] = evidence.value() * static_cast<float>(rays.share(i));
+  std::vector<std::uint64_t> places(elevations.count + kEndsAtOnce);
   std::uint64_t page_number = kNoPlace;
   std::uint32_t page = 0;
   std::size_t outside = 0;
   for (const BundleGrid::Level& azimuth : rays.azimuths) {
-    find_ends(ends, azimuth.x, azimuth.y, std::span(rays.across).first(elevations), rays.up.data(), places.data());
-    for (std::size_t i = 0; i < elevations; ++i) {
+    find_ends(ends, azimuth.x, azimuth.y, std::span(elevations.across).first(elevations.count), elevations.up.data(),
+              places.data());
+    for (std::size_t i = 0; i < elevations.count; ++i) {
       if (places[i] == kNoPlace) {
         const auto key = lattice.key_of<WideWord>(map_from_sensor * (rays.direction(i, azimuth) * range_m));
-        if (key) scan.add_hit(*key, shares[i]);
+        if (key) scan.add_hit(*key, LogOdds(shares[i]));
         outside += !key;
         continue;
       }
@@ -75,7 +75,7 @@ std::size_t add_hits(const Lattice& lattice, const Pose& map_from_sensor, const 
         page_number = places[i] >> kCellBits;
         page = scan.page_of(page_key(lattice, ends, page_number));
       }
-      scan.mark_hit(page, places[i] & ((1 << kCellBits) - 1), shares[i]);
+      scan.mark_hit(page, places[i] & ((1 << kCellBits) - 1), LogOdds(shares[i]));
     }
   }
   return outside;

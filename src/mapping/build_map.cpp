@@ -10,6 +10,7 @@
 
 #include "mapping/parts.hpp"
 #include "pingvox/map/trace_ray.hpp"
+#include "pingvox/mapping/beam_tracer.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 #include "pingvox/sonar/sweep.hpp"
 
@@ -145,19 +146,21 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
     unplaced += beams.size() - placed->size();
     report.beams += placed->size();
     for (const PlacedBeam& beam : *placed) report.echoes += echoes[beam.number].has_value();
-    const auto trace = [&](const PlacedBeam& beam, ScanUpdate& into) -> std::size_t {
+    const auto trace = [&](const PlacedBeam& beam, BeamTracer& tracer, ScanUpdate& into) -> std::size_t {
       const std::size_t i = beam.number;
-      return trace_beam(map.lattice(), beam.map_from_sensor, beams[i], echoes[i], options.model, into) > 0 ? 1 : 0;
+      return tracer.trace(beam.map_from_sensor, beams[i], echoes[i], into) > 0 ? 1 : 0;
     };
     if (options.vote == Vote::kPerSweep) {
       std::atomic<std::size_t> outside = 0;
       parts.run(placed->size(), scan, [&](std::size_t first, std::size_t last, ScanUpdate& part) {
-        for (std::size_t i = first; i < last; ++i) outside += trace((*placed)[i], part);
+        BeamTracer tracer(map.lattice(), options.model);
+        for (std::size_t i = first; i < last; ++i) outside += trace((*placed)[i], tracer, part);
       });
       unplaced += outside;
     } else {
+      BeamTracer tracer(map.lattice(), options.model);
       for (const PlacedBeam& beam : *placed) {
-        unplaced += trace(beam, scan);
+        unplaced += trace(beam, tracer, scan);
         watch.lap(report.seconds.trace);
         if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
         watch.lap(report.seconds.apply);

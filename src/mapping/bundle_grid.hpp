@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mapping/elevation_tables.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 
 namespace pingvox::detail {
@@ -13,19 +14,22 @@ struct BundleGrid {
     double x, y;  ///< unit, in the plane of the head
   };
   std::vector<Level> azimuths;
-  /// Cosine and sine of each elevation; behind them is room for detail::kEndsAtOnce more.
-  std::vector<double> across, up;
-  std::vector<double> shares;  ///< of each elevation: its share of the echo's evidence
+  const Elevations& elevations;  ///< as long as the tables that it came from are not asked again
+  double thinned_by;             ///< see share_on_arc
 
   Eigen::Vector3d direction(std::size_t elevation, const Level& azimuth) const {
-    return {across[elevation] * azimuth.x, across[elevation] * azimuth.y, up[elevation]};
+    const double across = elevations.across[elevation];
+    return {across * azimuth.x, across * azimuth.y, elevations.up[elevation]};
   }
+  /// Of the echo's evidence.
+  double share(std::size_t elevation) const { return elevations.pattern[elevation] / thinned_by; }
 };
 
 double width_of(const BeamModelOptions& options);
 double height_of(const BeamModelOptions& options);
 
-/// @see beam_bundle
-BundleGrid bundle_grid(const BeamModelOptions& options, double bearing_rad, double range_m, double resolution_m);
+/// @param tables  of height_of(options)
+BundleGrid bundle_grid(const BeamModelOptions& options, double bearing_rad, double range_m, double resolution_m,
+                       ElevationTables& tables);
 
 }  // namespace pingvox::detail
