@@ -1,0 +1,88 @@
+#include "pingvox/mapping/beam_tracer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace pingvox {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * (static_cast<double>(random() % 1'000'001) / 1e6);
+}
+
+using HitCells = std::map<WideKey, float>;
+
+/// The hits of a scan and their evidence.
+HitCells hits_in(const ScanUpdate& scan) {
+  HitCells hits;
+  for (const std::uint32_t index : scan.pages_in_order()) {
+    const ScanUpdate::Page& page = scan.page(index);
+    for (unsigned n = 0; n < 4096; ++n) {
+      const WideKey key{page.lowest.x + n / 256, page.lowest.y + n / 16 % 16, page.lowest.z + n % 16};
+      const std::size_t cell = ScanUpdate::cell_in_page(key);
+      if ((page.hit[cell / 64] >> (cell % 64) & 1) == 0) continue;
+      const ScanUpdate::Hits evidence = scan.hits(page, cell / 64);
+      hits[key] = evidence.of_cell == nullptr ? evidence.all.value() : evidence.of_cell[cell % 64];
+    }
+  }
+  return hits;
+}
+
+// Kills evidence of another ray than the surest one, an end in the cell beside it, elevations kept for another number
+// of rays, and the places of one lattice taken for those of another.
+TEST(BeamTracer, HitsAreTheSurestOfTheRaysThatEndInACell) {
+  std::size_t hits = 0, outside = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    // From three levels, of which a page is more than all, to more than a word has bits; some beams leave the lattice.
+    constexpr std::array<int, 7> kDepths{3, 6, 8, 16, 32, 64, 100};
+    const Lattice lattice(uniform(random, 0.02, 0.08), kDepths[seed % kDepths.size()]);
+    const Pose map_from_sensor =
+        pose_from_rpy({uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)}, uniform(random, -3, 3),
+                      uniform(random, -1.5, 1.5), uniform(random, -3, 3));
+    BeamModelOptions options;
+    options.shape = seed % 5 == 0 ? BeamShape::kFan : (seed % 6 == 0 ? BeamShape::kRay : BeamShape::kCone);
+    options.width_rad = uniform(random, 0.1, 10) * kDegree;
+    options.height_rad = uniform(random, 1, 60) * kDegree;
+    BeamTracer tracer(lattice, options);
+    for (int n = 0; n < 8; ++n) {
+      // The second half takes the same numbers of rays again; one has more than are kept.
+      const double range = n == 3 ? 12.0 : 0.2 + 0.5 * (n % 4);
+      Beam beam;
+      beam.bearing_rad = uniform(random, -7, 7);
+      Echo echo;
+      echo.range_m = range;
+      echo.intensity = static_cast<std::uint8_t>(random());
+      ScanUpdate scan;
+      const std::size_t left_out = tracer.trace(map_from_sensor, beam, echo, scan);
+
+      HitCells expected;
+      std::size_t expected_out = 0;
+      const LogOdds evidence = evidence_of_intensity(echo.intensity, options.hit);
+      for (const BundleRay& ray : beam_bundle(options, beam.bearing_rad, range, lattice.resolution_m())) {
+        const auto key = lattice.key_of<WideWord>(map_from_sensor * (ray.direction * range));
+        expected_out += !key;
+        if (!key) continue;
+        const float share = evidence.value() * static_cast<float>(ray.share);
+        const auto [at, is_new] = expected.emplace(*key, share);
+        if (!is_new) at->second = std::max(at->second, share);
+      }
+      EXPECT_EQ(hits_in(scan), expected);
+      EXPECT_EQ(left_out, expected_out);
+      hits += expected.size();
+      outside += expected_out;
+    }
+  }
+  EXPECT_GT(hits, 10'000U);
+  EXPECT_GT(outside, 1000U);
+}
+
+}  // namespace
+}  // namespace pingvox
