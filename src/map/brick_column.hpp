@@ -81,9 +81,9 @@ class BrickColumn {
     return bits ^ second << two_ ^ second << (two_ - one_);
   }
 
-  WideKey along(WideKey key, std::size_t cells) const {
-    (cell_axis_ == 0 ? key.x : (cell_axis_ == 1 ? key.y : key.z)) += cells;
-    return key;
+  WideKey along(const WideKey& key, std::size_t cells) const {
+    const auto by = [&](int axis) { return axis == cell_axis_ ? cells : 0; };
+    return {key.x + by(0), key.y + by(1), key.z + by(2)};
   }
 
   int cell_axis_;

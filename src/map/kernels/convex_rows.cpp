@@ -1,6 +1,6 @@
 #include "map/kernels/convex_rows.hpp"
 
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
