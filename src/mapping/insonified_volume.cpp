@@ -20,14 +20,15 @@ using Vector = Eigen::Vector3d;
 constexpr double kWidestPiece_rad = 5.0 * std::numbers::pi / 180.0;
 using detail::WalkAxes;
 
-constexpr int kPage = 1 << ScanUpdate::kPageBits;
+constexpr std::int64_t kPage = 1 << ScanUpdate::kPageBits;
+constexpr std::int64_t kLayers = detail::RowsOfLayers::kLayers;
 
 /// Cells first..last along an axis.
 struct Run {
   std::int64_t first, last;
 };
 
-/// Angles of directions from the sensor, by sine and cosine.
+/// An angle, by what is asked of it.
 struct Angle {
   double cos, sin;
   explicit Angle(double rad) : cos(std::cos(rad)), sin(std::sin(rad)) {}
@@ -89,34 +90,22 @@ class Piece {
   const Vector& box_min() const { return box_min_; }
   const Vector& box_max() const { return box_max_; }
 
-  /// Marks the cells that the piece touches, by columns of bricks.
+  /// Marks the cells that the piece touches, by columns of bricks: of four layers at a time, four rows at a time.
   void mark(const WideKey& origin, ScanUpdate& scan) const {
     const Run layers = cells_in_box(order_.layer), cells = cells_in_box(order_.cell);
-    // A brick below the lowest cell, where the columns' pages begin.
     detail::ColumnOfRows column;
+    // Columns begin with a page, and a brick at least below the lowest cell: places below 4 are for rows without cells.
     column.lowest_cell = lowest_together(cells.first - 4, kPage, origin, order_.cell);
     detail::BrickColumn bricks(order_, static_cast<std::size_t>(cells.last + 1 - column.lowest_cell));
     column.no_place = bricks.no_place();
-    detail::RowsOfLayers rows;
-    detail::RunsOfRows runs;
-    for (std::int64_t block = lowest_together(layers.first, kPage, origin, order_.layer); block <= layers.last;
-         block += kPage) {
-      detail::find_rows(body_, block, rows);
-      for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; ++l) {
-        const std::int64_t layer = block + static_cast<std::int64_t>(l);
-        if (layer < layers.first || layer > layers.last) rows.last[l] = rows.first[l] - 1.0;
-      }
-      for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; l += 4) {
-        column.first_layer = block + static_cast<std::int64_t>(l);
+    const std::int64_t lowest_layer = lowest_together(layers.first, kPage, origin, order_.layer);
+    for (std::int64_t first = lowest_layer; first <= layers.last; first += kLayers) {
+      const detail::RowsOfLayers rows = rows_of(first, layers);
+      for (std::int64_t l = 0; l < kLayers; l += 4) {
+        column.first_layer = first + l;
         column.first_of_layer = rows.first.data() + l;
         column.last_of_layer = rows.last.data() + l;
-        const auto [first, last] = rows_of(column);
-        if (first > last) continue;
-        for (column.first_row = lowest_together(first, 4, origin, order_.row); column.first_row <= last;
-             column.first_row += 4) {
-          detail::find_cells(body_, column, runs);
-          bricks.mark(runs, lowest_key(column, origin), scan);
-        }
+        mark_layers(column, bricks, origin, scan);
       }
     }
   }
@@ -130,8 +119,32 @@ class Piece {
             static_cast<std::int64_t>(std::floor(box_max_[axis] - 0.5 + in_cell_[axis]))};
   }
 
-  /// All rows that count in some layer of a column.
-  static Run rows_of(const detail::ColumnOfRows& column) {
+  /// The rows of the layers from `first` on that are among `layers`.
+  detail::RowsOfLayers rows_of(std::int64_t first, const Run& layers) const {
+    detail::RowsOfLayers rows;
+    detail::find_rows(body_, first, rows);
+    for (std::size_t l = 0; l < detail::RowsOfLayers::kLayers; ++l) {
+      const std::int64_t layer = first + static_cast<std::int64_t>(l);
+      if (layer < layers.first || layer > layers.last) rows.last[l] = rows.first[l] - 1.0;
+    }
+    return rows;
+  }
+
+  /// Marks the cells of four layers, column by column.
+  void mark_layers(detail::ColumnOfRows& column, detail::BrickColumn& bricks, const WideKey& origin,
+                   ScanUpdate& scan) const {
+    const Run rows = rows_of_all(column);
+    if (rows.first > rows.last) return;
+    detail::RunsOfRows runs;
+    const std::int64_t lowest_row = lowest_together(rows.first, 4, origin, order_.row);
+    for (column.first_row = lowest_row; column.first_row <= rows.last; column.first_row += 4) {
+      detail::find_cells(body_, column, runs);
+      bricks.mark(runs, lowest_key(column, origin), scan);
+    }
+  }
+
+  /// The rows that count in any layer of a column.
+  static Run rows_of_all(const detail::ColumnOfRows& column) {
     double first = std::numeric_limits<double>::max(), last = -first;
     for (std::size_t l = 0; l < 4; ++l) {
       if (column.first_of_layer[l] > column.last_of_layer[l]) continue;
