@@ -9,7 +9,7 @@
 namespace pingvox::detail {
 namespace {
 
-constexpr std::int64_t kPage = 1 << ScanUpdate::kPageBits;
+constexpr std::uint64_t kPage = 1 << ScanUpdate::kPageBits;
 
 /// The middle of a lattice as a key.
 WideWord centre_of(const Lattice& lattice) {
@@ -30,8 +30,9 @@ RayEnds ends_of(const Lattice& lattice, const Pose& map_from_sensor, double rang
     const double lowest = (map_from_sensor(axis, 3) - range_m) * ends.cells_per_m - 1.0;
     if (!(std::abs(lowest) < 0x1p50)) continue;
     const auto from = static_cast<std::int64_t>(std::floor(lowest));
-    const auto in_page = static_cast<std::int64_t>(static_cast<std::uint64_t>(centre_of(lattice))) + from;
-    ends.lowest[a] = from - (in_page & (kPage - 1));
+    // Unsigned, as what is below zero wraps around; only the lowest bits are looked at.
+    const std::uint64_t word = static_cast<std::uint64_t>(centre_of(lattice)) + static_cast<std::uint64_t>(from);
+    ends.lowest[a] = from - static_cast<std::int64_t>(word % kPage);
     const auto base = static_cast<double>(ends.lowest[a]);
     ends.inside_from[a] = std::max(base, -border);
     ends.inside_to[a] = std::min(base + std::ldexp(1.0, kPlaceBits + ScanUpdate::kPageBits), border);
@@ -44,7 +45,7 @@ WideKey page_key(const Lattice& lattice, const RayEnds& ends, std::uint64_t page
   const auto word = [&](std::size_t a) {
     const std::uint64_t number = page >> (a * kPlaceBits) & ((std::uint64_t{1} << kPlaceBits) - 1);
     // Unsigned sums wrap: what is below zero is taken away.
-    return centre_of(lattice) + static_cast<WideWord>(ends.lowest[a] + static_cast<std::int64_t>(number) * kPage);
+    return centre_of(lattice) + static_cast<WideWord>(ends.lowest[a] + static_cast<std::int64_t>(number * kPage));
   };
   return {word(0), word(1), word(2)};
 }
