@@ -219,6 +219,14 @@ class FanTracer {
   std::vector<std::uint64_t> places_;
 };
 
+/// Those that a ray crosses; none when an end of it lies outside of the lattice.
+std::size_t faces_between(const Lattice& lattice, const Segment& ray) {
+  const auto from = lattice.key_of(ray.from_m), to = lattice.key_of(ray.to_m);
+  if (!from || !to) return 0;
+  const auto along = [](std::uint16_t a, std::uint16_t b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
+  return along(from->x, to->x) + along(from->y, to->y) + along(from->z, to->z);
+}
+
 }  // namespace
 
 bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
@@ -228,34 +236,25 @@ bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eige
 
 void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& into) {
   assert(lattice.depth() <= kLevelsOf<std::uint16_t>);
-  const double cells_per_m = 1.0 / lattice.resolution_m();
-  into.ends_.clear();
-  std::vector<detail::ReadyRay> ready;
-  std::vector<std::size_t> ready_begins;
+  const detail::Lanes lanes = detail::widest_lanes();
+  std::vector<detail::ReadyRay> ready(rays.size());
+  std::vector<std::uint32_t> others;
+  detail::prepare_rays(lanes, {1.0 / lattice.resolution_m(), std::ldexp(1.0, lattice.depth() - 1)}, rays, ready,
+                       others);
+
+  into.ends_.resize(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) into.ends_[i] = ready[i].left;
+  for (const std::uint32_t i : others) into.ends_[i] = faces_between(lattice, rays[i]);
   std::size_t begin = 0;
-  std::vector<std::size_t> others;
-  for (const Segment& ray : rays) {
-    const auto start = lattice.key_of(ray.from_m);
-    if (start && lattice.key_of(ray.to_m)) {
-      const FaceCrossings crossings(ray.from_m * cells_per_m, ray.to_m * cells_per_m);
-      if (const auto one = detail::ready_ray(*start, crossings)) {
-        ready.push_back(*one);
-        ready_begins.push_back(begin);
-      } else {
-        others.push_back(into.ends_.size());
-      }
-      begin += crossings.left();
-    }
-    into.ends_.push_back(begin++);
-  }
-  into.keys_.resize(begin + 1);
-  std::vector<Key*> places;
-  for (const std::size_t at : ready_begins) places.push_back(into.keys_.data() + at);
-  detail::write_keys(detail::widest_lanes(), ready, places);
-  for (const std::size_t i : others) {
-    std::size_t at = i == 0 ? 0 : into.ends_[i - 1] + 1;
+  for (std::size_t& end : into.ends_) begin = (end += begin) + 1;
+  if (into.keys_.size() < begin + 1) into.keys_.resize(begin + 1);
+
+  std::vector<Key*> places(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) places[i] = into.keys_.data() + into.begin_of(i);
+  detail::write_keys(lanes, ready, places);
+  for (const std::uint32_t i : others) {
     const auto ray = dda<std::uint16_t>(lattice, rays[i].from_m, rays[i].to_m);
-    for (const Key key : *ray) into.keys_[at++] = key;
+    if (ray) std::ranges::copy(*ray, places[i]);
   }
 }
 

@@ -30,13 +30,12 @@ class RayKeys {
  public:
   std::size_t size() const { return ends_.size(); }
   /// Cells of ray i: what `dda` walks over; none when an end of it lies outside of the lattice.
-  std::span<const Key> operator[](std::size_t i) const {
-    const std::size_t begin = i == 0 ? 0 : ends_[i - 1] + 1;
-    return {keys_.data() + begin, ends_[i] - begin};
-  }
+  std::span<const Key> operator[](std::size_t i) const { return {keys_.data() + begin_of(i), ends_[i] - begin_of(i)}; }
 
  private:
   friend void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& into);
+  std::size_t begin_of(std::size_t i) const { return i == 0 ? 0 : ends_[i - 1] + 1; }
+
   std::vector<std::size_t> ends_;  ///< behind the last key of each ray; then there is room for one that is none
   std::vector<Key> keys_;
 };

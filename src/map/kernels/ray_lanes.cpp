@@ -93,6 +93,8 @@ void write_one_by_one(std::span<const ReadyRay> rays, std::span<Key* const> keys
 namespace plain {
 constexpr std::size_t kLanes = 2;
 #include "map/kernels/ray_lanes_loops.hpp"
+//
+#include "map/kernels/ray_keys_loops.hpp"
 }  // namespace plain
 
 #ifdef PINGVOX_X86_LANES
@@ -101,6 +103,8 @@ constexpr std::size_t kLanes = 2;
 namespace avx2 {
 constexpr std::size_t kLanes = 4;
 #include "map/kernels/ray_lanes_loops.hpp"
+//
+#include "map/kernels/ray_keys_loops.hpp"
 }  // namespace avx2
 #pragma GCC pop_options
 #pragma GCC push_options
@@ -108,6 +112,8 @@ constexpr std::size_t kLanes = 4;
 namespace avx512 {
 constexpr std::size_t kLanes = 8;
 #include "map/kernels/ray_lanes_loops.hpp"
+//
+#include "map/kernels/ray_keys_loops.hpp"
 }  // namespace avx512
 #pragma GCC pop_options
 #endif
@@ -129,26 +135,10 @@ void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start,
   PINGVOX_BY_LANES(lanes, mark_all(rays, start, window), mark_one_by_one(rays, start, window));
 }
 
-std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossings) {
-  if (crossings.left() > FaceCrossings::kFewFaces) return std::nullopt;
-  ReadyRay ray{};
-  ray.left = static_cast<std::uint32_t>(crossings.left());
-  ray.end = packed(start);
-  std::int64_t last_crossing = std::numeric_limits<std::int64_t>::min(), beyond_end = kNever;
-  for (std::size_t a = 0; a < 3; ++a) {
-    ray.ahead |= static_cast<std::uint32_t>(crossings.is_ahead(a)) << a;
-    const auto [next, apart, faces] = crossings.along(a);
-    if (faces == 0) {
-      ray.next[a] = kNever;
-      continue;
-    }
-    ray.next[a] = static_cast<std::int64_t>(next);
-    ray.apart[a] = faces > 1 ? static_cast<std::int64_t>(apart) : kNever - ray.next[a];
-    last_crossing = std::max(last_crossing, static_cast<std::int64_t>(next + (faces - 1) * apart));
-    if (faces > 1) beyond_end = std::min(beyond_end, static_cast<std::int64_t>(next + faces * apart));
-  }
-  if (beyond_end <= last_crossing) return std::nullopt;
-  return ray;
+void prepare_rays(Lanes lanes, const KeyGrid& grid, std::span<const Segment> segments, std::span<ReadyRay> ready,
+                  std::vector<std::uint32_t>& others) {
+  assert(ready.size() == segments.size());
+  PINGVOX_BY_LANES(lanes, prepare(grid, segments, ready, others), plain::prepare(grid, segments, ready, others));
 }
 
 void write_keys(Lanes lanes, std::span<const ReadyRay> rays, std::span<Key* const> keys) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/scan_window.hpp"
+#include "pingvox/map/trace_ray.hpp"
 
 /// Rays from one place, several at a time, into the bit masks of a ScanWindow. The cells are those of FaceCrossings, to
 /// the last one: the same sums of the same whole numbers (tests/map/ray_lanes_test.cpp).
@@ -51,17 +51,20 @@ void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d>
 /// @param start  place of the cell where all of them begin
 void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window);
 
-/// A key of 16-bit components in one word: x in the lowest bits.
-constexpr std::uint64_t packed(const Key& key) {
-  return std::uint64_t{key.x} | std::uint64_t{key.y} << 16 | std::uint64_t{key.z} << 32;
-}
+/// A lattice of 16 levels at most, where rays begin and end anywhere.
+struct KeyGrid {
+  double cells_per_m = 1.0;
+  double half = 32768.0;  ///< cells from its centre to its border
+};
 
-/// Makes a ray ready that begins anywhere; `end` becomes the packed key where it begins.
-/// @return nullopt: only FaceCrossings can walk it (see prepare_rays)
-std::optional<ReadyRay> ready_ray(const Key& start, const FaceCrossings& crossings);
+/// Prepares one ray for each segment; `end` becomes the key where it begins: 16 bits a component, x in the lowest.
+/// @param others  gets the numbers of those that are not ready (as above, or outside of the lattice); `left` is 0 then
+/// REQUIRES ready.size() == segments.size()
+void prepare_rays(Lanes lanes, const KeyGrid& grid, std::span<const Segment> segments, std::span<ReadyRay> ready,
+                  std::vector<std::uint32_t>& others);
 
 /// Writes the keys of each ray, its first one included, its last one not: ray i from keys[i] on.
-/// REQUIRES rays by ready_ray, and room for one key more than the faces of each
+/// REQUIRES rays made ready for a KeyGrid, and room for one key more than the faces of each
 void write_keys(Lanes lanes, std::span<const ReadyRay> rays, std::span<Key* const> keys);
 
 }  // namespace pingvox::detail

@@ -12,11 +12,11 @@ inline void add_wrapping(Words& to, const Words& what) {
   to = reinterpret_cast<Words>(reinterpret_cast<Unsigned>(to) + reinterpret_cast<Unsigned>(what));
 }
 
-/// kLanes points from `first` on; of fewer that are left the last one again and again.
-inline const Eigen::Vector3d* some_from(std::span<const Eigen::Vector3d> points_m, std::size_t first,
-                                        std::array<Eigen::Vector3d, kLanes>& padded) {
-  if (points_m.size() - first >= kLanes) return points_m.data() + first;
-  for (std::size_t l = 0; l < kLanes; ++l) padded[l] = points_m[std::min(first + l, points_m.size() - 1)];
+/// kLanes items from `first` on; of fewer that are left the last one again and again.
+template <class Item>
+inline const Item* some_from(std::span<const Item> items, std::size_t first, std::array<Item, kLanes>& padded) {
+  if (items.size() - first >= kLanes) return items.data() + first;
+  for (std::size_t l = 0; l < kLanes; ++l) padded[l] = items[std::min(first + l, items.size() - 1)];
   return padded.data();
 }
 
@@ -45,8 +45,52 @@ inline void spread(Words& words) {
 
 struct Prepared {
   std::array<Words, 3> next, apart;
-  Words left, end, ahead, is_ready;
+  Words left{}, end{}, ahead{}, is_ready{};
+  // Along the axes so far: the last face that is crossed, and the first one beyond an end.
+  Words last_crossing = Words{} + std::numeric_limits<std::int64_t>::min(), beyond_end = Words{} + kNever;
 };
+
+/// What FaceCrossings counts along one axis, for rays between these coordinates [cells].
+/// @param first, last  get their cells
+inline void prepare_axis(const Doubles& from, const Doubles& to, std::size_t a, Prepared& out, Words& first,
+                         Words& last) {
+  floor_of(from, first);
+  floor_of(to, last);
+  const Doubles first_cell = __builtin_convertvector(first, Doubles);
+  const Words is_ahead = last >= first;
+  const Words faces = is_ahead ? last - first : first - last;
+  const Words some = faces > 0, several = faces > 1;
+  const Doubles way = to - from;
+  const Doubles length = some ? (way < 0.0 ? -way : way) : Doubles{} + 1.0;
+  const Doubles to_first = (is_ahead ? first_cell + 1.0 - from : from - first_cell) / length * kUnits;
+  const Doubles between = 1.0 / length * kUnits;
+  const Words next = __builtin_convertvector(some ? to_first : Doubles{}, Words);
+  const Words apart = __builtin_convertvector(several ? between : Doubles{}, Words);
+  out.next[a] = some ? next : Words{} + kNever;
+  out.apart[a] = several ? apart : (some ? kNever - next : Words{});
+  // What does not fit becomes negative, and the ray is not taken.
+  const Words last_crossing = next + (faces - 1) * apart;
+  Words beyond = last_crossing;
+  add_wrapping(beyond, apart);
+  out.last_crossing = (some & (last_crossing > out.last_crossing)) ? last_crossing : out.last_crossing;
+  out.beyond_end = (several & (beyond < out.beyond_end)) ? beyond : out.beyond_end;
+  out.left += faces;
+  out.ahead |= (is_ahead & 1) << a;
+}
+
+/// Whether sums of these units give the order of faces that FaceCrossings gives.
+inline void decide(const Words& inside, Prepared& out) {
+  out.is_ready =
+      inside & (out.beyond_end > out.last_crossing) & (out.left <= static_cast<std::int64_t>(FaceCrossings::kFewFaces));
+}
+
+inline ReadyRay ray_of(const Prepared& some, std::size_t lane) {
+  return {{some.next[0][lane], some.next[1][lane], some.next[2][lane]},
+          {some.apart[0][lane], some.apart[1][lane], some.apart[2][lane]},
+          static_cast<std::uint32_t>(some.left[lane]),
+          static_cast<std::uint32_t>(some.ahead[lane]),
+          static_cast<std::uint64_t>(some.end[lane])};
+}
 
 inline void prepare_some(const RayFan& fan, const Eigen::Vector3d* ends_m, Prepared& out) {
   std::array<Doubles, 3> to;
@@ -55,40 +99,15 @@ inline void prepare_some(const RayFan& fan, const Eigen::Vector3d* ends_m, Prepa
     load(ends_m, a, fan.cells_per_m, to[a]);
     inside &= (to[a] >= fan.lowest[a]) & (to[a] < fan.highest[a] + 1.0);
   }
-  Words last_crossing = Words{} + std::numeric_limits<std::int64_t>::min(), beyond_end = Words{} + kNever;
-  out.left = out.end = out.ahead = Words{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const double from = fan.from[static_cast<Eigen::Index>(a)], first_cell = std::floor(from);
-    const double face_ahead = first_cell + 1.0 - from, face_behind = from - first_cell;
-    const auto first = static_cast<std::int64_t>(first_cell);
-    const Doubles end = inside ? to[a] : Doubles{} + from;
-    Words cell;
-    floor_of(end, cell);
-    const Words is_ahead = cell >= first;
-    const Words faces = is_ahead ? cell - first : first - cell;
-    const Words some = faces > 0, several = faces > 1;
-    const Doubles way = end - from;
-    const Doubles length = some ? (way < 0.0 ? -way : way) : Doubles{} + 1.0;
-    const Doubles to_first = (is_ahead ? Doubles{} + face_ahead : Doubles{} + face_behind) / length * kUnits;
-    const Doubles between = 1.0 / length * kUnits;
-    const Words next = __builtin_convertvector(some ? to_first : Doubles{}, Words);
-    const Words apart = __builtin_convertvector(several ? between : Doubles{}, Words);
-    out.next[a] = some ? next : Words{} + kNever;
-    out.apart[a] = several ? apart : (some ? kNever - next : Words{});
-    // What does not fit becomes negative, and the ray is not taken.
-    const Words last = next + (faces - 1) * apart;
-    Words beyond = last;
-    add_wrapping(beyond, apart);
-    last_crossing = (some & (last > last_crossing)) ? last : last_crossing;
-    beyond_end = (several & (beyond < beyond_end)) ? beyond : beyond_end;
-    out.left += faces;
-    out.ahead |= (is_ahead & 1) << a;
-    Words place = cell - fan.window_lowest[a];
+    const Doubles from = Doubles{} + fan.from[static_cast<Eigen::Index>(a)];
+    Words first, place;
+    prepare_axis(from, inside ? to[a] : from, a, out, first, place);
+    place -= fan.window_lowest[a];
     spread(place);
     out.end |= place << a;
   }
-  out.is_ready =
-      inside & (beyond_end > last_crossing) & (out.left <= static_cast<std::int64_t>(FaceCrossings::kFewFaces));
+  decide(inside, out);
 }
 
 inline void prepare(const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
@@ -105,11 +124,7 @@ inline void prepare(const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, 
         others.push_back(static_cast<std::uint32_t>(first + l));
         continue;
       }
-      ready[count++] = {{some.next[0][l], some.next[1][l], some.next[2][l]},
-                        {some.apart[0][l], some.apart[1][l], some.apart[2][l]},
-                        static_cast<std::uint32_t>(some.left[l]),
-                        static_cast<std::uint32_t>(some.ahead[l]),
-                        static_cast<std::uint64_t>(some.end[l])};
+      ready[count++] = ray_of(some, l);
     }
   }
   ready.resize(count);
@@ -192,45 +207,4 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     mark_some(rays, order.first(lanes), start, window.missed(), window.touched());
     order = order.subspan(lanes);
   }
-}
-
-/// Writes the keys of kLanes rays of about the same length: together while all go on, then each by itself.
-inline void write_some(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order,
-                       std::span<Key* const> keys) {
-  std::array<Words, 3> next{}, apart{}, step{}, along{};
-  Words at{};
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    const ReadyRay& ray = rays[order[l]];
-    for (std::size_t a = 0; a < 3; ++a) {
-      next[a][l] = ray.next[a];
-      apart[a][l] = ray.apart[a];
-      step[a][l] = key_step(a, ray);
-    }
-    at[l] = static_cast<std::int64_t>(ray.end);
-  }
-  const std::uint32_t together = rays[order.back()].left;  // the shortest: they are sorted
-  std::array<std::uint64_t, kLanes> words;
-  for (std::uint32_t n = 0; n < together; ++n) {
-    std::memcpy(words.data(), &at, sizeof at);
-    for (std::size_t l = 0; l < kLanes; ++l) put(words[l], keys[order[l]] + n);
-    choose_axes(next, along);
-    for (std::size_t a = 0; a < 3; ++a) {
-      next[a] += along[a] & apart[a];
-      at += along[a] & step[a];
-    }
-  }
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    ReadyRay rest = rays[order[l]];
-    for (std::size_t a = 0; a < 3; ++a) rest.next[a] = next[a][l];
-    rest.end = static_cast<std::uint64_t>(at[l]);
-    rest.left -= together;
-    write_one(rest, keys[order[l]] + together);
-  }
-}
-
-inline void write_all(std::span<const ReadyRay> rays, std::span<Key* const> keys) {
-  const ByLength by_length(rays);
-  std::span<const std::uint32_t> order = by_length.order();
-  for (; order.size() >= kLanes; order = order.subspan(kLanes)) write_some(rays, order.first(kLanes), keys);
-  for (const std::uint32_t i : order) write_one(rays[i], keys[i]);
 }
