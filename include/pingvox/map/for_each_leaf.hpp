@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "pingvox/map/occupancy_map.hpp"
 
@@ -40,26 +41,55 @@ inline constexpr auto kPlaces = [] {
   return places;
 }();
 
+/// Which nodes a walk looks into. Types of their own, so that a walk over the whole map does nothing for it.
+struct Everywhere {
+  template <KeyWord W>
+  bool overlaps(const BasicKey<W>&, int) const {
+    return true;
+  }
+};
+class InBox {
+ public:
+  InBox(const Lattice& lattice, const Box& box) : lattice_(lattice), box_(box) {}
+
+  template <KeyWord W>
+  bool overlaps(const BasicKey<W>& key, int depth) const {
+    if (depth < 0) return true;
+    const Eigen::Vector3d corner = lattice_.lowest_corner_of(key, depth);
+    const double edge = lattice_.cell_size_m(depth);
+    return (corner.array() < box_.max.array()).all() && (corner.array() + edge > box_.min.array()).all();
+  }
+
+ private:
+  const Lattice& lattice_;
+  Box box_;
+};
+
 /// Goes down a tree, entry by entry; in a brick from bit to bit. Depths are those of the lattice: a lattice of one
 /// level has a brick at depth -1, of which only octant 0 is used.
-template <KeyWord W, class Visitor>
+template <KeyWord W, class Where, class Visitor>
 class LeafWalk {
  public:
-  LeafWalk(const OccupancyMap& map, const LeafQuery& query, Visitor& visit)
-      : tree_(map.tree()), lattice_(map.lattice()), parents_(map.options().parents), query_(query), visit_(visit) {}
+  LeafWalk(const OccupancyMap& map, std::optional<int> max_depth, const Where& where, Visitor& visit)
+      : tree_(map.tree()),
+        lattice_depth_(map.lattice().depth()),
+        parents_(map.options().parents),
+        max_depth_(max_depth),
+        where_(where),
+        visit_(visit) {}
 
   void over(const Entry& entry, const BasicKey<W>& key, int depth) {
-    if (entry.is_none() || !is_wanted(key, depth)) return;
-    if (entry.is_leaf() || depth == query_.max_depth) {
+    if (entry.is_none() || !where_.overlaps(key, depth)) return;
+    if (entry.is_leaf() || depth == max_depth_) {
       visit_(Leaf<W>{key, depth, LogOdds(entry.value)});
       return;
     }
-    if (depth == lattice_.depth() - 2) {
+    if (depth == lattice_depth_ - 2) {
       over(tree_.bricks[entry.link], key, depth);
       return;
     }
     const Group& group = tree_.groups[entry.link];
-    if (depth == lattice_.depth() - 3) fetch_bricks(tree_, group);
+    if (depth == lattice_depth_ - 3) fetch_bricks(tree_, group);
     for (std::size_t octant = 0; octant < 8; ++octant) over(group.child[octant], below(key, depth, octant), depth + 1);
   }
 
@@ -67,7 +97,7 @@ class LeafWalk {
   static constexpr std::uint64_t kFirstCells = 0x0101010101010101;  ///< of each octant
 
   void over(const Brick& brick, const BasicKey<W>& key, int depth) {
-    if (depth + 1 == query_.max_depth) {
+    if (depth + 1 == max_depth_) {
       over_octants(brick, key, depth);
       return;
     }
@@ -77,10 +107,8 @@ class LeafWalk {
       const auto cell = static_cast<std::size_t>(std::countr_zero(left));
       const int leaf_depth = depth + ((joined >> cell) & 1 ? 1 : 2);
       const BasicKey<W> leaf_key = cell_below(key, cell);
-      if (query_.box &&
-          !(is_wanted(cell_below(key, cell & ~std::size_t{7}), depth + 1) && is_wanted(leaf_key, leaf_depth))) {
-        continue;
-      }
+      const BasicKey<W> octant_key = cell_below(key, cell & ~std::size_t{7});
+      if (!where_.overlaps(octant_key, depth + 1) || !where_.overlaps(leaf_key, leaf_depth)) continue;
       visit_(Leaf<W>{leaf_key, leaf_depth, LogOdds(brick.value[cell])});
     }
   }
@@ -89,18 +117,10 @@ class LeafWalk {
     for (std::size_t octant = 0; octant < 8; ++octant) {
       if ((brick.known >> (octant * 8) & 0xFF) == 0) continue;
       const BasicKey<W> octant_key = cell_below(key, octant * 8);
-      if (!is_wanted(octant_key, depth + 1)) continue;
+      if (!where_.overlaps(octant_key, depth + 1)) continue;
       const float summary = summary_of_octant(brick, static_cast<int>(octant), parents_);
       visit_(Leaf<W>{octant_key, depth + 1, LogOdds(summary)});
     }
-  }
-
-  bool is_wanted(const BasicKey<W>& key, int depth) const { return !query_.box || depth < 0 || overlaps(key, depth); }
-
-  bool overlaps(const BasicKey<W>& key, int depth) const {
-    const Eigen::Vector3d corner = lattice_.lowest_corner_of(key, depth);
-    const double edge = lattice_.cell_size_m(depth);
-    return (corner.array() < query_.box->max.array()).all() && (corner.array() + edge > query_.box->min.array()).all();
   }
 
   /// The cell of a brick whose lowest one is `key`.
@@ -110,7 +130,7 @@ class LeafWalk {
   }
 
   BasicKey<W> below(const BasicKey<W>& key, int depth, std::size_t octant) const {
-    const int bit = lattice_.depth() - 1 - depth;
+    const int bit = lattice_depth_ - 1 - depth;
     const auto with_bit = [&](W word, int axis) {
       return static_cast<W>(word | static_cast<W>(static_cast<W>((octant >> axis) & 1) << bit));
     };
@@ -118,9 +138,10 @@ class LeafWalk {
   }
 
   const BrickTree& tree_;
-  const Lattice& lattice_;
+  int lattice_depth_;
   Parents parents_;
-  const LeafQuery& query_;
+  std::optional<int> max_depth_;
+  Where where_;
   Visitor& visit_;
 };
 
@@ -132,7 +153,15 @@ template <KeyWord W, class Visitor>
 void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& visit) {
   assert(map.lattice().depth() <= kLevelsOf<W>);
   const detail::BrickTree& tree = map.tree();
-  detail::LeafWalk<W, Visitor>(map, query, visit).over(tree.root, BasicKey<W>{}, -tree.extra_levels);
+  const auto walk = [&]<class Where>(const Where& where) {
+    detail::LeafWalk<W, Where, std::remove_reference_t<Visitor>>(map, query.max_depth, where, visit)
+        .over(tree.root, BasicKey<W>{}, -tree.extra_levels);
+  };
+  if (query.box) {
+    walk(detail::InBox(map.lattice(), *query.box));
+  } else {
+    walk(detail::Everywhere{});
+  }
 }
 
 }  // namespace pingvox
