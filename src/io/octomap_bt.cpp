@@ -2,14 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <bit>
 #include <cassert>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
-#include <vector>
 
+#include "io/bt_words.hpp"
 #include "io/byte_reader.hpp"
 #include "io/map_files.hpp"
 #include "io/octomap_header.hpp"
@@ -18,43 +18,7 @@
 namespace pingvox {
 namespace {
 
-constexpr unsigned kUnknown = 0, kFree = 1, kOccupied = 2, kInner = 3;
-constexpr unsigned kAllFree = 0x5555, kAllOccupied = 0xAAAA;
-
 constexpr int kBrickDepth = kOctomapDepth - 2;
-
-constexpr unsigned state_of(unsigned word, std::size_t octant) {
-  return (word >> (2 * octant)) & 3U;
-}
-
-/// Children that a word names.
-constexpr unsigned children_of(unsigned word) {
-  unsigned children = (word | word >> 1) & 0x5555U;
-  children = (children & 0x3333U) + (children >> 2 & 0x3333U);
-  children = (children + (children >> 4)) & 0x0F0FU;
-  return (children + (children >> 8)) & 0xFU;
-}
-
-/// The word of eight children without children, of which these bits are free and occupied.
-constexpr unsigned word_of(unsigned free, unsigned occupied) {
-  unsigned bits = free | occupied << 16;  // both at once: bit i of each half goes to bit 2 i
-  bits = (bits | bits << 4) & 0x0F0F0F0FU;
-  bits = (bits | bits << 2) & 0x33333333U;
-  bits = (bits | bits << 1) & 0x55555555U;
-  return (bits | bits >> 15) & 0xFFFFU;
-}
-
-struct States {
-  unsigned free, occupied;  ///< inner children are in both
-};
-/// What word_of was made of.
-constexpr States states_of(unsigned word) {
-  unsigned bits = (word & 0x5555U) | (word & 0xAAAAU) << 15;
-  bits = (bits | bits >> 1) & 0x33333333U;
-  bits = (bits | bits >> 2) & 0x0F0F0F0FU;
-  bits = (bits | bits >> 4) & 0x00FF00FFU;
-  return {bits & 0xFFU, bits >> 16};
-}
 
 /// Builds the tree from below, whole groups and bricks at a time.
 class TreeReader {
@@ -158,66 +122,66 @@ class TreeReader {
 /// Makes the words of a tree as they would be if each leaf were as sure as it can be and equal ones were joined.
 class TreeWords {
  public:
-  explicit TreeWords(const OccupancyMap& map) : tree_(map.tree()), thresholds_(map.options().thresholds) {
-    words_.reserve(tree_.groups.bytes() / sizeof(detail::Group) +
-                   tree_.bricks.bytes() / sizeof(detail::Brick) * kMostBrickWords);
+  explicit TreeWords(const OccupancyMap& map)
+      : tree_(map.tree()), thresholds_(map.options().thresholds), words_(room_for(tree_)), end_(words_.get()) {
     const unsigned state = add(tree_.root, 0);
     // The format cannot say what a root without children is: liboctomap reads it as occupied.
-    if (state == kFree || state == kOccupied) words_.push_back(state == kFree ? kAllFree : kAllOccupied);
+    if (state == kFree || state == kOccupied) *end_++ = state == kFree ? kAllFree : kAllOccupied;
   }
 
-  const std::vector<std::uint16_t>& words() const { return words_; }
+  std::span<std::uint16_t> words() { return {words_.get(), end_}; }
 
   std::uint64_t nodes() const {
-    std::uint64_t nodes = words_.empty() ? 0 : 1;
-    for (const std::uint16_t word : words_) nodes += children_of(word);
+    std::uint64_t nodes = end_ == words_.get() ? 0 : 1;
+    for (const std::uint16_t* word = words_.get(); word != end_; ++word) nodes += children_of(*word);
     return nodes;
   }
 
  private:
-  static constexpr std::size_t kMostBrickWords = 9;  ///< its own and those of its octants
+  /// More than there may be, so that no word is added with care.
+  static std::unique_ptr<std::uint16_t[]> room_for(const detail::BrickTree& tree) {
+    constexpr std::size_t kMostBrickWords = 9;  // its own and those of its octants
+    const std::size_t groups = tree.groups.bytes() / sizeof(detail::Group);
+    const std::size_t bricks = tree.bricks.bytes() / sizeof(detail::Brick);
+    return std::make_unique_for_overwrite<std::uint16_t[]>(groups + bricks * kMostBrickWords + kMostBrickWords);
+  }
 
   /// The state of a node, after its words and those below it, if there are any.
   unsigned add(const detail::Entry& entry, int depth) {
     if (entry.is_none()) return kUnknown;
     if (entry.is_leaf()) return state_of_leaf(LogOdds(entry.value));
-    if (depth == kBrickDepth) return add(tree_.bricks[entry.link]);
-    const std::size_t at = words_.size();
-    words_.push_back(0);
-    const detail::Group& group = tree_.groups[entry.link];
+    return depth == kBrickDepth ? add(tree_.bricks[entry.link]) : add(tree_.groups[entry.link], depth);
+  }
+
+  unsigned add(const detail::Group& group, int depth) {
+    std::uint16_t* const at = end_++;
     if (depth + 1 == kBrickDepth) detail::fetch_bricks(tree_, group);
     unsigned word = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) word |= add(group.child[octant], depth + 1) << (2 * octant);
     if (is_alike(word)) {
-      assert(words_.size() == at + 1);
-      words_.pop_back();
+      assert(end_ == at + 1);
+      end_ = at;
       return word & 3U;
     }
-    words_[at] = static_cast<std::uint16_t>(word);
+    *at = static_cast<std::uint16_t>(word);
     return kInner;
   }
 
   unsigned add(const detail::Brick& brick) {
     const detail::CellStates cells = detail::classified(brick, thresholds_);
-    std::array<std::uint16_t, kMostBrickWords> words;
-    std::ptrdiff_t count = 1;
-    unsigned word = 0;
-    for (std::size_t octant = 0; octant < 8; ++octant) {
-      const auto byte_of = [&](std::uint64_t mask) { return static_cast<unsigned>(mask >> (octant * 8)) & 0xFFU; };
-      const unsigned below = word_of(byte_of(cells.free), byte_of(cells.occupied));
-      const bool is_inner = !is_alike(below);
-      words[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(below);
-      count += is_inner ? 1 : 0;
-      word |= (is_inner ? kInner : below & 3U) << (2 * octant);
-    }
+    const EightWords octants = words_of(cells.free, cells.occupied);
+    const EightWords are_inner = mixed(octants);
+    const unsigned word = word_above(octants, are_inner);
     if (is_alike(word)) return word & 3U;
-    words[0] = static_cast<std::uint16_t>(word);
-    words_.insert(words_.end(), words.begin(), words.begin() + count);
+    std::uint16_t* end = end_;
+    *end++ = static_cast<std::uint16_t>(word);
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      *end = octants[octant];  // and over it the next one, unless it is of an inner node
+      end += are_inner[octant] & 1U;
+    }
+    end_ = end;
     return kInner;
   }
-
-  /// Whether all children are in the same state, and have no children.
-  static bool is_alike(unsigned word) { return word == 0 || word == kAllFree || word == kAllOccupied; }
 
   unsigned state_of_leaf(LogOdds belief) const {
     switch (classified(belief, thresholds_)) {
@@ -233,7 +197,8 @@ class TreeWords {
 
   const detail::BrickTree& tree_;
   Thresholds thresholds_;
-  std::vector<std::uint16_t> words_;
+  std::unique_ptr<std::uint16_t[]> words_;
+  std::uint16_t* end_;  ///< behind the last word
 };
 
 }  // namespace
@@ -258,14 +223,14 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
 
 Result<void> write_bt(const OccupancyMap& map, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".bt"); !fits) return fits;
-  const TreeWords tree(map);
+  TreeWords tree(map);
   // As one block, and without the checksum that a ByteWriter keeps: the format has none.
   out << octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m());
-  std::vector<std::uint16_t> words = tree.words();
+  const std::span<std::uint16_t> words = tree.words();
   if constexpr (std::endian::native != std::endian::little) {
     for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(word >> 8 | word << 8);
   }
-  out.write(reinterpret_cast<const char*>(words.data()), static_cast<std::streamsize>(words.size() * sizeof words[0]));
+  out.write(reinterpret_cast<const char*>(words.data()), static_cast<std::streamsize>(words.size_bytes()));
   out.flush();
   if (!out) return fail(Error::Code::kIo, "the map could not be written");
   return {};
