@@ -57,6 +57,7 @@ class Octants {
  public:
   explicit Octants(const BasicKey<W>& key) : key_(key) {}
   std::size_t at(int level) const { return static_cast<std::size_t>(key_.octant(level)); }
+  std::size_t cell_in_brick() const { return static_cast<std::size_t>(detail::cell_in_brick(key_)); }
 
  private:
   BasicKey<W> key_;
@@ -67,6 +68,7 @@ class Octants<W> {
  public:
   explicit Octants(const BasicKey<W>& key) : code_(detail::code_of(key)) {}
   std::size_t at(int level) const { return static_cast<std::size_t>(code_ >> (3 * level) & 7); }
+  std::size_t cell_in_brick() const { return static_cast<std::size_t>(code_ & 63); }
 
  private:
   std::uint64_t code_;
@@ -74,8 +76,7 @@ class Octants<W> {
 
 /// The deepest entry that holds a key.
 template <KeyWord W>
-detail::Entry entry_above(const detail::BrickTree& tree, const BasicKey<W>& key) {
-  const Octants<W> octants(key);
+inline detail::Entry entry_above(const detail::BrickTree& tree, const Octants<W>& octants) {
   detail::Entry entry = tree.root;
   for (int level = tree.levels - 1; level >= 2 && entry.is_inner(); --level) {
     entry = tree.groups[entry.link].child[octants.at(level)];
@@ -257,11 +258,12 @@ std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>& key, int depth)
 
 template <KeyWord W>
 std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
-  const detail::Entry entry = entry_above(tree_, key);
+  const Octants<W> octants(key);
+  const detail::Entry entry = entry_above(tree_, octants);
   if (entry.is_none()) return std::nullopt;
   if (entry.is_leaf()) return LogOdds(entry.value);
   const detail::Brick& brick = tree_.bricks[entry.link];
-  const auto cell = static_cast<std::size_t>(detail::cell_in_brick(key));
+  const std::size_t cell = octants.cell_in_brick();
   if (((brick.known >> cell) & 1) == 0) return std::nullopt;
   return LogOdds(brick.value[cell]);
 }
@@ -275,8 +277,20 @@ std::optional<LogOdds> OccupancyMap::at(const Eigen::Vector3d& point_m) const {
 
 template <KeyWord W>
 Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
-  const auto belief = at(key);
-  return belief ? classified(*belief, options_.thresholds) : Occupancy::kUnknown;
+  const Octants<W> octants(key);
+  const detail::Entry entry = entry_above(tree_, octants);
+  float value = entry.value;
+  unsigned is_known = entry.is_none() ? 0 : 1;
+  if (entry.is_inner()) {
+    const detail::Brick& brick = tree_.bricks[entry.link];
+    const std::size_t cell = octants.cell_in_brick();
+    value = brick.value[cell];
+    is_known = static_cast<unsigned>(brick.known >> cell) & 1U;
+  }
+  // By arithmetic: what is where is as good as random, and a branch on it is not foreseen.
+  const unsigned is_occupied = value >= options_.thresholds.upper.value() ? 1 : 0;
+  const unsigned is_free = value < options_.thresholds.lower.value() ? 1 : 0;
+  return static_cast<Occupancy>(is_known * (2 * is_occupied + is_free));
 }
 
 Occupancy OccupancyMap::classify(const Eigen::Vector3d& point_m) const {

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
+
 #include "support/map_duel.hpp"
 
 using namespace pingvox;
@@ -27,6 +30,35 @@ TEST_P(OccupancyMapAtDepth, AnswersLikeTheOracleAfterRandomOperations) {
   }
   EXPECT_GT(compared, GetParam() == 1 ? 5'000U : 100'000U);
   EXPECT_GT(joined, 50U);
+}
+
+// Kills a class of a cell that is another one than its belief's: in a brick, in a larger leaf, where nothing is known,
+// between the thresholds and on them.
+TEST_P(OccupancyMapAtDepth, ClassifiesTheBeliefThatItHolds) {
+  const int depth = GetParam();
+  const LogOdds lower(-0.5F), upper(1.0F);
+  OccupancyMap map({.depth = depth, .thresholds = {lower, upper}});
+  std::mt19937_64 random(7);
+  const WideWord cells = depth >= 4 ? 16 : WideWord{1} << depth;  // around the centre, where octants of the root meet
+  const WideWord lowest = (WideWord{1} << (depth - 1)) - cells / 2;
+  const auto any_key = [&] {
+    return WideKey{lowest + random() % cells, lowest + random() % cells, lowest + random() % cells};
+  };
+  std::array<std::size_t, 3> seen{};
+  for (int round = 0; round < 200; ++round) {
+    const WideKey key = any_key();
+    const std::array beliefs{LogOdds(-2.0F), lower, LogOdds(0.0F), upper, LogOdds(3.0F)};
+    map.edit().set(key, depth - (depth > 3 ? static_cast<int>(random() % 3) : 0), beliefs[random() % beliefs.size()]);
+    for (int i = 0; i < 50; ++i) {
+      const WideKey asked = any_key();
+      const auto belief = map.at(asked);
+      const Occupancy expected = belief ? classified(*belief, map.options().thresholds) : Occupancy::kUnknown;
+      ASSERT_EQ(map.classify(asked), expected);
+      with_key_word(depth, [&]<KeyWord W>() { ASSERT_EQ(map.classify(asked.as<W>()), expected); });
+      ++seen[static_cast<std::size_t>(expected)];
+    }
+  }
+  for (const std::size_t times : seen) EXPECT_GT(times, 200U);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllKeyWidths, OccupancyMapAtDepth, testing::ValuesIn(kDepths));

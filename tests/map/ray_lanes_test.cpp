@@ -181,6 +181,7 @@ TEST(RayLanes, KeysAreThoseOfTheStepper) {
 TEST(RayLanes, SpreadBitsAreGatheredAgain) {
   for (std::uint64_t word = 0; word < 2048; ++word) {
     ASSERT_EQ(gathered_bits(spread_bits(word)), word);
+    ASSERT_EQ(spread_16_bits(static_cast<std::uint16_t>(word * 32 + 31)), spread_bits(word * 32 + 31));
     ASSERT_EQ(gathered_bits(spread_bits(word) << 1 >> 1 | spread_bits(2047) << 1 | spread_bits(5) << 2), word);
   }
 }
