@@ -246,7 +246,10 @@ void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& 
   for (std::size_t i = 0; i < rays.size(); ++i) into.ends_[i] = ready[i].left;
   for (const std::uint32_t i : others) into.ends_[i] = faces_between(lattice, rays[i]);
   std::size_t begin = 0;
-  for (std::size_t& end : into.ends_) begin = (end += begin) + 1;
+  for (std::size_t& end : into.ends_) {
+    end += begin;
+    begin = end + 1;
+  }
   if (into.keys_.size() < begin + 1) into.keys_.resize(begin + 1);
 
   std::vector<Key*> places(rays.size());
@@ -254,7 +257,9 @@ void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& 
   detail::write_keys(lanes, ready, places);
   for (const std::uint32_t i : others) {
     const auto ray = dda<std::uint16_t>(lattice, rays[i].from_m, rays[i].to_m);
-    if (ray) std::ranges::copy(*ray, places[i]);
+    if (!ray) continue;
+    Key* at = places[i];
+    for (const Key key : *ray) *at++ = key;
   }
 }
 
