@@ -86,27 +86,22 @@ detail::ScanWindow& ScanUpdate::window(int bits) {
 }
 
 void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
-  std::uint64_t* const touched = window_.touched();
-  for (std::size_t word = 0; word < window_.touched_words(); ++word) {
-    for (std::uint64_t left = touched[word]; left != 0; left &= left - 1) {
-      const std::uint64_t number = word * 64 + static_cast<std::uint64_t>(std::countr_zero(left));
-      const BasicKey<std::uint64_t> at = detail::key_of_code(number);
-      const std::uint32_t index =
-          page_of({lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)});
-      Page& page = pages_[index];
-      std::uint64_t* const missed = window_.missed() + number * 64;
-      std::uint64_t* const hits = window_.hit() + number * 64;
-      for (std::size_t brick = 0; brick < 64; ++brick) {
-        page.missed[brick] |= missed[brick];
-        for (std::uint64_t cells = hits[brick]; cells != 0; cells &= cells - 1) {
-          mark_hit(index, brick * 64 + static_cast<std::size_t>(std::countr_zero(cells)), hit);
-        }
+  detail::take_touched(window_, [&](std::uint64_t number) {
+    const BasicKey<std::uint64_t> at = detail::key_of_code(number);
+    const std::uint32_t index =
+        page_of({lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)});
+    Page& page = pages_[index];
+    std::uint64_t* const missed = window_.missed() + number * 64;
+    std::uint64_t* const hits = window_.hit() + number * 64;
+    for (std::size_t brick = 0; brick < 64; ++brick) {
+      page.missed[brick] |= missed[brick];
+      for (std::uint64_t cells = hits[brick]; cells != 0; cells &= cells - 1) {
+        mark_hit(index, brick * 64 + static_cast<std::size_t>(std::countr_zero(cells)), hit);
       }
-      std::fill_n(missed, 64, 0);
-      std::fill_n(hits, 64, 0);
     }
-    touched[word] = 0;
-  }
+    std::fill_n(missed, 64, 0);
+    std::fill_n(hits, 64, 0);
+  });
 }
 
 void ScanUpdate::clear() {

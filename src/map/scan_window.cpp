@@ -10,7 +10,8 @@ void ScanWindow::open(int bits) {
   const std::size_t bytes = (std::size_t{1} << (3 * bits)) / 8;
   missed_.grow(bytes);
   hit_.grow(bytes);
-  touched_.grow(touched_words() * sizeof(std::uint64_t));
+  asked_.grow(bytes);
+  touched_.grow(pages());
 }
 
 }  // namespace pingvox::detail

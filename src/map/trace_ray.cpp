@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "map/dense_fan.hpp"
 #include "map/kernels/ray_lanes.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/ray_bresenham.hpp"
@@ -67,12 +68,14 @@ class FanTracer {
   FanTracer(const Lattice& lattice, const Eigen::Vector3d& origin_m, const PointScanOptions& options,
             std::span<const Eigen::Vector3d> some, ScanUpdate& scan)
       : lattice_(lattice), origin_m_(origin_m), options_(options), scan_(scan) {
-    const int bits = window_bits(some);
+    const double reach = reach_of(some);
+    const int bits = window_bits(reach);
     if (options.ray != RayAlgorithm::kDda || some.size() < kFewRays || lattice.depth() <= ScanUpdate::kPageBits ||
         bits > detail::ScanWindow::kMostBits) {
       return;
     }
     window_ = &scan.window(bits);
+    squares_ = 2 * static_cast<std::uint32_t>(std::ceil(kSquaresPerCell * std::max(reach, 1.0)));
     place_window(bits);
   }
 
@@ -82,6 +85,13 @@ class FanTracer {
   std::size_t trace(std::span<const Eigen::Vector3d> ends_m, Ends ends) {
     if (window_ == nullptr) return trace_singly(ends_m, ends);
     std::size_t outside = 0;
+    if (ends == Ends::kHit && ends_m.size() >= kManyRays) {
+      others_.clear();
+      detail::DenseFan dense(lanes_, fan_, start_, squares_, *window_);
+      dense.mark(ends_m, others_);
+      for (const std::uint32_t other : others_) outside += trace_singly(ends_m.subspan(other, 1), ends);
+      return outside;
+    }
     for_each_block(ends_m, [&](std::span<const Eigen::Vector3d> block) {
       others_.clear();
       detail::prepare_rays(lanes_, fan_, block, ready_, others_);
@@ -135,6 +145,10 @@ class FanTracer {
   // Below, opening and emptying a window costs more than it saves.
   static constexpr std::size_t kFewRays = 16;
   static constexpr std::size_t kBlock = 2048;
+  // Below, to sort them costs more than to walk each.
+  static constexpr std::size_t kManyRays = 8192;
+  // Of directions, at the far ends of the rays.
+  static constexpr double kSquaresPerCell = 0.8;
 
   template <class F>
   static void for_each_block(std::span<const Eigen::Vector3d> all, F&& f) {
@@ -155,18 +169,22 @@ class FanTracer {
   }
 
   /// @return whether it was not marked before
-  bool mark_hit(std::uint64_t place) { return detail::mark_place(place, window_->hit(), window_->touched()); }
+  bool mark_hit(std::uint64_t place) { return detail::mark_first(place, window_->hit(), window_->touched()); }
 
-  /// Of a window that holds the rays: a guess from some of them. More than there may be where it is of no use.
-  int window_bits(std::span<const Eigen::Vector3d> ends_m) const {
+  /// How far rays go along any axis [cells]: a guess from some of them.
+  double reach_of(std::span<const Eigen::Vector3d> ends_m) const {
     constexpr std::size_t kLooked = 1024;
     const std::size_t apart = std::max<std::size_t>(1, ends_m.size() / kLooked);
     double farthest_m = 0.0;
     for (std::size_t i = 0; i < ends_m.size(); i += apart) {
       farthest_m = std::max(farthest_m, (ends_m[i] - origin_m_).cwiseAbs().maxCoeff());
     }
-    farthest_m = std::min(farthest_m, options_.max_range_m);
-    const double cells = 2.0 * (farthest_m / lattice_.resolution_m() + 1.0 + (1 << ScanUpdate::kPageBits));
+    return std::min(farthest_m, options_.max_range_m) / lattice_.resolution_m();
+  }
+
+  /// Of a window that holds rays of such a reach. More than there may be where it is of no use.
+  int window_bits(double reach) const {
+    const double cells = 2.0 * (reach + 1.0 + (1 << ScanUpdate::kPageBits));
     // Farther out, doubles have gaps, and keys of deep lattices are no whole numbers of 64 bits.
     const double farthest_cell = origin_m_.cwiseAbs().maxCoeff() / lattice_.resolution_m() + cells;
     if (!(farthest_cell < 0x1p40)) return detail::ScanWindow::kMostBits + 1;
@@ -212,7 +230,8 @@ class FanTracer {
   ScanUpdate& scan_;
   detail::ScanWindow* window_ = nullptr;  ///< nullptr: every ray by itself
   detail::RayFan fan_;
-  std::uint64_t start_ = 0;  ///< place of the cell where the rays begin
+  std::uint32_t squares_ = 1;  ///< of directions, along an edge
+  std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
   detail::Lanes lanes_ = detail::widest_lanes();
   std::vector<detail::ReadyRay> ready_;
   std::vector<std::uint32_t> others_;

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <utility>
 
 #include "pingvox/map/pool.hpp"
 
@@ -32,26 +34,45 @@ class ScanWindow {
   /// A bit a cell: cell c is bit c % 64 of word c / 64.
   std::uint64_t* missed() { return reinterpret_cast<std::uint64_t*>(missed_.data()); }
   std::uint64_t* hit() { return reinterpret_cast<std::uint64_t*>(hit_.data()); }
-  /// A bit a page in which either has a mark.
-  std::uint64_t* touched() { return reinterpret_cast<std::uint64_t*>(touched_.data()); }
-  std::size_t touched_words() const { return (std::size_t{1} << (3 * bits_ - kPageCellBits)) / 64 + 1; }
+  /// The same for a tracer's own use: it leaves it empty.
+  std::uint64_t* asked() { return reinterpret_cast<std::uint64_t*>(asked_.data()); }
+  /// A byte a page, 1 where either may have a mark; pages are numbered like cells.
+  std::uint8_t* touched() { return reinterpret_cast<std::uint8_t*>(touched_.data()); }
+  std::size_t pages() const { return std::size_t{1} << (3 * bits_ - kPageCellBits); }
 
  private:
   int bits_ = 0;
-  Arena missed_{Arena::Pages::kSmall}, hit_{Arena::Pages::kSmall}, touched_{Arena::Pages::kSmall};
+  Arena missed_{Arena::Pages::kSmall}, hit_{Arena::Pages::kSmall}, asked_{Arena::Pages::kSmall},
+      touched_{Arena::Pages::kSmall};
 };
 
-/// Sets the bit of a cell in one of a window's masks, and that of its page. @return whether it was not set before
-inline __attribute__((always_inline)) bool mark_place(std::uint64_t place, std::uint64_t* mask,
-                                                      std::uint64_t* touched) {
-  std::uint64_t& word = mask[place / 64];
-  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-  // Most cells are crossed by many rays: reading is cheaper than writing the same again.
-  if ((word & bit) != 0) return false;
-  word |= bit;
-  const std::uint64_t page = place >> ScanWindow::kPageCellBits;
-  touched[page / 64] |= std::uint64_t{1} << (page % 64);
+/// Sets the bit of a cell in one of a window's masks, and the byte of its page. There is no branch: whether a ray is
+/// the first one in a cell cannot be foreseen.
+inline __attribute__((always_inline)) void mark_place(std::uint64_t place, std::uint64_t* mask, std::uint8_t* touched) {
+  mask[place / 64] |= std::uint64_t{1} << (place % 64);
+  touched[place >> ScanWindow::kPageCellBits] = 1;
+}
+
+/// The same where most cells are marked already. @return whether it was not set before
+inline bool mark_first(std::uint64_t place, std::uint64_t* mask, std::uint8_t* touched) {
+  if ((mask[place / 64] >> (place % 64) & 1) != 0) return false;
+  mark_place(place, mask, touched);
   return true;
+}
+
+/// Calls f(page) for each page that is touched, and clears its byte.
+template <class F>
+void take_touched(ScanWindow& window, F&& f) {
+  constexpr std::size_t kTogether = 8;
+  std::uint8_t* const touched = window.touched();
+  for (std::size_t first = 0; first < window.pages(); first += kTogether) {
+    std::uint64_t some;
+    std::memcpy(&some, touched + first, sizeof some);
+    if (some == 0) continue;
+    for (std::size_t page = first; page < first + kTogether; ++page) {
+      if (std::exchange(touched[page], std::uint8_t{0}) != 0) f(page);
+    }
+  }
 }
 
 }  // namespace pingvox::detail

@@ -26,7 +26,7 @@ constexpr std::uint64_t step_of(std::size_t axis, bool is_ahead) {
 
 void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
   std::uint64_t* const missed = window.missed();
-  std::uint64_t* const touched = window.touched();
+  std::uint8_t* const touched = window.touched();
   for (const ReadyRay& ray : rays) {
     std::array<std::int64_t, 3> next = ray.next;
     std::array<std::uint64_t, 3> step{}, place{};

@@ -165,7 +165,7 @@ inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& 
 
 /// Walks up to kLanes rays of about the same length, face by face.
 inline void mark_some(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order, std::uint64_t start,
-                      std::uint64_t* missed, std::uint64_t* touched) {
+                      std::uint64_t* missed, std::uint8_t* touched) {
   std::array<Words, 3> next{}, apart{}, step{}, place{};
   Words left{};
   for (std::size_t l = 0; l < order.size(); ++l) {

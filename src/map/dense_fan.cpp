@@ -1,0 +1,177 @@
+#include "map/dense_fan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "map/tree_order.hpp"
+
+namespace pingvox::detail {
+namespace {
+
+/// Rays that are walked or aimed together.
+constexpr std::size_t kBlock = 1024;
+/// So many rays must make a run, and go through a square, or walking each of them is quicker.
+constexpr std::size_t kInOrder = 2, kDense = 8;
+/// So many to each square at the fan's border: the cells there are asked in vain.
+constexpr std::size_t kPerBorder = 64;
+
+/// Cells of a brick next to those of a mask, along one axis; bits are in the tree's order.
+class BrickNeighbours {
+ public:
+  constexpr explicit BrickNeighbours(unsigned axis)
+      : one_(1U << axis), two_(8U << axis), even_(kEven[axis]), low_(kLow[axis]) {}
+  constexpr std::uint64_t ahead(std::uint64_t cells) const {
+    return (cells & even_) << one_ | (cells & ~even_ & low_) << (two_ - one_);
+  }
+  constexpr std::uint64_t behind(std::uint64_t cells) const {
+    return (cells & ~even_) >> one_ | (cells & even_ & ~low_) >> (two_ - one_);
+  }
+  /// Cells that border on those of the next brick, and of the one before.
+  constexpr std::uint64_t before_next(std::uint64_t next) const { return (next & even_ & low_) << (one_ + two_); }
+  constexpr std::uint64_t after_last(std::uint64_t last) const { return (last & ~even_ & ~low_) >> (one_ + two_); }
+
+ private:
+  /// Cells with an even coordinate, and with one below 2.
+  static constexpr std::array<std::uint64_t, 3> kEven{0x5555555555555555U, 0x3333333333333333U, 0x0F0F0F0F0F0F0F0FU};
+  static constexpr std::array<std::uint64_t, 3> kLow{0x00FF00FF00FF00FFU, 0x0000FFFF0000FFFFU, 0x00000000FFFFFFFFU};
+  unsigned one_, two_;
+  std::uint64_t even_, low_;
+};
+constexpr std::array<BrickNeighbours, 3> kAlong{BrickNeighbours(0), BrickNeighbours(1), BrickNeighbours(2)};
+
+constexpr std::uint64_t kAxis = 0x1249249249249249U;
+
+/// The number one further along an axis, in the tree's order. What leaves `all` (the highest number) wraps around.
+constexpr std::uint64_t next_number(std::uint64_t number, unsigned axis, std::uint64_t all) {
+  const std::uint64_t bits = kAxis << axis;
+  return (((number | ~bits) + 1) & bits & all) | (number & ~bits);
+}
+constexpr std::uint64_t number_before(std::uint64_t number, unsigned axis, std::uint64_t all) {
+  const std::uint64_t bits = kAxis << axis;
+  return (((number & bits) - 1) & bits & all) | (number & ~bits);
+}
+
+}  // namespace
+
+std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, std::vector<std::uint32_t>& others) {
+  ends_m_ = ends_m;
+  others_ = &others;
+  walked_ = 0;
+  if (!mark_dense()) walk_all();
+  return walked_;
+}
+
+bool DenseFan::mark_dense() {
+  RayRuns rays(lanes_, fan_, squares_, ends_m_);
+  std::array<std::uint64_t, kBlock + kAimedBeyond> place;
+  std::array<std::uint32_t, kBlock + kAimedBeyond> square;
+  std::array<Aim, kBlock + kAimedBeyond> aim;
+  for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, ends_m_.size() - first);
+    aim_rays(lanes_, fan_, squares_, ends_m_.subspan(first, count), {place, square, aim});
+    mark_hits(std::span(place).first(count));
+    rays.add({place, square, aim}, count);
+    if (rays.rays() < kInOrder * rays.runs() || rays.rays() < kDense * rays.squares()) return false;
+  }
+  if (rays.rays() < kPerBorder * rays.border()) return false;
+  rays.sort();
+  walk(rays.take_one_of_each_square());
+  walk_the_rest(rays);
+  others_->insert(others_->end(), rays.outside().begin(), rays.outside().end());
+  return true;
+}
+
+void DenseFan::mark_hits(std::span<const std::uint64_t> places) {
+  for (const std::uint64_t place : places) {
+    if (place != kNowhere) mark_first(place, window_.hit(), window_.touched());
+  }
+}
+
+void DenseFan::walk_all() {
+  walked_ += ends_m_.size();
+  for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
+    not_ready_.clear();
+    prepare_rays(lanes_, fan_, ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), ready_, not_ready_);
+    for (const ReadyRay& ray : ready_) mark_first(ray.end, window_.hit(), window_.touched());
+    mark_rays(lanes_, ready_, start_, window_);
+    for (const std::uint32_t number : not_ready_) others_->push_back(static_cast<std::uint32_t>(first) + number);
+  }
+}
+
+void DenseFan::walk(std::span<const std::uint32_t> rays) {
+  walked_ += rays.size();
+  for (; !rays.empty(); rays = rays.subspan(std::min(kBlock, rays.size()))) {
+    const std::span<const std::uint32_t> some = rays.first(std::min(kBlock, rays.size()));
+    walked_ends_m_.clear();
+    for (const std::uint32_t ray : some) walked_ends_m_.push_back(ends_m_[ray]);
+    not_ready_.clear();
+    prepare_rays(lanes_, fan_, walked_ends_m_, ready_, not_ready_);
+    mark_rays(lanes_, ready_, start_, window_);
+    for (const std::uint32_t number : not_ready_) others_->push_back(some[number]);
+  }
+}
+
+void DenseFan::walk_the_rest(RayRuns& rays) {
+  const std::uint64_t last_page = window_.pages() - 1;
+  std::vector<std::uint8_t> touched(window_.pages()), asked(window_.pages());
+  std::vector<std::uint64_t> to_ask;
+  do {
+    to_ask.clear();
+    std::fill(asked.begin(), asked.end(), 0);
+    const auto ask = [&](std::uint64_t page) {
+      if (std::exchange(asked[page], std::uint8_t{1}) == 0) to_ask.push_back(page);
+    };
+    take_touched(window_, [&](std::uint64_t page) {
+      touched[page] = 1;
+      ask(page);
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        ask(next_number(page, axis, last_page));
+        ask(number_before(page, axis, last_page));
+      }
+    });
+    for (const std::uint64_t page : to_ask) ask_page(page, rays);
+    all_asked_.insert(all_asked_.end(), to_ask.begin(), to_ask.end());
+  } while (!to_ask.empty());
+  for (std::size_t page = 0; page < touched.size(); ++page) {
+    if (touched[page] != 0) window_.touched()[page] = 1;
+  }
+  for (const std::uint64_t page : all_asked_) std::fill_n(window_.asked() + page * 64, 64, 0);
+  all_asked_.clear();
+}
+
+void DenseFan::ask_page(std::uint64_t page, RayRuns& rays) {
+  if (!rays.may_cross(corner_of(page << ScanWindow::kPageCellBits), 16.0)) return;
+  do {
+    found_.clear();
+    for (std::uint64_t brick = page * 64; brick < page * 64 + 64; ++brick) ask_brick(brick, rays);
+    walk(found_);
+  } while (!found_.empty());
+}
+
+void DenseFan::ask_brick(std::uint64_t brick, RayRuns& rays) {
+  const std::uint64_t all_bricks = (std::uint64_t{1} << (3 * window_.bits() - 6)) - 1;
+  const auto marked = [&](std::uint64_t which) { return window_.missed()[which] | window_.hit()[which]; };
+  std::uint64_t& asked = window_.asked()[brick];
+  const std::uint64_t here = marked(brick), open = ~here & ~asked;
+  if (open == 0) return;
+  std::uint64_t border = 0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const BrickNeighbours& along = kAlong[axis];
+    border |= along.ahead(here) | along.behind(here) | along.before_next(marked(next_number(brick, axis, all_bricks))) |
+              along.after_last(marked(number_before(brick, axis, all_bricks)));
+  }
+  if ((border & open) != 0) asked |= rays.take_some_across(corner_of(brick * 64), border & open, found_);
+}
+
+Eigen::Vector3d DenseFan::corner_of(std::uint64_t place) const {
+  const BasicKey<std::uint64_t> at = key_of_code(place);
+  return Eigen::Vector3d(static_cast<double>(fan_.window_lowest[0] + static_cast<std::int64_t>(at.x)),
+                         static_cast<double>(fan_.window_lowest[1] + static_cast<std::int64_t>(at.y)),
+                         static_cast<double>(fan_.window_lowest[2] + static_cast<std::int64_t>(at.z))) -
+         fan_.from;
+}
+
+}  // namespace pingvox::detail

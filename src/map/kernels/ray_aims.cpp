@@ -1,0 +1,51 @@
+#include "map/kernels/ray_aims.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+namespace pingvox::detail {
+namespace {
+
+// The same loops for each kind of machine.
+namespace plain {
+constexpr std::size_t kLanes = 4;
+#include "map/kernels/ray_aims_loops.hpp"
+}  // namespace plain
+
+#ifdef PINGVOX_X86_LANES
+#pragma GCC push_options
+#pragma GCC target("avx2")
+namespace avx2 {
+constexpr std::size_t kLanes = 4;
+#include "map/kernels/ray_aims_loops.hpp"
+}  // namespace avx2
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512vl")
+namespace avx512 {
+constexpr std::size_t kLanes = 8;
+#include "map/kernels/ray_aims_loops.hpp"
+}  // namespace avx512
+#pragma GCC pop_options
+#endif
+
+}  // namespace
+
+void aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+              const AimedRays& aimed) {
+  assert(squares > 0 &&
+         std::min({aimed.place.size(), aimed.square.size(), aimed.aim.size()}) >= ends_m.size() + kAimedBeyond);
+  PINGVOX_BY_LANES(lanes, aim(fan, squares, ends_m, aimed), plain::aim(fan, squares, ends_m, aimed));
+}
+
+std::size_t first_that_may_cross(Lanes lanes, const RayFan& fan, const CellAhead& cell,
+                                 std::span<const Eigen::Vector3d> ends_m, std::size_t count, std::uint64_t left_out) {
+  assert(count <= 64 && count <= ends_m.size());
+  PINGVOX_BY_LANES(lanes, first_across(fan, cell, ends_m, count, left_out),
+                   plain::first_across(fan, cell, ends_m, count, left_out));
+}
+
+}  // namespace pingvox::detail

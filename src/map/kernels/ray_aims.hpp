@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include "map/kernels/lanes.hpp"
+#include "map/kernels/ray_lanes.hpp"
+
+/// Which way rays from one place go, several at a time, in single precision: good enough to tell which of them may
+/// cross a cell, and which surely do not.
+namespace pingvox::detail {
+
+/// Four numbers that are treated alike: an aim, and what aims stay within. A ray leaves through a face of the cube
+/// around the place where it begins, that of the axis along which it goes farthest.
+using Aim = float __attribute__((vector_size(4 * sizeof(float))));
+using AimTruth = std::int32_t __attribute__((vector_size(4 * sizeof(float))));  ///< of a comparison: 0 or -1 each
+inline constexpr int kAcross = 0;  ///< what it gains along the next axis for each cell along the face's: -1..1
+inline constexpr int kUp = 1;      ///< the same along the axis after that
+inline constexpr int kReach = 2;   ///< how far it goes along the face's axis [cells]
+
+/// Whether all four are true.
+inline bool is_true(const AimTruth& truth) {
+#ifdef __SSE2__
+  return _mm_movemask_epi8(reinterpret_cast<__m128i>(truth)) == 0xFFFF;
+#else
+  return (truth[0] & truth[1] & truth[2] & truth[3]) != 0;
+#endif
+}
+
+/// The squares that the faces are cut into are numbered by (face * squares + row) * squares + column, rows by kUp,
+/// columns by kAcross; faces by 2 * axis, one more for rays that go back along it.
+/// @param gain  kAcross or kUp of an aim  @param squares  along an edge of the face
+inline std::uint32_t square_along(float gain, std::uint32_t squares) {
+  const float at = (gain + 1.0F) * (0.5F * static_cast<float>(squares));
+  return at <= 0.0F ? 0 : (at >= static_cast<float>(squares) ? squares - 1 : static_cast<std::uint32_t>(at));
+}
+
+/// What aim_rays finds out of some rays.
+struct AimedRays {
+  std::span<std::uint64_t> place;   ///< of the end in the window; kNowhere: outside
+  std::span<std::uint32_t> square;  ///< kNoSquare: outside of the window, or too close for an aim
+  std::span<Aim> aim;
+};
+inline constexpr std::uint32_t kNoSquare = ~std::uint32_t{0};
+
+/// Aims of the rays to `ends_m` [m, map frame].
+/// REQUIRES room for kAimedBeyond more than there are ends: it is written over
+inline constexpr std::size_t kAimedBeyond = 7;
+void aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+              const AimedRays& aimed);
+
+/// A cell as rays through one face come to it [cells, from the place where they begin].
+struct CellAhead {
+  float near, far;   ///< along the face's axis; near >= 0
+  float across, up;  ///< its middle
+  float half_width;  ///< half a cell and a little more
+};
+
+/// @param ends_m    where rays end; what follows the first `count` of them means nothing
+/// @param left_out  bit i: not ray i
+/// @return number of the first of these rays that may cross a cell; `count` when surely none does
+/// REQUIRES count <= 64, and that all go through the same face
+std::size_t first_that_may_cross(Lanes lanes, const RayFan& fan, const CellAhead& cell,
+                                 std::span<const Eigen::Vector3d> ends_m, std::size_t count, std::uint64_t left_out);
+
+}  // namespace pingvox::detail

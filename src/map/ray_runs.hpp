@@ -1,0 +1,118 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "map/kernels/lanes.hpp"
+#include "map/kernels/ray_aims.hpp"
+#include "map/kernels/ray_lanes.hpp"
+
+namespace pingvox::detail {
+
+/// Rays from one place, by the squares of a cube around it that they leave through: finds those that may cross a cell.
+/// Neighbours mostly go through the same square, so they are kept as runs of such.
+class RayRuns {
+ public:
+  /// @param squares  along an edge of the cube
+  /// @param ends_m   where all rays end; `add` takes them in
+  RayRuns(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m);
+
+  /// Takes in the next `count` rays.
+  void add(const AimedRays& aimed, std::size_t count);
+  /// To be called when all are in, before any is taken out.
+  void sort();
+
+  std::size_t rays() const { return rays_; }
+  std::size_t runs() const { return runs_.size(); }
+  /// Squares that rays go through.
+  std::size_t squares() const { return squares_.size(); }
+  /// Edges of these squares beyond which there is none on the same face.
+  std::size_t border() const;
+  /// Rays without a square.
+  std::span<const std::uint32_t> outside() const { return outside_; }
+
+  /// Number of one of the farthest rays of each square; it is taken out.
+  std::vector<std::uint32_t> take_one_of_each_square();
+  /// Takes out a ray for each of some cells of a brick that may cross it, where there is one.
+  /// @param lowest  corner of the brick as seen from where the rays begin [cells]
+  /// @param cells   a bit each
+  /// @param taken   gets the rays' numbers
+  /// @return the cells that surely none crosses
+  std::uint64_t take_some_across(const Eigen::Vector3d& lowest, std::uint64_t cells, std::vector<std::uint32_t>& taken);
+  /// Whether any ray, also one that was taken out, may cross a cube of cells. @param edge  [cells]
+  bool may_cross(const Eigen::Vector3d& lowest, double edge) const;
+
+ private:
+  static constexpr std::uint32_t kFaces = 6;
+  /// What all aims of some rays stay within.
+  struct Bounds {
+    Aim least, most;
+    void join(const Bounds& other) {
+      least = other.least < least ? other.least : least;
+      most = other.most > most ? other.most : most;
+    }
+    bool meets(const Bounds& other) const { return is_true((least <= other.most) & (most >= other.least)); }
+  };
+  static const Bounds kNothing;
+  struct Run {
+    Bounds bounds;
+    std::uint64_t taken = 0;  ///< bit i: ray first + i was taken out
+    std::uint32_t first, count;
+  };
+  struct Square {
+    Bounds bounds;
+    std::uint32_t number;
+    std::uint32_t begin, end;  ///< its runs
+  };
+  /// Columns first..last of a row of squares that rays go through.
+  struct Columns {
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
+  };
+  /// A cube of cells, and within what the aims of rays stay that come to it through one face.
+  struct View {
+    CellAhead cube;
+    Bounds aims;
+  };
+  /// What is to be looked at for a cell: the runs of a square, then the rays of a run.
+  struct SquareToAsk {
+    View cell;
+    const Square* square;
+    std::uint32_t number;  ///< of the cell in its brick
+  };
+  struct RunToAsk {
+    CellAhead cell;
+    std::uint32_t run;
+    std::uint32_t number;
+  };
+
+  void add_run(std::uint32_t square, const Run& run);
+  /// A cube of cells through a face; nullopt: no ray through it comes there.
+  std::optional<View> view(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const;
+  /// Calls f(square) for the squares of a face with aims within bounds, until it returns true.
+  template <class F>
+  bool any_square(std::uint32_t face, const Bounds& aims, F&& f) const;
+  bool may_cross(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const;
+
+  Lanes lanes_;
+  const RayFan& fan_;
+  std::uint32_t per_edge_;
+  std::span<const Eigen::Vector3d> ends_m_;
+  std::size_t rays_ = 0;
+  std::vector<std::uint32_t> outside_;
+  std::array<Bounds, kFaces> faces_;
+  std::vector<Columns> columns_;      ///< of each row of each face
+  std::vector<std::uint32_t> index_;  ///< of each square in squares_, plus one; 0: no ray goes through it
+  std::vector<Square> squares_;
+  std::vector<Run> runs_;                     ///< by squares, once they are sorted
+  std::vector<std::uint32_t> square_of_run_;  ///< in squares_, until then
+  std::vector<SquareToAsk> squares_to_ask_;
+  std::vector<RunToAsk> runs_to_ask_;
+};
+
+}  // namespace pingvox::detail

@@ -1,0 +1,168 @@
+#include "map/dense_fan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "map/tree_order.hpp"
+#include "support/lanes.hpp"
+
+namespace pingvox::detail {
+namespace {
+
+constexpr int kBits = 7;  // a window of 128 cells, from -64 to 63
+constexpr std::int64_t kHalf = 64;
+constexpr std::size_t kWords = (std::size_t{1} << (3 * kBits)) / 64;
+
+RayFan fan_from(const Eigen::Vector3d& from_m, double cells_per_m) {
+  RayFan fan;
+  fan.from = from_m * cells_per_m;
+  fan.cells_per_m = cells_per_m;
+  fan.window_lowest.fill(-kHalf);
+  fan.lowest.fill(-static_cast<double>(kHalf));
+  fan.highest.fill(static_cast<double>(kHalf - 1));
+  return fan;
+}
+
+std::uint64_t start_of(const RayFan& fan) {
+  std::uint64_t start = 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto cell = static_cast<std::int64_t>(std::floor(fan.from[a]));
+    start |= spread_bits(static_cast<std::uint64_t>(cell + kHalf)) << a;
+  }
+  return start;
+}
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+/// Beams side by side as bundles of rays, each of its own length; somewhere in all directions.
+std::vector<Eigen::Vector3d> bundles(std::mt19937_64& random, const Eigen::Vector3d& from_m, double most_m) {
+  constexpr int kAcross = 32, kUp = 64;
+  const Eigen::Vector3d axis(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0));
+  const Eigen::AngleAxisd turn(uniform(random, -3.0, 3.0), axis.normalized());
+  const double height = uniform(random, 0.3, 0.9), width = uniform(random, 0.05, 0.3);
+  std::vector<Eigen::Vector3d> ends_m;
+  for (int beam = 0; beam < 12; ++beam) {
+    const double range_m = uniform(random, 0.1, 1.0) * most_m;
+    for (int up = 0; up < kUp; ++up) {
+      for (int across = 0; across < kAcross; ++across) {
+        const double bearing = width * (beam + (across + 0.5) / kAcross), elevation = height * ((up + 0.5) / kUp - 0.5);
+        const Eigen::Vector3d way(std::cos(elevation) * std::cos(bearing), std::cos(elevation) * std::sin(bearing),
+                                  std::sin(elevation));
+        ends_m.emplace_back(from_m + turn * (range_m * way));
+      }
+    }
+  }
+  return ends_m;
+}
+
+struct Marks {
+  std::vector<std::uint64_t> missed, hit;
+  std::vector<std::uint32_t> others;
+  std::size_t walked = 0;
+};
+
+Marks taken_from(ScanWindow& window) {
+  Marks marks{{window.missed(), window.missed() + kWords}, {window.hit(), window.hit() + kWords}, {}};
+  // Each mark lies in a page that is touched.
+  for (std::size_t word = 0; word < kWords; ++word) {
+    if ((window.missed()[word] | window.hit()[word]) != 0) {
+      EXPECT_EQ(window.touched()[word / 64], 1);
+    }
+    EXPECT_EQ(window.asked()[word], 0U);
+  }
+  return marks;
+}
+
+Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m) {
+  ScanWindow window;
+  window.open(kBits);
+  std::vector<ReadyRay> ready;
+  std::vector<std::uint32_t> others;
+  prepare_rays(Lanes::kOne, fan, ends_m, ready, others);
+  for (const ReadyRay& ray : ready) mark_place(ray.end, window.hit(), window.touched());
+  mark_rays(Lanes::kOne, ready, start_of(fan), window);
+  Marks marks = taken_from(window);
+  marks.others = others;
+  return marks;
+}
+
+Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m) {
+  ScanWindow window;
+  window.open(kBits);
+  std::vector<std::uint32_t> others;
+  DenseFan dense(lanes, fan, start_of(fan), 64, window);
+  const std::size_t walked = dense.mark(ends_m, others);
+  Marks marks = taken_from(window);
+  std::sort(others.begin(), others.end());
+  marks.others = others;
+  marks.walked = walked;
+  return marks;
+}
+
+/// Hits beat misses, so a missed cell that is hit need not be marked as missed.
+void expect_same_cells(const Marks& found, const Marks& expected) {
+  EXPECT_EQ(found.hit, expected.hit);
+  std::size_t different = 0;
+  for (std::size_t word = 0; word < kWords; ++word) {
+    different += ((found.missed[word] ^ expected.missed[word]) & ~expected.hit[word]) != 0 ? 1 : 0;
+  }
+  EXPECT_EQ(different, 0U);
+}
+
+// Kills a cell that is never asked (beyond a brick or a page, behind a hit, on another face of the cube), a ray that is
+// said not to cross a cell which it does, a ray that is taken out and not walked, squares and bounds that forget rays.
+TEST(DenseFan, MarksTheCellsOfWalkingEachRay) {
+  std::size_t rays = 0, walked = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const double cells_per_m = uniform(random, 0.5, 3.0);
+    Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    if (seed % 3 == 0) from_m = from_m.array().round() / cells_per_m;  // corners of cells
+    std::vector<Eigen::Vector3d> ends_m = bundles(random, from_m, uniform(random, 5.0, 55.0) / cells_per_m);
+    // Some leave the window, some are none.
+    if (seed % 4 == 0) {
+      for (std::size_t i = 0; i < ends_m.size(); i += 97) ends_m[i] *= 20.0;
+      ends_m[5].x() = std::nan("");
+      ends_m.back().y() = std::numeric_limits<double>::infinity();
+    }
+    const RayFan fan = fan_from(from_m, cells_per_m);
+    const Marks expected = walked_one_by_one(fan, ends_m);
+    for (const Lanes lanes : lanes_here()) {
+      SCOPED_TRACE(static_cast<int>(lanes));
+      const Marks found = walked_as_fan(lanes, fan, ends_m);
+      // Rays that are not ready need not be walked where their cells are marked: but those outside are all named.
+      EXPECT_TRUE(
+          std::includes(expected.others.begin(), expected.others.end(), found.others.begin(), found.others.end()));
+      expect_same_cells(found, expected);
+      rays += ends_m.size();
+      walked += found.walked;
+    }
+  }
+  EXPECT_LT(walked, rays / 2) << "most must not be walked, or this tests nothing";
+}
+
+// Kills sorting rays that go each their own way, and a decision that leaves some of them out.
+TEST(DenseFan, WalksEachWhereFewGoSideBySide) {
+  std::mt19937_64 random(7);
+  const RayFan fan = fan_from({0.1, -0.2, 0.3}, 1.0);
+  std::vector<Eigen::Vector3d> ends_m;
+  for (int i = 0; i < 5000; ++i) {
+    ends_m.emplace_back(uniform(random, -60.0, 60.0), uniform(random, -60.0, 60.0), uniform(random, -60.0, 60.0));
+  }
+  const Marks expected = walked_one_by_one(fan, ends_m);
+  const Marks found = walked_as_fan(widest_lanes(), fan, ends_m);
+  EXPECT_EQ(found.walked, ends_m.size());
+  expect_same_cells(found, expected);
+}
+
+}  // namespace
+}  // namespace pingvox::detail

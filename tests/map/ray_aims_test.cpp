@@ -1,0 +1,125 @@
+#include "map/kernels/ray_aims.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "pingvox/map/ray_dda.hpp"
+#include "support/lanes.hpp"
+
+namespace pingvox::detail {
+namespace {
+
+constexpr std::uint32_t kSquares = 37;
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Eigen::Vector3d somewhere(std::mt19937_64& random, double most) {
+  return {uniform(random, -most, most), uniform(random, -most, most), uniform(random, -most, most)};
+}
+
+RayFan fan_from(const Eigen::Vector3d& from) {
+  RayFan fan;
+  fan.from = from;
+  fan.window_lowest.fill(-64);
+  fan.lowest.fill(-64.0);
+  fan.highest.fill(63.0);
+  return fan;
+}
+
+struct Found {
+  explicit Found(std::size_t count)
+      : place(count + kAimedBeyond), square(count + kAimedBeyond), aim(count + kAimedBeyond) {}
+  std::vector<std::uint64_t> place;
+  std::vector<std::uint32_t> square;
+  std::vector<Aim> aim;
+};
+
+// Kills a face, row or column that is not the ray's, lanes that mix rays up (all counts up to two vectors' worth), an
+// end outside of the window that gets a square.
+TEST(RayAims, AreWhereRaysLeaveTheCube) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const RayFan fan = fan_from(somewhere(random, 3.0));
+    std::vector<Eigen::Vector3d> ends;
+    for (std::uint64_t i = 0; i < seed % 20 + 1; ++i) ends.push_back(somewhere(random, 70.0));
+    if (seed % 5 == 0) ends[0] = fan.from;
+    for (const Lanes lanes : lanes_here()) {
+      SCOPED_TRACE(static_cast<int>(lanes));
+      Found found(ends.size());
+      aim_rays(lanes, fan, kSquares, ends, {found.place, found.square, found.aim});
+      std::vector<std::uint64_t> places(ends.size());
+      find_cells(Lanes::kOne, fan, ends, places);
+      for (std::size_t i = 0; i < ends.size(); ++i) {
+        ASSERT_EQ(found.place[i], places[i]);
+        if (places[i] == kNowhere) {
+          ASSERT_EQ(found.square[i], kNoSquare);
+          continue;
+        }
+        const Eigen::Vector3d way = ends[i] - fan.from;
+        int axis = 0;
+        const double reach = way.cwiseAbs().maxCoeff(&axis);
+        ASSERT_NEAR(found.aim[i][kReach], reach, 1e-5);
+        if (reach == 0.0) continue;
+        const Aim aim = found.aim[i];
+        ASSERT_NEAR(aim[kAcross] * reach, way[(axis + 1) % 3], 1e-4);
+        ASSERT_NEAR(aim[kUp] * reach, way[(axis + 2) % 3], 1e-4);
+        const auto face = static_cast<std::uint32_t>(2 * axis + (way[axis] < 0.0 ? 1 : 0));
+        ASSERT_EQ(found.square[i], (face * kSquares + square_along(aim[kUp], kSquares)) * kSquares +
+                                       square_along(aim[kAcross], kSquares));
+      }
+    }
+  }
+}
+
+// Kills a cell that a ray crosses and is said not to: every cell of exact walks, asked one by one; and an answer that
+// is always yes.
+TEST(RayAims, NoCellOfAWalkIsMissed) {
+  std::size_t asked = 0, told_apart = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    Eigen::Vector3d from = somewhere(random, 3.0);
+    if (seed % 3 == 0) from = from.array().round();
+    const RayFan fan = fan_from(from);
+    const std::vector<Eigen::Vector3d> end{from + somewhere(random, seed % 2 == 0 ? 50.0 : 3.0)};
+    const Eigen::Vector3d way = end[0] - from;
+    int axis = 0;
+    way.cwiseAbs().maxCoeff(&axis);
+    const auto cell_ahead = [&](const Eigen::Vector3d& corner) {
+      const double low = way[axis] > 0.0 ? corner[axis] : -corner[axis] - 1.0;
+      return CellAhead{static_cast<float>(std::max(0.0, low - 1e-3)), static_cast<float>(low + 1.0 + 1e-3),
+                       static_cast<float>(corner[(axis + 1) % 3] + 0.5),
+                       static_cast<float>(corner[(axis + 2) % 3] + 0.5), 0.501F};
+    };
+    const auto may_cross = [&](Lanes lanes, const Eigen::Vector3d& cell) {
+      return first_that_may_cross(lanes, fan, cell_ahead(cell - from), end, 1, 0) == 0;
+    };
+    for (const Lanes lanes : lanes_here()) {
+      FaceCrossings crossings(from, end[0]);
+      Eigen::Vector3d cell = from.array().floor();
+      for (;;) {
+        ASSERT_TRUE(may_cross(lanes, cell)) << cell.transpose();
+        ++asked;
+        const Eigen::Vector3d beside = cell + Eigen::Vector3d::Unit((axis + 1) % 3) * 3.0;
+        told_apart += may_cross(lanes, beside) ? 0 : 1;
+        if (crossings.left() == 0) break;
+        const std::size_t next = crossings.next_axis();
+        cell[static_cast<Eigen::Index>(next)] += crossings.is_ahead(next) ? 1.0 : -1.0;
+        crossings.cross(next);
+      }
+      ASSERT_EQ(first_that_may_cross(lanes, fan, cell_ahead(from.array().floor().matrix() - from), end, 1, 1), 1U)
+          << "it was left out";
+    }
+  }
+  EXPECT_GT(asked, 5000U);
+  EXPECT_GT(told_apart, asked * 9 / 10);
+}
+
+}  // namespace
+}  // namespace pingvox::detail
