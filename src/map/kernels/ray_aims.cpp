@@ -12,6 +12,8 @@ namespace {
 // The same loops for each kind of machine.
 namespace plain {
 constexpr std::size_t kLanes = 4;
+#include "map/kernels/lanes_loops.hpp"
+//
 #include "map/kernels/ray_aims_loops.hpp"
 }  // namespace plain
 
@@ -20,6 +22,8 @@ constexpr std::size_t kLanes = 4;
 #pragma GCC target("avx2")
 namespace avx2 {
 constexpr std::size_t kLanes = 4;
+#include "map/kernels/lanes_loops.hpp"
+//
 #include "map/kernels/ray_aims_loops.hpp"
 }  // namespace avx2
 #pragma GCC pop_options
@@ -27,6 +31,8 @@ constexpr std::size_t kLanes = 4;
 #pragma GCC target("avx512f,avx512dq,avx512vl")
 namespace avx512 {
 constexpr std::size_t kLanes = 8;
+#include "map/kernels/lanes_loops.hpp"
+//
 #include "map/kernels/ray_aims_loops.hpp"
 }  // namespace avx512
 #pragma GCC pop_options

@@ -1,45 +1,12 @@
 // The loops over lanes, included by ray_aims.cpp once for each kind of machine: there is no guard, and what they use
-// stands there before them.
+// stands there before them, lanes_loops.hpp too.
 
-using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Numbers = std::int32_t __attribute__((vector_size(kLanes * sizeof(float))));
 
 inline Floats magnitude(const Floats& numbers) {
   return reinterpret_cast<Floats>(reinterpret_cast<Numbers>(numbers) & 0x7FFFFFFF);
 }
-
-/// Coordinates of kLanes points that stand one after the other.
-inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
-  std::array<Doubles, 3> words;
-  std::memcpy(words.data(), points, sizeof words);
-  for (std::size_t a = 0; a < 3; ++a) {
-    // Where each lane's number stands: in the first two vectors, then in these or the third.
-    Words in_two{}, in_all{};
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const std::size_t at = 3 * l + a;
-      in_two[l] = at < 2 * kLanes ? static_cast<std::int64_t>(at) : 0;
-      in_all[l] = static_cast<std::int64_t>(at < 2 * kLanes ? l : at - kLanes);
-    }
-    coordinates[a] = __builtin_shuffle(__builtin_shuffle(words[0], words[1], in_two), words[2], in_all);
-  }
-}
-
-/// A RayFan for all lanes.
-struct FanLanes {
-  explicit FanLanes(const RayFan& fan) : cells_per_m(Doubles{} + fan.cells_per_m) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      from[a] = Doubles{} + fan.from[static_cast<Eigen::Index>(a)];
-      lowest[a] = Doubles{} + fan.lowest[a];
-      end[a] = Doubles{} + (fan.highest[a] + 1.0);
-      window_lowest[a] = Words{} + fan.window_lowest[a];
-    }
-  }
-  Doubles cells_per_m;
-  std::array<Doubles, 3> from, lowest, end;
-  std::array<Words, 3> window_lowest;
-};
 
 /// Aims of kLanes rays, and what it takes to find their squares.
 struct Aims {
@@ -103,33 +70,19 @@ inline void store(const Aims& aims, Aim* to) {
 
 inline void aim_some(const FanLanes& fan, std::uint32_t squares, const double* ends_m, std::uint64_t* places,
                      std::uint32_t* to_squares, Aim* to_aims) {
-  std::array<Doubles, 3> to;
-  load(ends_m, to);
-  Words inside = Words{} - 1, place{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    to[a] *= fan.cells_per_m;
-    inside &= (to[a] >= fan.lowest[a]) & (to[a] < fan.end[a]);
-  }
+  PointLanes ends;
+  load_in(fan, ends_m, ends);
+  Words place;
+  find_places(fan, ends, place);
+  std::memcpy(places, &place, sizeof place);
   std::array<Floats, 3> way;
-  Numbers is_lost = __builtin_convertvector(~inside, Numbers);
+  Numbers is_lost = __builtin_convertvector(~ends.is_inside, Numbers);
   for (std::size_t a = 0; a < 3; ++a) {
-    to[a] = inside ? to[a] : fan.from[a];
-    const Doubles exact_way = to[a] - fan.from[a];
+    const Doubles exact_way = ends.at[a] - fan.from[a];
     way[a] = __builtin_convertvector(exact_way, Floats);
     // So small that single precision does not know its sign.
     is_lost |= (way[a] == 0.0F) & __builtin_convertvector(exact_way != 0.0, Numbers);
-    Words cell = __builtin_convertvector(to[a], Words);
-    cell += __builtin_convertvector(cell, Doubles) > to[a];  // true is -1
-    cell -= fan.window_lowest[a];
-    // spread_bits, which holds for all lanes alike; the window has no more than 11 of them.
-    cell = (cell | cell << 16) & 0x1F0000FF0000FF;
-    cell = (cell | cell << 8) & 0x100F00F00F00F00F;
-    cell = (cell | cell << 4) & 0x10C30C30C30C30C3;
-    cell = (cell | cell << 2) & 0x1249249249249249;
-    place |= cell << a;
   }
-  place |= ~inside;
-  std::memcpy(places, &place, sizeof place);
   Aims aims;
   aim_along(way, aims);
   Numbers square;
@@ -137,17 +90,6 @@ inline void aim_some(const FanLanes& fan, std::uint32_t squares, const double* e
   square |= is_lost;
   std::memcpy(to_squares, &square, sizeof square);
   store(aims, to_aims);
-}
-
-/// Calls f(first, points) for kLanes points each; the last ones stand together with some that mean nothing.
-template <class F>
-inline void for_each_lanes(std::span<const Eigen::Vector3d> points_m, F&& f) {
-  const std::size_t whole = points_m.size() / kLanes * kLanes;
-  for (std::size_t first = 0; first < whole; first += kLanes) f(first, points_m[first].data());
-  if (whole == points_m.size()) return;
-  std::array<double, 3 * kLanes> padded{};
-  for (std::size_t i = 0; i < 3 * (points_m.size() - whole); ++i) padded[i] = points_m[whole].data()[i];
-  f(whole, padded.data());
 }
 
 inline void aim(const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,

@@ -7,10 +7,12 @@ inline void prepare_some(const KeyGrid& grid, const Segment* segments, Prepared&
     ends_m[l] = segments[l].to_m;
   }
   std::array<Doubles, 3> from, to;
+  load(begins_m[0].data(), from);
+  load(ends_m[0].data(), to);
   Words inside = Words{} - 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    load(begins_m.data(), a, grid.cells_per_m, from[a]);
-    load(ends_m.data(), a, grid.cells_per_m, to[a]);
+    from[a] *= grid.cells_per_m;
+    to[a] *= grid.cells_per_m;
     inside &= (from[a] >= -grid.half) & (from[a] < grid.half) & (to[a] >= -grid.half) & (to[a] < grid.half);
   }
   for (std::size_t a = 0; a < 3; ++a) {

@@ -92,6 +92,8 @@ void write_one_by_one(std::span<const ReadyRay> rays, std::span<Key* const> keys
 // The same loops for each kind of machine.
 namespace plain {
 constexpr std::size_t kLanes = 2;
+#include "map/kernels/lanes_loops.hpp"
+//
 #include "map/kernels/ray_lanes_loops.hpp"
 //
 #include "map/kernels/ray_keys_loops.hpp"
@@ -102,6 +104,8 @@ constexpr std::size_t kLanes = 2;
 #pragma GCC target("avx2")
 namespace avx2 {
 constexpr std::size_t kLanes = 4;
+#include "map/kernels/lanes_loops.hpp"
+//
 #include "map/kernels/ray_lanes_loops.hpp"
 //
 #include "map/kernels/ray_keys_loops.hpp"
@@ -111,6 +115,8 @@ constexpr std::size_t kLanes = 4;
 #pragma GCC target("avx512f,avx512dq,avx512vl")
 namespace avx512 {
 constexpr std::size_t kLanes = 8;
+#include "map/kernels/lanes_loops.hpp"
+//
 #include "map/kernels/ray_lanes_loops.hpp"
 //
 #include "map/kernels/ray_keys_loops.hpp"

@@ -1,10 +1,5 @@
 // The loops over lanes, included by ray_lanes.cpp once for each kind of machine: there is no guard, and what they
-// use stands there before them. (A function can only be made for another machine where it is compiled, and templates
-// and inline functions would be shared between all.)
-
-/// As many numbers as the machine's vectors hold.
-using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+// use stands there before them, lanes_loops.hpp too.
 
 /// Adds without minding the sign: a sum that does not fit wraps around.
 inline void add_wrapping(Words& to, const Words& what) {
@@ -18,29 +13,6 @@ inline const Item* some_from(std::span<const Item> items, std::size_t first, std
   if (items.size() - first >= kLanes) return items.data() + first;
   for (std::size_t l = 0; l < kLanes; ++l) padded[l] = items[std::min(first + l, items.size() - 1)];
   return padded.data();
-}
-
-/// Coordinate `axis` of kLanes points, in cells.
-inline void load(const Eigen::Vector3d* points_m, std::size_t axis, double cells_per_m, Doubles& cells) {
-  const auto a = static_cast<Eigen::Index>(axis);
-  Doubles coordinates{};
-  for (std::size_t l = 0; l < kLanes; ++l) coordinates[l] = points_m[l][a];
-  cells = coordinates * cells_per_m;
-}
-
-/// Largest whole numbers that are not larger. REQUIRES numbers below 2^53.
-inline void floor_of(const Doubles& numbers, Words& whole) {
-  whole = __builtin_convertvector(numbers, Words);
-  whole += __builtin_convertvector(whole, Doubles) > numbers;  // true is -1
-}
-
-inline void spread(Words& words) {
-  // spread_bits, which holds for all lanes alike.
-  words = (words | words << 32) & 0x1F00000000FFFF;
-  words = (words | words << 16) & 0x1F0000FF0000FF;
-  words = (words | words << 8) & 0x100F00F00F00F00F;
-  words = (words | words << 4) & 0x10C30C30C30C30C3;
-  words = (words | words << 2) & 0x1249249249249249;
 }
 
 struct Prepared {
@@ -92,67 +64,47 @@ inline ReadyRay ray_of(const Prepared& some, std::size_t lane) {
           static_cast<std::uint64_t>(some.end[lane])};
 }
 
-inline void prepare_some(const RayFan& fan, const Eigen::Vector3d* ends_m, Prepared& out) {
-  std::array<Doubles, 3> to;
-  Words inside = Words{} - 1;
+inline void prepare_some(const FanLanes& fan, const double* ends_m, Prepared& out) {
+  PointLanes ends;
+  load_in(fan, ends_m, ends);
   for (std::size_t a = 0; a < 3; ++a) {
-    load(ends_m, a, fan.cells_per_m, to[a]);
-    inside &= (to[a] >= fan.lowest[a]) & (to[a] < fan.highest[a] + 1.0);
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Doubles from = Doubles{} + fan.from[static_cast<Eigen::Index>(a)];
     Words first, place;
-    prepare_axis(from, inside ? to[a] : from, a, out, first, place);
+    prepare_axis(fan.from[a], ends.at[a], a, out, first, place);
     place -= fan.window_lowest[a];
     spread(place);
     out.end |= place << a;
   }
-  decide(inside, out);
+  decide(ends.is_inside, out);
 }
 
 inline void prepare(const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
                     std::vector<std::uint32_t>& others) {
   ready.resize(ends_m.size());
   std::size_t count = 0;
-  for (std::size_t first = 0; first < ends_m.size(); first += kLanes) {
-    const std::size_t lanes = std::min(kLanes, ends_m.size() - first);
-    std::array<Eigen::Vector3d, kLanes> padded;
+  const FanLanes fan_lanes(fan);
+  for_each_lanes(ends_m, [&](std::size_t first, const double* some_m) {
     Prepared some;
-    prepare_some(fan, some_from(ends_m, first, padded), some);
-    for (std::size_t l = 0; l < lanes; ++l) {
+    prepare_some(fan_lanes, some_m, some);
+    for (std::size_t l = 0; l < std::min(kLanes, ends_m.size() - first); ++l) {
       if (some.is_ready[l] == 0) {
         others.push_back(static_cast<std::uint32_t>(first + l));
-        continue;
+      } else {
+        ready[count++] = ray_of(some, l);
       }
-      ready[count++] = ray_of(some, l);
     }
-  }
+  });
   ready.resize(count);
 }
 
 inline void find(const RayFan& fan, std::span<const Eigen::Vector3d> points_m, std::span<std::uint64_t> places) {
-  for (std::size_t first = 0; first < points_m.size(); first += kLanes) {
-    const std::size_t lanes = std::min(kLanes, points_m.size() - first);
-    std::array<Eigen::Vector3d, kLanes> padded;
-    Words inside = Words{} - 1, place = Words{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      Doubles at;
-      load(some_from(points_m, first, padded), a, fan.cells_per_m, at);
-      const Words fits = (at >= fan.lowest[a]) & (at < fan.highest[a] + 1.0);
-      inside &= fits;
-      Words cell;
-      floor_of(fits ? at : Doubles{} + fan.lowest[a], cell);
-      cell -= fan.window_lowest[a];
-      spread(cell);
-      place |= cell << a;
-    }
-    place |= ~inside;  // kNowhere: all bits
-    if (lanes == kLanes) {
-      std::memcpy(places.data() + first, &place, sizeof place);
-    } else {
-      for (std::size_t l = 0; l < lanes; ++l) places[first + l] = static_cast<std::uint64_t>(place[l]);
-    }
-  }
+  const FanLanes fan_lanes(fan);
+  for_each_lanes(points_m, [&](std::size_t first, const double* some_m) {
+    PointLanes points;
+    load_in(fan_lanes, some_m, points);
+    Words place;
+    find_places(fan_lanes, points, place);
+    std::memcpy(places.data() + first, &place, std::min(kLanes, points_m.size() - first) * sizeof place[0]);
+  });
 }
 
 /// axis_of_least for each lane: all bits set of the axis that is next, none of the others.
