@@ -113,7 +113,10 @@ Result<Command> map_command(const Words& words) {
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;
     command.made_by = "pingvox " PINGVOX_VERSION " map";
-    for (const std::string& word : words) command.made_by += " " + shell_quoted(word);
+    for (const std::string& word : words) {
+      command.made_by += ' ';
+      command.made_by += shell_quoted(word);
+    }
     return command;
   });
 }

@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 /// So many rays must make a run, and go through a square, or walking each of them is quicker.
 constexpr std::size_t kInOrder = 2, kDense = 8;
+/// So many squares to a ray at most, with and without rays: what is kept must not grow with the range alone.
+constexpr std::size_t kMostSquares = 4;
 /// So many to each square at the fan's border: the cells there are asked in vain.
 constexpr std::size_t kPerBorder = 64;
 
@@ -65,6 +67,7 @@ std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, std::vector<
 }
 
 bool DenseFan::mark_dense() {
+  if (std::size_t{6} * squares_ * squares_ > kMostSquares * ends_m_.size()) return false;
   RayRuns rays(lanes_, fan_, squares_, ends_m_);
   std::array<std::uint64_t, kBlock + kAimedBeyond> place;
   std::array<std::uint32_t, kBlock + kAimedBeyond> square;
