@@ -50,8 +50,8 @@ inline void interleave(const Vector& one, const Vector& other, Vector& first, Ve
     of_first[l] = static_cast<std::remove_reference_t<decltype(Place{}[0])>>(from);
     of_second[l] = static_cast<std::remove_reference_t<decltype(Place{}[0])>>(from + kCount / 2);
   }
-  first = __builtin_shuffle(one, other, of_first);
-  second = __builtin_shuffle(one, other, of_second);
+  pick(one, other, of_first, first);
+  pick(one, other, of_second, second);
 }
 
 /// Four numbers for each of the lanes.
