@@ -13,6 +13,8 @@ namespace {
 
 /// Rays that are walked or aimed together.
 constexpr std::size_t kBlock = 1024;
+/// Below, to look where rays go costs more than to walk each.
+constexpr std::size_t kManyRays = 8192;
 /// So many rays must make a run, and go through a square, or walking each of them is quicker.
 constexpr std::size_t kInOrder = 2, kDense = 8;
 /// So many squares to a ray at most, with and without rays: what is kept must not grow with the range alone.
@@ -44,30 +46,29 @@ class BrickNeighbours {
 };
 constexpr std::array<BrickNeighbours, 3> kAlong{BrickNeighbours(0), BrickNeighbours(1), BrickNeighbours(2)};
 
-constexpr std::uint64_t kAxis = 0x1249249249249249U;
-
 /// The number one further along an axis, in the tree's order. What leaves `all` (the highest number) wraps around.
 constexpr std::uint64_t next_number(std::uint64_t number, unsigned axis, std::uint64_t all) {
-  const std::uint64_t bits = kAxis << axis;
+  const std::uint64_t bits = kAxisBits[axis];
   return (((number | ~bits) + 1) & bits & all) | (number & ~bits);
 }
 constexpr std::uint64_t number_before(std::uint64_t number, unsigned axis, std::uint64_t all) {
-  const std::uint64_t bits = kAxis << axis;
+  const std::uint64_t bits = kAxisBits[axis];
   return (((number & bits) - 1) & bits & all) | (number & ~bits);
 }
 
 }  // namespace
 
-std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, std::vector<std::uint32_t>& others) {
+std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends, std::vector<std::uint32_t>& others) {
   ends_m_ = ends_m;
   others_ = &others;
   walked_ = 0;
-  if (!mark_dense()) walk_all();
+  // The cells where rays end without a hit would ask for all of them.
+  if (ends != RayEnds::kHit || !mark_dense()) walk_all(ends);
   return walked_;
 }
 
 bool DenseFan::mark_dense() {
-  if (std::size_t{6} * squares_ * squares_ > kMostSquares * ends_m_.size()) return false;
+  if (ends_m_.size() < kManyRays || std::size_t{6} * squares_ * squares_ > kMostSquares * ends_m_.size()) return false;
   RayRuns rays(lanes_, fan_, squares_, ends_m_);
   std::array<std::uint64_t, kBlock + kAimedBeyond> place;
   std::array<std::uint32_t, kBlock + kAimedBeyond> square;
@@ -93,12 +94,14 @@ void DenseFan::mark_hits(std::span<const std::uint64_t> places) {
   }
 }
 
-void DenseFan::walk_all() {
+void DenseFan::walk_all(RayEnds ends) {
   walked_ += ends_m_.size();
   for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
     not_ready_.clear();
     prepare_rays(lanes_, fan_, ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), ready_, not_ready_);
-    for (const ReadyRay& ray : ready_) mark_first(ray.end, window_.hit(), window_.touched());
+    if (ends == RayEnds::kHit) {
+      for (const ReadyRay& ray : ready_) mark_first(ray.end, window_.hit(), window_.touched());
+    }
     mark_rays(lanes_, ready_, start_, window_);
     for (const std::uint32_t number : not_ready_) others_->push_back(static_cast<std::uint32_t>(first) + number);
   }

@@ -13,12 +13,15 @@
 
 namespace pingvox::detail {
 
+/// What the last cells of rays say.
+enum class RayEnds { kHit, kNothing };
+
 /// Marks in a window what rays from one place cross, without walking all of them where many go side by side.
 ///
-/// Of the rays through each square of directions the farthest is walked. Then each cell that borders on a marked one is
-/// asked whether another ray may cross it; that ray is walked, too. What borders on new marks is asked in its turn. In
-/// the end no ray crosses a cell without a mark: to come there it would first have to enter one that borders on a
-/// marked one, and of all these none is crossed. So the cells are exactly those of walking every ray
+/// There, of the rays through each square of directions the farthest is walked. Then each cell that borders on a marked
+/// one is asked whether another ray may cross it; that ray is walked, too. What borders on new marks is asked in its
+/// turn. In the end no ray crosses a cell without a mark: to come there it would first have to enter one that borders
+/// on a marked one, and of all these none is crossed. So the cells are exactly those of walking every ray
 /// (tests/map/dense_fan_test.cpp), and to ask in single precision is enough.
 class DenseFan {
  public:
@@ -28,16 +31,16 @@ class DenseFan {
   DenseFan(Lanes lanes, const RayFan& fan, std::uint64_t start, std::uint32_t squares, ScanWindow& window)
       : lanes_(lanes), fan_(fan), start_(start), squares_(squares), window_(window) {}
 
-  /// Marks the cells of the rays to `ends_m` [m, map frame] as missed but for their last ones, which are hit.
+  /// Marks the cells of the rays to `ends_m` [m, map frame] as missed but for their last ones.
   /// @param others  gets the numbers of rays that the window cannot take (see prepare_rays)
   /// @return how many rays it walked
-  std::size_t mark(std::span<const Eigen::Vector3d> ends_m, std::vector<std::uint32_t>& others);
+  std::size_t mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends, std::vector<std::uint32_t>& others);
 
  private:
-  /// @return whether it pays; if not only hits were marked, and not all
+  /// For rays that hit. @return whether it pays; if not only hits were marked, and not all
   bool mark_dense();
   void mark_hits(std::span<const std::uint64_t> places);
-  void walk_all();
+  void walk_all(RayEnds ends);
   void walk(std::span<const std::uint32_t> rays);
   void walk_the_rest(RayRuns& rays);
   void ask_page(std::uint64_t page, RayRuns& rays);

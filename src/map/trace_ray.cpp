@@ -17,8 +17,7 @@
 namespace pingvox {
 namespace {
 
-/// What the last cells of rays say.
-enum class Ends { kHit, kNothing };
+using Ends = detail::RayEnds;
 
 /// Marks the cells of a ray, asking for a page only when the ray enters one.
 class Marker {
@@ -84,23 +83,10 @@ class FanTracer {
   /// @return how many of them leave the lattice
   std::size_t trace(std::span<const Eigen::Vector3d> ends_m, Ends ends) {
     if (window_ == nullptr) return trace_singly(ends_m, ends);
+    others_.clear();
+    detail::DenseFan(lanes_, fan_, start_, squares_, *window_).mark(ends_m, ends, others_);
     std::size_t outside = 0;
-    if (ends == Ends::kHit && ends_m.size() >= kManyRays) {
-      others_.clear();
-      detail::DenseFan dense(lanes_, fan_, start_, squares_, *window_);
-      dense.mark(ends_m, others_);
-      for (const std::uint32_t other : others_) outside += trace_singly(ends_m.subspan(other, 1), ends);
-      return outside;
-    }
-    for_each_block(ends_m, [&](std::span<const Eigen::Vector3d> block) {
-      others_.clear();
-      detail::prepare_rays(lanes_, fan_, block, ready_, others_);
-      if (ends == Ends::kHit) {
-        for (const detail::ReadyRay& ray : ready_) mark_hit(ray.end);
-      }
-      detail::mark_rays(lanes_, ready_, start_, *window_);
-      for (const std::uint32_t other : others_) outside += trace_singly(block.subspan(other, 1), ends);
-    });
+    for (const std::uint32_t other : others_) outside += trace_singly(ends_m.subspan(other, 1), ends);
     return outside;
   }
 
@@ -145,8 +131,6 @@ class FanTracer {
   // Below, opening and emptying a window costs more than it saves.
   static constexpr std::size_t kFewRays = 16;
   static constexpr std::size_t kBlock = 2048;
-  // Below, to sort them costs more than to walk each.
-  static constexpr std::size_t kManyRays = 8192;
   // Of directions, at the far ends of the rays.
   static constexpr double kSquaresPerCell = 0.8;
 
@@ -233,7 +217,6 @@ class FanTracer {
   std::uint32_t squares_ = 1;  ///< of directions, along an edge
   std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
   detail::Lanes lanes_ = detail::widest_lanes();
-  std::vector<detail::ReadyRay> ready_;
   std::vector<std::uint32_t> others_;
   std::vector<std::uint64_t> places_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "pingvox/geometry/key.hpp"
@@ -22,6 +23,10 @@ constexpr bool is_before(const WideKey& a, const WideKey& b) {
   if (is_lower_in_highest_bit(most, a.x ^ b.x)) before = a.x < b.x;
   return before;
 }
+
+/// Bits of each axis in a number of the tree's order.
+inline constexpr std::array<std::uint64_t, 3> kAxisBits{0x1249249249249249U, 0x1249249249249249U << 1,
+                                                        0x1249249249249249U << 2};
 
 /// A number of up to 21 bits with two zero bits between its bits.
 constexpr std::uint64_t spread_bits(std::uint64_t word) {

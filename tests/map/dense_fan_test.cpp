@@ -99,7 +99,7 @@ Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Eigen::Vec
   window.open(kBits);
   std::vector<std::uint32_t> others;
   DenseFan dense(lanes, fan, start_of(fan), 64, window);
-  const std::size_t walked = dense.mark(ends_m, others);
+  const std::size_t walked = dense.mark(ends_m, RayEnds::kHit, others);
   Marks marks = taken_from(window);
   std::sort(others.begin(), others.end());
   marks.others = others;
@@ -155,7 +155,7 @@ TEST(DenseFan, WalksEachWhereFewGoSideBySide) {
   std::mt19937_64 random(7);
   const RayFan fan = fan_from({0.1, -0.2, 0.3}, 1.0);
   std::vector<Eigen::Vector3d> ends_m;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 10000; ++i) {
     ends_m.emplace_back(uniform(random, -60.0, 60.0), uniform(random, -60.0, 60.0), uniform(random, -60.0, 60.0));
   }
   const Marks expected = walked_one_by_one(fan, ends_m);

@@ -9,27 +9,8 @@ namespace pingvox::detail {
 namespace {
 
 // 16 bytes at a time, which each x86-64 and ARM64 machine has.
-namespace plain {
-constexpr std::size_t kValues = 4;
-#include "map/kernels/brick_loops.hpp"
-}  // namespace plain
-
-#ifdef PINGVOX_X86_LANES
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-constexpr std::size_t kValues = 8;
-#include "map/kernels/brick_loops.hpp"
-}  // namespace avx2
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
-namespace avx512 {
-constexpr std::size_t kValues = 16;
-#include "map/kernels/brick_loops.hpp"
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
+#define PINGVOX_LOOPS "map/kernels/brick_loops.hpp"
+#include "map/kernels/each_machine.hpp"
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // The loops over the values of a brick, included by brick.cpp once for each kind of machine (see ray_lanes_loops.hpp).
 
 /// As many values as the machine's vectors hold.
+constexpr std::size_t kValues = 2 * kLanes;
 using Values = float __attribute__((vector_size(kValues * sizeof(float))));
 using Masks = std::int32_t __attribute__((vector_size(kValues * sizeof(float))));
 constexpr std::uint64_t kSome = (std::uint64_t{1} << kValues) - 1;

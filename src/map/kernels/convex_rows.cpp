@@ -15,27 +15,8 @@ constexpr std::array<double, 16> kNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 
 constexpr std::array<double, 16> kLayerNumbers{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 constexpr std::array<double, 16> kRowNumbers{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 
-namespace plain {
-constexpr std::size_t kLanes = 2;
-#include "map/kernels/convex_rows_loops.hpp"
-}  // namespace plain
-
-#ifdef PINGVOX_X86_LANES
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-constexpr std::size_t kLanes = 4;
-#include "map/kernels/convex_rows_loops.hpp"
-}  // namespace avx2
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
-namespace avx512 {
-constexpr std::size_t kLanes = 8;
-#include "map/kernels/convex_rows_loops.hpp"
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
+#define PINGVOX_LOOPS "map/kernels/convex_rows_loops.hpp"
+#include "map/kernels/each_machine.hpp"
 
 }  // namespace
 

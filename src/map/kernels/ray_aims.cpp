@@ -10,33 +10,9 @@ namespace pingvox::detail {
 namespace {
 
 // The same loops for each kind of machine.
-namespace plain {
-constexpr std::size_t kLanes = 4;
-#include "map/kernels/lanes_loops.hpp"
-//
-#include "map/kernels/ray_aims_loops.hpp"
-}  // namespace plain
-
-#ifdef PINGVOX_X86_LANES
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-constexpr std::size_t kLanes = 4;
-#include "map/kernels/lanes_loops.hpp"
-//
-#include "map/kernels/ray_aims_loops.hpp"
-}  // namespace avx2
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
-namespace avx512 {
-constexpr std::size_t kLanes = 8;
-#include "map/kernels/lanes_loops.hpp"
-//
-#include "map/kernels/ray_aims_loops.hpp"
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
+#define PINGVOX_PLAIN_LANES 4
+#define PINGVOX_LOOPS "map/kernels/ray_aims_loops.hpp"
+#include "map/kernels/each_machine.hpp"
 
 }  // namespace
 

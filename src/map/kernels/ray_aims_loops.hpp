@@ -1,5 +1,7 @@
 // The loops over lanes, included by ray_aims.cpp once for each kind of machine: there is no guard, and what they use
-// stands there before them, lanes_loops.hpp too.
+// stands there before them.
+
+#include "map/kernels/lanes_loops.hpp"
 
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Numbers = std::int32_t __attribute__((vector_size(kLanes * sizeof(float))));

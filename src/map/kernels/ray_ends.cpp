@@ -5,27 +5,8 @@
 namespace pingvox::detail {
 namespace {
 
-namespace plain {
-constexpr std::size_t kLanes = 2;
-#include "map/kernels/ray_ends_loops.hpp"
-}  // namespace plain
-
-#ifdef PINGVOX_X86_LANES
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-constexpr std::size_t kLanes = 4;
-#include "map/kernels/ray_ends_loops.hpp"
-}  // namespace avx2
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
-namespace avx512 {
-constexpr std::size_t kLanes = 8;
-#include "map/kernels/ray_ends_loops.hpp"
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
+#define PINGVOX_LOOPS "map/kernels/ray_ends_loops.hpp"
+#include "map/kernels/each_machine.hpp"
 
 }  // namespace
 

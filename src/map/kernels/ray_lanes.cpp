@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "map/tree_order.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
 namespace pingvox::detail {
@@ -13,10 +14,6 @@ namespace {
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr double kUnits = 0x1p62;  // of a ray's length
-
-/// Bits of one axis in a place of the tree's order, and their lowest one.
-constexpr std::array<std::uint64_t, 3> kAxisBits{0x1249249249249249U, 0x1249249249249249U << 1,
-                                                 0x1249249249249249U << 2};
 
 /// What to add to an axis' bits, before they are masked, for one cell ahead or back: a carry must run through the bits
 /// of the other axes.
@@ -90,39 +87,8 @@ void write_one_by_one(std::span<const ReadyRay> rays, std::span<Key* const> keys
 }
 
 // The same loops for each kind of machine.
-namespace plain {
-constexpr std::size_t kLanes = 2;
-#include "map/kernels/lanes_loops.hpp"
-//
-#include "map/kernels/ray_lanes_loops.hpp"
-//
-#include "map/kernels/ray_keys_loops.hpp"
-}  // namespace plain
-
-#ifdef PINGVOX_X86_LANES
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-constexpr std::size_t kLanes = 4;
-#include "map/kernels/lanes_loops.hpp"
-//
-#include "map/kernels/ray_lanes_loops.hpp"
-//
-#include "map/kernels/ray_keys_loops.hpp"
-}  // namespace avx2
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
-namespace avx512 {
-constexpr std::size_t kLanes = 8;
-#include "map/kernels/lanes_loops.hpp"
-//
-#include "map/kernels/ray_lanes_loops.hpp"
-//
-#include "map/kernels/ray_keys_loops.hpp"
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
+#define PINGVOX_LOOPS "map/kernels/ray_lanes_loops.hpp"
+#include "map/kernels/each_machine.hpp"
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 // The loops over lanes, included by ray_lanes.cpp once for each kind of machine: there is no guard, and what they
-// use stands there before them, lanes_loops.hpp too.
+// use stands there before them.
+
+#include "map/kernels/lanes_loops.hpp"
 
 /// Adds without minding the sign: a sum that does not fit wraps around.
 inline void add_wrapping(Words& to, const Words& what) {
@@ -160,3 +162,5 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     order = order.subspan(lanes);
   }
 }
+
+#include "map/kernels/ray_keys_loops.hpp"
