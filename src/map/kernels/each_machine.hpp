@@ -21,9 +21,11 @@ constexpr std::size_t kLanes = 4;
 #pragma GCC pop_options
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl")
+#define PINGVOX_AVX512
 namespace avx512 {
 constexpr std::size_t kLanes = 8;
 #include PINGVOX_LOOPS
 }  // namespace avx512
+#undef PINGVOX_AVX512
 #pragma GCC pop_options
 #endif

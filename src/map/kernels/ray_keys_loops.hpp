@@ -79,8 +79,8 @@ inline void write_some(std::span<const ReadyRay> rays, std::span<const std::uint
       for (std::size_t l = 0; l < kLanes; ++l) put(static_cast<std::uint64_t>(at[l]), to[l] + n);
       choose_axes(next, along);
       for (std::size_t a = 0; a < 3; ++a) {
-        add_wrapping(next[a], along[a] & apart[a]);
-        add_wrapping(at, along[a] & step[a]);
+        next[a] = sum_of(next[a], along[a] & apart[a]);
+        at = sum_of(at, along[a] & step[a]);
       }
     }
     to[shortest] = spill;

@@ -6,6 +6,10 @@
 #include <cstring>
 #include <limits>
 
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
 #include "map/tree_order.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
@@ -57,6 +61,22 @@ class ByLength {
  private:
   std::vector<std::uint32_t> order_;
 };
+
+/// Marks of bricks that are to be set in a window: walked together, a ray's marks in a brick are one word.
+struct MarksToSet {
+  static constexpr std::size_t kRoom = 1024;
+  std::array<std::uint64_t, kRoom> brick, marks;
+  std::size_t count = 0;
+};
+
+void set_marks(const MarksToSet& to_set, std::size_t count, ScanWindow& window) {
+  std::uint64_t* const missed = window.missed();
+  std::uint8_t* const touched = window.touched();
+  for (std::size_t i = 0; i < count; ++i) {
+    missed[to_set.brick[i]] |= to_set.marks[i];
+    touched[to_set.brick[i] / 64] = 1;
+  }
+}
 
 /// What one face along an axis adds to a packed key.
 std::int64_t key_step(std::size_t axis, const ReadyRay& ray) {

@@ -3,10 +3,10 @@
 
 #include "map/kernels/lanes_loops.hpp"
 
-/// Adds without minding the sign: a sum that does not fit wraps around.
-inline void add_wrapping(Words& to, const Words& what) {
+/// Added without minding the sign: a sum that does not fit wraps around.
+inline Words sum_of(const Words& one, const Words& other) {
   using Unsigned = std::uint64_t __attribute__((vector_size(kLanes * sizeof(std::uint64_t))));
-  to = reinterpret_cast<Words>(reinterpret_cast<Unsigned>(to) + reinterpret_cast<Unsigned>(what));
+  return reinterpret_cast<Words>(reinterpret_cast<Unsigned>(one) + reinterpret_cast<Unsigned>(other));
 }
 
 /// kLanes items from `first` on; of fewer that are left the last one again and again.
@@ -44,8 +44,7 @@ inline void prepare_axis(const Doubles& from, const Doubles& to, std::size_t a, 
   out.apart[a] = several ? apart : (some ? kNever - next : Words{});
   // What does not fit becomes negative, and the ray is not taken.
   const Words last_crossing = next + (faces - 1) * apart;
-  Words beyond = last_crossing;
-  add_wrapping(beyond, apart);
+  const Words beyond = sum_of(last_crossing, apart);
   out.last_crossing = (some & (last_crossing > out.last_crossing)) ? last_crossing : out.last_crossing;
   out.beyond_end = (several & (beyond < out.beyond_end)) ? beyond : out.beyond_end;
   out.left += faces;
@@ -117,50 +116,98 @@ inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& 
   along[2] = ~(along[0] | along[1]);
 }
 
-/// Walks up to kLanes rays of about the same length, face by face.
-inline void mark_some(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order, std::uint64_t start,
-                      std::uint64_t* missed, std::uint8_t* touched) {
-  std::array<Words, 3> next{}, apart{}, step{}, place{};
+/// Appends brick and marks of the lanes that are in another brick now, where there is room for kLanes.
+/// @return how many
+#ifdef PINGVOX_AVX512
+inline std::size_t hand_over(const Words& left, const Words& entered, const Words& marks, std::uint64_t* to_brick,
+                             std::uint64_t* to_marks) {
+  const __mmask8 is_another =
+      _mm512_cmpneq_epi64_mask(reinterpret_cast<__m512i>(left), reinterpret_cast<__m512i>(entered));
+  _mm512_storeu_si512(to_brick, _mm512_maskz_compress_epi64(is_another, reinterpret_cast<__m512i>(left)));
+  _mm512_storeu_si512(to_marks, _mm512_maskz_compress_epi64(is_another, reinterpret_cast<__m512i>(marks)));
+  return static_cast<std::size_t>(__builtin_popcount(is_another));
+}
+#else
+inline std::size_t hand_over(const Words& left, const Words& entered, const Words& marks, std::uint64_t* to_brick,
+                             std::uint64_t* to_marks) {
+  const Words is_another = left != entered;
+  std::size_t count = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    to_brick[count] = static_cast<std::uint64_t>(left[l]);
+    to_marks[count] = static_cast<std::uint64_t>(marks[l]);
+    count -= static_cast<std::size_t>(is_another[l]);  // true is -1
+  }
+  return count;
+}
+#endif
+
+/// Rays side by side.
+struct RayLanes {
+  std::array<Words, 3> next{}, apart{}, step{};
   Words left{};
+};
+
+inline void gather(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order, RayLanes& to) {
   for (std::size_t l = 0; l < order.size(); ++l) {
     const ReadyRay& ray = rays[order[l]];
     for (std::size_t a = 0; a < 3; ++a) {
-      next[a][l] = ray.next[a];
-      apart[a][l] = ray.apart[a];
-      step[a][l] = static_cast<std::int64_t>(step_of(a, ((ray.ahead >> a) & 1U) != 0));
+      to.next[a][l] = ray.next[a];
+      to.apart[a][l] = ray.apart[a];
+      to.step[a][l] = static_cast<std::int64_t>(step_of(a, ((ray.ahead >> a) & 1U) != 0));
     }
-    left[l] = ray.left;
+    to.left[l] = ray.left;
   }
+}
+
+/// Walks up to kLanes rays of about the same length, face by face.
+inline void mark_some(const RayLanes& rays, std::int64_t most, std::uint64_t start, ScanWindow& window,
+                      MarksToSet& to_set) {
+  std::array<Words, 3> next = rays.next;
+  Words left = rays.left;
   const Words begin = Words{} + static_cast<std::int64_t>(start);
-  std::array<Words, 3> bits;
+  std::array<Words, 3> bits, place;
   for (std::size_t a = 0; a < 3; ++a) {
     bits[a] = Words{} + static_cast<std::int64_t>(kAxisBits[a]);
     place[a] = begin & bits[a];
   }
   std::array<Words, 3> along{};
-  std::array<std::uint64_t, kLanes> places;
-  for (std::int64_t most = rays[order.front()].left; most > 0; --most) {
+  Words brick = begin >> 6, marks{};
+  std::size_t count = to_set.count;
+  for (; most > 0; --most) {
     // A ray that has ended marks where it began once more.
     const Words at = left > 0 ? place[0] | place[1] | place[2] : begin;
-    std::memcpy(places.data(), &at, sizeof at);
     left -= 1;
+    const Words entered = at >> 6;
+    count += hand_over(brick, entered, marks, to_set.brick.data() + count, to_set.marks.data() + count);
+    marks = (entered == brick ? marks : Words{}) | ((Words{} + 1) << (at & 63));
+    brick = entered;
     choose_axes(next, along);
     for (std::size_t a = 0; a < 3; ++a) {
-      add_wrapping(next[a], along[a] & apart[a]);  // those of rays that have ended mean nothing
-      place[a] = (place[a] + (along[a] & step[a])) & bits[a];
+      const Words after = sum_of(next[a], rays.apart[a]);  // those of rays that have ended mean nothing
+      next[a] = along[a] ? after : next[a];
+      const Words moved = (place[a] + rays.step[a]) & bits[a];
+      place[a] = along[a] ? moved : place[a];
     }
-    for (const std::uint64_t of_one : places) mark_place(of_one, missed, touched);
+    if (count > MarksToSet::kRoom - 2 * kLanes) {
+      set_marks(to_set, count, window);
+      count = 0;
+    }
   }
+  to_set.count = count + hand_over(brick, ~brick, marks, to_set.brick.data() + count, to_set.marks.data() + count);
 }
 
 inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
   const ByLength by_length(rays);
   std::span<const std::uint32_t> order = by_length.order();
+  MarksToSet to_set;
   while (!order.empty()) {
-    const std::size_t lanes = std::min(kLanes, order.size());
-    mark_some(rays, order.first(lanes), start, window.missed(), window.touched());
-    order = order.subspan(lanes);
+    RayLanes lanes;
+    const std::size_t some = std::min(kLanes, order.size());
+    gather(rays, order.first(some), lanes);
+    mark_some(lanes, rays[order.front()].left, start, window, to_set);
+    order = order.subspan(some);
   }
+  set_marks(to_set, to_set.count, window);
 }
 
 #include "map/kernels/ray_keys_loops.hpp"
