@@ -70,14 +70,14 @@ std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends
 bool DenseFan::mark_dense() {
   if (ends_m_.size() < kManyRays || std::size_t{6} * squares_ * squares_ > kMostSquares * ends_m_.size()) return false;
   RayRuns rays(lanes_, fan_, squares_, ends_m_);
-  std::array<std::uint64_t, kBlock + kAimedBeyond> place;
-  std::array<std::uint32_t, kBlock + kAimedBeyond> square;
-  std::array<Aim, kBlock + kAimedBeyond> aim;
+  std::array<std::uint64_t, kBlock + kWrittenBeyond> places;
+  std::array<std::uint32_t, kBlock + kWrittenBeyond> square;
+  std::array<Aim, kBlock + kWrittenBeyond> aim;
   for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, ends_m_.size() - first);
-    aim_rays(lanes_, fan_, squares_, ends_m_.subspan(first, count), {place, square, aim});
-    mark_hits(std::span(place).first(count));
-    rays.add({place, square, aim}, count);
+    const AimedRays aimed{places, square, aim};
+    mark_hits(std::span(places).first(aim_rays(lanes_, fan_, squares_, ends_m_.subspan(first, count), aimed)));
+    rays.add(aimed, count);
     if (rays.rays() < kInOrder * rays.runs() || rays.rays() < kDense * rays.squares()) return false;
   }
   if (rays.rays() < kPerBorder * rays.border()) return false;
@@ -89,9 +89,7 @@ bool DenseFan::mark_dense() {
 }
 
 void DenseFan::mark_hits(std::span<const std::uint64_t> places) {
-  for (const std::uint64_t place : places) {
-    if (place != kNowhere) mark_first(place, window_.hit(), window_.touched());
-  }
+  for (const std::uint64_t place : places) mark_first(place, window_.hit(), window_.touched());
 }
 
 void DenseFan::walk_all(RayEnds ends) {

@@ -1,6 +1,7 @@
 #include "pingvox/map/trace_ray.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -103,16 +104,15 @@ class FanTracer {
       return middles_m;
     }
     std::vector<std::uint64_t> found;
+    std::vector<std::uint32_t> outside;
     for_each_block(points_m, [&](std::span<const Eigen::Vector3d> block) {
-      places_.resize(block.size());
-      detail::find_cells(lanes_, fan_, block, places_);
-      for (std::size_t i = 0; i < block.size(); ++i) {
-        if (places_[i] == detail::kNowhere) {
-          add_singly(block[i]);
-        } else if (mark_hit(places_[i])) {
-          found.push_back(places_[i]);
-        }
+      outside.clear();
+      std::array<std::uint64_t, kBlock + detail::kWrittenBeyond> places;
+      const std::size_t count = detail::find_cells(lanes_, fan_, block, places, outside);
+      for (const std::uint64_t place : std::span(places).first(count)) {
+        if (mark_hit(place)) found.push_back(place);
       }
+      for (const std::uint32_t i : outside) add_singly(block[i]);
     });
     for (const std::uint64_t place : found) {
       middles_m.push_back(lattice_.centre_of(key_at(place)));
@@ -218,7 +218,6 @@ class FanTracer {
   std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
   detail::Lanes lanes_ = detail::widest_lanes();
   std::vector<std::uint32_t> others_;
-  std::vector<std::uint64_t> places_;
 };
 
 /// Those that a ray crosses; none when an end of it lies outside of the lattice.

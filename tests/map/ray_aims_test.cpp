@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -33,8 +34,8 @@ RayFan fan_from(const Eigen::Vector3d& from) {
 
 struct Found {
   explicit Found(std::size_t count)
-      : place(count + kAimedBeyond), square(count + kAimedBeyond), aim(count + kAimedBeyond) {}
-  std::vector<std::uint64_t> place;
+      : places(count + kWrittenBeyond), square(count + kWrittenBeyond), aim(count + kWrittenBeyond) {}
+  std::vector<std::uint64_t> places;
   std::vector<std::uint32_t> square;
   std::vector<Aim> aim;
 };
@@ -52,12 +53,13 @@ TEST(RayAims, AreWhereRaysLeaveTheCube) {
     for (const Lanes lanes : lanes_here()) {
       SCOPED_TRACE(static_cast<int>(lanes));
       Found found(ends.size());
-      aim_rays(lanes, fan, kSquares, ends, {found.place, found.square, found.aim});
-      std::vector<std::uint64_t> places(ends.size());
-      find_cells(Lanes::kOne, fan, ends, places);
+      found.places.resize(aim_rays(lanes, fan, kSquares, ends, {found.places, found.square, found.aim}));
+      std::vector<std::uint64_t> places(ends.size() + kWrittenBeyond);
+      std::vector<std::uint32_t> outside;
+      places.resize(find_cells(Lanes::kOne, fan, ends, places, outside));
+      ASSERT_EQ(found.places, places);
       for (std::size_t i = 0; i < ends.size(); ++i) {
-        ASSERT_EQ(found.place[i], places[i]);
-        if (places[i] == kNowhere) {
+        if (std::find(outside.begin(), outside.end(), i) != outside.end()) {
           ASSERT_EQ(found.square[i], kNoSquare);
           continue;
         }

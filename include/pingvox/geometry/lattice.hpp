@@ -93,8 +93,10 @@ class Lattice {
     const WideWord half = WideWord{1} << (depth_ - 1 - shift);
     // At 128 levels the key itself needs all 128 bits: subtract in unsigned arithmetic, which wraps to the right value.
     const WideWord index = static_cast<WideWord>(word) >> shift;
-    const auto from_centre = static_cast<SignedWide>(index - half);
-    return (static_cast<double>(from_centre) + 0.5) * std::ldexp(resolution_m_, shift);
+    const double size_m = shift == 0 ? resolution_m_ : std::ldexp(resolution_m_, shift);
+    // The same by the processor's own conversion where 64 bits hold it.
+    if (depth_ <= 62) return (static_cast<double>(static_cast<std::int64_t>(index - half)) + 0.5) * size_m;
+    return (static_cast<double>(static_cast<SignedWide>(index - half)) + 0.5) * size_m;
   }
 
   double resolution_m_;

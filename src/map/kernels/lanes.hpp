@@ -3,6 +3,7 @@
 // clang has no pragmas to compile for another machine; there the plain loops do.
 #if defined(__x86_64__) && !defined(__clang__)
 #define PINGVOX_X86_LANES
+#include <immintrin.h>
 #endif
 
 namespace pingvox::detail {

@@ -52,13 +52,27 @@ inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
   }
 }
 
-/// Calls f(first, points) for kLanes points each; the last ones stand together with some that mean nothing.
+/// Asks for the points some way ahead, beyond the page where the machine stops to do so by itself. They need not exist.
+inline void fetch_ahead(const double* points) {
+  constexpr std::size_t kAhead = 64, kLine = 64;
+  const auto first = reinterpret_cast<std::uintptr_t>(points) + kAhead * 3 * sizeof(double);
+  for (std::size_t byte = 0; byte < 3 * kLanes * sizeof(double); byte += kLine) {
+    __builtin_prefetch(reinterpret_cast<const void*>(first + byte));
+  }
+}
+
+/// Calls f(first, points) for kLanes points each; the last ones stand together with some that are no
+/// numbers, and so outside of any window.
 template <class F>
 inline void for_each_lanes(std::span<const Eigen::Vector3d> points_m, F&& f) {
   const std::size_t whole = points_m.size() / kLanes * kLanes;
-  for (std::size_t first = 0; first < whole; first += kLanes) f(first, points_m[first].data());
+  for (std::size_t first = 0; first < whole; first += kLanes) {
+    fetch_ahead(points_m[first].data());
+    f(first, points_m[first].data());
+  }
   if (whole == points_m.size()) return;
-  std::array<double, 3 * kLanes> padded{};
+  std::array<double, 3 * kLanes> padded;
+  padded.fill(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < 3 * (points_m.size() - whole); ++i) padded[i] = points_m[whole].data()[i];
   f(whole, padded.data());
 }
@@ -95,14 +109,68 @@ inline void load_in(const FanLanes& fan, const double* points_m, PointLanes& poi
   for (std::size_t a = 0; a < 3; ++a) points.at[a] = points.is_inside ? points.at[a] : fan.from[a];
 }
 
-/// Places of cells in the window; all bits (kNowhere) for points outside.
-inline void find_places(const FanLanes& fan, const PointLanes& points, Words& place) {
-  place = ~points.is_inside;
-  for (std::size_t a = 0; a < 3; ++a) {
-    Words cell;
-    floor_of(points.at[a], cell);
-    cell -= fan.window_lowest[a];
-    spread(cell);
-    place |= cell << a;
-  }
+/// Stores those of the lanes that are chosen (true is -1), one after the other, where there is room for all of them.
+/// @return how many
+#ifdef PINGVOX_AVX512
+inline std::size_t store_chosen(const Words& words, const Words& chosen, std::uint64_t* to) {
+  const __mmask8 which = _mm512_movepi64_mask(reinterpret_cast<__m512i>(chosen));
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(which, reinterpret_cast<__m512i>(words)));
+  return static_cast<std::size_t>(__builtin_popcount(which));
 }
+#else
+inline std::size_t store_chosen(const Words& words, const Words& chosen, std::uint64_t* to) {
+  std::size_t count = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    to[count] = static_cast<std::uint64_t>(words[l]);
+    count -= static_cast<std::size_t>(chosen[l]);
+  }
+  return count;
+}
+#endif
+
+inline bool are_all(const Words& truth) {
+  std::int64_t all = -1;
+  for (std::size_t l = 0; l < kLanes; ++l) all &= truth[l];
+  return all != 0;
+}
+
+/// Finds the cells that hold points, and of points in a row that share theirs only one.
+class CellsInARow {
+ public:
+  explicit CellsInARow(std::uint64_t* to) : to_(to) {}
+
+  /// Takes in the cells of kLanes points, where there is room for kLanes.
+  void add(const FanLanes& fan, const PointLanes& points) {
+    Words cells = ~points.is_inside;
+    for (std::size_t a = 0; a < 3; ++a) {
+      Words cell;
+      floor_of(points.at[a], cell);
+      cells |= (cell - fan.window_lowest[a]) << (kBitsOfAxis * static_cast<int>(a));
+    }
+    Words before, one_back;
+    for (std::size_t l = 0; l < kLanes; ++l) one_back[l] = static_cast<std::int64_t>(kLanes - 1 + l);
+    pick(last_, cells, one_back, before);
+    count_ += store_chosen(cells, (cells != before) & points.is_inside, to_ + count_);
+    last_ = cells;
+  }
+  /// Makes places of them (numbers of cells in the window). @return how many. To be called last.
+  std::size_t finish() {
+    for (std::size_t i = 0; i < count_; i += kLanes) {
+      Words cells, place{};
+      std::memcpy(&cells, to_ + i, sizeof cells);
+      for (std::size_t a = 0; a < 3; ++a) {
+        Words cell = (cells >> (kBitsOfAxis * static_cast<int>(a))) & ((1 << kBitsOfAxis) - 1);
+        spread(cell);
+        place |= cell << a;
+      }
+      std::memcpy(to_ + i, &place, sizeof place);
+    }
+    return count_;
+  }
+
+ private:
+  static constexpr int kBitsOfAxis = 16;
+  std::uint64_t* to_;
+  std::size_t count_ = 0;
+  Words last_ = Words{} - 1;
+};

@@ -16,10 +16,10 @@ namespace {
 
 }  // namespace
 
-void aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
-              const AimedRays& aimed) {
+std::size_t aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+                     const AimedRays& aimed) {
   assert(squares > 0 &&
-         std::min({aimed.place.size(), aimed.square.size(), aimed.aim.size()}) >= ends_m.size() + kAimedBeyond);
+         std::min({aimed.places.size(), aimed.square.size(), aimed.aim.size()}) >= ends_m.size() + kWrittenBeyond);
   PINGVOX_BY_LANES(lanes, aim(fan, squares, ends_m, aimed), plain::aim(fan, squares, ends_m, aimed));
 }
 

@@ -43,17 +43,17 @@ inline std::uint32_t square_along(float gain, std::uint32_t squares) {
 
 /// What aim_rays finds out of some rays.
 struct AimedRays {
-  std::span<std::uint64_t> place;   ///< of the end in the window; kNowhere: outside
+  std::span<std::uint64_t> places;  ///< as find_cells has them
   std::span<std::uint32_t> square;  ///< kNoSquare: outside of the window, or too close for an aim
   std::span<Aim> aim;
 };
 inline constexpr std::uint32_t kNoSquare = ~std::uint32_t{0};
 
-/// Aims of the rays to `ends_m` [m, map frame].
-/// REQUIRES room for kAimedBeyond more than there are ends: it is written over
-inline constexpr std::size_t kAimedBeyond = 7;
-void aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
-              const AimedRays& aimed);
+/// Aims of the rays to `ends_m` [m, map frame], and the places of their ends.
+/// @return how many places
+/// REQUIRES room for kWrittenBeyond more than there are ends
+std::size_t aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+                     const AimedRays& aimed);
 
 /// A cell as rays through one face come to it [cells, from the place where they begin].
 struct CellAhead {

@@ -70,13 +70,8 @@ inline void store(const Aims& aims, Aim* to) {
   std::memcpy(static_cast<void*>(to), out.data(), sizeof out);
 }
 
-inline void aim_some(const FanLanes& fan, std::uint32_t squares, const double* ends_m, std::uint64_t* places,
-                     std::uint32_t* to_squares, Aim* to_aims) {
-  PointLanes ends;
-  load_in(fan, ends_m, ends);
-  Words place;
-  find_places(fan, ends, place);
-  std::memcpy(places, &place, sizeof place);
+inline void aim_some(const FanLanes& fan, std::uint32_t squares, const PointLanes& ends, std::uint32_t* to_squares,
+                     Aim* to_aims) {
   std::array<Floats, 3> way;
   Numbers is_lost = __builtin_convertvector(~ends.is_inside, Numbers);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -94,15 +89,19 @@ inline void aim_some(const FanLanes& fan, std::uint32_t squares, const double* e
   store(aims, to_aims);
 }
 
-inline void aim(const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
-                const AimedRays& aimed) {
+inline std::size_t aim(const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+                       const AimedRays& aimed) {
   const FanLanes fan_lanes(fan);
-  std::uint64_t* const places = aimed.place.data();
+  CellsInARow cells(aimed.places.data());
   std::uint32_t* const to_squares = aimed.square.data();
   Aim* const aims = aimed.aim.data();
   for_each_lanes(ends_m, [&](std::size_t first, const double* some_m) {
-    aim_some(fan_lanes, squares, some_m, places + first, to_squares + first, aims + first);
+    PointLanes ends;
+    load_in(fan_lanes, some_m, ends);
+    cells.add(fan_lanes, ends);
+    aim_some(fan_lanes, squares, ends, to_squares + first, aims + first);
   });
+  return cells.finish();
 }
 
 /// Bit l: ray l may cross the cell.

@@ -6,10 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#ifdef __x86_64__
-#include <immintrin.h>
-#endif
-
 #include "map/tree_order.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
@@ -117,10 +113,11 @@ void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3
   PINGVOX_BY_LANES(lanes, prepare(fan, ends_m, ready, others), plain::prepare(fan, ends_m, ready, others));
 }
 
-void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
-                std::span<std::uint64_t> places) {
-  assert(places.size() == points_m.size());
-  PINGVOX_BY_LANES(lanes, find(fan, points_m, places), plain::find(fan, points_m, places));
+std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
+                       std::span<std::uint64_t> places, std::vector<std::uint32_t>& outside) {
+  assert(places.size() >= points_m.size() + kWrittenBeyond);
+  PINGVOX_BY_LANES(lanes, find(fan, points_m, places.data(), outside),
+                   plain::find(fan, points_m, places.data(), outside));
 }
 
 void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {

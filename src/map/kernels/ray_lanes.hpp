@@ -41,11 +41,15 @@ struct alignas(64) ReadyRay {
 void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
                   std::vector<std::uint32_t>& others);
 
-/// Place in the window of each point [m, map frame]; kNowhere: outside of the window.
-/// REQUIRES places.size() == points_m.size()
-inline constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
-void find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
-                std::span<std::uint64_t> places);
+/// Finds the places in the window of the cells that hold points [m, map frame]. Of points in a row that share their
+/// cell it is there once.
+/// @param places   as many as are returned mean something
+/// @param outside  gets the numbers of points outside of the window
+/// @return how many
+/// REQUIRES room for kWrittenBeyond more places than there are points
+inline constexpr std::size_t kWrittenBeyond = 8;
+std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
+                       std::span<std::uint64_t> places, std::vector<std::uint32_t>& outside);
 
 /// Marks the cells of each ray as missed, its first one included, its last one not.
 /// @param start  place of the cell where all of them begin

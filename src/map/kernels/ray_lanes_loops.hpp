@@ -97,15 +97,20 @@ inline void prepare(const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, 
   ready.resize(count);
 }
 
-inline void find(const RayFan& fan, std::span<const Eigen::Vector3d> points_m, std::span<std::uint64_t> places) {
+inline std::size_t find(const RayFan& fan, std::span<const Eigen::Vector3d> points_m, std::uint64_t* places,
+                        std::vector<std::uint32_t>& outside) {
   const FanLanes fan_lanes(fan);
+  CellsInARow cells(places);
   for_each_lanes(points_m, [&](std::size_t first, const double* some_m) {
     PointLanes points;
     load_in(fan_lanes, some_m, points);
-    Words place;
-    find_places(fan_lanes, points, place);
-    std::memcpy(places.data() + first, &place, std::min(kLanes, points_m.size() - first) * sizeof place[0]);
+    cells.add(fan_lanes, points);
+    if (are_all(points.is_inside)) return;  // as most often
+    for (std::size_t l = 0; l < std::min(kLanes, points_m.size() - first); ++l) {
+      if (points.is_inside[l] == 0) outside.push_back(static_cast<std::uint32_t>(first + l));
+    }
   });
+  return cells.finish();
 }
 
 /// axis_of_least for each lane: all bits set of the axis that is next, none of the others.
@@ -116,37 +121,14 @@ inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& 
   along[2] = ~(along[0] | along[1]);
 }
 
-/// Appends brick and marks of the lanes that are in another brick now, where there is room for kLanes.
-/// @return how many
-#ifdef PINGVOX_AVX512
-inline std::size_t hand_over(const Words& left, const Words& entered, const Words& marks, std::uint64_t* to_brick,
-                             std::uint64_t* to_marks) {
-  const __mmask8 is_another =
-      _mm512_cmpneq_epi64_mask(reinterpret_cast<__m512i>(left), reinterpret_cast<__m512i>(entered));
-  _mm512_storeu_si512(to_brick, _mm512_maskz_compress_epi64(is_another, reinterpret_cast<__m512i>(left)));
-  _mm512_storeu_si512(to_marks, _mm512_maskz_compress_epi64(is_another, reinterpret_cast<__m512i>(marks)));
-  return static_cast<std::size_t>(__builtin_popcount(is_another));
-}
-#else
-inline std::size_t hand_over(const Words& left, const Words& entered, const Words& marks, std::uint64_t* to_brick,
-                             std::uint64_t* to_marks) {
-  const Words is_another = left != entered;
-  std::size_t count = 0;
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    to_brick[count] = static_cast<std::uint64_t>(left[l]);
-    to_marks[count] = static_cast<std::uint64_t>(marks[l]);
-    count -= static_cast<std::size_t>(is_another[l]);  // true is -1
-  }
-  return count;
-}
-#endif
-
-/// Rays side by side.
+/// Up to kLanes rays side by side, and how many faces the longest crosses.
 struct RayLanes {
   std::array<Words, 3> next{}, apart{}, step{};
   Words left{};
+  std::int64_t longest = 0;
 };
 
+/// @param order  rays by length, the longest first
 inline void gather(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order, RayLanes& to) {
   for (std::size_t l = 0; l < order.size(); ++l) {
     const ReadyRay& ray = rays[order[l]];
@@ -157,13 +139,12 @@ inline void gather(std::span<const ReadyRay> rays, std::span<const std::uint32_t
     }
     to.left[l] = ray.left;
   }
+  to.longest = rays[order.front()].left;
 }
 
-/// Walks up to kLanes rays of about the same length, face by face.
-inline void mark_some(const RayLanes& rays, std::int64_t most, std::uint64_t start, ScanWindow& window,
-                      MarksToSet& to_set) {
+/// Walks rays of about the same length, face by face.
+inline void mark_some(const RayLanes& rays, std::uint64_t start, ScanWindow& window, MarksToSet& to_set) {
   std::array<Words, 3> next = rays.next;
-  Words left = rays.left;
   const Words begin = Words{} + static_cast<std::int64_t>(start);
   std::array<Words, 3> bits, place;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -173,13 +154,14 @@ inline void mark_some(const RayLanes& rays, std::int64_t most, std::uint64_t sta
   std::array<Words, 3> along{};
   Words brick = begin >> 6, marks{};
   std::size_t count = to_set.count;
-  for (; most > 0; --most) {
+  for (std::int64_t n = 0; n < rays.longest; ++n) {
     // A ray that has ended marks where it began once more.
-    const Words at = left > 0 ? place[0] | place[1] | place[2] : begin;
-    left -= 1;
-    const Words entered = at >> 6;
-    count += hand_over(brick, entered, marks, to_set.brick.data() + count, to_set.marks.data() + count);
-    marks = (entered == brick ? marks : Words{}) | ((Words{} + 1) << (at & 63));
+    const Words at = rays.left > n ? place[0] | place[1] | place[2] : begin;
+    const Words entered = at >> 6, cell = (Words{} + 1) << (at & 63);
+    const Words is_another = brick != entered;
+    store_chosen(brick, is_another, to_set.brick.data() + count);
+    count += store_chosen(marks, is_another, to_set.marks.data() + count);
+    marks = is_another ? cell : cell | marks;
     brick = entered;
     choose_axes(next, along);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -193,7 +175,9 @@ inline void mark_some(const RayLanes& rays, std::int64_t most, std::uint64_t sta
       count = 0;
     }
   }
-  to_set.count = count + hand_over(brick, ~brick, marks, to_set.brick.data() + count, to_set.marks.data() + count);
+  const Words all = Words{} - 1;
+  store_chosen(brick, all, to_set.brick.data() + count);
+  to_set.count = count + store_chosen(marks, all, to_set.marks.data() + count);
 }
 
 inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
@@ -204,7 +188,7 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     RayLanes lanes;
     const std::size_t some = std::min(kLanes, order.size());
     gather(rays, order.first(some), lanes);
-    mark_some(lanes, rays[order.front()].left, start, window, to_set);
+    mark_some(lanes, start, window, to_set);
     order = order.subspan(some);
   }
   set_marks(to_set, to_set.count, window);
