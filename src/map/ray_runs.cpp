@@ -10,12 +10,19 @@
 namespace pingvox::detail {
 namespace {
 
-/// Rays of a run at most: a word has a bit for each.
-constexpr std::size_t kMostOfRun = 64;
+/// Rays of a run at most: there is a bit for each.
+constexpr std::size_t kMostOfRun = 32;
 /// What single precision may be off, and more [cells].
 constexpr double kMargin = 1e-3;
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kTiny = std::numeric_limits<float>::min();
+constexpr std::int16_t kMostSteps = std::numeric_limits<std::int16_t>::max();
+/// Bounds of no rays: not in view from anywhere.
+constexpr Aim kNoRays{kMostSteps, kMostSteps, kMostSteps, 0, kMostSteps, kMostSteps, kMostSteps, 0};
+
+Aim least_of(const Aim& a, const Aim& b) {
+  return a < b ? a : b;
+}
 
 constexpr double kBrickEdge = 4.0;
 Eigen::Vector3d corner_in_brick(std::uint32_t cell) {
@@ -25,8 +32,6 @@ Eigen::Vector3d corner_in_brick(std::uint32_t cell) {
 
 }  // namespace
 
-constexpr RayRuns::Bounds RayRuns::kNothing{{kFar, kFar, kFar, 0.0F}, {-kFar, -kFar, -kFar, 0.0F}};
-
 RayRuns::RayRuns(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m)
     : lanes_(lanes),
       fan_(fan),
@@ -34,7 +39,7 @@ RayRuns::RayRuns(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::spa
       ends_m_(ends_m),
       columns_(std::size_t{kFaces} * squares),
       index_(std::size_t{kFaces} * squares * squares) {
-  faces_.fill(kNothing);
+  faces_.fill(kNoRays);
 }
 
 void RayRuns::add(const AimedRays& aimed, std::size_t count) {
@@ -47,8 +52,8 @@ void RayRuns::add(const AimedRays& aimed, std::size_t count) {
       continue;
     }
     const std::size_t end = std::min(count, i + kMostOfRun);
-    Bounds bounds{aimed.aim[i], aimed.aim[i]};
-    for (++i; i < end && aimed.square[i] == square; ++i) bounds.join({aimed.aim[i], aimed.aim[i]});
+    Aim bounds = aimed.aim[i];
+    for (++i; i < end && aimed.square[i] == square; ++i) bounds = least_of(bounds, aimed.aim[i]);
     add_run(square, {bounds, 0, first, static_cast<std::uint32_t>(rays_ + i) - first});
   }
   rays_ += count;
@@ -67,7 +72,7 @@ void RayRuns::add_run(std::uint32_t square, const Run& run) {
   square_of_run_.push_back(index - 1);
   Square& all = squares_[index - 1];
   ++all.end;
-  all.bounds.join(run.bounds);
+  all.bounds = least_of(all.bounds, run.bounds);
 }
 
 std::size_t RayRuns::border() const {
@@ -86,7 +91,8 @@ std::size_t RayRuns::border() const {
 void RayRuns::sort() {
   std::uint32_t begin = 0;
   for (Square& square : squares_) {
-    faces_[square.number / (per_edge_ * per_edge_)].join(square.bounds);
+    Aim& face = faces_[square.number / (per_edge_ * per_edge_)];
+    face = least_of(face, square.bounds);
     square.begin = begin;
     begin += std::exchange(square.end, begin);
   }
@@ -101,10 +107,10 @@ std::vector<std::uint32_t> RayRuns::take_one_of_each_square() {
   for (const Square& square : squares_) {
     const std::span<Run> runs = std::span(runs_).subspan(square.begin, square.end - square.begin);
     Run& run = *std::max_element(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
-      return a.bounds.most[kReach] < b.bounds.most[kReach];
+      return a.bounds[kReach + kNegated] > b.bounds[kReach + kNegated];
     });
     const std::uint32_t middle = run.count / 2;
-    run.taken |= std::uint64_t{1} << middle;
+    run.taken |= 1U << middle;
     taken.push_back(run.first + middle);
   }
   return taken;
@@ -130,22 +136,29 @@ std::optional<RayRuns::View> RayRuns::view(std::uint32_t face, const Eigen::Vect
   const auto most = [&](float high, int a) {
     return std::min(highest[a] <= 0.0 ? -kTiny : kFar, high * (high < 0.0F ? out : in));
   };
-  const Bounds aims{{least(across - half_width, next), least(up - half_width, after), near, 0.0F},
-                    {most(across + half_width, next), most(up + half_width, after), kFar, 0.0F}};
-  if (!faces_[face].meets(aims)) return std::nullopt;
-  return View{{near, far, across, up, half_width}, aims};
+  const float left = least(across - half_width, next), right = most(across + half_width, next);
+  const float below = least(up - half_width, after), above = most(up + half_width, after);
+  const FourSteps gains = in_steps(FourNumbers{right, above, -left, -below} * kStepsOfGain);
+  const FourSteps reach = in_steps(FourNumbers{-near} * kStepsOfReach);
+  const auto step = [](std::int32_t number) { return static_cast<std::int16_t>(number); };
+  const Aim greatest{step(gains[0]), step(gains[1]), kMostSteps, 0, step(gains[2]), step(gains[3]), step(reach[0]), 0};
+  if (is_any_greater(faces_[face], greatest)) return std::nullopt;
+  return View{{near, far, across, up, half_width},
+              greatest,
+              face * per_edge_ + square_along(below, per_edge_),
+              face * per_edge_ + square_along(above, per_edge_),
+              square_along(left, per_edge_),
+              square_along(right, per_edge_)};
 }
 
 template <class F>
-bool RayRuns::any_square(std::uint32_t face, const Bounds& aims, F&& f) const {
-  const std::uint32_t first_column = square_along(aims.least[kAcross], per_edge_);
-  const std::uint32_t last_column = square_along(aims.most[kAcross], per_edge_);
-  const std::uint32_t last_row = face * per_edge_ + square_along(aims.most[kUp], per_edge_);
-  for (std::uint32_t row = face * per_edge_ + square_along(aims.least[kUp], per_edge_); row <= last_row; ++row) {
-    const std::uint32_t last = std::min(last_column, columns_[row].last);
-    for (std::uint32_t column = std::max(first_column, columns_[row].first); column <= last; ++column) {
+bool RayRuns::any_square(const View& view, F&& f) const {
+  for (std::uint32_t row = view.first_row; row <= view.last_row; ++row) {
+    const std::uint32_t last = std::min(view.last_column, columns_[row].last);
+    for (std::uint32_t column = std::max(view.first_column, columns_[row].first); column <= last; ++column) {
       const std::uint32_t index = index_[row * per_edge_ + column];
-      if (index != 0 && squares_[index - 1].bounds.meets(aims) && f(squares_[index - 1])) return true;
+      if (index == 0 || is_any_greater(squares_[index - 1].bounds, view.most)) continue;
+      if (f(squares_[index - 1])) return true;
     }
   }
   return false;
@@ -153,7 +166,7 @@ bool RayRuns::any_square(std::uint32_t face, const Bounds& aims, F&& f) const {
 
 bool RayRuns::may_cross(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const {
   const auto cube = view(face, lowest, edge);
-  return cube && any_square(face, cube->aims, [](const Square&) { return true; });
+  return cube && any_square(*cube, [](const Square&) { return true; });
 }
 
 bool RayRuns::may_cross(const Eigen::Vector3d& lowest, double edge) const {
@@ -173,7 +186,7 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
       const auto number = static_cast<std::uint32_t>(std::countr_zero(left));
       const auto cell = view(face, lowest + corner_in_brick(number), 1.0);
       if (!cell) continue;
-      any_square(face, cell->aims, [&](const Square& square) {
+      any_square(*cell, [&](const Square& square) {
         squares_to_ask_.push_back({*cell, &square, number});
         __builtin_prefetch(&runs_[square.begin]);
         return false;
@@ -183,7 +196,7 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
   runs_to_ask_.clear();
   for (const SquareToAsk& ask : squares_to_ask_) {
     for (std::uint32_t run = ask.square->begin; run < ask.square->end; ++run) {
-      if (!runs_[run].bounds.meets(ask.cell.aims)) continue;
+      if (is_any_greater(runs_[run].bounds, ask.cell.most)) continue;
       runs_to_ask_.push_back({ask.cell.cube, run, ask.number});
       const auto* const ends = reinterpret_cast<const std::byte*>(&ends_m_[runs_[run].first]);
       for (std::size_t line = 0; line < runs_[run].count * sizeof ends_m_[0]; line += 64) {
@@ -197,7 +210,7 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
     const std::size_t i =
         first_that_may_cross(lanes_, fan_, ask.cell, ends_m_.subspan(run.first), run.count, run.taken);
     if (i == run.count) continue;
-    run.taken |= std::uint64_t{1} << i;
+    run.taken |= 1U << i;
     taken.push_back(run.first + static_cast<std::uint32_t>(i));
     cells &= ~(std::uint64_t{1} << ask.number);
   }

@@ -50,23 +50,13 @@ class RayRuns {
 
  private:
   static constexpr std::uint32_t kFaces = 6;
-  /// What all aims of some rays stay within.
-  struct Bounds {
-    Aim least, most;
-    void join(const Bounds& other) {
-      least = other.least < least ? other.least : least;
-      most = other.most > most ? other.most : most;
-    }
-    bool meets(const Bounds& other) const { return is_true((least <= other.most) & (most >= other.least)); }
-  };
-  static const Bounds kNothing;
   struct Run {
-    Bounds bounds;
-    std::uint64_t taken = 0;  ///< bit i: ray first + i was taken out
+    Aim bounds;               ///< the least of its rays' aims
+    std::uint32_t taken = 0;  ///< bit i: ray first + i was taken out
     std::uint32_t first, count;
   };
   struct Square {
-    Bounds bounds;
+    Aim bounds;
     std::uint32_t number;
     std::uint32_t begin, end;  ///< its runs
   };
@@ -74,10 +64,11 @@ class RayRuns {
   struct Columns {
     std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
   };
-  /// A cube of cells, and within what the aims of rays stay that come to it through one face.
+  /// A cube of cells as rays come to it through one face.
   struct View {
     CellAhead cube;
-    Bounds aims;
+    Aim most;                                                      ///< their aims are nowhere greater
+    std::uint32_t first_row, last_row, first_column, last_column;  ///< squares of their aims
   };
   /// What is to be looked at for a cell: the runs of a square, then the rays of a run.
   struct SquareToAsk {
@@ -94,9 +85,9 @@ class RayRuns {
   void add_run(std::uint32_t square, const Run& run);
   /// A cube of cells through a face; nullopt: no ray through it comes there.
   std::optional<View> view(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const;
-  /// Calls f(square) for the squares of a face with aims within bounds, until it returns true.
+  /// Calls f(square) for the squares with rays that may come into view, until it returns true.
   template <class F>
-  bool any_square(std::uint32_t face, const Bounds& aims, F&& f) const;
+  bool any_square(const View& view, F&& f) const;
   bool may_cross(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const;
 
   Lanes lanes_;
@@ -105,7 +96,7 @@ class RayRuns {
   std::span<const Eigen::Vector3d> ends_m_;
   std::size_t rays_ = 0;
   std::vector<std::uint32_t> outside_;
-  std::array<Bounds, kFaces> faces_;
+  std::array<Aim, kFaces> faces_;     ///< bounds of their squares
   std::vector<Columns> columns_;      ///< of each row of each face
   std::vector<std::uint32_t> index_;  ///< of each square in squares_, plus one; 0: no ray goes through it
   std::vector<Square> squares_;

@@ -66,15 +66,16 @@ inline void fetch_ahead(const double* points) {
 template <class F>
 inline void for_each_lanes(std::span<const Eigen::Vector3d> points_m, F&& f) {
   const std::size_t whole = points_m.size() / kLanes * kLanes;
-  for (std::size_t first = 0; first < whole; first += kLanes) {
-    fetch_ahead(points_m[first].data());
-    f(first, points_m[first].data());
-  }
-  if (whole == points_m.size()) return;
   std::array<double, 3 * kLanes> padded;
   padded.fill(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < 3 * (points_m.size() - whole); ++i) padded[i] = points_m[whole].data()[i];
-  f(whole, padded.data());
+  for (std::size_t i = whole; i < points_m.size(); ++i)
+    std::memcpy(&padded[3 * (i - whole)], points_m[i].data(), 3 * sizeof(double));
+  // f stands here once, so that it becomes part of the loop.
+  for (std::size_t first = 0; first < points_m.size(); first += kLanes) {
+    const double* const some_m = points_m[first].data();
+    fetch_ahead(some_m);
+    f(first, first < whole ? some_m : padded.data());
+  }
 }
 
 /// A RayFan for all lanes.

@@ -16,26 +16,41 @@
 /// cross a cell, and which surely do not.
 namespace pingvox::detail {
 
-/// Four numbers that are treated alike: an aim, and what aims stay within. A ray leaves through a face of the cube
-/// around the place where it begins, that of the axis along which it goes farthest.
-using Aim = float __attribute__((vector_size(4 * sizeof(float))));
-using AimTruth = std::int32_t __attribute__((vector_size(4 * sizeof(float))));  ///< of a comparison: 0 or -1 each
-inline constexpr int kAcross = 0;  ///< what it gains along the next axis for each cell along the face's: -1..1
-inline constexpr int kUp = 1;      ///< the same along the axis after that
-inline constexpr int kReach = 2;   ///< how far it goes along the face's axis [cells]
+/// Where a ray goes, in steps that never turn the order of two round and tell a positive number, a negative one and
+/// zero apart; and the same with the other sign. So of several rays the least of each number is what all of them stay
+/// within. A ray leaves through a face of the cube around the place where it begins, that of the axis along which it
+/// goes farthest.
+using Aim = std::int16_t __attribute__((vector_size(8 * sizeof(std::int16_t))));
+inline constexpr int kAcross = 0;   ///< what it gains along the next axis for each cell along the face's: -1..1
+inline constexpr int kUp = 1;       ///< the same along the axis after that
+inline constexpr int kReach = 2;    ///< how far it goes along the face's axis [cells]
+inline constexpr int kNegated = 4;  ///< added to these
+inline constexpr float kStepsOfGain = 16384.0F, kStepsOfReach = 24.0F;
 
-/// Whether all four are true.
-inline bool is_true(const AimTruth& truth) {
+/// Four numbers, times kStepsOfGain or kStepsOfReach, in steps.
+using FourNumbers = float __attribute__((vector_size(4 * sizeof(float))));
+using FourSteps = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+inline FourSteps in_steps(const FourNumbers& numbers) {
+  const FourNumbers most = FourNumbers{} + 32000.0F;  // of 16 bits
+  const FourNumbers above = numbers > -most ? numbers : -most, within = above < most ? above : most;
+  return __builtin_convertvector(within, FourSteps) - (numbers > 0.0F) + (numbers < 0.0F);  // true is -1
+}
+
+/// Whether any number of an aim is greater.
+inline bool is_any_greater(const Aim& aim, const Aim& most) {
+  const Aim greater = aim > most;
 #ifdef __SSE2__
-  return _mm_movemask_epi8(reinterpret_cast<__m128i>(truth)) == 0xFFFF;
+  return _mm_movemask_epi8(reinterpret_cast<__m128i>(greater)) != 0;
 #else
-  return (truth[0] & truth[1] & truth[2] & truth[3]) != 0;
+  std::int16_t any = 0;
+  for (int i = 0; i < 8; ++i) any = static_cast<std::int16_t>(any | greater[i]);
+  return any != 0;
 #endif
 }
 
 /// The squares that the faces are cut into are numbered by (face * squares + row) * squares + column, rows by kUp,
 /// columns by kAcross; faces by 2 * axis, one more for rays that go back along it.
-/// @param gain  kAcross or kUp of an aim  @param squares  along an edge of the face
+/// @param gain  across or up  @param squares  along an edge of the face
 inline std::uint32_t square_along(float gain, std::uint32_t squares) {
   const float at = (gain + 1.0F) * (0.5F * static_cast<float>(squares));
   return at <= 0.0F ? 0 : (at >= static_cast<float>(squares) ? squares - 1 : static_cast<std::uint32_t>(at));

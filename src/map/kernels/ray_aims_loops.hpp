@@ -56,16 +56,35 @@ inline void interleave(const Vector& one, const Vector& other, Vector& first, Ve
   pick(one, other, of_second, second);
 }
 
-/// Four numbers for each of the lanes.
+/// in_steps for each lane. REQUIRES numbers that fit
+inline Numbers steps_of(const Floats& numbers) {
+  return __builtin_convertvector(numbers, Numbers) - (numbers > 0.0F) + (numbers < 0.0F);  // true is -1
+}
+
+/// Two numbers of 16 bits in one of 32.
+inline void pair(const Numbers& low, const Numbers& high, Numbers& both) {
+  using Unsigned = std::uint32_t __attribute__((vector_size(sizeof(Numbers))));
+  both =
+      reinterpret_cast<Numbers>((reinterpret_cast<Unsigned>(low) & 0xFFFFU) | (reinterpret_cast<Unsigned>(high) << 16));
+}
+
+/// An aim for each of the lanes.
 inline void store(const Aims& aims, Aim* to) {
   using Pairs = std::int64_t __attribute__((vector_size(sizeof(Floats))));
-  std::array<Floats, 2> gains, reaches;
-  interleave<Floats, Numbers>(aims.across, aims.up, gains[0], gains[1]);
-  interleave<Floats, Numbers>(aims.reach, Floats{}, reaches[0], reaches[1]);
+  const Numbers across = steps_of(aims.across * kStepsOfGain), up = steps_of(aims.up * kStepsOfGain),
+                reach = steps_of(aims.reach * kStepsOfReach);
+  std::array<Numbers, 4> pairs;
+  pair(across, up, pairs[0]);
+  pair(reach, Numbers{}, pairs[1]);
+  pair(-across, -up, pairs[2]);
+  pair(-reach, Numbers{}, pairs[3]);
+  std::array<Numbers, 2> first, second;
+  interleave<Numbers, Numbers>(pairs[0], pairs[1], first[0], first[1]);
+  interleave<Numbers, Numbers>(pairs[2], pairs[3], second[0], second[1]);
   std::array<Pairs, 4> out;
   for (std::size_t half = 0; half < 2; ++half) {
-    interleave<Pairs, Pairs>(reinterpret_cast<Pairs>(gains[half]), reinterpret_cast<Pairs>(reaches[half]),
-                             out[2 * half], out[2 * half + 1]);
+    interleave<Pairs, Pairs>(reinterpret_cast<Pairs>(first[half]), reinterpret_cast<Pairs>(second[half]), out[2 * half],
+                             out[2 * half + 1]);
   }
   std::memcpy(static_cast<void*>(to), out.data(), sizeof out);
 }
