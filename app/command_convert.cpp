@@ -94,6 +94,9 @@ Result<std::string> convert_map(const MapFile& read, const ConvertCommand& comma
   const Result<void> written = write_map_file(command.output, read.map, command.format, read.made_by);
   if (!written) return tl::unexpected(written.error());
   const MapCounts counts = read.map.counts();
+  if (kind_of(command.format) == FormatKind::kCloud) {
+    return fmt::format("{} occupied cells as points, joined ones as one", counts.occupied_cells);
+  }
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);
 }
 

@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "commands.hpp"
 #include "json.hpp"
@@ -29,9 +31,14 @@ class Stopwatch {
 /// What all logs together came to.
 struct Totals {
   BuildReport report;
+  std::size_t scans = 0, points = 0;  ///< of the report's sweeps and beams those that are no beams
   double write_s = 0.0, total_s = 0.0;
 
-  void add(const BuildReport& log) {
+  void add(const BuildReport& log, const Log& source) {
+    if (std::holds_alternative<std::unique_ptr<ScanSource>>(source)) {
+      scans += log.sweeps;
+      points += log.beams;
+    }
     report.beams += log.beams;
     report.sweeps += log.sweeps;
     report.echoes += log.echoes;
@@ -88,7 +95,16 @@ std::string json_of(const Totals& totals, const OccupancyMap& map) {
 std::string text_of(const Totals& totals, const OccupancyMap& map, const std::string& output) {
   const BuildReport& report = totals.report;
   const auto& s = report.seconds;
-  std::string read = fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes);
+  std::string read;
+  if (const std::size_t beams = report.beams - totals.points; beams > 0) {
+    const std::size_t echoes = report.echoes - totals.points;
+    read = fmt::format("{} beams, {} complete sweeps, {} echoes", beams, report.sweeps - totals.scans, echoes);
+    if (beams > echoes) read += fmt::format(", {} beams without one", beams - echoes);
+  }
+  if (totals.scans > 0) {
+    read += fmt::format("{}{} points in {} scan{}", read.empty() ? "" : ", ", totals.points, totals.scans,
+                        totals.scans == 1 ? "" : "s");
+  }
   if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
   return name + "\n" + report_line("read", read) + map_text(map, map.counts()) +
@@ -129,7 +145,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       };
       const Result<BuildReport> report = map_log(*log, name, *trajectory, command.build, *map, progress);
       if (!report) return tl::unexpected(report.error());
-      totals.add(*report);
+      totals.add(*report, *log);
     }
   }
 

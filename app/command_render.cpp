@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -35,9 +36,7 @@ SeenSweep seen(std::size_t number, Sweep sweep, const PanelCommand& panel) {
   PolarImage smooth = filtered(raw, panel.build.filter);
   std::vector<std::optional<Echo>> echoes;
   if (panel.marks == EchoMarks::kOn) {
-    EchoOptions options = panel.build.echo;
-    options.max_range_m = panel.build.model.max_range_m;
-    echoes = detect_echoes(smooth, sweep, options);
+    echoes = detect_echoes(smooth, sweep, *panel.build.echo_within_range());
   }
   PolarImage& image = panel.image == ShownImage::kRaw ? raw : smooth;
   return {number, std::move(sweep), std::move(image), std::move(echoes)};
@@ -110,6 +109,9 @@ class CartesianGatherer {
 template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage damage) {
   const std::string name = file.name;
+  if (const auto within = panel.build.echo_within_range(); !within) {
+    return fail(within.error().code, fmt::format("{}: {}", name, within.error().message));
+  }
   const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
   if (!source) return tl::unexpected(source.error());
   Gatherer gatherer(panel);
@@ -168,8 +170,11 @@ Result<std::variant<Drawn, MapToDraw>> prepared(FileBytes file, const PanelComma
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind != FormatKind::kBeams && kind != FormatKind::kScans && kind != FormatKind::kMap) {
+    const std::string_view hint = kind == FormatKind::kCloud  ? ": 'pingvox map' makes a map of it"
+                                  : kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface"
+                                                              : "";
     return fail(Error::Code::kUnsupported,
-                fmt::format("{}: is {}: only logs and maps can be drawn", file.name, described(*format)));
+                fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name, described(*format), hint));
   }
   const PictureView view = panel.view.value_or(kind == FormatKind::kBeams ? PictureView::kPolar : PictureView::kAbove);
   const auto to_draw = [&](OccupancyMap map) { return Prepared(MapToDraw{std::move(map), view}); };

@@ -32,9 +32,10 @@ Result<BuildReport> map_log(const Log& log, const std::string& name, const Traje
                             const BuildOptions& options, OccupancyMap& map, const Progress& progress) {
   Result<BuildReport> report = build(log, trajectory, options, map, progress);
   if (!report) {
-    // Errors of the map itself name no file.
-    if (report.error().code != Error::Code::kLimit) return report;
-    return fail(Error::Code::kLimit, fmt::format("{}: {}", name, report.error().message));
+    // Errors of the map itself, and of options that do not fit beams, name no file.
+    const Error::Code code = report.error().code;
+    if (code != Error::Code::kLimit && code != Error::Code::kBadOption) return report;
+    return fail(code, fmt::format("{}: {}", name, report.error().message));
   }
   if (report->beams == 0) {
     const bool stood_still = trajectory.at(std::numeric_limits<double>::lowest()).has_value();

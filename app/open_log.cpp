@@ -4,14 +4,14 @@
 
 #include <utility>
 
+#include "stranger.hpp"
+
 namespace pingvox::app {
 
 Result<Format> recognised(const FileBytes& file) {
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   if (const auto format = format_of(file.view())) return *format;
-  return fail(
-      Error::Code::kUnsupported,
-      fmt::format("{}: is none of the logs, clouds, maps, meshes and trajectories that pingvox reads", file.name));
+  return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, stranger_text(file.view())));
 }
 
 std::string described(Format format) {

@@ -1,8 +1,10 @@
 #include "shared_options.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -66,10 +68,23 @@ Result<Format> output_format(const std::string& path, const std::optional<Format
 
 Result<void> check_folder_of(const std::string& path) {
   if (path == "-") return {};
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (folder.empty()) folder = ".";
   std::error_code error;
-  if (folder.empty() || std::filesystem::is_directory(folder, error)) return {};
-  return fail(Error::Code::kIo, fmt::format("{}: there is no folder '{}'", path, folder.string()));
+  if (!std::filesystem::is_directory(folder, error)) {
+    return fail(Error::Code::kIo, fmt::format("{}: there is no folder '{}'", path, folder.string()));
+  }
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (std::filesystem::is_directory(path, error)) {
+    return fail(Error::Code::kIo, fmt::format("{}: is a folder, not a file", path));
+  }
+  // Devices and pipes are written to as they are, and a link leads to another folder; else the file is made anew.
+  const bool is_made = !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+  if (is_made && ::access(folder.c_str(), W_OK) != 0) {
+    const std::string reason = std::system_category().message(errno);
+    return fail(Error::Code::kIo, fmt::format("{}: {} in the folder '{}'", path, reason, folder.string()));
+  }
+  return {};
 }
 
 Result<void> check_standard_input(const Words& files) {

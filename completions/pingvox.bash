@@ -17,7 +17,7 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
-      options+=(--poses --mount --origin --beam --beam-width --beam-height --ray --hit-from --silent)
+      options+=(--poses --mount --origin --beam --beam-width --beam-height --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
@@ -26,7 +26,7 @@ _pingvox_options() {
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
-      options+=(--poses --mount --beam --beam-width --beam-height --ray --hit-from --silent)
+      options+=(--poses --mount --beam --beam-width --beam-height --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
@@ -90,7 +90,7 @@ _pingvox() {
   if [[ -z $words ]]; then
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
-        --beam-width | --beam-height | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
+        --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --z | --min-z | --max-z | --caption | --title | --beside)
         return # a number or a text: nothing to offer

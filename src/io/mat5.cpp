@@ -201,7 +201,8 @@ Result<std::vector<std::uint8_t>> find_variable(const FileBytes& file, std::endi
     const auto element = take_element(reader);
     if (!element) {
       return fail(Error::Code::kCorrupt,
-                  fmt::format("{}: byte {}: a data element that does not fit into the {} bytes that are left",
+                  fmt::format("{}: byte {}: a data element that does not fit into the {} bytes that are left: is the "
+                              "file cut off?",
                               file.name, start, view.size() - start));
     }
     const auto in_place = [&file, start](const Error& error) {

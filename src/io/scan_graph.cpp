@@ -125,8 +125,9 @@ Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damag
   for (std::uint32_t node = 0; node < *nodes; ++node) {
     const std::size_t start = reader.position();
     if (!take_points(reader)) {
-      return corrupt(fmt::format("byte {}: scan {} of {} does not fit into the {} bytes that are left", start, node,
-                                 *nodes, file.bytes.size() - start));
+      return corrupt(
+          fmt::format("byte {}: scan {} of {} does not fit into the {} bytes that are left: is the file cut off?",
+                      start, node, *nodes, file.bytes.size() - start));
     }
     reader.take(kRestOfNodeBytes);
   }

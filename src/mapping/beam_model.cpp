@@ -12,17 +12,17 @@ namespace pingvox {
 Result<void> BeamModelOptions::validate() const {
   std::string bad;
   if (!(width_rad > 0.0 && width_rad <= std::numbers::pi)) {
-    bad += fmt::format(" beam width must be in (0, 180] degrees, is {};", width_rad * 180.0 / std::numbers::pi);
+    bad += fmt::format(" beam width must be in (0, 180] degrees, is {:.6g};", width_rad * 180.0 / std::numbers::pi);
   }
   if (!(height_rad > 0.0 && height_rad < std::numbers::pi)) {
-    bad += fmt::format(" beam height must be in (0, 180) degrees, is {};", height_rad * 180.0 / std::numbers::pi);
+    bad += fmt::format(" beam height must be in (0, 180) degrees, is {:.6g};", height_rad * 180.0 / std::numbers::pi);
   }
   if (!(free_share > 0.0 && free_share <= 1.0)) bad += fmt::format(" free share must be in (0, 1], is {};", free_share);
   if (!(hit > LogOdds(0.0F)) || !std::isfinite(hit.value())) {
-    bad += fmt::format(" hit must be a probability in (0.5, 1), is {};", hit.probability());
+    bad += fmt::format(" hit must be a probability in (0.5, 1), is {:.6g};", hit.probability());
   }
   if (!(miss < LogOdds(0.0F)) || !std::isfinite(miss.value())) {
-    bad += fmt::format(" miss must be a probability in (0, 0.5), is {};", miss.probability());
+    bad += fmt::format(" miss must be a probability in (0, 0.5), is {:.6g};", miss.probability());
   }
   if (!(max_range_m > 0.0)) bad += fmt::format(" max range must be > 0 m, is {};", max_range_m);
   if (bad.empty()) return {};

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
@@ -56,6 +58,19 @@ class SweepReader {
   SweepAssembler assembler_;
   bool ended_ = false;
 };
+
+/// A sweep's echoes within the model's range. A beam without one that heard something beyond it keeps that: sound that
+/// came back from there has passed all that lies before, and the model hits nothing so far away.
+std::vector<std::optional<Echo>> echoes_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& within,
+                                           const BuildOptions& options) {
+  std::vector<std::optional<Echo>> echoes = detect_echoes(image, sweep, within);
+  if (!std::isfinite(options.model.max_range_m)) return echoes;
+  const std::vector<std::optional<Echo>> all = detect_echoes(image, sweep, options.echo);
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    if (!echoes[i] && all[i] && all[i]->range_m > options.model.max_range_m) echoes[i] = all[i];
+  }
+  return echoes;
+}
 
 /// Refuses cells so small that a single beam would take all memory.
 Result<void> check_size(const Beam& beam, const std::optional<Echo>& echo, const BeamModelOptions& model,
@@ -121,9 +136,21 @@ Result<void> BuildOptions::validate() const {
   return fail(Error::Code::kBadOption, bad);
 }
 
+Result<EchoOptions> BuildOptions::echo_within_range() const {
+  if (const double nearest_m = echo.min_range_m.value_or(0.0); !(model.max_range_m > nearest_m)) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("max range must be greater than min range, {} m, is {} m", nearest_m, model.max_range_m));
+  }
+  EchoOptions within = echo;
+  within.farthest_m = std::min(echo.farthest_m, model.max_range_m);
+  return within;
+}
+
 Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_body, const BuildOptions& options,
                               OccupancyMap& map, const Progress& progress) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+  const Result<EchoOptions> within = options.echo_within_range();
+  if (!within) return tl::unexpected(within.error());
   SweepReader sweeps(source, options.sound_speed_ratio);
   ScanUpdate scan(options.model.miss);
   ScanParts parts(options.threads);
@@ -138,14 +165,17 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
 
     const std::vector<Beam>& beams = (*sweep)->beams;
     const PolarImage image = filtered(PolarImage(**sweep), options.filter);
-    const std::vector<std::optional<Echo>> echoes = detect_echoes(image, **sweep, options.echo);
+    const std::vector<std::optional<Echo>> echoes = echoes_of(image, **sweep, *within, options);
     watch.lap(report.seconds.detect);
 
     const Result<std::vector<PlacedBeam>> placed = placed_beams(beams, echoes, map_from_body, options, map.lattice());
     if (!placed) return tl::unexpected(placed.error());
     unplaced += beams.size() - placed->size();
     report.beams += placed->size();
-    for (const PlacedBeam& beam : *placed) report.echoes += echoes[beam.number].has_value();
+    for (const PlacedBeam& beam : *placed) {
+      const std::optional<Echo>& echo = echoes[beam.number];
+      report.echoes += echo && echo->range_m <= options.model.max_range_m;
+    }
     const auto trace = [&](const PlacedBeam& beam, BeamTracer& tracer, ScanUpdate& into) -> std::size_t {
       const std::size_t i = beam.number;
       return tracer.trace(beam.map_from_sensor, beams[i], echoes[i], into) > 0 ? 1 : 0;

@@ -6,10 +6,19 @@
 #include "pingvox/sonar/blanking.hpp"
 
 namespace pingvox {
+namespace {
+
+// 0.75 m / 0.0125 m may come out as 60.000000000000007, which is bin 60 and not 61.
+constexpr double kRounding_bins = 1e-6;
+
+/// How many of a beam's bins end within a range.
+std::size_t bins_within(double range_m, double bin_length_m, double bins) {
+  return static_cast<std::size_t>(std::clamp(std::floor(range_m / bin_length_m + kRounding_bins), 0.0, bins));
+}
+
+}  // namespace
 
 std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& options) {
-  // 0.75 m / 0.0125 m may come out as 60.000000000000007, which is bin 60 and not 61.
-  constexpr double kRounding_bins = 1e-6;
   const double min_range_m = options.min_range_m ? *options.min_range_m : blanking_range_m(image, sweep);
   std::vector<BinWindow> windows;
   windows.reserve(image.rows());
@@ -17,9 +26,16 @@ std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, c
     const double bins = static_cast<double>(image.bins_in(n));
     const double bin_length_m = sweep.beams[n].bin_length_m;
     const double begin = std::ceil(min_range_m / bin_length_m - kRounding_bins);
-    const double end = std::floor(options.max_range_m / bin_length_m + kRounding_bins);
     windows.push_back({.begin = std::max(static_cast<std::size_t>(std::clamp(begin, 0.0, bins)), options.min_bin),
-                       .end = static_cast<std::size_t>(std::clamp(end, 0.0, bins))});
+                       .end = bins_within(options.max_range_m, bin_length_m, bins)});
+  }
+  return windows;
+}
+
+std::vector<BinWindow> windows_up_to(double farthest_m, std::vector<BinWindow> windows, const Sweep& sweep) {
+  for (std::size_t n = 0; n < windows.size(); ++n) {
+    std::size_t& end = windows[n].end;
+    end = bins_within(farthest_m, sweep.beams[n].bin_length_m, static_cast<double>(end));
   }
   return windows;
 }

@@ -17,4 +17,7 @@ struct BinWindow {
 /// One for each beam; the blanking range is found if it is not given.
 std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& options);
 
+/// The same windows without the bins that end farther away.
+std::vector<BinWindow> windows_up_to(double farthest_m, std::vector<BinWindow> windows, const Sweep& sweep);
+
 }  // namespace pingvox

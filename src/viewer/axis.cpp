@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"
@@ -49,6 +50,20 @@ std::vector<Tick> logarithmic_ticks(const AxisScale& scale, std::size_t most) {
   return ticks;
 }
 
+std::ptrdiff_t place_of(const Area& area, const Tick& tick) {
+  return area.x + static_cast<std::ptrdiff_t>(std::lround(tick.share * static_cast<double>(area.width)));
+}
+
+/// Whether the texts of two neighbours would run into each other.
+bool do_touch(const Area& area, const std::vector<Tick>& ticks) {
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const std::ptrdiff_t wide =
+        (label_width(ticks[i - 1].text, kTextScale) + label_width(ticks[i].text, kTextScale)) / 2;
+    if (std::abs(place_of(area, ticks[i]) - place_of(area, ticks[i - 1])) < wide + kGap) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double AxisScale::share_of(double value) const {
@@ -73,13 +88,18 @@ void draw_centred(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::str
 }
 
 void draw_bottom_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title) {
+  constexpr std::ptrdiff_t kRow = kTextScale * kLetterHeight;
   const std::ptrdiff_t below = area.bottom() + 2;
+  const std::ptrdiff_t rows = do_touch(area, ticks) ? 2 : 1;
+  std::ptrdiff_t row = 0;
   for (const Tick& tick : ticks) {
-    const auto x = area.x + static_cast<std::ptrdiff_t>(std::lround(tick.share * static_cast<double>(area.width)));
+    const std::ptrdiff_t x = place_of(area, tick);
     picture.fill(x - 1, below, 2, kTick, kInk);
-    draw_centred(picture, x, below + kTick + kGap, tick.text, kInk);
+    draw_centred(picture, x, below + kTick + kGap + row * kRow, tick.text, kInk);
+    row = (row + 1) % rows;
   }
-  draw_centred(picture, area.x + area.width / 2, below + kTick + 2 * kGap + kTextScale * kLetterHeight, title, kInk);
+  draw_centred(picture, area.x + area.width / 2, below + kTick + kGap + (rows == 1 ? kRow + kGap : rows * kRow), title,
+               kInk);
 }
 
 void draw_left_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title) {

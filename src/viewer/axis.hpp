@@ -30,13 +30,13 @@ struct Tick {
 std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most);
 
 inline constexpr std::ptrdiff_t kTextScale = 2, kTick = 8, kGap = 6;
-/// Height of what stands below an area: ticks, their texts, a title.
+/// Height of what stands below an area: ticks, their texts (in two rows at most), a title.
 inline constexpr std::ptrdiff_t kBottomAxis = 68;
 
 /// Width of what stands left of an area.
 std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks);
 
-/// Ticks and their texts below the area, and the title below them.
+/// Ticks and their texts below the area, by turns in two rows where they would touch, and the title below them.
 void draw_bottom_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title);
 /// The same left of the area, the title turned.
 void draw_left_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title);

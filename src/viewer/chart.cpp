@@ -216,7 +216,7 @@ void draw_bars(Picture& picture, const Chart& chart, const Layout& layout) {
   const auto series = static_cast<std::ptrdiff_t>(chart.series.size());
   if (groups == 0 || series == 0) return;
   const std::ptrdiff_t group_px = layout.area.width / groups;
-  const std::ptrdiff_t bar_px = std::clamp<std::ptrdiff_t>(group_px * 4 / 5 / series, 1, 90);
+  const std::ptrdiff_t bar_px = std::clamp<std::ptrdiff_t>(group_px * 9 / 10 / series, 1, 90);
   const double ground =
       chart.y_spacing == Spacing::kLinear ? layout.y_of(0.0) : static_cast<double>(layout.area.bottom());
   for (std::ptrdiff_t g = 0; g < groups; ++g) {
@@ -235,7 +235,7 @@ void draw_bars(Picture& picture, const Chart& chart, const Layout& layout) {
                {x + 1, top, std::max<std::ptrdiff_t>(bar_px - 2, 1), std::max<std::ptrdiff_t>(bottom - top, 2)},
                static_cast<std::size_t>(s));
       const std::string text = fmt::format("{:.3g}", value);
-      if (label_width(text, kTextScale) <= bar_px) {
+      if (label_width(text, kTextScale) + kGap <= bar_px) {
         draw_centred(picture, x + bar_px / 2, value < 0.0 ? bottom + 4 : top - 18, text, kInk);
       } else if (label_width(text, 1) <= bar_px) {
         draw_label(picture, x + (bar_px - label_width(text, 1)) / 2 + 1, value < 0.0 ? bottom + 3 : top - 10, text, 1,

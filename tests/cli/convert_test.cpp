@@ -63,6 +63,15 @@ TEST(Clouds, AreAScanEach) {
   EXPECT_EQ(json->at("echoes"), "9");
 }
 
+TEST(Clouds, AreCountedAsPointsAndNotAsBeams) {
+  const Workplace here;
+  write_clouds(here);
+  EXPECT_THAT(here.call({"map", "a.xyz", "a.pcd", "-o", "all.bt"}).out, HasSubstr("  6 points in 2 scans\n"));
+  EXPECT_THAT(here.call({"map", "a.xyz", "-o", "all.bt", "--max-range", "0.1"}).out,
+              HasSubstr("  3 points in 1 scan\n"))
+      << "points have no blanking range";
+}
+
 TEST(Clouds, AreToldByInfo) {
   const Workplace here;
   write_clouds(here);

@@ -74,6 +74,24 @@ TEST(Files, TheWrongKindIsNamed) {
   EXPECT_EQ(here.files(), files_before);
 }
 
+TEST(Files, ThoseOfOthersAreNamedWithWhatToDo) {
+  const Workplace here;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> strangers = {
+      {"#ROSBAG V2.0\n", {"ROS bag", "bin_length_m", "docs/formats.md"}},
+      {"\x1f\x8b\x08 tank.csv"s, {"compressed", "unpack"}},
+      {"\xff\xfet\0i\0"s, {"UTF-16", "UTF-8"}},
+      {"version https://git-lfs.github.com/spec/v1\n", {"git lfs pull"}},
+      {"time;angle;range\n1;2;3\n", {"is text", "first line", "bin_length_m"}},
+      {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "bin_length_m"}},
+  };
+  for (const auto& [content, texts] : strangers) {
+    SCOPED_TRACE(texts.front());
+    here.write("stranger", content);
+    expect_complaint(here.call({"info", "stranger"}), 1, texts);
+    expect_complaint(here.call({"map", "stranger", "-o", "out.bt"}), 1, texts);
+  }
+}
+
 TEST(Files, TruncatedMapsAreRefusedAndTruncatedLogsReadAsFarAsTheyGo) {
   const Workplace here;
   make_good_map(here);
@@ -148,6 +166,14 @@ TEST(Output, AFailedCallKeepsTheOldFile) {
   EXPECT_EQ(here.read("out.bt"), "old");
   EXPECT_EQ(here.read("out.csv"), "old");
   EXPECT_EQ(here.files(), files_before);
+}
+
+// Kills an hour of mapping for a place that could not be written from the start.
+TEST(Output, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
+  const Workplace here;
+  fs::create_directory(here.folder() / "folder.bt");
+  expect_complaint(here.call({"map", "missing.csv", "-o", "folder.bt"}), 1, {"folder.bt", "is a folder"});
+  expect_complaint(here.call({"map", "missing.csv", "-o", "no/out.bt"}), 1, {"no folder 'no'"});
 }
 
 TEST(Output, AFolderWithoutTheRightToWriteIsNamed) {

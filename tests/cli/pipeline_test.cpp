@@ -229,6 +229,23 @@ TEST(Map, ProgressGoesToStandardErrorOnlyWhenWanted) {
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--quiet"}).out, "");
 }
 
+// Kills options that name a range or share and change nothing.
+TEST(Map, RangeAndShareOfBeamsCount) {
+  const Workplace here;
+  here.simulate_tank();
+  EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--beam", "cone", "--quiet"}).status, 0);
+  EXPECT_EQ(here.call({"map", "tank.csv", "-o", "b.bt", "--beam", "cone", "--free-share", "1", "--quiet"}).status, 0);
+  EXPECT_GT(std::stol(json_with(here.call({"info", "b.bt", "--json"}), info_map_keys())["free_cells"]),
+            std::stol(json_with(here.call({"info", "a.bt", "--json"}), info_map_keys())["free_cells"]));
+
+  const Outcome cut = here.call({"map", "tank.csv", "-o", "c.bt", "--max-range", "1"});
+  EXPECT_THAT(cut.out, ::testing::ContainsRegex(" 0 echoes, [0-9]+ beams without one"));
+  FlatJson map = json_with(here.call({"info", "c.bt", "--json"}), info_map_keys());
+  EXPECT_EQ(map["occupied_cells"], "0");
+  EXPECT_GT(std::stol(map["free_cells"]), 300);
+  expect_complaint(here.call({"map", "tank.csv", "-o", "d.bt", "--max-range", "0.5"}), 2, {"tank.csv", "max range"});
+}
+
 TEST(Map, TheRecordingOfTheTankHas28SweepsAnd4BeamsOver) {
   const std::string recording = PINGVOX_SHARED_DATA "/tank-static-mat/dataset_static.mat";
   if (!std::filesystem::exists(recording)) GTEST_SKIP() << recording << " is not there";

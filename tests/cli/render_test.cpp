@@ -101,6 +101,8 @@ TEST(Render, SaysWhatAFileHasNoPictureOf) {
                    {"tank.csv", "no sweep 99"});
   expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--view", "above", "--poses", "none.tum"}), 1,
                    {"none.tum"});
+  expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--max-range", "0.5"}), 2,
+                   {"tank.csv", "max range"});
   EXPECT_FALSE(here.has("p.png"));
 }
 

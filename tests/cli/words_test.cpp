@@ -59,6 +59,8 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"map", "log.csv", "-o", "m.bt", "--threshold", "300"}, {"threshold", "1..255"}},
       {{"map", "log.csv", "-o", "m.bt", "--detect", "canny", "--threshold", "3000"}, {"threshold", "1..2040"}},
       {{"map", "log.csv", "-o", "m.bt", "--cfar", "go"}, {"--cfar", "ca or so or os"}},
+      {{"map", "log.csv", "-o", "m.bt", "--free-share", "1.5"}, {"free share", "(0, 1]", "1.5"}},
+      {{"map", "log.csv", "-o", "m.bt", "--hit", "0.3"}, {"hit", "(0.5, 1), is 0.3"}},
       {{"map", "log.csv", "-o", "m.bt", "--min-range", "outo"}, {"--min-range"}},
       {{"map", "log.csv", "-o", "m.bt", "--min-bin", "-1"}, {"--min-bin"}},
       {{"map", "log.csv", "-o", "m.bt", "--memory-limit", "2X"}, {"--memory-limit", "512M"}},

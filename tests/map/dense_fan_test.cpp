@@ -10,33 +10,13 @@
 #include <vector>
 
 #include "map/tree_order.hpp"
+#include "support/fan.hpp"
 #include "support/lanes.hpp"
 
 namespace pingvox::detail {
 namespace {
 
-constexpr int kBits = 7;  // a window of 128 cells, from -64 to 63
-constexpr std::int64_t kHalf = 64;
-constexpr std::size_t kWords = (std::size_t{1} << (3 * kBits)) / 64;
-
-RayFan fan_from(const Eigen::Vector3d& from_m, double cells_per_m) {
-  RayFan fan;
-  fan.from = from_m * cells_per_m;
-  fan.cells_per_m = cells_per_m;
-  fan.window_lowest.fill(-kHalf);
-  fan.lowest.fill(-static_cast<double>(kHalf));
-  fan.highest.fill(static_cast<double>(kHalf - 1));
-  return fan;
-}
-
-std::uint64_t start_of(const RayFan& fan) {
-  std::uint64_t start = 0;
-  for (int a = 0; a < 3; ++a) {
-    const auto cell = static_cast<std::int64_t>(std::floor(fan.from[a]));
-    start |= spread_bits(static_cast<std::uint64_t>(cell + kHalf)) << a;
-  }
-  return start;
-}
+constexpr std::size_t kWords = (std::size_t{1} << (3 * kWindowBits)) / 64;
 
 double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
@@ -83,7 +63,7 @@ Marks taken_from(ScanWindow& window) {
 
 Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m) {
   ScanWindow window;
-  window.open(kBits);
+  window.open(kWindowBits);
   std::vector<ReadyRay> ready;
   std::vector<std::uint32_t> others;
   prepare_rays(Lanes::kOne, fan, ends_m, ready, others);
@@ -96,7 +76,7 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
 
 Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m) {
   ScanWindow window;
-  window.open(kBits);
+  window.open(kWindowBits);
   std::vector<std::uint32_t> others;
   DenseFan dense(lanes, fan, start_of(fan), 64, window);
   const std::size_t walked = dense.mark(ends_m, RayEnds::kHit, others);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pingvox/map/ray_dda.hpp"
+#include "support/fan.hpp"
 #include "support/lanes.hpp"
 
 namespace pingvox::detail {
@@ -21,15 +22,6 @@ double uniform(std::mt19937_64& random, double low, double high) {
 
 Eigen::Vector3d somewhere(std::mt19937_64& random, double most) {
   return {uniform(random, -most, most), uniform(random, -most, most), uniform(random, -most, most)};
-}
-
-RayFan fan_from(const Eigen::Vector3d& from) {
-  RayFan fan;
-  fan.from = from;
-  fan.window_lowest.fill(-64);
-  fan.lowest.fill(-64.0);
-  fan.highest.fill(63.0);
-  return fan;
 }
 
 struct Found {

@@ -11,34 +11,11 @@
 #include "map/tree_order.hpp"
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/trace_ray.hpp"
+#include "support/fan.hpp"
 #include "support/lanes.hpp"
 
 namespace pingvox::detail {
 namespace {
-
-constexpr int kBits = 7;  // a window of 128 cells, from -64 to 63
-constexpr std::int64_t kHalf = 64;
-
-RayFan fan_from(const Eigen::Vector3d& from_m, double cells_per_m) {
-  RayFan fan;
-  fan.from = from_m * cells_per_m;
-  fan.cells_per_m = cells_per_m;
-  fan.window_lowest.fill(-kHalf);
-  fan.lowest.fill(-static_cast<double>(kHalf));
-  fan.highest.fill(static_cast<double>(kHalf - 1));
-  return fan;
-}
-
-std::uint64_t place_of(const std::array<std::int64_t, 3>& cell) {
-  std::uint64_t place = 0;
-  for (std::size_t a = 0; a < 3; ++a) place |= spread_bits(static_cast<std::uint64_t>(cell[a] + kHalf)) << a;
-  return place;
-}
-
-std::array<std::int64_t, 3> cell_of(const Eigen::Vector3d& point) {
-  return {static_cast<std::int64_t>(std::floor(point.x())), static_cast<std::int64_t>(std::floor(point.y())),
-          static_cast<std::int64_t>(std::floor(point.z()))};
-}
 
 /// Ends all around, short and long; many on corners, edges and faces of cells, where ties are to be decided alike.
 std::vector<Eigen::Vector3d> ends_around(const Eigen::Vector3d& from_m, std::mt19937_64& random, std::size_t count) {
@@ -144,10 +121,10 @@ TEST(RayLanes, MarkTheCellsOfFaceCrossings) {
       }
 
       ScanWindow window;
-      window.open(kBits);
-      mark_rays(lanes, ready, place_of(cell_of(fan.from)), window);
+      window.open(kWindowBits);
+      mark_rays(lanes, ready, start_of(fan), window);
       std::set<std::uint64_t> found;
-      for (std::uint64_t place = 0; place < std::uint64_t{1} << (3 * kBits); ++place) {
+      for (std::uint64_t place = 0; place < std::uint64_t{1} << (3 * kWindowBits); ++place) {
         if (((window.missed()[place / 64] >> (place % 64)) & 1) == 0) continue;
         found.insert(place);
         const std::uint64_t page = place >> ScanWindow::kPageCellBits;

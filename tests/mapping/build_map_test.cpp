@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -41,6 +42,23 @@ class Echoes : public BeamSource {
   std::function<double(double, double)> range_of_;
   int n_ = 0;
   int fail_at_ = -1;
+};
+
+/// The same, and something louder behind it.
+class EchoesBeforeLouderOnes : public Echoes {
+ public:
+  EchoesBeforeLouderOnes(double range_m, double louder_m)
+      : Echoes(kBeamsPerTurn, [=](double, double) { return range_m; }), louder_m_(louder_m) {}
+
+  Result<std::optional<Beam>> next() override {
+    Result<std::optional<Beam>> beam = Echoes::next();
+    const auto bin = static_cast<std::size_t>(louder_m_ / kBin_m);
+    if (beam && *beam) std::fill_n((*beam)->intensities.begin() + static_cast<std::ptrdiff_t>(bin), 3, 250);
+    return beam;
+  }
+
+ private:
+  double louder_m_;
 };
 
 BuildOptions clean_options() {
@@ -140,6 +158,46 @@ TEST(BuildMap, SoundSpeedScalesRanges) {
   EXPECT_EQ(map.classify(Eigen::Vector3d(2.21, 0.01, 0.01)), Occupancy::kOccupied);
 }
 
+// Kills a maximum range that only the model knows: the loudest bin of all would free the wall before it.
+TEST(BuildMap, WhatIsLouderBeyondTheMaximumRangeHidesNoEcho) {
+  EchoesBeforeLouderOnes source(1.51, 4.0);
+  BuildOptions options = clean_options();
+  options.echo.detector = Detector::kMax;
+  options.model.max_range_m = 2.0;
+  OccupancyMap map;
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->echoes, report->beams);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(1.51, 0.01, 0.01)), Occupancy::kOccupied);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(1.81, 0.01, 0.01)), Occupancy::kUnknown);
+}
+
+// Kills a beam that says nothing because what it heard is too far away to be mapped, and one counted as an echo.
+TEST(BuildMap, WhatIsHeardBeyondTheMaximumRangeFreesUpToIt) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 4.0; });
+  BuildOptions options = clean_options();
+  options.model.max_range_m = 2.0;
+  OccupancyMap map;
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->echoes, 0U);
+  EXPECT_EQ(map.counts().occupied_cells, 0U);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(1.91, 0.01, 0.01)), Occupancy::kFree);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.06, 0.01, 0.01)), Occupancy::kUnknown);
+}
+
+TEST(BuildMap, BeamsWantAMaximumRangeBeyondTheBlankingRange) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
+  BuildOptions options = clean_options();
+  options.model.max_range_m = 0.5;
+  OccupancyMap map;
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, Error::Code::kBadOption);
+  EXPECT_NE(report.error().message.find("max range"), std::string::npos);
+  EXPECT_TRUE(map.empty());
+}
+
 TEST(BuildMap, FailingSourceIsReportedAndTheMapKeepsWhatWasApplied) {
   Echoes source(3 * kBeamsPerTurn, [](double, double) { return 2.0; });
   source.fail_at(kBeamsPerTurn + 50);
@@ -192,6 +250,18 @@ TEST(BuildMap, PointScansFreeAndHitAndCountWhatLiesOutside) {
   EXPECT_EQ(report->skipped, 1U);
   EXPECT_EQ(report->cells_hit, 2U);
   EXPECT_EQ(report->cells_freed, 29U);
+}
+
+// Kills a blanking range asked of points, which have none.
+TEST(BuildMap, PointScansTakeAnyMaximumRange) {
+  ThreePoints source;
+  BuildOptions options = clean_options();
+  options.model.max_range_m = 0.5;
+  OccupancyMap map({.resolution_m = 0.1});
+  const auto report = build_map(source, options, map);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->cells_hit, 0U);
+  EXPECT_GT(report->cells_freed, 0U);
 }
 
 }  // namespace

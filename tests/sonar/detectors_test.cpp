@@ -245,6 +245,33 @@ TEST(Detectors, KeepTheirPromisesOnAnySweepWithAnyOptions) {
   EXPECT_GT(found, 3000U);
 }
 
+// Kills a threshold by the gain of what is left when the wall is cut off: the clutter before it would become echoes.
+TEST(Detectors, KnowTheGainFromWhatIsTooFarAway) {
+  for (const Detector detector : {Detector::kRise, Detector::kLevel, Detector::kMax, Detector::kCfar}) {
+    SCOPED_TRACE(static_cast<int>(detector));
+    std::mt19937_64 random(1);
+    Sweep sweep = turn_of(Bins());
+    for (Beam& beam : sweep.beams) {
+      beam.intensities = noisy_wall(random, 80, 60.0, 150.0);
+      const auto faint = beam.intensities.begin() + 25 + static_cast<std::ptrdiff_t>(random() % 20);
+      std::transform(faint, faint + 3, faint, [](std::uint8_t bin) { return static_cast<std::uint8_t>(bin + 60); });
+    }
+    EchoOptions options = options_of(detector);
+    options.min_bin = 20;
+    options.farthest_m = 5.0;
+    std::size_t found = 0;
+    for (const auto& echo : echoes_of(sweep, options)) found += echo ? 1 : 0;
+    EXPECT_EQ(found, 0U);
+    options.farthest_m = 7.0;
+    for (const auto& echo : echoes_of(sweep, options)) {
+      if (!echo) continue;
+      ++found;
+      EXPECT_LE(echo->range_m, 7.0);
+    }
+    EXPECT_GT(found, sweep.beams.size() / 2);
+  }
+}
+
 TEST(Detectors, DoNotSeeWhatStandsOutsideOfTheRangesThatCount) {
   std::size_t found = 0;
   for (const Detector detector : kDetectors) {

@@ -101,6 +101,27 @@ TEST(Chart, BarsAreAsHighAsTheirNumbers) {
   EXPECT_NEAR(static_cast<double>(*heights.rbegin()) / static_cast<double>(*heights.begin()), 2.0, 0.02);
 }
 
+// Kills names that run into each other.
+TEST(Chart, NamesThatWouldTouchStandInTwoRows) {
+  const auto rows_of_names = [](const std::string& name) {
+    const Chart chart{.kind = Chart::Kind::kBars,
+                      .categories = std::vector<std::string>(8, name),
+                      .series = {{"x", std::vector<double>(8, 1.0)}}};
+    const Picture picture = render_chart(chart);
+    std::size_t rows = 0;
+    bool before = false;
+    for (std::size_t y = picture.height() - 60; y < picture.height(); ++y) {
+      std::size_t ink = 0;
+      for (std::size_t x = 0; x < picture.width(); ++x) ink += luminance(picture.at(x, y)) < 0.2 ? 1 : 0;
+      rows += ink > 0 && !before ? 1 : 0;
+      before = ink > 0;
+    }
+    return rows;
+  };
+  EXPECT_EQ(rows_of_names("XX"), 1U);
+  EXPECT_EQ(rows_of_names("XXXXXXXXXXXX"), 2U);
+}
+
 TEST(Chart, LeavesOutWhatItsAxesCannotShow) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   Chart chart{.x_spacing = Spacing::kLogarithmic,

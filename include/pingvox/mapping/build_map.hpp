@@ -32,13 +32,17 @@ struct BuildOptions {
   double sound_speed_ratio = 1.0;            ///< true sound speed / the one the device assumed: scales every range
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
+
+  /// What echoes are looked for: `echo`, and none beyond the model's max_range_m. kBadOption when that lies within the
+  /// blanking range, which point scans do not have.
+  Result<EchoOptions> echo_within_range() const;
 };
 
 /// What was read and what became of it.
 struct BuildReport {
-  std::size_t beams = 0;   ///< mapped, those of incomplete sweeps included
-  std::size_t sweeps = 0;  ///< complete ones (or point scans)
-  std::size_t echoes = 0;
+  std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
+  std::size_t sweeps = 0;   ///< complete ones (or point scans)
+  std::size_t echoes = 0;   ///< within the model's range
   std::size_t skipped = 0;  ///< damaged, outside of the trajectory's time, or outside of the lattice
   std::uint64_t cells_freed = 0, cells_hit = 0;  ///< votes, summed over scans
   struct Seconds {
@@ -49,9 +53,11 @@ struct BuildReport {
 /// Called after each scan with the beams so far, so that a caller can show how far it is.
 using Progress = std::function<void(const BuildReport&)>;
 
-/// From beams to a map: the program in one function (docs/architecture.md).
+/// From beams to a map: the program in one function (docs/architecture.md). Echoes are those within the model's
+/// max_range_m; a beam that heard only what is beyond frees its cells up to there.
 /// @param map_from_body  where the vehicle was; beams outside of its time are left out and counted
-/// @return the source's error when it fails, kLimit when the map would grow too large. The map keeps what was applied.
+/// @return kBadOption when max_range_m is not beyond the blanking range, the source's error when it fails, kLimit when
+///         the map would grow too large. The map keeps what was applied.
 Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_body, const BuildOptions& options,
                               OccupancyMap& map, const Progress& progress = {});
 

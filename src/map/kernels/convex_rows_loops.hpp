@@ -1,29 +1,12 @@
 // The loops over layers and rows, included by convex_rows.cpp once for each kind of machine (see ray_lanes_loops.hpp).
 // Numbers of cells stay doubles, in which they are exact: what each machine can round, compare and choose between.
 
-/// As many numbers as the machine's vectors hold.
-using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+#include "map/kernels/doubles_loops.hpp"
 
-/// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
-constexpr double kWhole = 0x1.8p52;
-
-inline void load(const double* from, Doubles& numbers) {
-  std::memcpy(&numbers, from, sizeof numbers);
-}
-
-inline void floor_of(const Doubles& numbers, Doubles& whole) {
-  const Doubles near = (numbers + kWhole) - kWhole;
-  whole = near > numbers ? near - 1.0 : near;
-}
-inline void ceil_of(const Doubles& numbers, Doubles& whole) {
-  const Doubles near = (numbers + kWhole) - kWhole;
-  whole = near < numbers ? near + 1.0 : near;
-}
-
-/// Whole numbers as integers: they are in the lowest bits of the sum.
 inline void store(const Doubles& whole, std::int64_t* to) {
-  const Words words = reinterpret_cast<Words>(whole + kWhole) - std::bit_cast<std::int64_t>(kWhole);
+  Words words;
+  bits_of(whole, words);
+  words -= std::bit_cast<std::int64_t>(kWhole);
   std::memcpy(to, &words, sizeof words);
 }
 

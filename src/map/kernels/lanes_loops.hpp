@@ -1,10 +1,6 @@
-// What the loops over lanes share, included before them once for each kind of machine: there is no guard, and kLanes
-// stands there before. (A function can only be made for another machine where it is compiled, and templates and inline
-// functions would be shared between all.)
+// What the loops over lanes share, included before them once for each kind of machine (see doubles_loops.hpp).
 
-/// As many numbers as the machine's vectors hold.
-using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+#include "map/kernels/doubles_loops.hpp"
 
 /// Largest whole numbers that are not larger. REQUIRES numbers below 2^53.
 inline void floor_of(const Doubles& numbers, Words& whole) {

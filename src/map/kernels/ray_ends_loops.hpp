@@ -1,18 +1,13 @@
 // The loop over rays, included by ray_ends.cpp once for each kind of machine (see ray_lanes_loops.hpp).
 
-/// As many numbers as the machine's vectors hold.
-using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
-
-/// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
-constexpr double kWhole = 0x1.8p52;
+#include "map/kernels/doubles_loops.hpp"
 
 inline void find_ends(const RayEnds& ends, double way_x, double way_y, std::span<const double> across, const double* up,
                       std::uint64_t* places) {
   for (std::size_t first = 0; first < across.size(); first += kLanes) {
     Doubles level, height;
-    std::memcpy(&level, across.data() + first, sizeof level);
-    std::memcpy(&height, up + first, sizeof height);
+    load(across.data() + first, level);
+    load(up + first, height);
     const Doubles x = level * way_x * ends.range_m, y = level * way_y * ends.range_m, z = height * ends.range_m;
     Words place{}, inside = Words{} - 1;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -20,11 +15,11 @@ inline void find_ends(const RayEnds& ends, double way_x, double way_y, std::span
       const Doubles end_m = row[0] * x + row[1] * y + row[2] * z + row[3];
       const Doubles cell = end_m * ends.cells_per_m;
       inside &= (cell >= ends.inside_from[a]) & (cell < ends.inside_to[a]);
-      const Doubles near = (cell + kWhole) - kWhole;
-      const Doubles whole = near > cell ? near - 1.0 : near;
-      // What the lowest has as a number, the sum has in its lowest bits.
-      const Words number =
-          (reinterpret_cast<Words>(whole - static_cast<double>(ends.lowest[a]) + kWhole) & ((1 << 21) - 1));
+      Doubles whole;
+      floor_of(cell, whole);
+      Words number;
+      bits_of(whole - static_cast<double>(ends.lowest[a]), number);
+      number &= (1 << 21) - 1;
       Words in_page = number & 15;
       in_page = (in_page | in_page << 4) & 0xC3;
       in_page = (in_page | in_page << 2) & 0x249;

@@ -1,0 +1,61 @@
+#include "stranger.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace pingvox::app {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kCompressed = "is compressed", kUnpack = "unpack it first";
+constexpr std::string_view kUtf16 = "is text in UTF-16", kSaveAgain = "save it as UTF-8";
+constexpr std::string_view kAsCsv =
+    "write its beams as CSV, with 'time_s,bearing_deg,bin_length_m,intensities' as the first line (docs/formats.md)";
+
+/// Files that people have beside their sonar, by how they begin.
+struct Stranger {
+  std::string_view begin, what, advice;
+};
+constexpr std::array kStrangers = {
+    Stranger{"\x1f\x8b"sv, kCompressed, kUnpack},
+    Stranger{"BZh"sv, kCompressed, kUnpack},
+    Stranger{"\xfd\x37zXZ"sv, kCompressed, kUnpack},
+    Stranger{"\x28\xb5\x2f\xfd"sv, kCompressed, kUnpack},
+    Stranger{"PK\x03\x04"sv, kCompressed, kUnpack},
+    Stranger{"version https://git-lfs"sv, "is a pointer of Git LFS", "'git lfs pull' fetches the file itself"},
+    Stranger{"\xff\xfe"sv, kUtf16, kSaveAgain},
+    Stranger{"\xfe\xff"sv, kUtf16, kSaveAgain},
+    Stranger{"\x89PNG"sv, "is a picture", "pictures are written, not read"},
+    Stranger{"#ROSBAG "sv, "is a ROS bag", kAsCsv},
+    Stranger{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
+    Stranger{"\0\0\0\x34\0P\0i\0n\0g\0V\0i\0e\0w\0e\0r"sv, "is a log of Ping Viewer", kAsCsv},
+};
+
+/// Whether the beginning has only bytes that text has.
+bool is_text(std::string_view bytes) {
+  constexpr std::size_t kLookedAt = 4096;
+  return std::ranges::all_of(bytes.substr(0, kLookedAt), [](char byte) {
+    const auto code = static_cast<unsigned char>(byte);
+    return code >= ' ' || (code >= '\t' && code <= '\r');
+  });
+}
+
+}  // namespace
+
+std::string stranger_text(std::span<const std::uint8_t> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto known =
+      std::ranges::find_if(kStrangers, [&](const Stranger& stranger) { return text.starts_with(stranger.begin); });
+  if (known != kStrangers.end()) return fmt::format("{}: {}", known->what, known->advice);
+  const std::string_view what =
+      is_text(text) ? "is text, but its first line names no columns of beams, and it is no scan log, cloud or mesh"
+                    : "is none of the logs, clouds, maps, meshes and trajectories that pingvox reads";
+  return fmt::format("{}: {}", what, kAsCsv);
+}
+
+}  // namespace pingvox::app

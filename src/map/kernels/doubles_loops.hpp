@@ -1,0 +1,29 @@
+// Numbers side by side, included before the loops over lanes once for each kind of machine: there is no guard, and
+// kLanes stands there before. (A function can only be made for another machine where it is compiled, and templates and
+// inline functions would be shared between all.)
+
+/// As many numbers as the machine's vectors hold.
+using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
+using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+
+/// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
+constexpr double kWhole = 0x1.8p52;
+
+inline void load(const double* from, Doubles& numbers) {
+  std::memcpy(&numbers, from, sizeof numbers);
+}
+
+/// Largest whole numbers that are not larger, as doubles: not each machine makes integers of them side by side.
+inline void floor_of(const Doubles& numbers, Doubles& whole) {
+  const Doubles near = (numbers + kWhole) - kWhole;
+  whole = near > numbers ? near - 1.0 : near;
+}
+inline void ceil_of(const Doubles& numbers, Doubles& whole) {
+  const Doubles near = (numbers + kWhole) - kWhole;
+  whole = near < numbers ? near + 1.0 : near;
+}
+
+/// Whole numbers in the lowest 51 bits, as integers when those of kWhole are taken off.
+inline void bits_of(const Doubles& whole, Words& bits) {
+  bits = reinterpret_cast<Words>(whole + kWhole);
+}
