@@ -523,6 +523,21 @@ typename Cursor<W>::Reach Cursor<W>::reach(const BasicKey<W>& key) {
   return {reach_, entry_at(reach_)};
 }
 
+template <KeyWord W>
+void Cursor<W>::look_at(const BasicKey<W>& key, PageEntries& entries) {
+  move_to(key);
+  const int depth = tree_.brick_depth() - kPageLevels;
+  if (reach_ <= depth) {
+    entries.fill(entry_at(reach_));
+    return;
+  }
+  const Group& page = tree_.groups[group_[static_cast<std::size_t>(depth)]];
+  for (std::size_t o = 0; o < 8; ++o) {
+    const Group group = page.child[o].is_inner() ? tree_.groups[page.child[o].link] : group_of(page.child[o]);
+    std::copy(group.child.begin(), group.child.end(), entries.begin() + static_cast<std::ptrdiff_t>(o * 8));
+  }
+}
+
 template class Cursor<std::uint64_t>;
 template class Cursor<WideWord>;
 

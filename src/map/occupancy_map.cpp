@@ -9,6 +9,7 @@
 #include <new>
 #include <variant>
 
+#include "map/bits.hpp"
 #include "map/key_batch.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
@@ -96,24 +97,21 @@ std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor_in(
   return detail::Cursor<WideWord>(tree, rules);
 }
 
-/// Calls f(lowest cell of the brick, its votes) for each brick with marks, in the tree's order.
-template <KeyWord W, class F>
-void for_each_brick(const ScanUpdate& scan, F&& f) {
-  for (const std::uint32_t index : scan.pages_in_order()) {
-    const ScanUpdate::Page& page = scan.page(index);
-    for (std::size_t brick = 0; brick < page.hit.size(); ++brick) {
-      const std::uint64_t hit = page.hit[brick];
-      const std::uint64_t missed = page.missed[brick] & ~hit;
-      if ((hit | missed) == 0) continue;
-      const auto offset = [&](unsigned axis) {
-        return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
-      };
-      const auto lowest = page.lowest.as<W>();
-      const BasicKey<W> key{lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
-      const ScanUpdate::Hits hits = hit != 0 ? scan.hits(page, brick) : ScanUpdate::Hits{};
-      f(key, detail::Votes{missed, scan.miss(), hit, hits.of_cell, hits.all});
-    }
-  }
+/// The lowest cell of a brick of a page.
+template <KeyWord W>
+BasicKey<W> lowest_in(const ScanUpdate::Page& page, std::size_t brick) {
+  const auto offset = [&](unsigned axis) {
+    return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
+  };
+  const auto lowest = page.lowest.as<W>();
+  return {lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
+}
+
+detail::Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick) {
+  if ((page.bricks_hit >> brick & 1) == 0) return {page.missed[brick], scan.miss(), 0, nullptr, {}};
+  const std::uint64_t hit = page.hit[brick];
+  const ScanUpdate::Hits hits = scan.hits(page, brick);
+  return {page.missed[brick] & ~hit, scan.miss(), hit, hits.of_cell, hits.all};
 }
 
 /// Foresees what the tree's storage grows by, brick by brick: an upper bound. Bricks that stay as they are need
@@ -154,8 +152,12 @@ class Growth {
 template <KeyWord W>
 std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
   Growth<W> growth(tree, clamp);
-  for_each_brick<W>(
-      scan, [&](const BasicKey<W>& key, const detail::Votes& votes) { growth.add(key, votes, Growth<W>::More::kNo); });
+  for (const std::uint32_t index : scan.pages_in_order()) {
+    const ScanUpdate::Page& page = scan.page(index);
+    detail::for_each_bit(page.bricks, [&](std::size_t brick) {
+      growth.add(lowest_in<W>(page, brick), votes_on(scan, page, brick), Growth<W>::More::kNo);
+    });
+  }
   return growth.bytes();
 }
 
@@ -168,15 +170,32 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
   return growth.bytes();
 }
 
+/// Whether misses change nothing in a brick because all that is known of it is as free as can be, and the cells are
+/// known. Only one word of the brick is looked at: after some scans from one place that is nearly all there is to do.
+bool stays_free(const detail::BrickTree& tree, detail::Entry entry, std::uint64_t missed, const Clamp& clamp) {
+  if (entry.is_none() || LogOdds(entry.value) > clamp.lowest) return false;
+  return entry.is_leaf() || (missed & ~tree.bricks[entry.link].known) == 0;
+}
+
 template <KeyWord W>
 ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
   ApplyReport report;
   detail::Cursor<W> cursor(tree, rules);
-  for_each_brick<W>(scan, [&](const BasicKey<W>& key, const detail::Votes& votes) {
-    cursor.vote(key, votes);
-    report.cells_freed += static_cast<std::uint64_t>(std::popcount(votes.missed));
-    report.cells_hit += static_cast<std::uint64_t>(std::popcount(votes.hit));
-  });
+  // A maximum is known to be of all cells; unknown entries for bricks are those of which nothing is dropped.
+  const bool drops = rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax &&
+                     scan.miss() < LogOdds(0.0F) && tree.brick_depth() >= detail::kPageLevels;
+  detail::PageEntries entries;
+  for (const std::uint32_t index : scan.pages_in_order()) {
+    const ScanUpdate::Page& page = scan.page(index);
+    if (drops) cursor.look_at(page.lowest.as<W>(), entries);
+    detail::for_each_bit(page.bricks, [&](std::size_t brick) {
+      const detail::Votes votes = votes_on(scan, page, brick);
+      report.cells_freed += detail::count_bits(votes.missed);
+      if (votes.hit != 0) report.cells_hit += detail::count_bits(votes.hit);
+      if (votes.hit == 0 && stays_free(tree, entries[brick], votes.missed, rules.clamp)) return;
+      cursor.vote(lowest_in<W>(page, brick), votes);
+    });
+  }
   cursor.flush();
   return report;
 }
