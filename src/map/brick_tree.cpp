@@ -524,7 +524,7 @@ typename Cursor<W>::Reach Cursor<W>::reach(const BasicKey<W>& key) {
 }
 
 template <KeyWord W>
-void Cursor<W>::look_at(const BasicKey<W>& key, PageEntries& entries) {
+void Cursor<W>::look_at(const BasicKey<W>& key, std::uint64_t bricks, PageEntries& entries) {
   move_to(key);
   const int depth = tree_.brick_depth() - kPageLevels;
   if (reach_ <= depth) {
@@ -532,9 +532,14 @@ void Cursor<W>::look_at(const BasicKey<W>& key, PageEntries& entries) {
     return;
   }
   const Group& page = tree_.groups[group_[static_cast<std::size_t>(depth)]];
-  for (std::size_t o = 0; o < 8; ++o) {
-    const Group group = page.child[o].is_inner() ? tree_.groups[page.child[o].link] : group_of(page.child[o]);
-    std::copy(group.child.begin(), group.child.end(), entries.begin() + static_cast<std::ptrdiff_t>(o * 8));
+  for (int o = 0; o < 8; ++o) {
+    if ((bricks & octant_mask(o)) == 0) continue;
+    const Entry entry = page.child[static_cast<std::size_t>(o)];
+    if (entry.is_inner()) {
+      std::copy_n(tree_.groups[entry.link].child.begin(), 8, entries.begin() + o * 8);
+    } else {
+      std::fill_n(entries.begin() + o * 8, 8, entry);
+    }
   }
 }
 

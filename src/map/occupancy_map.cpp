@@ -187,7 +187,7 @@ ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, c
   detail::PageEntries entries;
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
-    if (drops) cursor.look_at(page.lowest.as<W>(), entries);
+    if (drops) cursor.look_at(page.lowest.as<W>(), page.bricks, entries);
     detail::for_each_bit(page.bricks, [&](std::size_t brick) {
       const detail::Votes votes = votes_on(scan, page, brick);
       report.cells_freed += detail::count_bits(votes.missed);

@@ -1,6 +1,7 @@
 #include "pingvox/map/scan_update.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -36,22 +37,28 @@ std::size_t ScanUpdate::slot_of(const WideKey& lowest) const {
   return slot;
 }
 
-void ScanUpdate::rehash(std::size_t slots) {
-  slots_.assign(slots, kFree);
-  for (std::size_t i = 0; i < used_; ++i) slots_[slot_of(pages_[i].lowest)] = static_cast<std::uint32_t>(i + 1);
+void ScanUpdate::hash_pages() {
+  // At most half of the slots are taken, with the one that is to come.
+  const std::size_t needed = std::max<std::size_t>(64, std::bit_ceil(2 * (used_ + 1)));
+  if (slots_.size() < needed) {
+    slots_.assign(needed, kFree);
+    hashed_ = 0;
+  }
+  for (; hashed_ < used_; ++hashed_) slots_[slot_of(pages_[hashed_].lowest)] = static_cast<std::uint32_t>(hashed_ + 1);
 }
 
 std::uint32_t ScanUpdate::page_at(const WideKey& key) {
   const auto lowest = [](WideWord word) { return word >> kPageBits << kPageBits; };
   const WideKey corner{lowest(key.x), lowest(key.y), lowest(key.z)};
-  if (slots_.size() < 2 * (used_ + 1)) rehash(std::max<std::size_t>(64, 2 * slots_.size()));
+  hash_pages();
   const std::size_t slot = slot_of(corner);
-  if (slots_[slot] != kFree) return slots_[slot] - 1;
+  return slots_[slot] != kFree ? slots_[slot] - 1 : add_page(corner);
+}
+
+std::uint32_t ScanUpdate::add_page(const WideKey& lowest) {
   if (used_ == pages_.size()) pages_.emplace_back();
-  Page& page = pages_[used_];
-  page.lowest = corner;
-  slots_[slot] = static_cast<std::uint32_t>(++used_);
-  return slots_[slot] - 1;
+  pages_[used_].lowest = lowest;
+  return static_cast<std::uint32_t>(used_++);
 }
 
 void ScanUpdate::spread_evidence(Page& page, std::size_t brick) {
@@ -88,10 +95,12 @@ detail::ScanWindow& ScanUpdate::window(int bits) {
 }
 
 void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
+  const bool all_are_new = empty();
   detail::take_touched(window_, [&](std::uint64_t number) {
     const BasicKey<std::uint64_t> at = detail::key_of_code(number);
-    const std::uint32_t index =
-        page_of({lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)});
+    const WideKey corner{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits),
+                         lowest.z + (at.z << kPageBits)};
+    const std::uint32_t index = all_are_new ? add_page(corner) : page_of(corner);
     Page& page = pages_[index];
     std::uint64_t* const missed = window_.missed() + number * 64;
     const std::uint64_t bricks = detail::words_in_use(missed);
@@ -112,7 +121,8 @@ void ScanUpdate::clear() {
   used_ = 0;
   evidence_used_ = 0;
   has_hits_ = false;
-  std::fill(slots_.begin(), slots_.end(), kFree);
+  if (hashed_ > 0) std::fill(slots_.begin(), slots_.end(), kFree);
+  hashed_ = 0;
 }
 
 std::vector<std::uint32_t> ScanUpdate::pages_in_order() const {

@@ -206,9 +206,9 @@ class Cursor {
     Entry end;  ///< inner: the brick is there
   };
   Reach reach(const BasicKey<W>& key);
-  /// What the tree has for the bricks of the page whose lowest cell is `key`. Moves there.
+  /// What the tree has for some bricks (a bit each) of the page whose lowest cell is `key`. Moves there.
   /// REQUIRES brick_depth >= kPageLevels
-  void look_at(const BasicKey<W>& key, PageEntries& entries);
+  void look_at(const BasicKey<W>& key, std::uint64_t bricks, PageEntries& entries);
 
  private:
   void move_to(const BasicKey<W>& key);

@@ -122,7 +122,9 @@ class ScanUpdate {
     return ((page.lowest.x ^ key.x) | (page.lowest.y ^ key.y) | (page.lowest.z ^ key.z)) >> kPageBits == 0;
   }
   std::uint32_t page_at(const WideKey& key);
-  void rehash(std::size_t slots);
+  /// REQUIRES that there is none at this place.
+  std::uint32_t add_page(const WideKey& lowest);
+  void hash_pages();
   std::size_t slot_of(const WideKey& lowest) const;
 
   LogOdds miss_;
@@ -136,6 +138,7 @@ class ScanUpdate {
   /// Pages that were asked for, by the lowest bits of their place: neighbours are asked for again and again.
   std::array<std::uint32_t, 64> recent_{};
   std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free
+  std::size_t hashed_ = 0;            ///< the first so many pages are in slots_: the others when one is looked up
 };
 
 }  // namespace pingvox
