@@ -170,29 +170,51 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
   return growth.bytes();
 }
 
-/// Whether misses change nothing in a brick because all that is known of it is as free as can be, and the cells are
-/// known. Only one word of the brick is looked at: after some scans from one place that is nearly all there is to do.
-bool stays_free(const detail::BrickTree& tree, detail::Entry entry, std::uint64_t missed, const Clamp& clamp) {
-  if (entry.is_none() || LogOdds(entry.value) > clamp.lowest) return false;
-  return entry.is_leaf() || (missed & ~tree.bricks[entry.link].known) == 0;
-}
+/// Tells which bricks of a page misses leave as they are, because all that is known there is as free as can be. It asks
+/// for one word of a brick and goes nowhere: after some scans from one place that is nearly all there is to do.
+template <KeyWord W>
+class FreeBricks {
+ public:
+  FreeBricks(const detail::BrickTree& tree, const detail::CursorRules& rules, LogOdds miss)
+      : tree_(tree),
+        lowest_(rules.clamp.lowest),
+        // Only a maximum tells of each cell.
+        is_asked_(rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax && miss < LogOdds(0.0F) &&
+                  tree.brick_depth() >= detail::kPageLevels) {}
+
+  void go_to(const ScanUpdate::Page& page, detail::Cursor<W>& cursor) {
+    if (is_asked_) cursor.look_at(page.lowest.as<W>(), page.bricks, entries_);
+  }
+  bool stays(std::size_t brick, std::uint64_t missed) const {
+    const detail::Entry entry = entries_[brick];
+    if (entry.is_none() || LogOdds(entry.value) > lowest_) return false;
+    return entry.is_leaf() || (missed & ~tree_.bricks[entry.link].known) == 0;
+  }
+
+ private:
+  const detail::BrickTree& tree_;
+  LogOdds lowest_;
+  bool is_asked_;
+  detail::PageEntries entries_;  ///< none where they are not asked for
+};
 
 template <KeyWord W>
 ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
   ApplyReport report;
   detail::Cursor<W> cursor(tree, rules);
-  // A maximum is known to be of all cells; unknown entries for bricks are those of which nothing is dropped.
-  const bool drops = rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax &&
-                     scan.miss() < LogOdds(0.0F) && tree.brick_depth() >= detail::kPageLevels;
-  detail::PageEntries entries;
+  FreeBricks<W> free_bricks(tree, rules, scan.miss());
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
-    if (drops) cursor.look_at(page.lowest.as<W>(), page.bricks, entries);
+    free_bricks.go_to(page, cursor);
     detail::for_each_bit(page.bricks, [&](std::size_t brick) {
+      const bool has_hits = (page.bricks_hit >> brick & 1) != 0;
+      if (!has_hits && free_bricks.stays(brick, page.missed[brick])) {
+        report.cells_freed += detail::count_bits(page.missed[brick]);
+        return;
+      }
       const detail::Votes votes = votes_on(scan, page, brick);
       report.cells_freed += detail::count_bits(votes.missed);
-      if (votes.hit != 0) report.cells_hit += detail::count_bits(votes.hit);
-      if (votes.hit == 0 && stays_free(tree, entries[brick], votes.missed, rules.clamp)) return;
+      report.cells_hit += detail::count_bits(votes.hit);
       cursor.vote(lowest_in<W>(page, brick), votes);
     });
   }
