@@ -523,6 +523,26 @@ typename Cursor<W>::Reach Cursor<W>::reach(const BasicKey<W>& key) {
   return {reach_, entry_at(reach_)};
 }
 
+template <KeyWord W>
+void Cursor<W>::look_at(const BasicKey<W>& key, std::uint64_t bricks, PageEntries& entries) {
+  move_to(key);
+  const int depth = tree_.brick_depth() - kPageLevels;
+  if (reach_ <= depth) {
+    entries.fill(entry_at(reach_));
+    return;
+  }
+  const Group& page = tree_.groups[group_[static_cast<std::size_t>(depth)]];
+  for (int o = 0; o < 8; ++o) {
+    if ((bricks & octant_mask(o)) == 0) continue;
+    const Entry entry = page.child[static_cast<std::size_t>(o)];
+    if (entry.is_inner()) {
+      std::copy_n(tree_.groups[entry.link].child.begin(), 8, entries.begin() + o * 8);
+    } else {
+      std::fill_n(entries.begin() + o * 8, 8, entry);
+    }
+  }
+}
+
 template class Cursor<std::uint64_t>;
 template class Cursor<WideWord>;
 

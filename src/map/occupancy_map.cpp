@@ -9,6 +9,7 @@
 #include <new>
 #include <variant>
 
+#include "map/bits.hpp"
 #include "map/key_batch.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
@@ -96,24 +97,21 @@ std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor_in(
   return detail::Cursor<WideWord>(tree, rules);
 }
 
-/// Calls f(lowest cell of the brick, its votes) for each brick with marks, in the tree's order.
-template <KeyWord W, class F>
-void for_each_brick(const ScanUpdate& scan, F&& f) {
-  for (const std::uint32_t index : scan.pages_in_order()) {
-    const ScanUpdate::Page& page = scan.page(index);
-    for (std::size_t brick = 0; brick < page.hit.size(); ++brick) {
-      const std::uint64_t hit = page.hit[brick];
-      const std::uint64_t missed = page.missed[brick] & ~hit;
-      if ((hit | missed) == 0) continue;
-      const auto offset = [&](unsigned axis) {
-        return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
-      };
-      const auto lowest = page.lowest.as<W>();
-      const BasicKey<W> key{lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
-      const ScanUpdate::Hits hits = hit != 0 ? scan.hits(page, brick) : ScanUpdate::Hits{};
-      f(key, detail::Votes{missed, scan.miss(), hit, hits.of_cell, hits.all});
-    }
-  }
+/// The lowest cell of a brick of a page.
+template <KeyWord W>
+BasicKey<W> lowest_in(const ScanUpdate::Page& page, std::size_t brick) {
+  const auto offset = [&](unsigned axis) {
+    return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
+  };
+  const auto lowest = page.lowest.as<W>();
+  return {lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
+}
+
+detail::Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick) {
+  if ((page.bricks_hit >> brick & 1) == 0) return {page.missed[brick], scan.miss(), 0, nullptr, {}};
+  const std::uint64_t hit = page.hit[brick];
+  const ScanUpdate::Hits hits = scan.hits(page, brick);
+  return {page.missed[brick] & ~hit, scan.miss(), hit, hits.of_cell, hits.all};
 }
 
 /// Foresees what the tree's storage grows by, brick by brick: an upper bound. Bricks that stay as they are need
@@ -154,8 +152,12 @@ class Growth {
 template <KeyWord W>
 std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
   Growth<W> growth(tree, clamp);
-  for_each_brick<W>(
-      scan, [&](const BasicKey<W>& key, const detail::Votes& votes) { growth.add(key, votes, Growth<W>::More::kNo); });
+  for (const std::uint32_t index : scan.pages_in_order()) {
+    const ScanUpdate::Page& page = scan.page(index);
+    detail::for_each_bit(page.bricks, [&](std::size_t brick) {
+      growth.add(lowest_in<W>(page, brick), votes_on(scan, page, brick), Growth<W>::More::kNo);
+    });
+  }
   return growth.bytes();
 }
 
@@ -168,15 +170,54 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
   return growth.bytes();
 }
 
+/// Tells which bricks of a page misses leave as they are, because all that is known there is as free as can be. It asks
+/// for one word of a brick and goes nowhere: after some scans from one place that is nearly all there is to do.
+template <KeyWord W>
+class FreeBricks {
+ public:
+  FreeBricks(const detail::BrickTree& tree, const detail::CursorRules& rules, LogOdds miss)
+      : tree_(tree),
+        lowest_(rules.clamp.lowest),
+        // Only a maximum tells of each cell.
+        is_asked_(rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax && miss < LogOdds(0.0F) &&
+                  tree.brick_depth() >= detail::kPageLevels) {}
+
+  void go_to(const ScanUpdate::Page& page, detail::Cursor<W>& cursor) {
+    if (is_asked_) cursor.look_at(page.lowest.as<W>(), page.bricks, entries_);
+  }
+  bool stays(std::size_t brick, std::uint64_t missed) const {
+    const detail::Entry entry = entries_[brick];
+    if (entry.is_none() || LogOdds(entry.value) > lowest_) return false;
+    return entry.is_leaf() || (missed & ~tree_.bricks[entry.link].known) == 0;
+  }
+
+ private:
+  const detail::BrickTree& tree_;
+  LogOdds lowest_;
+  bool is_asked_;
+  detail::PageEntries entries_;  ///< none where they are not asked for
+};
+
 template <KeyWord W>
 ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
   ApplyReport report;
   detail::Cursor<W> cursor(tree, rules);
-  for_each_brick<W>(scan, [&](const BasicKey<W>& key, const detail::Votes& votes) {
-    cursor.vote(key, votes);
-    report.cells_freed += static_cast<std::uint64_t>(std::popcount(votes.missed));
-    report.cells_hit += static_cast<std::uint64_t>(std::popcount(votes.hit));
-  });
+  FreeBricks<W> free_bricks(tree, rules, scan.miss());
+  for (const std::uint32_t index : scan.pages_in_order()) {
+    const ScanUpdate::Page& page = scan.page(index);
+    free_bricks.go_to(page, cursor);
+    detail::for_each_bit(page.bricks, [&](std::size_t brick) {
+      const bool has_hits = (page.bricks_hit >> brick & 1) != 0;
+      if (!has_hits && free_bricks.stays(brick, page.missed[brick])) {
+        report.cells_freed += detail::count_bits(page.missed[brick]);
+        return;
+      }
+      const detail::Votes votes = votes_on(scan, page, brick);
+      report.cells_freed += detail::count_bits(votes.missed);
+      report.cells_hit += detail::count_bits(votes.hit);
+      cursor.vote(lowest_in<W>(page, brick), votes);
+    });
+  }
   cursor.flush();
   return report;
 }

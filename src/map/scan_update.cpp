@@ -4,12 +4,16 @@
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "map/bits.hpp"
+#include "map/kernels/words.hpp"
 #include "map/tree_order.hpp"
-#include "pingvox/map/brick_tree.hpp"
 
 namespace pingvox {
 namespace {
+
+using detail::for_each_bit;
 
 constexpr std::uint32_t kFree = 0;
 
@@ -33,24 +37,28 @@ std::size_t ScanUpdate::slot_of(const WideKey& lowest) const {
   return slot;
 }
 
-void ScanUpdate::rehash(std::size_t slots) {
-  slots_.assign(slots, kFree);
-  for (std::size_t i = 0; i < used_; ++i) slots_[slot_of(pages_[i].lowest)] = static_cast<std::uint32_t>(i + 1);
+void ScanUpdate::hash_pages() {
+  // At most half of the slots are taken, with the one that is to come.
+  const std::size_t needed = std::max<std::size_t>(64, std::bit_ceil(2 * (used_ + 1)));
+  if (slots_.size() < needed) {
+    slots_.assign(needed, kFree);
+    hashed_ = 0;
+  }
+  for (; hashed_ < used_; ++hashed_) slots_[slot_of(pages_[hashed_].lowest)] = static_cast<std::uint32_t>(hashed_ + 1);
 }
 
 std::uint32_t ScanUpdate::page_at(const WideKey& key) {
   const auto lowest = [](WideWord word) { return word >> kPageBits << kPageBits; };
   const WideKey corner{lowest(key.x), lowest(key.y), lowest(key.z)};
-  if (slots_.size() < 2 * (used_ + 1)) rehash(std::max<std::size_t>(64, 2 * slots_.size()));
+  hash_pages();
   const std::size_t slot = slot_of(corner);
-  if (slots_[slot] != kFree) return slots_[slot] - 1;
+  return slots_[slot] != kFree ? slots_[slot] - 1 : add_page(corner);
+}
+
+std::uint32_t ScanUpdate::add_page(const WideKey& lowest) {
   if (used_ == pages_.size()) pages_.emplace_back();
-  Page& page = pages_[used_];
-  page.lowest = corner;
-  page.missed.fill(0);
-  page.hit.fill(0);
-  slots_[slot] = static_cast<std::uint32_t>(++used_);
-  return slots_[slot] - 1;
+  pages_[used_].lowest = lowest;
+  return static_cast<std::uint32_t>(used_++);
 }
 
 void ScanUpdate::spread_evidence(Page& page, std::size_t brick) {
@@ -67,16 +75,17 @@ void ScanUpdate::add(const ScanUpdate& other) {
   for (std::size_t i = 0; i < other.used_; ++i) {
     const Page& from = other.pages_[i];
     const std::uint32_t index = page_of(from.lowest);
-    for (std::size_t brick = 0; brick < from.hit.size(); ++brick) {
-      pages_[index].missed[brick] |= from.missed[brick];
-      if (from.hit[brick] == 0) continue;
+    for_each_bit(from.bricks, [&](std::size_t brick) {
+      mark_missed_in(index, brick, from.missed[brick]);
+      if (from.hit[brick] == 0) return;
       const Hits evidence = other.hits(from, brick);
-      for (std::uint64_t left = from.hit[brick]; left != 0; left &= left - 1) {
-        const auto cell = static_cast<std::size_t>(std::countr_zero(left));
-        mark_hit(index, brick * 64 + cell,
-                 evidence.of_cell == nullptr ? evidence.all : LogOdds(evidence.of_cell[cell]));
+      if (evidence.of_cell == nullptr) {
+        mark_hit_in(index, brick, from.hit[brick], evidence.all);
+        return;
       }
-    }
+      for_each_bit(from.hit[brick],
+                   [&](std::size_t cell) { mark_hit(index, brick * 64 + cell, LogOdds(evidence.of_cell[cell])); });
+    });
   }
 }
 
@@ -86,29 +95,34 @@ detail::ScanWindow& ScanUpdate::window(int bits) {
 }
 
 void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
+  const bool all_are_new = empty();
   detail::take_touched(window_, [&](std::uint64_t number) {
     const BasicKey<std::uint64_t> at = detail::key_of_code(number);
-    const std::uint32_t index =
-        page_of({lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)});
+    const WideKey corner{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits),
+                         lowest.z + (at.z << kPageBits)};
+    const std::uint32_t index = all_are_new ? add_page(corner) : page_of(corner);
     Page& page = pages_[index];
     std::uint64_t* const missed = window_.missed() + number * 64;
+    const std::uint64_t bricks = detail::words_in_use(missed);
+    page.bricks |= bricks;
+    for_each_bit(bricks, [&](std::size_t brick) { page.missed[brick] |= std::exchange(missed[brick], 0); });
     std::uint64_t* const hits = window_.hit() + number * 64;
-    for (std::size_t brick = 0; brick < 64; ++brick) {
-      page.missed[brick] |= missed[brick];
-      for (std::uint64_t cells = hits[brick]; cells != 0; cells &= cells - 1) {
-        mark_hit(index, brick * 64 + static_cast<std::size_t>(std::countr_zero(cells)), hit);
-      }
-    }
-    std::fill_n(missed, 64, 0);
-    std::fill_n(hits, 64, 0);
+    for_each_bit(detail::words_in_use(hits),
+                 [&](std::size_t brick) { mark_hit_in(index, brick, std::exchange(hits[brick], 0), hit); });
   });
 }
 
 void ScanUpdate::clear() {
+  for (std::size_t i = 0; i < used_; ++i) {
+    Page& page = pages_[i];
+    for_each_bit(std::exchange(page.bricks, 0), [&](std::size_t brick) { page.missed[brick] = 0; });
+    for_each_bit(std::exchange(page.bricks_hit, 0), [&](std::size_t brick) { page.hit[brick] = 0; });
+  }
   used_ = 0;
   evidence_used_ = 0;
   has_hits_ = false;
-  std::fill(slots_.begin(), slots_.end(), kFree);
+  if (hashed_ > 0) std::fill(slots_.begin(), slots_.end(), kFree);
+  hashed_ = 0;
 }
 
 std::vector<std::uint32_t> ScanUpdate::pages_in_order() const {

@@ -6,7 +6,9 @@
 #include <limits>
 #include <random>
 
+#include "map/bits.hpp"
 #include "map/kernels/brick.hpp"
+#include "map/kernels/words.hpp"
 #include "support/lanes.hpp"
 
 namespace pingvox::detail {
@@ -113,6 +115,23 @@ TEST(BrickKernels, MasksAreWhatThePlainLoopsGive) {
   EXPECT_GT(octants, 10'000U);
   EXPECT_GT(uniform, 1'000U);
   EXPECT_GT(from, 100'000U);
+}
+
+TEST(BrickKernels, WordsInUseAreThoseWithABit) {
+  for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const std::uint64_t used = seed % 10 == 0 ? 0 : random() & random();
+    std::array<std::uint64_t, 64> words{};
+    for (std::size_t word = 0; word < 64; ++word) {
+      if ((used >> word & 1) != 0) words[word] = std::uint64_t{1} << (random() % 64);
+    }
+    for (const Lanes lanes : lanes_here()) EXPECT_EQ(words_in_use(words.data(), lanes), used);
+    EXPECT_EQ(count_bits(used), static_cast<std::uint64_t>(std::popcount(used)));
+    std::uint64_t visited = 0;
+    for_each_bit(used, [&](std::size_t bit) { visited |= std::uint64_t{1} << bit; });
+    EXPECT_EQ(visited, used);
+  }
 }
 
 TEST(BrickKernels, MasksOfOctantsAreTheirBytes) {

@@ -168,6 +168,10 @@ void prune_all(BrickTree& tree, Parents parents);
 /// Recomputes and returns `a` with the leaves of `b` (of another tree of the same levels) added, clamped.
 Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
 
+/// Levels from a page of 4^3 bricks (ScanUpdate::Page) to its bricks, and its bricks' entries, in the tree's order.
+inline constexpr int kPageLevels = 2;
+using PageEntries = std::array<Entry, 64>;
+
 /// How a cursor changes a tree.
 struct CursorRules {
   Parents parents = Parents::kMax;
@@ -202,6 +206,9 @@ class Cursor {
     Entry end;  ///< inner: the brick is there
   };
   Reach reach(const BasicKey<W>& key);
+  /// What the tree has for some bricks (a bit each) of the page whose lowest cell is `key`. Moves there.
+  /// REQUIRES brick_depth >= kPageLevels
+  void look_at(const BasicKey<W>& key, std::uint64_t bricks, PageEntries& entries);
 
  private:
   void move_to(const BasicKey<W>& key);

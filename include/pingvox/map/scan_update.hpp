@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,7 +21,9 @@ class ScanUpdate {
   /// A cube of 16^3 cells: 4^3 bricks of 4^3 cells. Brick o * 8 + i, like cells in a brick, is in the tree's order.
   static constexpr int kPageBits = 4;
   struct Page {
-    WideKey lowest;  ///< its lowest cell
+    WideKey lowest;                ///< its lowest cell
+    std::uint64_t bricks = 0;      ///< a bit for each brick that has marks: of a flat scan few have
+    std::uint64_t bricks_hit = 0;  ///< for each with hits
     std::array<std::uint64_t, 64> missed{};
     std::array<std::uint64_t, 64> hit{};
     std::array<std::uint32_t, 64> evidence{};  ///< of a brick's hits (`hits`); valid where hit != 0
@@ -57,23 +60,32 @@ class ScanUpdate {
     return recent;
   }
   void mark_missed(std::uint32_t page, std::size_t cell) {
-    pages_[page].missed[cell / 64] |= std::uint64_t{1} << (cell % 64);
+    mark_missed_in(page, cell / 64, std::uint64_t{1} << (cell % 64));
   }
   /// Marks cells of a brick as missed: a bit each.
   void mark_missed_in(std::uint32_t page, std::size_t brick, std::uint64_t cells) {
-    pages_[page].missed[brick] |= cells;
+    Page& in = pages_[page];
+    in.bricks |= std::uint64_t{1} << brick;
+    in.missed[brick] |= cells;
   }
   void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence) {
+    mark_hit_in(page, cell / 64, std::uint64_t{1} << (cell % 64), evidence);
+  }
+  /// Marks cells of a brick as hit: a bit each.
+  void mark_hit_in(std::uint32_t page, std::size_t brick, std::uint64_t cells, LogOdds evidence) {
     Page& in = pages_[page];
-    const std::size_t brick = cell / 64;
     if (!has_hits_) usual_hit_ = evidence;
     has_hits_ = true;
     if (in.hit[brick] == 0) in.evidence[brick] = kUsual;
     if (in.evidence[brick] == kUsual && evidence != usual_hit_) spread_evidence(in, brick);
-    in.hit[brick] |= std::uint64_t{1} << (cell % 64);
+    in.bricks |= std::uint64_t{1} << brick;
+    in.bricks_hit |= std::uint64_t{1} << brick;
+    in.hit[brick] |= cells;
     if (in.evidence[brick] == kUsual) return;
-    float& surest = evidence_[in.evidence[brick]][cell % 64];
-    surest = std::max(surest, evidence.value());
+    for (std::uint64_t left = cells; left != 0; left &= left - 1) {
+      float& surest = evidence_[in.evidence[brick]][static_cast<std::size_t>(std::countr_zero(left))];
+      surest = std::max(surest, evidence.value());
+    }
   }
 
   LogOdds miss() const { return miss_; }
@@ -110,11 +122,13 @@ class ScanUpdate {
     return ((page.lowest.x ^ key.x) | (page.lowest.y ^ key.y) | (page.lowest.z ^ key.z)) >> kPageBits == 0;
   }
   std::uint32_t page_at(const WideKey& key);
-  void rehash(std::size_t slots);
+  /// REQUIRES that there is none at this place.
+  std::uint32_t add_page(const WideKey& lowest);
+  void hash_pages();
   std::size_t slot_of(const WideKey& lowest) const;
 
   LogOdds miss_;
-  std::vector<Page> pages_;  ///< the first used_ are in use
+  std::vector<Page> pages_;  ///< the first used_ are in use, the others have no marks
   std::size_t used_ = 0;
   std::vector<std::array<float, 64>> evidence_;
   std::size_t evidence_used_ = 0;
@@ -124,6 +138,7 @@ class ScanUpdate {
   /// Pages that were asked for, by the lowest bits of their place: neighbours are asked for again and again.
   std::array<std::uint32_t, 64> recent_{};
   std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free
+  std::size_t hashed_ = 0;            ///< the first so many pages are in slots_: the others when one is looked up
 };
 
 }  // namespace pingvox

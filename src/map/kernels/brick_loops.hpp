@@ -19,6 +19,15 @@ inline Masks lanes_of(std::uint64_t cells) {
   return (bits & static_cast<std::int32_t>(cells & kSome)) != 0;
 }
 
+/// Lanes of a vector.
+inline void pick(const Values& values, const Masks& places, Values& to) {
+#ifdef __clang__
+  for (std::size_t i = 0; i < kValues; ++i) to[i] = values[static_cast<std::size_t>(places[i])];
+#else
+  to = __builtin_shuffle(values, places);
+#endif
+}
+
 inline bool any_of(Masks lanes) {
   std::array<std::uint64_t, kValues / 2> words;
   std::memcpy(words.data(), &lanes, sizeof lanes);
@@ -50,16 +59,29 @@ inline bool add_alike(Brick& brick, std::uint64_t cells, float evidence, const C
   return any_of(changed);
 }
 
+/// The highest lane: by halves, as lanes one after the other would wait for each other.
+template <std::size_t kHalf = kValues / 2>
+inline float most_of(const Values& values) {
+  if constexpr (kHalf == 0) {
+    return values[0];
+  } else {
+    Masks places{};
+    for (std::size_t i = 0; i < kValues; ++i) places[i] = static_cast<std::int32_t>(i ^ kHalf);
+    Values others;
+    pick(values, places, others);
+    return most_of<kHalf / 2>(values < others ? others : values);
+  }
+}
+
 /// for each known cell: highest = max(highest, value)
 inline float highest_of(const Brick& brick) {
   Values highest = Values{} + std::numeric_limits<float>::lowest();
   for (std::size_t first = 0; first < 64; first += kValues) {
+    if ((brick.known >> first & kSome) == 0) continue;  // as half of each brick in a flat map
     const Values value = values_at(brick, first);
     highest = (lanes_of(brick.known >> first) & (value > highest)) != 0 ? value : highest;
   }
-  float most = highest[0];
-  for (std::size_t i = 1; i < kValues; ++i) most = most < highest[i] ? highest[i] : most;
-  return most;
+  return most_of(highest);
 }
 
 /// for each cell: value == value[0]

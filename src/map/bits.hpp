@@ -1,0 +1,23 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace pingvox::detail {
+
+/// Calls f(number) for each bit of a word that is set, from the lowest on.
+template <class F>
+void for_each_bit(std::uint64_t word, F&& f) {
+  for (std::uint64_t left = word; left != 0; left &= left - 1) f(static_cast<std::size_t>(std::countr_zero(left)));
+}
+
+/// How many bits of a word are set. Without an instruction that not every x86-64 has, and the call for lack of it.
+constexpr std::uint64_t count_bits(std::uint64_t word) {
+  word -= word >> 1 & 0x5555555555555555;
+  word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
+  word = (word + (word >> 4)) & 0x0F0F0F0F0F0F0F0F;
+  return word * 0x0101010101010101 >> 56;
+}
+
+}  // namespace pingvox::detail

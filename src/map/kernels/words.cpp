@@ -1,0 +1,18 @@
+#include "map/kernels/words.hpp"
+
+#include <cstddef>
+#include <cstring>
+
+namespace pingvox::detail {
+namespace {
+
+#define PINGVOX_LOOPS "map/kernels/words_loops.hpp"
+#include "map/kernels/each_machine.hpp"
+
+}  // namespace
+
+std::uint64_t words_in_use(const std::uint64_t* words, Lanes lanes) {
+  PINGVOX_BY_LANES(lanes, words_in_use(words), plain::words_in_use(words));
+}
+
+}  // namespace pingvox::detail

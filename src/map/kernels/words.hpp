@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+#include "map/kernels/lanes.hpp"
+
+/// Loops over the words of bits that a page has for its bricks (ScanUpdate::Page), several words at a time.
+namespace pingvox::detail {
+
+/// for each of 64 words: its bit set where the word is not 0
+std::uint64_t words_in_use(const std::uint64_t* words, Lanes lanes = widest_lanes());
+
+}  // namespace pingvox::detail
