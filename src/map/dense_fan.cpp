@@ -69,7 +69,8 @@ std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends
 
 bool DenseFan::mark_dense() {
   if (ends_m_.size() < kManyRays || std::size_t{6} * squares_ * squares_ > kMostSquares * ends_m_.size()) return false;
-  RayRuns rays(lanes_, fan_, squares_, ends_m_);
+  RayRuns& rays = room_.rays;
+  rays.begin(lanes_, fan_, squares_, ends_m_);
   std::array<std::uint64_t, kBlock + kWrittenBeyond> places;
   std::array<std::uint32_t, kBlock + kWrittenBeyond> square;
   std::array<Aim, kBlock + kWrittenBeyond> aim;
@@ -82,8 +83,9 @@ bool DenseFan::mark_dense() {
   }
   if (rays.rays() < kPerBorder * rays.border()) return false;
   rays.sort();
-  walk(rays.take_one_of_each_square());
-  walk_the_rest(rays);
+  rays.take_one_of_each_square(room_.found);
+  walk(room_.found);
+  walk_the_rest();
   others_->insert(others_->end(), rays.outside().begin(), rays.outside().end());
   return true;
 }
@@ -95,13 +97,14 @@ void DenseFan::mark_hits(std::span<const std::uint64_t> places) {
 void DenseFan::walk_all(RayEnds ends) {
   walked_ += ends_m_.size();
   for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
-    not_ready_.clear();
-    prepare_rays(lanes_, fan_, ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), ready_, not_ready_);
+    room_.not_ready.clear();
+    prepare_rays(lanes_, fan_, ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), room_.ready,
+                 room_.not_ready);
     if (ends == RayEnds::kHit) {
-      for (const ReadyRay& ray : ready_) mark_first(ray.end, window_.hit(), window_.touched());
+      for (const ReadyRay& ray : room_.ready) mark_first(ray.end, window_.hit(), window_.touched());
     }
-    mark_rays(lanes_, ready_, start_, window_);
-    for (const std::uint32_t number : not_ready_) others_->push_back(static_cast<std::uint32_t>(first) + number);
+    mark_rays(lanes_, room_.ready, start_, window_);
+    for (const std::uint32_t number : room_.not_ready) others_->push_back(static_cast<std::uint32_t>(first) + number);
   }
 }
 
@@ -109,24 +112,26 @@ void DenseFan::walk(std::span<const std::uint32_t> rays) {
   walked_ += rays.size();
   for (; !rays.empty(); rays = rays.subspan(std::min(kBlock, rays.size()))) {
     const std::span<const std::uint32_t> some = rays.first(std::min(kBlock, rays.size()));
-    walked_ends_m_.clear();
-    for (const std::uint32_t ray : some) walked_ends_m_.push_back(ends_m_[ray]);
-    not_ready_.clear();
-    prepare_rays(lanes_, fan_, walked_ends_m_, ready_, not_ready_);
-    mark_rays(lanes_, ready_, start_, window_);
-    for (const std::uint32_t number : not_ready_) others_->push_back(some[number]);
+    room_.walked_ends_m.clear();
+    for (const std::uint32_t ray : some) room_.walked_ends_m.push_back(ends_m_[ray]);
+    room_.not_ready.clear();
+    prepare_rays(lanes_, fan_, room_.walked_ends_m, room_.ready, room_.not_ready);
+    mark_rays(lanes_, room_.ready, start_, window_);
+    for (const std::uint32_t number : room_.not_ready) others_->push_back(some[number]);
   }
 }
 
-void DenseFan::walk_the_rest(RayRuns& rays) {
+void DenseFan::walk_the_rest() {
   const std::uint64_t last_page = window_.pages() - 1;
-  std::vector<std::uint8_t> touched(window_.pages()), asked(window_.pages());
-  std::vector<std::uint64_t> to_ask;
+  std::vector<std::uint8_t>& touched = room_.is_touched;
+  std::vector<std::uint64_t>& to_ask = room_.to_ask;
+  touched.assign(window_.pages(), 0);
+  room_.all_asked.clear();
   do {
     to_ask.clear();
-    std::fill(asked.begin(), asked.end(), 0);
+    room_.is_to_ask.assign(window_.pages(), 0);
     const auto ask = [&](std::uint64_t page) {
-      if (std::exchange(asked[page], std::uint8_t{1}) == 0) to_ask.push_back(page);
+      if (std::exchange(room_.is_to_ask[page], std::uint8_t{1}) == 0) to_ask.push_back(page);
     };
     take_touched(window_, [&](std::uint64_t page) {
       touched[page] = 1;
@@ -136,26 +141,25 @@ void DenseFan::walk_the_rest(RayRuns& rays) {
         ask(number_before(page, axis, last_page));
       }
     });
-    for (const std::uint64_t page : to_ask) ask_page(page, rays);
-    all_asked_.insert(all_asked_.end(), to_ask.begin(), to_ask.end());
+    for (const std::uint64_t page : to_ask) ask_page(page);
+    room_.all_asked.insert(room_.all_asked.end(), to_ask.begin(), to_ask.end());
   } while (!to_ask.empty());
   for (std::size_t page = 0; page < touched.size(); ++page) {
     if (touched[page] != 0) window_.touched()[page] = 1;
   }
-  for (const std::uint64_t page : all_asked_) std::fill_n(window_.asked() + page * 64, 64, 0);
-  all_asked_.clear();
+  for (const std::uint64_t page : room_.all_asked) std::fill_n(window_.asked() + page * 64, 64, 0);
 }
 
-void DenseFan::ask_page(std::uint64_t page, RayRuns& rays) {
-  if (!rays.may_cross(corner_of(page << ScanWindow::kPageCellBits), 16.0)) return;
+void DenseFan::ask_page(std::uint64_t page) {
+  if (!room_.rays.may_cross(corner_of(page << ScanWindow::kPageCellBits), 16.0)) return;
   do {
-    found_.clear();
-    for (std::uint64_t brick = page * 64; brick < page * 64 + 64; ++brick) ask_brick(brick, rays);
-    walk(found_);
-  } while (!found_.empty());
+    room_.found.clear();
+    for (std::uint64_t brick = page * 64; brick < page * 64 + 64; ++brick) ask_brick(brick);
+    walk(room_.found);
+  } while (!room_.found.empty());
 }
 
-void DenseFan::ask_brick(std::uint64_t brick, RayRuns& rays) {
+void DenseFan::ask_brick(std::uint64_t brick) {
   const std::uint64_t all_bricks = (std::uint64_t{1} << (3 * window_.bits() - 6)) - 1;
   const auto marked = [&](std::uint64_t which) { return window_.missed()[which] | window_.hit()[which]; };
   std::uint64_t& asked = window_.asked()[brick];
@@ -167,7 +171,7 @@ void DenseFan::ask_brick(std::uint64_t brick, RayRuns& rays) {
     border |= along.ahead(here) | along.behind(here) | along.before_next(marked(next_number(brick, axis, all_bricks))) |
               along.after_last(marked(number_before(brick, axis, all_bricks)));
   }
-  if ((border & open) != 0) asked |= rays.take_some_across(corner_of(brick * 64), border & open, found_);
+  if ((border & open) != 0) asked |= room_.rays.take_some_across(corner_of(brick * 64), border & open, room_.found);
 }
 
 Eigen::Vector3d DenseFan::corner_of(std::uint64_t place) const {

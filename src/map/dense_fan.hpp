@@ -16,6 +16,16 @@ namespace pingvox::detail {
 /// What the last cells of rays say.
 enum class RayEnds { kHit, kNothing };
 
+/// What a DenseFan works in. Nothing in it means anything between fans.
+struct FanRoom {
+  RayRuns rays;
+  std::vector<Eigen::Vector3d> walked_ends_m;
+  std::vector<ReadyRay> ready;
+  std::vector<std::uint32_t> not_ready, found;      ///< rays
+  std::vector<std::uint8_t> is_touched, is_to_ask;  ///< a byte a page
+  std::vector<std::uint64_t> to_ask, all_asked;     ///< pages
+};
+
 /// Marks in a window what rays from one place cross, without walking all of them where many go side by side.
 ///
 /// There, of the rays through each square of directions the farthest is walked. Then each cell that borders on a marked
@@ -29,7 +39,7 @@ class DenseFan {
   /// @param squares  along each edge of a cube around it: about as many as cells lie between its far ends, an even
   ///                 number, so that the rays of a square go ahead or back along the same axes
   DenseFan(Lanes lanes, const RayFan& fan, std::uint64_t start, std::uint32_t squares, ScanWindow& window)
-      : lanes_(lanes), fan_(fan), start_(start), squares_(squares), window_(window) {}
+      : lanes_(lanes), fan_(fan), start_(start), squares_(squares), window_(window), room_(window.fan_room()) {}
 
   /// Marks the cells of the rays to `ends_m` [m, map frame] as missed but for their last ones.
   /// @param others  gets the numbers of rays that the window cannot take (see prepare_rays)
@@ -42,9 +52,9 @@ class DenseFan {
   void mark_hits(std::span<const std::uint64_t> places);
   void walk_all(RayEnds ends);
   void walk(std::span<const std::uint32_t> rays);
-  void walk_the_rest(RayRuns& rays);
-  void ask_page(std::uint64_t page, RayRuns& rays);
-  void ask_brick(std::uint64_t brick, RayRuns& rays);
+  void walk_the_rest();
+  void ask_page(std::uint64_t page);
+  void ask_brick(std::uint64_t brick);
   Eigen::Vector3d corner_of(std::uint64_t place) const;
 
   Lanes lanes_;
@@ -52,14 +62,11 @@ class DenseFan {
   std::uint64_t start_;
   std::uint32_t squares_;
   ScanWindow& window_;
+  FanRoom& room_;
 
   std::span<const Eigen::Vector3d> ends_m_;
   std::vector<std::uint32_t>* others_ = nullptr;
   std::size_t walked_ = 0;
-  std::vector<Eigen::Vector3d> walked_ends_m_;
-  std::vector<ReadyRay> ready_;
-  std::vector<std::uint64_t> all_asked_;  ///< pages
-  std::vector<std::uint32_t> not_ready_, found_;
 };
 
 }  // namespace pingvox::detail

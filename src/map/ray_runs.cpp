@@ -32,14 +32,19 @@ Eigen::Vector3d corner_in_brick(std::uint32_t cell) {
 
 }  // namespace
 
-RayRuns::RayRuns(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m)
-    : lanes_(lanes),
-      fan_(fan),
-      per_edge_(squares),
-      ends_m_(ends_m),
-      columns_(std::size_t{kFaces} * squares),
-      index_(std::size_t{kFaces} * squares * squares) {
+void RayRuns::begin(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m) {
+  lanes_ = lanes;
+  fan_ = &fan;
+  per_edge_ = squares;
+  ends_m_ = ends_m;
+  rays_ = 0;
+  outside_.clear();
   faces_.fill(kNoRays);
+  columns_.assign(std::size_t{kFaces} * squares, {});
+  index_.assign(std::size_t{kFaces} * squares * squares, 0);
+  squares_.clear();
+  runs_.clear();
+  square_of_run_.clear();
 }
 
 void RayRuns::add(const AimedRays& aimed, std::size_t count) {
@@ -96,14 +101,13 @@ void RayRuns::sort() {
     square.begin = begin;
     begin += std::exchange(square.end, begin);
   }
-  std::vector<Run> sorted(runs_.size());
-  for (std::size_t i = 0; i < runs_.size(); ++i) sorted[squares_[square_of_run_[i]].end++] = runs_[i];
-  runs_ = std::move(sorted);
+  sorted_.resize(runs_.size());
+  for (std::size_t i = 0; i < runs_.size(); ++i) sorted_[squares_[square_of_run_[i]].end++] = runs_[i];
+  runs_.swap(sorted_);
 }
 
-std::vector<std::uint32_t> RayRuns::take_one_of_each_square() {
-  std::vector<std::uint32_t> taken;
-  taken.reserve(squares_.size());
+void RayRuns::take_one_of_each_square(std::vector<std::uint32_t>& taken) {
+  taken.clear();
   for (const Square& square : squares_) {
     const std::span<Run> runs = std::span(runs_).subspan(square.begin, square.end - square.begin);
     Run& run = *std::max_element(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
@@ -113,7 +117,6 @@ std::vector<std::uint32_t> RayRuns::take_one_of_each_square() {
     run.taken |= 1U << middle;
     taken.push_back(run.first + middle);
   }
-  return taken;
 }
 
 std::optional<RayRuns::View> RayRuns::view(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const {
@@ -208,7 +211,7 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
     if (((cells >> ask.number) & 1) == 0) continue;  // a ray was found
     Run& run = runs_[ask.run];
     const std::size_t i =
-        first_that_may_cross(lanes_, fan_, ask.cell, ends_m_.subspan(run.first), run.count, run.taken);
+        first_that_may_cross(lanes_, *fan_, ask.cell, ends_m_.subspan(run.first), run.count, run.taken);
     if (i == run.count) continue;
     run.taken |= 1U << i;
     taken.push_back(run.first + static_cast<std::uint32_t>(i));

@@ -19,9 +19,11 @@ namespace pingvox::detail {
 /// Neighbours mostly go through the same square, so they are kept as runs of such.
 class RayRuns {
  public:
+  /// Forgets all rays and keeps the memory. To be called first.
+  /// @param fan      must live as long as it is asked
   /// @param squares  along an edge of the cube
   /// @param ends_m   where all rays end; `add` takes them in
-  RayRuns(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m);
+  void begin(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m);
 
   /// Takes in the next `count` rays.
   void add(const AimedRays& aimed, std::size_t count);
@@ -37,8 +39,8 @@ class RayRuns {
   /// Rays without a square.
   std::span<const std::uint32_t> outside() const { return outside_; }
 
-  /// Number of one of the farthest rays of each square; it is taken out.
-  std::vector<std::uint32_t> take_one_of_each_square();
+  /// Takes one of the farthest rays out of each square. @param taken  becomes their numbers
+  void take_one_of_each_square(std::vector<std::uint32_t>& taken);
   /// Takes out a ray for each of some cells of a brick that may cross it, where there is one.
   /// @param lowest  corner of the brick as seen from where the rays begin [cells]
   /// @param cells   a bit each
@@ -90,9 +92,9 @@ class RayRuns {
   bool any_square(const View& view, F&& f) const;
   bool may_cross(std::uint32_t face, const Eigen::Vector3d& lowest, double edge) const;
 
-  Lanes lanes_;
-  const RayFan& fan_;
-  std::uint32_t per_edge_;
+  Lanes lanes_ = Lanes::kOne;
+  const RayFan* fan_ = nullptr;
+  std::uint32_t per_edge_ = 1;
   std::span<const Eigen::Vector3d> ends_m_;
   std::size_t rays_ = 0;
   std::vector<std::uint32_t> outside_;
@@ -100,7 +102,8 @@ class RayRuns {
   std::vector<Columns> columns_;      ///< of each row of each face
   std::vector<std::uint32_t> index_;  ///< of each square in squares_, plus one; 0: no ray goes through it
   std::vector<Square> squares_;
-  std::vector<Run> runs_;                     ///< by squares, once they are sorted
+  std::vector<Run> runs_;  ///< by squares, once they are sorted
+  std::vector<Run> sorted_;
   std::vector<std::uint32_t> square_of_run_;  ///< in squares_, until then
   std::vector<SquareToAsk> squares_to_ask_;
   std::vector<RunToAsk> runs_to_ask_;

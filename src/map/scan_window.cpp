@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "map/dense_fan.hpp"
+
 namespace pingvox::detail {
 
 void ScanWindow::open(int bits) {
@@ -12,6 +14,11 @@ void ScanWindow::open(int bits) {
   hit_.grow(bytes);
   asked_.grow(bytes);
   touched_.grow(pages());
+}
+
+FanRoom& ScanWindow::fan_room() {
+  if (!fan_room_) fan_room_ = std::make_shared<FanRoom>();
+  return *fan_room_;
 }
 
 }  // namespace pingvox::detail

@@ -114,6 +114,7 @@ class FanTracer {
       }
       for (const std::uint32_t i : outside) add_singly(block[i]);
     });
+    middles_m.reserve(middles_m.size() + found.size());
     for (const std::uint64_t place : found) {
       middles_m.push_back(lattice_.centre_of(key_at(place)));
       // Marked only to know it again; whether it is a hit its range decides.

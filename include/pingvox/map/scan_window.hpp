@@ -3,11 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "pingvox/map/pool.hpp"
 
 namespace pingvox::detail {
+
+struct FanRoom;
 
 /// Scratch for tracers of many rays: two dense bit masks (missed, hit) over a cube of cells, in the tree's order, so
 /// that a mark is one bit in one word at a known place. Memory that no ray comes near is never touched. Empty between
@@ -39,11 +42,15 @@ class ScanWindow {
   /// A byte a page, 1 where either may have a mark; pages are numbered like cells.
   std::uint8_t* touched() { return reinterpret_cast<std::uint8_t*>(touched_.data()); }
   std::size_t pages() const { return std::size_t{1} << (3 * bits_ - kPageCellBits); }
+  /// What DenseFan works in, kept from scan to scan: a megabyte that is given back and asked for again costs as much as
+  /// filling it.
+  FanRoom& fan_room();
 
  private:
   int bits_ = 0;
   Arena missed_{Arena::Pages::kSmall}, hit_{Arena::Pages::kSmall}, asked_{Arena::Pages::kSmall},
       touched_{Arena::Pages::kSmall};
+  std::shared_ptr<FanRoom> fan_room_;  ///< made when it is asked for
 };
 
 /// Sets the bit of a cell in one of a window's masks, and the byte of its page. There is no branch: whether a ray is
