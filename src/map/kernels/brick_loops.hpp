@@ -19,7 +19,7 @@ inline Masks lanes_of(std::uint64_t cells) {
   return (bits & static_cast<std::int32_t>(cells & kSome)) != 0;
 }
 
-/// Lanes of a vector.
+/// for each lane: to = the lane of `values` at `places`
 inline void pick(const Values& values, const Masks& places, Values& to) {
 #ifdef __clang__
   for (std::size_t i = 0; i < kValues; ++i) to[i] = values[static_cast<std::size_t>(places[i])];
@@ -60,16 +60,16 @@ inline bool add_alike(Brick& brick, std::uint64_t cells, float evidence, const C
 }
 
 /// The highest lane: by halves, as lanes one after the other would wait for each other.
-template <std::size_t kHalf = kValues / 2>
+template <std::size_t Half = kValues / 2>
 inline float most_of(const Values& values) {
-  if constexpr (kHalf == 0) {
+  if constexpr (Half == 0) {
     return values[0];
   } else {
     Masks places{};
-    for (std::size_t i = 0; i < kValues; ++i) places[i] = static_cast<std::int32_t>(i ^ kHalf);
+    for (std::size_t i = 0; i < kValues; ++i) places[i] = static_cast<std::int32_t>(i ^ Half);
     Values others;
     pick(values, places, others);
-    return most_of<kHalf / 2>(values < others ? others : values);
+    return most_of<Half / 2>(values < others ? others : values);
   }
 }
 
