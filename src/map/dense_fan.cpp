@@ -91,7 +91,7 @@ bool DenseFan::mark_dense() {
 }
 
 void DenseFan::mark_hits(std::span<const std::uint64_t> places) {
-  for (const std::uint64_t place : places) mark_first(place, window_.hit(), window_.touched());
+  for (const std::uint64_t place : places) mark_hit(place, window_);
 }
 
 void DenseFan::walk_all(RayEnds ends) {
@@ -101,7 +101,7 @@ void DenseFan::walk_all(RayEnds ends) {
     prepare_rays(lanes_, fan_, ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), room_.ready,
                  room_.not_ready);
     if (ends == RayEnds::kHit) {
-      for (const ReadyRay& ray : room_.ready) mark_first(ray.end, window_.hit(), window_.touched());
+      for (const ReadyRay& ray : room_.ready) mark_hit(ray.end, window_);
     }
     mark_rays(lanes_, room_.ready, start_, window_);
     for (const std::uint32_t number : room_.not_ready) others_->push_back(static_cast<std::uint32_t>(first) + number);

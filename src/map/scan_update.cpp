@@ -106,6 +106,7 @@ void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
     const std::uint64_t bricks = detail::words_in_use(missed);
     page.bricks |= bricks;
     for_each_bit(bricks, [&](std::size_t brick) { page.missed[brick] |= std::exchange(missed[brick], 0); });
+    if (std::exchange(window_.with_hits()[number], std::uint8_t{0}) == 0) return;
     std::uint64_t* const hits = window_.hit() + number * 64;
     for_each_bit(detail::words_in_use(hits),
                  [&](std::size_t brick) { mark_hit_in(index, brick, std::exchange(hits[brick], 0), hit); });

@@ -14,6 +14,7 @@ void ScanWindow::open(int bits) {
   hit_.grow(bytes);
   asked_.grow(bytes);
   touched_.grow(pages());
+  with_hits_.grow(pages());
 }
 
 FanRoom& ScanWindow::fan_room() {

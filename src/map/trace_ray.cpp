@@ -110,7 +110,7 @@ class FanTracer {
       std::array<std::uint64_t, kBlock + detail::kWrittenBeyond> places;
       const std::size_t count = detail::find_cells(lanes_, fan_, block, places, outside);
       for (const std::uint64_t place : std::span(places).first(count)) {
-        if (mark_hit(place)) found.push_back(place);
+        if (detail::mark_hit(place, *window_)) found.push_back(place);
       }
       for (const std::uint32_t i : outside) add_singly(block[i]);
     });
@@ -152,9 +152,6 @@ class FanTracer {
     }
     return outside;
   }
-
-  /// @return whether it was not marked before
-  bool mark_hit(std::uint64_t place) { return detail::mark_first(place, window_->hit(), window_->touched()); }
 
   /// How far rays go along any axis [cells]: a guess from some of them.
   double reach_of(std::span<const Eigen::Vector3d> ends_m) const {

@@ -55,6 +55,7 @@ Marks taken_from(ScanWindow& window) {
   for (std::size_t word = 0; word < kWords; ++word) {
     if ((window.missed()[word] | window.hit()[word]) != 0) {
       EXPECT_EQ(window.touched()[word / 64], 1);
+      EXPECT_EQ(window.with_hits()[word / 64] | (window.hit()[word] == 0 ? 1 : 0), 1);
     }
     EXPECT_EQ(window.asked()[word], 0U);
   }
@@ -67,7 +68,7 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
   std::vector<ReadyRay> ready;
   std::vector<std::uint32_t> others;
   prepare_rays(Lanes::kOne, fan, ends_m, ready, others);
-  for (const ReadyRay& ray : ready) mark_place(ray.end, window.hit(), window.touched());
+  for (const ReadyRay& ray : ready) mark_hit(ray.end, window);
   mark_rays(Lanes::kOne, ready, start_of(fan), window);
   Marks marks = taken_from(window);
   marks.others = others;

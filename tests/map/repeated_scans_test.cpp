@@ -162,7 +162,7 @@ class WindowMarks {
     expected.emplace(key_at(place), std::nullopt);
   }
   void hit(std::uint64_t place, LogOdds evidence, Marks& expected) {
-    detail::mark_place(place, window_.hit(), window_.touched());
+    detail::mark_hit(place, window_);
     std::optional<float>& surest = expected[key_at(place)];
     surest = std::max(surest.value_or(evidence.value()), evidence.value());
   }

@@ -41,6 +41,8 @@ class ScanWindow {
   std::uint64_t* asked() { return reinterpret_cast<std::uint64_t*>(asked_.data()); }
   /// A byte a page, 1 where either may have a mark; pages are numbered like cells.
   std::uint8_t* touched() { return reinterpret_cast<std::uint8_t*>(touched_.data()); }
+  /// The same for pages where some may be hit: few of those that rays cross.
+  std::uint8_t* with_hits() { return reinterpret_cast<std::uint8_t*>(with_hits_.data()); }
   std::size_t pages() const { return std::size_t{1} << (3 * bits_ - kPageCellBits); }
   /// What DenseFan works in, kept from scan to scan: a megabyte that is given back and asked for again costs as much as
   /// filling it.
@@ -49,7 +51,7 @@ class ScanWindow {
  private:
   int bits_ = 0;
   Arena missed_{Arena::Pages::kSmall}, hit_{Arena::Pages::kSmall}, asked_{Arena::Pages::kSmall},
-      touched_{Arena::Pages::kSmall};
+      touched_{Arena::Pages::kSmall}, with_hits_{Arena::Pages::kSmall};
   std::shared_ptr<FanRoom> fan_room_;  ///< made when it is asked for
 };
 
@@ -60,10 +62,11 @@ inline __attribute__((always_inline)) void mark_place(std::uint64_t place, std::
   touched[place >> ScanWindow::kPageCellBits] = 1;
 }
 
-/// The same where most cells are marked already. @return whether it was not set before
-inline bool mark_first(std::uint64_t place, std::uint64_t* mask, std::uint8_t* touched) {
-  if ((mask[place / 64] >> (place % 64) & 1) != 0) return false;
-  mark_place(place, mask, touched);
+/// Marks a cell as hit. Most that rays end in are marked already. @return whether it was not marked before
+inline bool mark_hit(std::uint64_t place, ScanWindow& window) {
+  if ((window.hit()[place / 64] >> (place % 64) & 1) != 0) return false;
+  mark_place(place, window.hit(), window.touched());
+  window.with_hits()[place >> ScanWindow::kPageCellBits] = 1;
   return true;
 }
 
