@@ -25,7 +25,10 @@ class ScanWindow {
   ScanWindow() = default;
   ScanWindow(const ScanWindow&) : ScanWindow() {}
   ScanWindow(ScanWindow&&) noexcept = default;
-  ScanWindow& operator=(const ScanWindow&) { return *this = ScanWindow(); }
+  ScanWindow& operator=(const ScanWindow& other) {
+    if (this != &other) *this = ScanWindow();
+    return *this;
+  }
   ScanWindow& operator=(ScanWindow&&) noexcept = default;
   ~ScanWindow() = default;
 

@@ -48,12 +48,11 @@ inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
   }
 }
 
-/// Asks for the points some way ahead, beyond the page where the machine stops to do so by itself. They need not exist.
-inline void fetch_ahead(const double* points) {
-  constexpr std::size_t kAhead = 64, kLine = 64;
-  const auto first = reinterpret_cast<std::uintptr_t>(points) + kAhead * 3 * sizeof(double);
-  for (std::size_t byte = 0; byte < 3 * kLanes * sizeof(double); byte += kLine) {
-    __builtin_prefetch(reinterpret_cast<const void*>(first + byte));
+/// Asks for the points some way ahead, beyond the page where the machine stops to do so by itself.
+inline void fetch_ahead(std::span<const Eigen::Vector3d> points_m, std::size_t first) {
+  constexpr std::size_t kAhead = 64, kPerLine = 2;
+  for (std::size_t l = 0; l < kLanes; l += kPerLine) {
+    __builtin_prefetch(&points_m[std::min(first + kAhead + l, points_m.size() - 1)]);
   }
 }
 
@@ -69,7 +68,7 @@ inline void for_each_lanes(std::span<const Eigen::Vector3d> points_m, F&& f) {
   // f stands here once, so that it becomes part of the loop.
   for (std::size_t first = 0; first < points_m.size(); first += kLanes) {
     const double* const some_m = points_m[first].data();
-    fetch_ahead(some_m);
+    fetch_ahead(points_m, first);
     f(first, first < whole ? some_m : padded.data());
   }
 }
