@@ -131,7 +131,7 @@ std::optional<RayRuns::View> RayRuns::view(std::uint32_t face, const Eigen::Vect
   const auto half_width = static_cast<float>(0.5 * edge + kMargin);
   if (std::abs(across) - half_width > far || std::abs(up) - half_width > far) return std::nullopt;
   // Aims of rays that are in the cube somewhere from near to far.
-  const float in = 1.0F / std::max(near, 1e-3F), out = 1.0F / far;
+  const float in = 1.0F / std::max(near, 5e-4F), out = 1.0F / far;
   const auto least = [&](float low, int a) {
     const float ahead = lowest[a] > 0.0 ? kTiny : (lowest[a] < 0.0 ? -kFar : 0.0F);
     return std::max(ahead, low * (low < 0.0F ? in : out));

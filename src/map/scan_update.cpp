@@ -114,7 +114,8 @@ void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
 }
 
 void ScanUpdate::clear() {
-  for (std::size_t i = 0; i < used_; ++i) {
+  // Of a scan that was moved from there are no pages left.
+  for (std::size_t i = 0; i < std::min(used_, pages_.size()); ++i) {
     Page& page = pages_[i];
     for_each_bit(std::exchange(page.bricks, 0), [&](std::size_t brick) { page.missed[brick] = 0; });
     for_each_bit(std::exchange(page.bricks_hit, 0), [&](std::size_t brick) { page.hit[brick] = 0; });

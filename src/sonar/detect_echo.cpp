@@ -116,9 +116,10 @@ std::optional<std::size_t> start_of_strongest(Bins bins, BinWindow window, int l
 /// The first bins of echoes, each detector in its own way.
 class FirstBins {
  public:
-  FirstBins(const PolarImage& image, const std::vector<BinWindow>& windows, const std::vector<int>& contrasts,
-            const EchoOptions& options)
-      : windows_(windows), contrasts_(contrasts), options_(options) {
+  /// @param heard    what tells how loud each beam is  @param windows  where its echo is looked for, within that
+  FirstBins(const PolarImage& image, const std::vector<BinWindow>& heard, const std::vector<BinWindow>& windows,
+            const std::vector<int>& contrasts, const EchoOptions& options)
+      : heard_(heard), windows_(windows), contrasts_(contrasts), options_(options) {
     if (options.detector == Detector::kCfar) scale_ = cfar_scale(options.cfar);
     if (options.detector != Detector::kCanny) return;
     std::vector<int> strong;
@@ -136,9 +137,9 @@ class FirstBins {
         // A contrast is what rises over some bins, a given threshold whatever rises.
         return first_rise(bins, window, contrast, options_.threshold ? bins.size() : kRise_bins);
       case Detector::kLevel:
-        return first_at_level(bins, window, level_of(bins, window, contrast));
+        return first_at_level(bins, window, level_of(n, bins, contrast));
       case Detector::kMax:
-        return start_of_strongest(bins, window, level_of(bins, window, contrast), contrast);
+        return start_of_strongest(bins, window, level_of(n, bins, contrast), contrast);
       case Detector::kCanny:
         return edges_[n];
       case Detector::kCfar: {
@@ -153,10 +154,11 @@ class FirstBins {
   }
 
  private:
-  int level_of(Bins bins, BinWindow window, int contrast) const {
-    return options_.threshold ? *options_.threshold : usual_level(bins, window, contrast);
+  int level_of(std::size_t n, Bins bins, int contrast) const {
+    return options_.threshold ? *options_.threshold : usual_level(bins, heard_[n], contrast);
   }
 
+  const std::vector<BinWindow>& heard_;
   const std::vector<BinWindow>& windows_;
   const std::vector<int>& contrasts_;
   const EchoOptions& options_;
@@ -213,7 +215,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
   const std::vector<BinWindow> heard = windows_of(image, sweep, options);
   const std::vector<int> contrasts = contrasts_of(image, heard, options);
   const std::vector<BinWindow> windows = windows_up_to(options.farthest_m, heard, sweep);
-  const FirstBins first_bins(image, windows, contrasts, options);
+  const FirstBins first_bins(image, heard, windows, contrasts, options);
 
   std::vector<std::optional<Echo>> echoes(image.rows());
   for (std::size_t n = 0; n < image.rows(); ++n) {

@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "map/tree_order.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/map/trace_ray.hpp"
+#include "support/differences.hpp"
 #include "support/fan.hpp"
 #include "support/lanes.hpp"
 
@@ -75,13 +78,18 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
   return marks;
 }
 
-Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m) {
-  ScanWindow window;
+/// @param window  the fans before went through it, too
+Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m, std::uint32_t squares,
+                    ScanWindow& window) {
   window.open(kWindowBits);
   std::vector<std::uint32_t> others;
-  DenseFan dense(lanes, fan, start_of(fan), 64, window);
+  DenseFan dense(lanes, fan, start_of(fan), squares, window);
   const std::size_t walked = dense.mark(ends_m, RayEnds::kHit, others);
   Marks marks = taken_from(window);
+  std::fill_n(window.missed(), kWords, 0);
+  std::fill_n(window.hit(), kWords, 0);
+  std::fill_n(window.touched(), window.pages(), std::uint8_t{0});
+  std::fill_n(window.with_hits(), window.pages(), std::uint8_t{0});
   std::sort(others.begin(), others.end());
   marks.others = others;
   marks.walked = walked;
@@ -99,9 +107,11 @@ void expect_same_cells(const Marks& found, const Marks& expected) {
 }
 
 // Kills a cell that is never asked (beyond a brick or a page, behind a hit, on another face of the cube), a ray that is
-// said not to cross a cell which it does, a ray that is taken out and not walked, squares and bounds that forget rays.
+// said not to cross a cell which it does, a ray that is taken out and not walked, squares and bounds that forget rays,
+// or that remember those of the fan before.
 TEST(DenseFan, MarksTheCellsOfWalkingEachRay) {
   std::size_t rays = 0, walked = 0;
+  ScanWindow window;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
@@ -119,7 +129,7 @@ TEST(DenseFan, MarksTheCellsOfWalkingEachRay) {
     const Marks expected = walked_one_by_one(fan, ends_m);
     for (const Lanes lanes : lanes_here()) {
       SCOPED_TRACE(static_cast<int>(lanes));
-      const Marks found = walked_as_fan(lanes, fan, ends_m);
+      const Marks found = walked_as_fan(lanes, fan, ends_m, 48 + 16 * static_cast<std::uint32_t>(seed % 4), window);
       // Rays that are not ready need not be walked where their cells are marked: but those outside are all named.
       EXPECT_TRUE(
           std::includes(expected.others.begin(), expected.others.end(), found.others.begin(), found.others.end()));
@@ -140,9 +150,32 @@ TEST(DenseFan, WalksEachWhereFewGoSideBySide) {
     ends_m.emplace_back(uniform(random, -60.0, 60.0), uniform(random, -60.0, 60.0), uniform(random, -60.0, 60.0));
   }
   const Marks expected = walked_one_by_one(fan, ends_m);
-  const Marks found = walked_as_fan(widest_lanes(), fan, ends_m);
+  ScanWindow window;
+  const Marks found = walked_as_fan(widest_lanes(), fan, ends_m, 64, window);
   EXPECT_EQ(found.walked, ends_m.size());
   expect_same_cells(found, expected);
+}
+
+// Kills what a scan keeps of the fan before, where windows grow and shrink with the range; the same for a copy of it.
+TEST(DenseFan, AScanMayBeUsedAgain) {
+  const Lattice lattice(1.0);
+  ScanUpdate used;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    const PointScan scan{from_m, bundles(random, from_m, seed % 2 == 0 ? 12.0 : 50.0)};
+    ScanUpdate fresh, copied = used;
+    OccupancyMap expected, found, of_copy;
+    for (auto [update, map] : {std::pair(&fresh, &expected), std::pair(&used, &found), std::pair(&copied, &of_copy)}) {
+      trace_points(lattice, scan, {}, *update);
+      ASSERT_TRUE(map->apply(*update));
+      update->clear();
+    }
+    ASSERT_FALSE(expected.empty());
+    ASSERT_EQ(test::first_difference(test::nodes_of(found), test::nodes_of(expected)), "");
+    ASSERT_EQ(test::first_difference(test::nodes_of(of_copy), test::nodes_of(expected)), "");
+  }
 }
 
 }  // namespace

@@ -272,6 +272,24 @@ TEST(Detectors, KnowTheGainFromWhatIsTooFarAway) {
   }
 }
 
+// Kills a level by what is looked at alone: a wall that fills most of it would be its own background.
+TEST(Detectors, KnowTheLevelFromWhatIsTooFarAway) {
+  for (const Detector detector : {Detector::kLevel, Detector::kMax}) {
+    SCOPED_TRACE(static_cast<int>(detector));
+    Sweep sweep = turn_of(Bins());
+    for (Beam& beam : sweep.beams) {
+      beam.intensities.assign(80, 20);
+      std::fill_n(beam.intensities.begin() + 22, 20, std::uint8_t{180});
+    }
+    EchoOptions options = options_of(detector);
+    options.min_bin = 20;
+    options.farthest_m = kBin_m * 40.0;
+    std::size_t found = 0;
+    for (const auto& echo : echoes_of(sweep, options)) found += echo ? 1 : 0;
+    EXPECT_EQ(found, sweep.beams.size());
+  }
+}
+
 TEST(Detectors, DoNotSeeWhatStandsOutsideOfTheRangesThatCount) {
   std::size_t found = 0;
   for (const Detector detector : kDetectors) {

@@ -42,7 +42,7 @@ struct BuildOptions {
 struct BuildReport {
   std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
   std::size_t sweeps = 0;   ///< complete ones (or point scans)
-  std::size_t echoes = 0;   ///< within the model's range
+  std::size_t echoes = 0;   ///< within the model's range; of point scans all points
   std::size_t skipped = 0;  ///< damaged, outside of the trajectory's time, or outside of the lattice
   std::uint64_t cells_freed = 0, cells_hit = 0;  ///< votes, summed over scans
   struct Seconds {

@@ -63,8 +63,9 @@ inline void for_each_lanes(std::span<const Eigen::Vector3d> points_m, F&& f) {
   const std::size_t whole = points_m.size() / kLanes * kLanes;
   std::array<double, 3 * kLanes> padded;
   padded.fill(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = whole; i < points_m.size(); ++i)
+  for (std::size_t i = whole; i < points_m.size(); ++i) {
     std::memcpy(&padded[3 * (i - whole)], points_m[i].data(), 3 * sizeof(double));
+  }
   // f stands here once, so that it becomes part of the loop.
   for (std::size_t first = 0; first < points_m.size(); first += kLanes) {
     const double* const some_m = points_m[first].data();

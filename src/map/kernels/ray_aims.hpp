@@ -27,6 +27,9 @@ inline constexpr int kReach = 2;    ///< how far it goes along the face's axis [
 inline constexpr int kNegated = 4;  ///< added to these
 inline constexpr float kStepsOfGain = 16384.0F, kStepsOfReach = 24.0F;
 
+// No ray of a window is so long that its steps do not fit (the window is placed around its start, to a page).
+static_assert(((1 << (ScanWindow::kMostBits - 1)) + (1 << 4)) * kStepsOfReach < 32000.0F);
+
 /// Four numbers, times kStepsOfGain or kStepsOfReach, in steps.
 using FourNumbers = float __attribute__((vector_size(4 * sizeof(float))));
 using FourSteps = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
