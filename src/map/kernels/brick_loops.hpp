@@ -1,5 +1,7 @@
 // The loops over the values of a brick, included by brick.cpp once for each kind of machine (see ray_lanes_loops.hpp).
 
+#include "map/kernels/doubles_loops.hpp"
+
 /// As many values as the machine's vectors hold.
 constexpr std::size_t kValues = 2 * kLanes;
 using Values = float __attribute__((vector_size(kValues * sizeof(float))));
@@ -17,15 +19,6 @@ inline Masks lanes_of(std::uint64_t cells) {
   Masks bits{};
   for (std::size_t i = 0; i < kValues; ++i) bits[i] = std::int32_t{1} << i;
   return (bits & static_cast<std::int32_t>(cells & kSome)) != 0;
-}
-
-/// for each lane: to = the lane of `values` at `places`
-inline void pick(const Values& values, const Masks& places, Values& to) {
-#ifdef __clang__
-  for (std::size_t i = 0; i < kValues; ++i) to[i] = values[static_cast<std::size_t>(places[i])];
-#else
-  to = __builtin_shuffle(values, places);
-#endif
 }
 
 inline bool any_of(Masks lanes) {
@@ -68,7 +61,7 @@ inline float most_of(const Values& values) {
     Masks places{};
     for (std::size_t i = 0; i < kValues; ++i) places[i] = static_cast<std::int32_t>(i ^ Half);
     Values others;
-    pick(values, places, others);
+    pick(values, values, places, others);
     return most_of<Half / 2>(values < others ? others : values);
   }
 }

@@ -9,6 +9,20 @@ using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64
 /// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
 constexpr double kWhole = 0x1.8p52;
 
+/// Lanes of two vectors: those of the other one are numbered on.
+template <class Vector, class Places>
+inline void pick(const Vector& one, const Vector& other, const Places& places, Vector& to) {
+#ifdef __clang__
+  constexpr std::size_t kCount = sizeof(Places) / sizeof(places[0]);
+  for (std::size_t l = 0; l < kCount; ++l) {
+    const auto from = static_cast<std::size_t>(places[l]);
+    to[l] = from < kCount ? one[from] : other[from - kCount];
+  }
+#else
+  to = __builtin_shuffle(one, other, places);
+#endif
+}
+
 inline void load(const double* from, Doubles& numbers) {
   std::memcpy(&numbers, from, sizeof numbers);
 }

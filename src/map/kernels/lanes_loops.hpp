@@ -16,20 +16,6 @@ inline void spread(Words& words) {
   words = (words | words << 2) & 0x1249249249249249;
 }
 
-/// Lanes of two vectors: those of the other one are numbered on.
-template <class Vector, class Places>
-inline void pick(const Vector& one, const Vector& other, const Places& places, Vector& to) {
-#ifdef __clang__
-  constexpr std::size_t kCount = sizeof(Places) / sizeof(places[0]);
-  for (std::size_t l = 0; l < kCount; ++l) {
-    const auto from = static_cast<std::size_t>(places[l]);
-    to[l] = from < kCount ? one[from] : other[from - kCount];
-  }
-#else
-  to = __builtin_shuffle(one, other, places);
-#endif
-}
-
 /// Coordinates of kLanes points that stand one after the other.
 inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
   std::array<Doubles, 3> words;

@@ -1,7 +1,6 @@
 // The loop over words, included by words.cpp once for each kind of machine (see ray_lanes_loops.hpp).
 
-/// As many words as the machine's vectors hold.
-using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+#include "map/kernels/doubles_loops.hpp"
 
 inline std::uint64_t words_in_use(const std::uint64_t* words) {
   Words bits{}, used{};
