@@ -262,6 +262,7 @@ void release_below(BrickTree& tree, Entry entry, int depth) {
 void prune_all(BrickTree& tree, Parents parents) {
   tree.root = pruned(tree, tree.root, 0, parents);
   tree.pruned = true;
+  tree.shortcut = shortcut_of(tree);
 }
 
 Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents,
@@ -323,6 +324,7 @@ void Cursor<W>::grow_to(int depth) {
   while (reach_ < depth) {
     const std::uint32_t index = tree_.groups.allocate(group_of(entry_at(reach_)));
     entry_at(reach_).link = index;
+    drop_shortcut_at(reach_);
     mark_stale_above(reach_);
     const auto at = static_cast<std::size_t>(reach_);
     group_[at] = index;
@@ -369,7 +371,10 @@ void Cursor<W>::settle_group(int depth) {
   stale_[at] = false;
   Entry& entry = entry_at(depth);
   const Entry now = settled_group(tree_, entry.link, rules_.parents, rules_.pruning);
-  if (now.is_leaf()) reach_ = depth;
+  if (now.is_leaf()) {
+    reach_ = depth;
+    drop_shortcut_at(depth);
+  }
   if (now == entry && rules_.early_drop == EarlyDrop::kOn) return;
   entry = now;
   mark_stale_above(depth);
@@ -389,6 +394,12 @@ void Cursor<W>::settle_down_to(int depth) {
 template <KeyWord W>
 void Cursor<W>::mark_stale_above(int depth) {
   if (depth > 0) stale_[static_cast<std::size_t>(depth - 1)] = true;
+}
+
+// For an entry with another link: the shortcut may lead to what was there before.
+template <KeyWord W>
+void Cursor<W>::drop_shortcut_at(int depth) {
+  if (tree_.shortcut && tree_.levels - depth >= tree_.shortcut->level) tree_.shortcut.reset();
 }
 
 template <KeyWord W>
@@ -416,6 +427,7 @@ void Cursor<W>::flush() {
   settle_down_to(0);
   reach_ = 0;
   is_placed_ = false;
+  if (!tree_.shortcut) tree_.shortcut = shortcut_of(tree_);
 }
 
 template <KeyWord W>
@@ -504,6 +516,7 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
   if (depth <= tree_.brick_depth()) {
     release_below(tree_, entry, at);
     entry = Entry::leaf(value);
+    drop_shortcut_at(at);
     forget_brick();
     after_change(at);
     return;

@@ -77,11 +77,14 @@ class Octants<W> {
 
 /// The deepest entry that holds a key.
 template <KeyWord W>
-inline detail::Entry entry_above(const detail::BrickTree& tree, const Octants<W>& octants) {
+inline detail::Entry entry_above(const detail::BrickTree& tree, const BasicKey<W>& key, const Octants<W>& octants) {
   detail::Entry entry = tree.root;
-  for (int level = tree.levels - 1; level >= 2 && entry.is_inner(); --level) {
-    entry = tree.groups[entry.link].child[octants.at(level)];
+  int level = tree.levels;
+  if (const detail::Entry* const node = tree.shortcut ? tree.shortcut->node_of(key) : nullptr) {
+    entry = *node;
+    level = tree.shortcut->level;
   }
+  while (--level >= 2 && entry.is_inner()) entry = tree.groups[entry.link].child[octants.at(level)];
   return entry;
 }
 
@@ -281,6 +284,7 @@ OccupancyMap::OccupancyMap(const MapOptions& options)
 OccupancyMap::OccupancyMap(const MapOptions& options, detail::BrickTree tree)
     : options_(options), lattice_(options.resolution_m, options.depth), tree_(std::move(tree)) {
   assert(options.validate() && tree_.levels - tree_.extra_levels == options.depth && tree_.pruned);
+  tree_.shortcut = detail::shortcut_of(tree_);
 }
 
 std::optional<NodeView> OccupancyMap::root() const {
@@ -300,7 +304,7 @@ std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>& key, int depth)
 template <KeyWord W>
 std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
   const Octants<W> octants(key);
-  const detail::Entry entry = entry_above(tree_, octants);
+  const detail::Entry entry = entry_above(tree_, key, octants);
   if (entry.is_none()) return std::nullopt;
   if (entry.is_leaf()) return LogOdds(entry.value);
   const detail::Brick& brick = tree_.bricks[entry.link];
@@ -319,7 +323,7 @@ std::optional<LogOdds> OccupancyMap::at(const Eigen::Vector3d& point_m) const {
 template <KeyWord W>
 Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
   const Octants<W> octants(key);
-  const detail::Entry entry = entry_above(tree_, octants);
+  const detail::Entry entry = entry_above(tree_, key, octants);
   float value = entry.value;
   unsigned is_known = entry.is_none() ? 0 : 1;
   if (entry.is_inner()) {
@@ -414,6 +418,7 @@ Result<void> OccupancyMap::merge(const OccupancyMap& other) {
     detail::BrickTree merged = tree_;
     merged.root =
         detail::merged(merged, merged.root, other.tree_, other.tree_.root, 0, options_.parents, options_.clamp);
+    merged.shortcut = detail::shortcut_of(merged);
     if (!merged.pruned) detail::prune_all(merged, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0 && bytes_of(merged) > limit) {
       return fail(Error::Code::kLimit,

@@ -65,6 +65,23 @@ constexpr int cell_in_brick(const BasicKey<W>& key) {
   return key.octant(1) * 8 + key.octant(0);
 }
 
+/// Where look-ups start: eight nodes of one size, side by side, that hold all that is known. A map fits into eight that
+/// are as wide as it is or wider, wherever it lies, and hardly anything forks between the root and them.
+struct Shortcut {
+  int level;                       ///< the nodes are 2^level cells wide
+  BasicKey<std::uint64_t> lowest;  ///< the lowest node: its cells' keys, shifted right by `level`
+  std::array<Entry, 8> node;       ///< from there bit 0 x, bit 1 y, bit 2 z; values of inner ones may be out of date
+
+  /// The one that holds a key; nullptr: none of them does.
+  template <KeyWord W>
+  const Entry* node_of(const BasicKey<W>& key) const {
+    const std::uint64_t x = (static_cast<std::uint64_t>(key.x) >> level) - lowest.x;
+    const std::uint64_t y = (static_cast<std::uint64_t>(key.y) >> level) - lowest.y;
+    const std::uint64_t z = (static_cast<std::uint64_t>(key.z) >> level) - lowest.z;
+    return (x | y | z) < 2 ? &node[x | y << 1 | z << 2] : nullptr;
+  }
+};
+
 /// The tree's nodes. Groups at depth 0..brick_depth-1, bricks below the entries of brick_depth. A lattice of one level
 /// is kept in octant 0 of a single brick: its tree has one level more than the lattice (`extra_levels`).
 struct BrickTree {
@@ -78,6 +95,7 @@ struct BrickTree {
         extra_levels(other.extra_levels),
         pruned(std::exchange(other.pruned, true)),
         root(std::exchange(other.root, {})),
+        shortcut(std::exchange(other.shortcut, std::nullopt)),
         groups(std::move(other.groups)),
         bricks(std::move(other.bricks)) {}
   BrickTree& operator=(BrickTree&& other) noexcept {
@@ -85,6 +103,7 @@ struct BrickTree {
     extra_levels = other.extra_levels;
     pruned = std::exchange(other.pruned, true);
     root = std::exchange(other.root, {});
+    shortcut = std::exchange(other.shortcut, std::nullopt);
     groups = std::move(other.groups);
     bricks = std::move(other.bricks);
     return *this;
@@ -97,6 +116,8 @@ struct BrickTree {
   /// bricks are not to be read as joined either.
   bool pruned = true;
   Entry root;
+  /// Always right: it is dropped when a link at or above its nodes changes, and made again when that is settled.
+  std::optional<Shortcut> shortcut;
   Pool<Group> groups;
   Pool<Brick> bricks;
 
@@ -161,9 +182,13 @@ Entry built(BrickTree& tree, const Group& group, Parents parents);
 /// The same for a brick of cells that are as sure as can be. REQUIRES masks without a common bit.
 Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
 
+/// The shortcut that leads farthest down, though not to bricks. None where it would lead nowhere, nor in a tree of more
+/// than 64 levels.
+std::optional<Shortcut> shortcut_of(const BrickTree& tree);
+
 /// Frees all that hangs below an entry of `depth`.
 void release_below(BrickTree& tree, Entry entry, int depth);
-/// Recomputes all inner nodes, and joins equal leaves everywhere. Sets `pruned`.
+/// Recomputes all inner nodes, and joins equal leaves everywhere. Sets `pruned`, and the shortcut.
 void prune_all(BrickTree& tree, Parents parents);
 /// Recomputes and returns `a` with the leaves of `b` (of another tree of the same levels) added, clamped.
 Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
@@ -218,6 +243,7 @@ class Cursor {
   Brick& brick_made();
   void make_leaf(float value);
   void mark_stale_above(int depth);
+  void drop_shortcut_at(int depth);
   void settle_brick();
   void settle_group(int depth);
   void settle_down_to(int depth);
