@@ -92,20 +92,40 @@ inline void load_in(const FanLanes& fan, const double* points_m, PointLanes& poi
   for (std::size_t a = 0; a < 3; ++a) points.at[a] = points.is_inside ? points.at[a] : fan.from[a];
 }
 
-/// Stores those of the lanes that are chosen (true is -1), one after the other, where there is room for all of them.
-/// @return how many
+/// Which of the lanes: what compares words, and chooses among them.
 #ifdef PINGVOX_AVX512
-inline std::size_t store_chosen(const Words& words, const Words& chosen, std::uint64_t* to) {
-  const __mmask8 which = _mm512_movepi64_mask(reinterpret_cast<__m512i>(chosen));
+using Which = __mmask8;
+inline void differ(const Words& one, const Words& other, Which& which) {
+  which = _mm512_cmpneq_epi64_mask(reinterpret_cast<__m512i>(one), reinterpret_cast<__m512i>(other));
+}
+inline void keep_unless(Which which, Words& words) {
+  words = reinterpret_cast<Words>(_mm512_mask_mov_epi64(reinterpret_cast<__m512i>(words), which, __m512i{}));
+}
+/// The bit of a cell in its brick.
+inline void bit_of(const Words& cell, Words& bit) {
+  bit = reinterpret_cast<Words>(_mm512_maskz_rolv_epi64(0xFF, _mm512_set1_epi64(1), reinterpret_cast<__m512i>(cell)));
+}
+/// Stores the words of those lanes, one after the other, where there is room for all of them. @return how many
+inline std::size_t store_some(Which which, const Words& words, std::uint64_t* to) {
   _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(which, reinterpret_cast<__m512i>(words)));
   return static_cast<std::size_t>(__builtin_popcount(which));
 }
 #else
-inline std::size_t store_chosen(const Words& words, const Words& chosen, std::uint64_t* to) {
+using Which = Words;
+inline void differ(const Words& one, const Words& other, Which& which) {
+  which = one != other;
+}
+inline void keep_unless(const Which& which, Words& words) {
+  words &= ~which;
+}
+inline void bit_of(const Words& cell, Words& bit) {
+  bit = (Words{} + 1) << (cell & 63);
+}
+inline std::size_t store_some(const Which& which, const Words& words, std::uint64_t* to) {
   std::size_t count = 0;
   for (std::size_t l = 0; l < kLanes; ++l) {
     to[count] = static_cast<std::uint64_t>(words[l]);
-    count -= static_cast<std::size_t>(chosen[l]);
+    count -= static_cast<std::size_t>(which[l]);
   }
   return count;
 }
@@ -133,7 +153,9 @@ class CellsInARow {
     Words before, one_back;
     for (std::size_t l = 0; l < kLanes; ++l) one_back[l] = static_cast<std::int64_t>(kLanes - 1 + l);
     pick(last_, cells, one_back, before);
-    count_ += store_chosen(cells, (cells != before) & points.is_inside, to_ + count_);
+    Which others;
+    differ(cells, points.is_inside ? before : cells, others);
+    count_ += store_some(others, cells, to_ + count_);
     last_ = cells;
   }
   /// Makes places of them (numbers of cells in the window). @return how many. To be called last.

@@ -121,11 +121,11 @@ inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& 
   along[2] = ~(along[0] | along[1]);
 }
 
-/// Up to kLanes rays side by side, and how many faces the longest crosses.
+/// Up to kLanes rays side by side, and how many faces the shortest and the longest cross.
 struct RayLanes {
   std::array<Words, 3> next{}, apart{}, step{};
   Words left{};
-  std::int64_t longest = 0;
+  std::int64_t shortest = 0, longest = 0;
 };
 
 /// @param order  rays by length, the longest first
@@ -139,6 +139,7 @@ inline void gather(std::span<const ReadyRay> rays, std::span<const std::uint32_t
     }
     to.left[l] = ray.left;
   }
+  to.shortest = order.size() == kLanes ? rays[order.back()].left : 0;
   to.longest = rays[order.front()].left;
 }
 
@@ -151,18 +152,26 @@ inline void mark_some(const RayLanes& rays, std::uint64_t start, ScanWindow& win
     bits[a] = Words{} + static_cast<std::int64_t>(kAxisBits[a]);
     place[a] = begin & bits[a];
   }
-  std::array<Words, 3> along{};
   Words brick = begin >> 6, marks{};
   std::size_t count = to_set.count;
-  for (std::int64_t n = 0; n < rays.longest; ++n) {
-    // A ray that has ended marks where it began once more.
-    const Words at = rays.left > n ? place[0] | place[1] | place[2] : begin;
-    const Words entered = at >> 6, cell = (Words{} + 1) << (at & 63);
-    const Words is_another = brick != entered;
-    store_chosen(brick, is_another, to_set.brick.data() + count);
-    count += store_chosen(marks, is_another, to_set.marks.data() + count);
-    marks = is_another ? cell : cell | marks;
+  const auto enter = [&](const Words& at) {
+    const Words entered = at >> 6;
+    Words cell;
+    bit_of(at, cell);
+    Which left;
+    differ(brick, entered, left);
+    store_some(left, brick, to_set.brick.data() + count);
+    count += store_some(left, marks, to_set.marks.data() + count);
+    keep_unless(left, marks);
+    marks |= cell;
     brick = entered;
+    if (count > MarksToSet::kRoom - 2 * kLanes) {
+      set_marks(to_set, count, window);
+      count = 0;
+    }
+  };
+  const auto cross = [&] {
+    std::array<Words, 3> along;
     choose_axes(next, along);
     for (std::size_t a = 0; a < 3; ++a) {
       const Words after = sum_of(next[a], rays.apart[a]);  // those of rays that have ended mean nothing
@@ -170,14 +179,21 @@ inline void mark_some(const RayLanes& rays, std::uint64_t start, ScanWindow& win
       const Words moved = (place[a] + rays.step[a]) & bits[a];
       place[a] = along[a] ? moved : place[a];
     }
-    if (count > MarksToSet::kRoom - 2 * kLanes) {
-      set_marks(to_set, count, window);
-      count = 0;
-    }
+  };
+  std::int64_t n = 0;
+  for (; n < rays.shortest; ++n) {
+    enter(place[0] | place[1] | place[2]);
+    cross();
   }
-  const Words all = Words{} - 1;
-  store_chosen(brick, all, to_set.brick.data() + count);
-  to_set.count = count + store_chosen(marks, all, to_set.marks.data() + count);
+  for (; n < rays.longest; ++n) {
+    // A ray that has ended marks where it began once more.
+    enter(rays.left > n ? place[0] | place[1] | place[2] : begin);
+    cross();
+  }
+  Which all;
+  differ(begin, begin - 1, all);
+  store_some(all, brick, to_set.brick.data() + count);
+  to_set.count = count + store_some(all, marks, to_set.marks.data() + count);
 }
 
 inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
