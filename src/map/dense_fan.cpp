@@ -58,7 +58,8 @@ constexpr std::uint64_t number_before(std::uint64_t number, unsigned axis, std::
 
 }  // namespace
 
-std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends, std::vector<std::uint32_t>& others) {
+template <class Point>
+std::size_t DenseFan<Point>::mark(std::span<const Point> ends_m, RayEnds ends, std::vector<std::uint32_t>& others) {
   ends_m_ = ends_m;
   others_ = &others;
   walked_ = 0;
@@ -67,17 +68,19 @@ std::size_t DenseFan::mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends
   return walked_;
 }
 
-bool DenseFan::mark_dense() {
+template <class Point>
+bool DenseFan<Point>::mark_dense() {
   if (ends_m_.size() < kManyRays || std::size_t{6} * squares_ * squares_ > kMostSquares * ends_m_.size()) return false;
   RayRuns& rays = room_.rays;
-  rays.begin(lanes_, fan_, squares_, ends_m_);
+  rays.begin(lanes_, fan_, squares_);
   std::array<std::uint64_t, kBlock + kWrittenBeyond> places;
   std::array<std::uint32_t, kBlock + kWrittenBeyond> square;
   std::array<Aim, kBlock + kWrittenBeyond> aim;
   for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, ends_m_.size() - first);
     const AimedRays aimed{places, square, aim};
-    mark_hits(std::span(places).first(aim_rays(lanes_, fan_, squares_, ends_m_.subspan(first, count), aimed)));
+    const std::size_t cells = aim_rays(lanes_, fan_, squares_, ends_m_.subspan(first, count), aimed);
+    mark_hits(std::span(places).first(cells), window_, places.data());
     rays.add(aimed, count);
     if (rays.rays() < kInOrder * rays.runs() || rays.rays() < kDense * rays.squares()) return false;
   }
@@ -90,38 +93,39 @@ bool DenseFan::mark_dense() {
   return true;
 }
 
-void DenseFan::mark_hits(std::span<const std::uint64_t> places) {
-  for (const std::uint64_t place : places) mark_hit(place, window_);
+template <class Point>
+void DenseFan<Point>::walk_all(RayEnds ends) {
+  walk_each(ends_m_.size(), ends, [](std::size_t i) { return static_cast<std::uint32_t>(i); });
 }
 
-void DenseFan::walk_all(RayEnds ends) {
-  walked_ += ends_m_.size();
-  for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
+template <class Point>
+void DenseFan<Point>::walk(std::span<const std::uint32_t> rays) {
+  // Their hits are marked already.
+  walk_each(rays.size(), RayEnds::kNothing, [&](std::size_t i) { return rays[i]; });
+}
+
+template <class Point>
+template <class NumberOf>
+void DenseFan<Point>::walk_each(std::size_t count, RayEnds ends, NumberOf&& number_of) {
+  walked_ += count;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t last = std::min(first + kBlock, count);
+    room_.walked_ends_m.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      room_.walked_ends_m.push_back(ends_m_[number_of(i)].template cast<double>());
+    }
     room_.not_ready.clear();
-    prepare_rays(lanes_, fan_, ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), room_.ready,
-                 room_.not_ready);
+    prepare_rays(lanes_, fan_, room_.walked_ends_m, room_.ready, room_.not_ready);
     if (ends == RayEnds::kHit) {
       for (const ReadyRay& ray : room_.ready) mark_hit(ray.end, window_);
     }
     mark_rays(lanes_, room_.ready, start_, window_);
-    for (const std::uint32_t number : room_.not_ready) others_->push_back(static_cast<std::uint32_t>(first) + number);
+    for (const std::uint32_t number : room_.not_ready) others_->push_back(number_of(first + number));
   }
 }
 
-void DenseFan::walk(std::span<const std::uint32_t> rays) {
-  walked_ += rays.size();
-  for (; !rays.empty(); rays = rays.subspan(std::min(kBlock, rays.size()))) {
-    const std::span<const std::uint32_t> some = rays.first(std::min(kBlock, rays.size()));
-    room_.walked_ends_m.clear();
-    for (const std::uint32_t ray : some) room_.walked_ends_m.push_back(ends_m_[ray]);
-    room_.not_ready.clear();
-    prepare_rays(lanes_, fan_, room_.walked_ends_m, room_.ready, room_.not_ready);
-    mark_rays(lanes_, room_.ready, start_, window_);
-    for (const std::uint32_t number : room_.not_ready) others_->push_back(some[number]);
-  }
-}
-
-void DenseFan::walk_the_rest() {
+template <class Point>
+void DenseFan<Point>::walk_the_rest() {
   const std::uint64_t last_page = window_.pages() - 1;
   std::vector<std::uint8_t>& touched = room_.is_touched;
   std::vector<std::uint64_t>& to_ask = room_.to_ask;
@@ -150,7 +154,8 @@ void DenseFan::walk_the_rest() {
   for (const std::uint64_t page : room_.all_asked) std::fill_n(window_.asked() + page * 64, 64, 0);
 }
 
-void DenseFan::ask_page(std::uint64_t page) {
+template <class Point>
+void DenseFan<Point>::ask_page(std::uint64_t page) {
   if (!room_.rays.may_cross(corner_of(page << ScanWindow::kPageCellBits), 16.0)) return;
   do {
     room_.found.clear();
@@ -159,7 +164,8 @@ void DenseFan::ask_page(std::uint64_t page) {
   } while (!room_.found.empty());
 }
 
-void DenseFan::ask_brick(std::uint64_t brick) {
+template <class Point>
+void DenseFan<Point>::ask_brick(std::uint64_t brick) {
   const std::uint64_t all_bricks = (std::uint64_t{1} << (3 * window_.bits() - 6)) - 1;
   const auto marked = [&](std::uint64_t which) { return window_.missed()[which] | window_.hit()[which]; };
   std::uint64_t& asked = window_.asked()[brick];
@@ -171,15 +177,20 @@ void DenseFan::ask_brick(std::uint64_t brick) {
     border |= along.ahead(here) | along.behind(here) | along.before_next(marked(next_number(brick, axis, all_bricks))) |
               along.after_last(marked(number_before(brick, axis, all_bricks)));
   }
-  if ((border & open) != 0) asked |= room_.rays.take_some_across(corner_of(brick * 64), border & open, room_.found);
+  if ((border & open) != 0)
+    asked |= room_.rays.take_some_across(corner_of(brick * 64), border & open, ends_m_, room_.found);
 }
 
-Eigen::Vector3d DenseFan::corner_of(std::uint64_t place) const {
+template <class Point>
+Eigen::Vector3d DenseFan<Point>::corner_of(std::uint64_t place) const {
   const BasicKey<std::uint64_t> at = key_of_code(place);
   return Eigen::Vector3d(static_cast<double>(fan_.window_lowest[0] + static_cast<std::int64_t>(at.x)),
                          static_cast<double>(fan_.window_lowest[1] + static_cast<std::int64_t>(at.y)),
                          static_cast<double>(fan_.window_lowest[2] + static_cast<std::int64_t>(at.z))) -
          fan_.from;
 }
+
+template class DenseFan<Eigen::Vector3d>;
+template class DenseFan<Eigen::Vector3f>;
 
 }  // namespace pingvox::detail

@@ -33,6 +33,8 @@ struct FanRoom {
 /// turn. In the end no ray crosses a cell without a mark: to come there it would first have to enter one that borders
 /// on a marked one, and of all these none is crossed. So the cells are exactly those of walking every ray
 /// (tests/map/dense_fan_test.cpp), and to ask in single precision is enough.
+/// @tparam Point  Eigen::Vector3d or Eigen::Vector3f: what ends are given as
+template <class Point>
 class DenseFan {
  public:
   /// @param start    place of the cell where all rays begin
@@ -44,14 +46,16 @@ class DenseFan {
   /// Marks the cells of the rays to `ends_m` [m, map frame] as missed but for their last ones.
   /// @param others  gets the numbers of rays that the window cannot take (see prepare_rays)
   /// @return how many rays it walked
-  std::size_t mark(std::span<const Eigen::Vector3d> ends_m, RayEnds ends, std::vector<std::uint32_t>& others);
+  std::size_t mark(std::span<const Point> ends_m, RayEnds ends, std::vector<std::uint32_t>& others);
 
  private:
   /// For rays that hit. @return whether it pays; if not only hits were marked, and not all
   bool mark_dense();
-  void mark_hits(std::span<const std::uint64_t> places);
   void walk_all(RayEnds ends);
   void walk(std::span<const std::uint32_t> rays);
+  /// @param number_of  of the first of so many rays, the second, ...
+  template <class NumberOf>
+  void walk_each(std::size_t count, RayEnds ends, NumberOf&& number_of);
   void walk_the_rest();
   void ask_page(std::uint64_t page);
   void ask_brick(std::uint64_t brick);
@@ -64,7 +68,7 @@ class DenseFan {
   ScanWindow& window_;
   FanRoom& room_;
 
-  std::span<const Eigen::Vector3d> ends_m_;
+  std::span<const Point> ends_m_;
   std::vector<std::uint32_t>* others_ = nullptr;
   std::size_t walked_ = 0;
 };

@@ -32,11 +32,10 @@ Eigen::Vector3d corner_in_brick(std::uint32_t cell) {
 
 }  // namespace
 
-void RayRuns::begin(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m) {
+void RayRuns::begin(Lanes lanes, const RayFan& fan, std::uint32_t squares) {
   lanes_ = lanes;
   fan_ = &fan;
   per_edge_ = squares;
-  ends_m_ = ends_m;
   rays_ = 0;
   outside_.clear();
   faces_.fill(kNoRays);
@@ -179,8 +178,9 @@ bool RayRuns::may_cross(const Eigen::Vector3d& lowest, double edge) const {
   return false;
 }
 
+template <class Point>
 std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint64_t cells,
-                                        std::vector<std::uint32_t>& taken) {
+                                        std::span<const Point> ends_m, std::vector<std::uint32_t>& taken) {
   // Step by step for all cells, so that what the next step looks at is on its way from memory.
   squares_to_ask_.clear();
   for (std::uint32_t face = 0; face < kFaces; ++face) {
@@ -201,8 +201,8 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
     for (std::uint32_t run = ask.square->begin; run < ask.square->end; ++run) {
       if (is_any_greater(runs_[run].bounds, ask.cell.most)) continue;
       runs_to_ask_.push_back({ask.cell.cube, run, ask.number});
-      const auto* const ends = reinterpret_cast<const std::byte*>(&ends_m_[runs_[run].first]);
-      for (std::size_t line = 0; line < runs_[run].count * sizeof ends_m_[0]; line += 64) {
+      const auto* const ends = reinterpret_cast<const std::byte*>(&ends_m[runs_[run].first]);
+      for (std::size_t line = 0; line < runs_[run].count * sizeof(Point); line += 64) {
         __builtin_prefetch(ends + line);
       }
     }
@@ -211,7 +211,7 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
     if (((cells >> ask.number) & 1) == 0) continue;  // a ray was found
     Run& run = runs_[ask.run];
     const std::size_t i =
-        first_that_may_cross(lanes_, *fan_, ask.cell, ends_m_.subspan(run.first), run.count, run.taken);
+        first_that_may_cross(lanes_, *fan_, ask.cell, ends_m.subspan(run.first), run.count, run.taken);
     if (i == run.count) continue;
     run.taken |= 1U << i;
     taken.push_back(run.first + static_cast<std::uint32_t>(i));
@@ -219,5 +219,9 @@ std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d& lowest, std::uint
   }
   return cells;
 }
+template std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d&, std::uint64_t,
+                                                 std::span<const Eigen::Vector3d>, std::vector<std::uint32_t>&);
+template std::uint64_t RayRuns::take_some_across(const Eigen::Vector3d&, std::uint64_t,
+                                                 std::span<const Eigen::Vector3f>, std::vector<std::uint32_t>&);
 
 }  // namespace pingvox::detail

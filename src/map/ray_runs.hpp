@@ -22,8 +22,7 @@ class RayRuns {
   /// Forgets all rays and keeps the memory. To be called first.
   /// @param fan      must live as long as it is asked
   /// @param squares  along an edge of the cube
-  /// @param ends_m   where all rays end; `add` takes them in
-  void begin(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m);
+  void begin(Lanes lanes, const RayFan& fan, std::uint32_t squares);
 
   /// Takes in the next `count` rays.
   void add(const AimedRays& aimed, std::size_t count);
@@ -44,9 +43,12 @@ class RayRuns {
   /// Takes out a ray for each of some cells of a brick that may cross it, where there is one.
   /// @param lowest  corner of the brick as seen from where the rays begin [cells]
   /// @param cells   a bit each
+  /// @param ends_m  where all rays end
   /// @param taken   gets the rays' numbers
   /// @return the cells that surely none crosses
-  std::uint64_t take_some_across(const Eigen::Vector3d& lowest, std::uint64_t cells, std::vector<std::uint32_t>& taken);
+  template <class Point>
+  std::uint64_t take_some_across(const Eigen::Vector3d& lowest, std::uint64_t cells, std::span<const Point> ends_m,
+                                 std::vector<std::uint32_t>& taken);
   /// Whether any ray, also one that was taken out, may cross a cube of cells. @param edge  [cells]
   bool may_cross(const Eigen::Vector3d& lowest, double edge) const;
 
@@ -95,7 +97,6 @@ class RayRuns {
   Lanes lanes_ = Lanes::kOne;
   const RayFan* fan_ = nullptr;
   std::uint32_t per_edge_ = 1;
-  std::span<const Eigen::Vector3d> ends_m_;
   std::size_t rays_ = 0;
   std::vector<std::uint32_t> outside_;
   std::array<Aim, kFaces> faces_;     ///< bounds of their squares

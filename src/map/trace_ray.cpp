@@ -65,8 +65,9 @@ bool trace(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::V
 class FanTracer {
  public:
   /// @param some  ends of rays [m]; the window is made for them and may be too small for others
+  template <class Point>
   FanTracer(const Lattice& lattice, const Eigen::Vector3d& origin_m, const PointScanOptions& options,
-            std::span<const Eigen::Vector3d> some, ScanUpdate& scan)
+            std::span<const Point> some, ScanUpdate& scan)
       : lattice_(lattice), origin_m_(origin_m), options_(options), scan_(scan) {
     const double reach = reach_of(some);
     const int bits = window_bits(reach);
@@ -79,48 +80,56 @@ class FanTracer {
     place_window(bits);
   }
 
-  /// Marks the cells of rays as missed but for their last ones.
-  /// @param ends  what these are: hit, or nothing is known of them
+  /// Marks the cells of rays as missed, and where they end as hit unless that is too far away.
   /// @return how many of them leave the lattice
-  std::size_t trace(std::span<const Eigen::Vector3d> ends_m, Ends ends) {
-    if (window_ == nullptr) return trace_singly(ends_m, ends);
-    others_.clear();
-    detail::DenseFan(lanes_, fan_, start_, squares_, *window_).mark(ends_m, ends, others_);
-    std::size_t outside = 0;
-    for (const std::uint32_t other : others_) outside += trace_singly(ends_m.subspan(other, 1), ends);
-    return outside;
+  template <class Point>
+  std::size_t trace(std::span<const Point> ends_m) {
+    if (!std::isfinite(options_.max_range_m)) return trace(ends_m, Ends::kHit);
+    std::vector<Eigen::Vector3d> near_m, cut_m;
+    for (const Point& point : ends_m) {
+      const Eigen::Vector3d end_m = point.template cast<double>(), way_m = end_m - origin_m_;
+      const double range_m = way_m.norm();
+      if (range_m > options_.max_range_m) {
+        cut_m.emplace_back(origin_m_ + way_m * (options_.max_range_m / range_m));
+      } else {
+        near_m.push_back(end_m);
+      }
+    }
+    return trace(std::span<const Eigen::Vector3d>(near_m), Ends::kHit) +
+           trace(std::span<const Eigen::Vector3d>(cut_m), Ends::kNothing);
   }
 
-  /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are.
-  std::vector<Eigen::Vector3d> cells_of(std::span<const Eigen::Vector3d> points_m) {
-    std::vector<Eigen::Vector3d> middles_m;
+  /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are. They last as
+  /// long as the scan.
+  template <class Point>
+  std::span<const Eigen::Vector3d> cells_of(std::span<const Point> points_m) {
+    middles_m_.clear();
     std::set<WideKey> seen;  // of those outside of the window
-    const auto add_singly = [&](const Eigen::Vector3d& point_m) {
+    const auto add_singly = [&](const Point& point) {
+      const Eigen::Vector3d point_m = point.template cast<double>();
       const auto key = lattice_.key_of<WideWord>(point_m);
-      if (!key || seen.insert(*key).second) middles_m.push_back(key ? lattice_.centre_of(*key) : point_m);
+      if (!key || seen.insert(*key).second) middles_m_.push_back(key ? lattice_.centre_of(*key) : point_m);
     };
     if (window_ == nullptr) {
       std::for_each(points_m.begin(), points_m.end(), add_singly);
-      return middles_m;
+      return middles_m_;
     }
-    std::vector<std::uint64_t> found;
+    found_.clear();
     std::vector<std::uint32_t> outside;
-    for_each_block(points_m, [&](std::span<const Eigen::Vector3d> block) {
+    std::array<std::uint64_t, kBlock + detail::kWrittenBeyond> places;
+    for_each_block(points_m, [&](std::span<const Point> block) {
       outside.clear();
-      std::array<std::uint64_t, kBlock + detail::kWrittenBeyond> places;
       const std::size_t count = detail::find_cells(lanes_, fan_, block, places, outside);
-      for (const std::uint64_t place : std::span(places).first(count)) {
-        if (detail::mark_hit(place, *window_)) found.push_back(place);
-      }
+      const std::size_t fresh = detail::mark_hits(std::span(places).first(count), *window_, places.data());
+      found_.insert(found_.end(), places.begin(), places.begin() + static_cast<std::ptrdiff_t>(fresh));
       for (const std::uint32_t i : outside) add_singly(block[i]);
     });
-    middles_m.reserve(middles_m.size() + found.size());
-    for (const std::uint64_t place : found) {
-      middles_m.push_back(lattice_.centre_of(key_at(place)));
-      // Marked only to know it again; whether it is a hit its range decides.
-      window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
-    }
-    return middles_m;
+    const std::size_t singly = middles_m_.size();
+    middles_m_.resize(singly + found_.size());
+    detail::find_middles(lanes_, fan_, lattice_.resolution_m(), found_, std::span(middles_m_).subspan(singly));
+    // Marked only to know it again; whether it is a hit its range decides.
+    for (const std::uint64_t place : found_) window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
+    return middles_m_;
   }
 
   /// Hands what was marked to the scan. To be called last.
@@ -135,16 +144,29 @@ class FanTracer {
   // Of directions, at the far ends of the rays.
   static constexpr double kSquaresPerCell = 0.8;
 
-  template <class F>
-  static void for_each_block(std::span<const Eigen::Vector3d> all, F&& f) {
+  template <class Point, class F>
+  static void for_each_block(std::span<const Point> all, F&& f) {
     for (std::size_t first = 0; first < all.size(); first += kBlock) {
       f(all.subspan(first, std::min(kBlock, all.size() - first)));
     }
   }
 
-  std::size_t trace_singly(std::span<const Eigen::Vector3d> ends_m, Ends ends) {
+  /// @param ends  what their last cells are: hit, or nothing is known of them
+  template <class Point>
+  std::size_t trace(std::span<const Point> ends_m, Ends ends) {
+    if (window_ == nullptr) return trace_singly(ends_m, ends);
+    others_.clear();
+    detail::DenseFan<Point>(lanes_, fan_, start_, squares_, *window_).mark(ends_m, ends, others_);
     std::size_t outside = 0;
-    for (const Eigen::Vector3d& end_m : ends_m) {
+    for (const std::uint32_t other : others_) outside += trace_singly(ends_m.subspan(other, 1), ends);
+    return outside;
+  }
+
+  template <class Point>
+  std::size_t trace_singly(std::span<const Point> ends_m, Ends ends) {
+    std::size_t outside = 0;
+    for (const Point& point : ends_m) {
+      const Eigen::Vector3d end_m = point.template cast<double>();
       if (ends == Ends::kHit) {
         if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_.add_hit(*end, options_.hit);
       }
@@ -154,12 +176,13 @@ class FanTracer {
   }
 
   /// How far rays go along any axis [cells]: a guess from some of them.
-  double reach_of(std::span<const Eigen::Vector3d> ends_m) const {
+  template <class Point>
+  double reach_of(std::span<const Point> ends_m) const {
     constexpr std::size_t kLooked = 1024;
     const std::size_t apart = std::max<std::size_t>(1, ends_m.size() / kLooked);
     double farthest_m = 0.0;
     for (std::size_t i = 0; i < ends_m.size(); i += apart) {
-      farthest_m = std::max(farthest_m, (ends_m[i] - origin_m_).cwiseAbs().maxCoeff());
+      farthest_m = std::max(farthest_m, (ends_m[i].template cast<double>() - origin_m_).cwiseAbs().maxCoeff());
     }
     return std::min(farthest_m, options_.max_range_m) / lattice_.resolution_m();
   }
@@ -216,7 +239,20 @@ class FanTracer {
   std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
   detail::Lanes lanes_ = detail::widest_lanes();
   std::vector<std::uint32_t> others_;
+  std::vector<std::uint64_t> found_;         ///< places of cells with points
+  std::vector<Eigen::Vector3d> middles_m_;   ///< of these, and of others
 };
+
+template <class Point>
+std::size_t trace_fan(const Lattice& lattice, const Eigen::Vector3d& origin_m, std::span<const Point> points_m,
+                      const PointScanOptions& options, ScanUpdate& scan) {
+  FanTracer tracer(lattice, origin_m, options, points_m, scan);
+  const std::size_t outside = options.ends == EndPoints::kCells
+                                  ? tracer.trace(tracer.cells_of(points_m))
+                                  : tracer.trace(points_m);
+  tracer.finish();
+  return outside;
+}
 
 /// Those that a ray crosses; none when an end of it lies outside of the lattice.
 std::size_t faces_between(const Lattice& lattice, const Segment& ray) {
@@ -269,29 +305,12 @@ std::size_t trace_points(const Lattice& lattice, const PointScan& points, const 
 
 std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
                          std::span<const Eigen::Vector3d> points_m, const PointScanOptions& options, ScanUpdate& scan) {
-  FanTracer tracer(lattice, origin_m, options, points_m, scan);
-  std::vector<Eigen::Vector3d> middles_m;
-  if (options.ends == EndPoints::kCells) middles_m = tracer.cells_of(points_m);
-  const std::span<const Eigen::Vector3d> ends_m = options.ends == EndPoints::kCells ? middles_m : points_m;
+  return trace_fan(lattice, origin_m, points_m, options, scan);
+}
 
-  std::size_t outside = 0;
-  if (!std::isfinite(options.max_range_m)) {
-    outside = tracer.trace(ends_m, Ends::kHit);
-  } else {
-    std::vector<Eigen::Vector3d> near_m, cut_m;
-    for (const Eigen::Vector3d& end_m : ends_m) {
-      const Eigen::Vector3d way_m = end_m - origin_m;
-      const double range_m = way_m.norm();
-      if (range_m > options.max_range_m) {
-        cut_m.emplace_back(origin_m + way_m * (options.max_range_m / range_m));
-      } else {
-        near_m.push_back(end_m);
-      }
-    }
-    outside = tracer.trace(near_m, Ends::kHit) + tracer.trace(cut_m, Ends::kNothing);
-  }
-  tracer.finish();
-  return outside;
+std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
+                         std::span<const Eigen::Vector3f> points_m, const PointScanOptions& options, ScanUpdate& scan) {
+  return trace_fan(lattice, origin_m, points_m, options, scan);
 }
 
 }  // namespace pingvox

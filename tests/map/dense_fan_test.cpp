@@ -79,11 +79,12 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
 }
 
 /// @param window  the fans before went through it, too
-Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Eigen::Vector3d>& ends_m, std::uint32_t squares,
+template <class Point>
+Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Point>& ends_m, std::uint32_t squares,
                     ScanWindow& window) {
   window.open(kWindowBits);
   std::vector<std::uint32_t> others;
-  DenseFan dense(lanes, fan, start_of(fan), squares, window);
+  DenseFan<Point> dense(lanes, fan, start_of(fan), squares, window);
   const std::size_t walked = dense.mark(ends_m, RayEnds::kHit, others);
   Marks marks = taken_from(window);
   std::fill_n(window.missed(), kWords, 0);
@@ -139,6 +140,35 @@ TEST(DenseFan, MarksTheCellsOfWalkingEachRay) {
     }
   }
   EXPECT_LT(walked, rays / 2) << "most must not be walked, or this tests nothing";
+}
+
+// Kills ends in single precision that are read as others are: the same cells as those of the same numbers in double
+// precision, whether they are walked or asked.
+TEST(DenseFan, MarksTheSameCellsForEndsInSinglePrecision) {
+  std::size_t rays = 0, walked = 0;
+  ScanWindow window;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    std::vector<Eigen::Vector3f> ends_m;
+    std::vector<Eigen::Vector3d> same_m;
+    for (const Eigen::Vector3d& end_m : bundles(random, from_m, uniform(random, 10.0, 80.0))) {
+      ends_m.push_back(end_m.cast<float>());
+      same_m.push_back(ends_m.back().cast<double>());
+    }
+    const RayFan fan = fan_from(from_m);
+    const Marks expected = walked_one_by_one(fan, same_m);
+    for (const Lanes lanes : lanes_here()) {
+      SCOPED_TRACE(static_cast<int>(lanes));
+      const Marks found = walked_as_fan(lanes, fan, ends_m, seed % 4 == 0 ? 4096 : 64, window);
+      expect_same_cells(found, expected);
+      rays += ends_m.size();
+      walked += found.walked;
+    }
+  }
+  EXPECT_LT(walked, rays * 3 / 4);
+  EXPECT_GT(walked, rays / 4);
 }
 
 // Kills sorting rays that go each their own way, and a decision that leaves some of them out.

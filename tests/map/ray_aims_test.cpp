@@ -42,13 +42,14 @@ TEST(RayAims, AreWhereRaysLeaveTheCube) {
     std::vector<Eigen::Vector3d> ends;
     for (std::uint64_t i = 0; i < seed % 20 + 1; ++i) ends.push_back(somewhere(random, 70.0));
     if (seed % 5 == 0) ends[0] = fan.from;
+    const std::span<const Eigen::Vector3d> all = ends;
     for (const Lanes lanes : lanes_here()) {
       SCOPED_TRACE(static_cast<int>(lanes));
       Found found(ends.size());
-      found.places.resize(aim_rays(lanes, fan, kSquares, ends, {found.places, found.square, found.aim}));
+      found.places.resize(aim_rays(lanes, fan, kSquares, all, {found.places, found.square, found.aim}));
       std::vector<std::uint64_t> places(ends.size() + kWrittenBeyond);
       std::vector<std::uint32_t> outside;
-      places.resize(find_cells(Lanes::kOne, fan, ends, places, outside));
+      places.resize(find_cells(Lanes::kOne, fan, all, places, outside));
       ASSERT_EQ(found.places, places);
       for (std::size_t i = 0; i < ends.size(); ++i) {
         if (std::find(outside.begin(), outside.end(), i) != outside.end()) {
@@ -89,7 +90,8 @@ TEST(RayAims, NoCellOfAWalkIsMissed) {
     Eigen::Vector3d from = somewhere(random, 3.0);
     if (seed % 3 == 0) from = from.array().round();
     const RayFan fan = fan_from(from);
-    const std::vector<Eigen::Vector3d> end{from + somewhere(random, seed % 2 == 0 ? 50.0 : 3.0)};
+    const std::array<Eigen::Vector3d, 1> to{from + somewhere(random, seed % 2 == 0 ? 50.0 : 3.0)};
+    const std::span<const Eigen::Vector3d> end = to;
     const Eigen::Vector3d way = end[0] - from;
     int axis = 0;
     way.cwiseAbs().maxCoeff(&axis);

@@ -37,25 +37,24 @@ std::vector<Eigen::Vector3d> ends_around(const Eigen::Vector3d& from_m, std::mt1
   return ends;
 }
 
-// Kills a cell that is left out where points come back to it, or where a vector begins; one that is named twice in a
-// row within a vector or across two; a point outside that is named as a cell, or not told; points of the last, short
-// vector that are made up.
-TEST(RayLanes, FindTheCellsOfPointsInARow) {
+/// @tparam Point  what points are given as
+template <class Point>
+void expect_cells_of_points_in_a_row() {
   std::size_t found_once = 0, found_outside = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const RayFan fan = fan_from({0.3, -0.1, 0.2}, 1.3);
-    std::vector<Eigen::Vector3d> points;
+    std::vector<Point> points;
     for (const Eigen::Vector3d& end : ends_around({0.3, -0.1, 0.2}, random, random() % 30)) {
-      for (auto n = random() % 12; n > 0; --n) points.push_back(end);
+      for (auto n = random() % 12; n > 0; --n) points.push_back(end.cast<typename Point::Scalar>());
     }
     std::vector<std::uint64_t> expected;
     std::vector<std::uint32_t> expected_outside;
     constexpr std::uint64_t kNone = ~std::uint64_t{0};
     std::uint64_t last = kNone;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d at = points[i] * fan.cells_per_m;
+      const Eigen::Vector3d at = points[i].template cast<double>() * fan.cells_per_m;
       if (!((at.array() >= -64.0).all() && (at.array() < 64.0).all())) {
         expected_outside.push_back(static_cast<std::uint32_t>(i));
         last = kNone;
@@ -69,7 +68,7 @@ TEST(RayLanes, FindTheCellsOfPointsInARow) {
       SCOPED_TRACE(static_cast<int>(lanes));
       std::vector<std::uint64_t> places(points.size() + kWrittenBeyond);
       std::vector<std::uint32_t> outside;
-      places.resize(find_cells(lanes, fan, points, places, outside));
+      places.resize(find_cells(lanes, fan, std::span<const Point>(points), places, outside));
       ASSERT_EQ(places, expected);
       ASSERT_EQ(outside, expected_outside);
     }
@@ -78,6 +77,43 @@ TEST(RayLanes, FindTheCellsOfPointsInARow) {
   }
   EXPECT_GT(found_once, 1000U);
   EXPECT_GT(found_outside, 100U);
+}
+
+// Kills a cell that is left out where points come back to it, or where a vector begins; one that is named twice in a
+// row within a vector or across two; a point outside that is named as a cell, or not told; points of the last, short
+// vector that are made up.
+TEST(RayLanes, FindTheCellsOfPointsInARow) {
+  expect_cells_of_points_in_a_row<Eigen::Vector3d>();
+}
+// Kills coordinates that change places on their way from single precision, and cells that are found in it.
+TEST(RayLanes, FindTheCellsOfPointsInSinglePrecision) {
+  expect_cells_of_points_in_a_row<Eigen::Vector3f>();
+}
+
+// Kills axes that are mixed up, a bit of a place that is lost, the last cells when they fill no vector; a middle that
+// is not the lattice's to the last bit.
+TEST(RayLanes, FindTheMiddlesOfCells) {
+  const Lattice lattice(0.05);
+  std::mt19937_64 random(1);
+  for (std::size_t count = 0; count <= 40; ++count) {
+    SCOPED_TRACE(count);
+    RayFan fan;
+    for (std::int64_t& lowest : fan.window_lowest) lowest = static_cast<std::int64_t>(random() % 16384) - 8192;
+    std::vector<std::uint64_t> places(count);
+    std::vector<Eigen::Vector3d> expected, middles(count);
+    for (std::uint64_t& place : places) {
+      place = random() >> (64 - 3 * ScanWindow::kMostBits);
+      const BasicKey<std::uint64_t> at = key_of_code(place);
+      const auto word = [&](std::size_t axis, std::uint64_t n) {
+        return static_cast<std::uint16_t>(32768 + fan.window_lowest[axis] + static_cast<std::int64_t>(n));
+      };
+      expected.push_back(lattice.centre_of(Key{word(0, at.x), word(1, at.y), word(2, at.z)}));
+    }
+    for (const Lanes lanes : lanes_here()) {
+      find_middles(lanes, fan, lattice.resolution_m(), places, middles);
+      ASSERT_EQ(middles, expected);
+    }
+  }
 }
 
 // Kills a lane that takes another face than the plain stepper (ties, backward steps, ends on faces), a carry that does

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "pingvox/map/pool.hpp"
@@ -71,6 +72,27 @@ inline bool mark_hit(std::uint64_t place, ScanWindow& window) {
   mark_place(place, window.hit(), window.touched());
   window.with_hits()[place >> ScanWindow::kPageCellBits] = 1;
   return true;
+}
+
+/// The same for many cells. There is no branch for each: which of them are new cannot be foreseen.
+/// @param fresh  its first ones become those that were not marked before
+/// @return how many
+/// REQUIRES as much room in `fresh` as there are places; they may be the same
+inline std::size_t mark_hits(std::span<const std::uint64_t> places, ScanWindow& window, std::uint64_t* fresh) {
+  std::size_t count = 0;
+  for (const std::uint64_t place : places) {
+    std::uint64_t& word = window.hit()[place / 64];
+    const std::uint64_t before = word;
+    word |= std::uint64_t{1} << (place % 64);
+    fresh[count] = place;
+    count += ~before >> (place % 64) & 1;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t page = fresh[i] >> ScanWindow::kPageCellBits;
+    window.touched()[page] = 1;
+    window.with_hits()[page] = 1;
+  }
+  return count;
 }
 
 /// Calls f(page) for each page that is touched, and clears its byte.

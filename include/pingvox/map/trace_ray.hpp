@@ -67,5 +67,9 @@ std::size_t trace_points(const Lattice& lattice, const PointScan& points, const 
 /// The same for some of its points.
 std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
                          std::span<const Eigen::Vector3d> points_m, const PointScanOptions& options, ScanUpdate& scan);
+/// The same for points in single precision, as ROS, PCL and OctoMap hold them: half as many bytes to read, and quicker
+/// by that.
+std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
+                         std::span<const Eigen::Vector3f> points_m, const PointScanOptions& options, ScanUpdate& scan);
 
 }  // namespace pingvox

@@ -4,8 +4,13 @@
 
 /// Largest whole numbers that are not larger. REQUIRES numbers below 2^53.
 inline void floor_of(const Doubles& numbers, Words& whole) {
+#ifdef PINGVOX_AVX512
+  constexpr int kDown = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
+  whole = reinterpret_cast<Words>(_mm512_cvt_roundpd_epi64(reinterpret_cast<__m512d>(numbers), kDown));
+#else
   whole = __builtin_convertvector(numbers, Words);
   whole += __builtin_convertvector(whole, Doubles) > numbers;  // true is -1
+#endif
 }
 
 /// spread_bits for each lane. REQUIRES up to 11 bits, as many as a window's cells have
@@ -14,6 +19,15 @@ inline void spread(Words& words) {
   words = (words | words << 8) & 0x100F00F00F00F00F;
   words = (words | words << 4) & 0x10C30C30C30C30C3;
   words = (words | words << 2) & 0x1249249249249249;
+}
+
+/// Takes every third bit, up to 11 of them.
+inline void gather_bits(Words& words) {
+  words &= 0x1249249249249249;
+  words = (words | words >> 2) & 0x10C30C30C30C30C3;
+  words = (words | words >> 4) & 0x100F00F00F00F00F;
+  words = (words | words >> 8) & 0x1F0000FF0000FF;
+  words = (words | words >> 16) & 0x7FF;
 }
 
 /// Coordinates of kLanes points that stand one after the other.
@@ -34,27 +48,48 @@ inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
   }
 }
 
+inline void load(const float* points, std::array<Doubles, 3>& coordinates) {
+#ifdef PINGVOX_AVX512
+  const __m512 in_first = _mm512_loadu_ps(points), in_second = _mm512_castps256_ps512(_mm256_loadu_ps(points + 16));
+  const __m512i every_third = _mm512_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21, 0, 0, 0, 0, 0, 0, 0, 0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const __m512i from = _mm512_add_epi32(every_third, _mm512_set1_epi32(static_cast<int>(a)));
+    const __m512 along = _mm512_permutex2var_ps(in_first, from, in_second);
+    __m256 eight;
+    std::memcpy(&eight, &along, sizeof eight);
+    coordinates[a] = reinterpret_cast<Doubles>(_mm512_maskz_cvtps_pd(0xFF, eight));
+  }
+#else
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t l = 0; l < kLanes; ++l) coordinates[a][l] = points[3 * l + a];
+  }
+#endif
+}
+
 /// Asks for the points some way ahead, beyond the page where the machine stops to do so by itself.
-inline void fetch_ahead(std::span<const Eigen::Vector3d> points_m, std::size_t first) {
-  constexpr std::size_t kAhead = 64, kPerLine = 2;
-  for (std::size_t l = 0; l < kLanes; l += kPerLine) {
-    __builtin_prefetch(&points_m[std::min(first + kAhead + l, points_m.size() - 1)]);
+template <class Point>
+inline void fetch_ahead(std::span<const Point> points_m, std::size_t first) {
+  constexpr std::size_t kAhead = 1536, kLine = 64;
+  const std::span<const std::byte> all = std::as_bytes(points_m);
+  for (std::size_t byte = 0; byte < kLanes * sizeof(Point); byte += kLine) {
+    __builtin_prefetch(&all[std::min(first * sizeof(Point) + kAhead + byte, all.size() - 1)]);
   }
 }
 
 /// Calls f(first, points) for kLanes points each; the last ones stand together with some that are no
 /// numbers, and so outside of any window.
-template <class F>
-inline void for_each_lanes(std::span<const Eigen::Vector3d> points_m, F&& f) {
+template <class Point, class F>
+inline void for_each_lanes(std::span<const Point> points_m, F&& f) {
+  using Real = typename Point::Scalar;
   const std::size_t whole = points_m.size() / kLanes * kLanes;
-  std::array<double, 3 * kLanes> padded;
-  padded.fill(std::numeric_limits<double>::quiet_NaN());
+  std::array<Real, 3 * kLanes> padded;
+  padded.fill(std::numeric_limits<Real>::quiet_NaN());
   for (std::size_t i = whole; i < points_m.size(); ++i) {
-    std::memcpy(&padded[3 * (i - whole)], points_m[i].data(), 3 * sizeof(double));
+    std::memcpy(&padded[3 * (i - whole)], points_m[i].data(), sizeof(Point));
   }
   // f stands here once, so that it becomes part of the loop.
   for (std::size_t first = 0; first < points_m.size(); first += kLanes) {
-    const double* const some_m = points_m[first].data();
+    const Real* const some_m = points_m[first].data();
     fetch_ahead(points_m, first);
     f(first, first < whole ? some_m : padded.data());
   }
@@ -82,7 +117,8 @@ struct PointLanes {
 };
 
 /// @param points_m  kLanes of them; those outside become the place where rays begin
-inline void load_in(const FanLanes& fan, const double* points_m, PointLanes& points) {
+template <class Real>
+inline void load_in(const FanLanes& fan, const Real* points_m, PointLanes& points) {
   load(points_m, points.at);
   points.is_inside = Words{} - 1;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -92,49 +128,46 @@ inline void load_in(const FanLanes& fan, const double* points_m, PointLanes& poi
   for (std::size_t a = 0; a < 3; ++a) points.at[a] = points.is_inside ? points.at[a] : fan.from[a];
 }
 
-/// Which of the lanes: what compares words, and chooses among them.
+/// Some of the lanes.
 #ifdef PINGVOX_AVX512
-using Which = __mmask8;
-inline void differ(const Words& one, const Words& other, Which& which) {
-  which = _mm512_cmpneq_epi64_mask(reinterpret_cast<__m512i>(one), reinterpret_cast<__m512i>(other));
+using Some = __mmask8;
+inline void find_different(const Words& one, const Words& other, Some& some) {
+  some = _mm512_cmpneq_epi64_mask(reinterpret_cast<__m512i>(one), reinterpret_cast<__m512i>(other));
 }
-inline void keep_unless(Which which, Words& words) {
-  words = reinterpret_cast<Words>(_mm512_mask_mov_epi64(reinterpret_cast<__m512i>(words), which, __m512i{}));
+inline void clear_some(Some some, Words& words) {
+  words = reinterpret_cast<Words>(_mm512_mask_mov_epi64(reinterpret_cast<__m512i>(words), some, __m512i{}));
 }
-/// The bit of a cell in its brick.
-inline void bit_of(const Words& cell, Words& bit) {
-  bit = reinterpret_cast<Words>(_mm512_maskz_rolv_epi64(0xFF, _mm512_set1_epi64(1), reinterpret_cast<__m512i>(cell)));
-}
-/// Stores the words of those lanes, one after the other, where there is room for all of them. @return how many
-inline std::size_t store_some(Which which, const Words& words, std::uint64_t* to) {
-  _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(which, reinterpret_cast<__m512i>(words)));
-  return static_cast<std::size_t>(__builtin_popcount(which));
+/// Stores the words of these lanes, one after the other, where there is room for all of them. @return how many
+inline std::size_t store_some(Some some, const Words& words, std::uint64_t* to) {
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(some, reinterpret_cast<__m512i>(words)));
+  return static_cast<std::size_t>(__builtin_popcount(some));
 }
 #else
-using Which = Words;
-inline void differ(const Words& one, const Words& other, Which& which) {
-  which = one != other;
+using Some = Words;  // true is -1
+inline void find_different(const Words& one, const Words& other, Some& some) {
+  some = one != other;
 }
-inline void keep_unless(const Which& which, Words& words) {
-  words &= ~which;
+inline void clear_some(const Some& some, Words& words) {
+  words &= ~some;
 }
-inline void bit_of(const Words& cell, Words& bit) {
-  bit = (Words{} + 1) << (cell & 63);
-}
-inline std::size_t store_some(const Which& which, const Words& words, std::uint64_t* to) {
+inline std::size_t store_some(const Some& some, const Words& words, std::uint64_t* to) {
   std::size_t count = 0;
   for (std::size_t l = 0; l < kLanes; ++l) {
     to[count] = static_cast<std::uint64_t>(words[l]);
-    count -= static_cast<std::size_t>(which[l]);
+    count -= static_cast<std::size_t>(some[l]);
   }
   return count;
 }
 #endif
 
 inline bool are_all(const Words& truth) {
+#ifdef PINGVOX_AVX512
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(truth)) == 0xFF;
+#else
   std::int64_t all = -1;
   for (std::size_t l = 0; l < kLanes; ++l) all &= truth[l];
   return all != 0;
+#endif
 }
 
 /// Finds the cells that hold points, and of points in a row that share theirs only one.
@@ -153,8 +186,8 @@ class CellsInARow {
     Words before, one_back;
     for (std::size_t l = 0; l < kLanes; ++l) one_back[l] = static_cast<std::int64_t>(kLanes - 1 + l);
     pick(last_, cells, one_back, before);
-    Which others;
-    differ(cells, points.is_inside ? before : cells, others);
+    Some others;
+    find_different(cells, points.is_inside ? before : cells, others);
     count_ += store_some(others, cells, to_ + count_);
     last_ = cells;
   }

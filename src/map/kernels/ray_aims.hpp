@@ -68,9 +68,11 @@ struct AimedRays {
 inline constexpr std::uint32_t kNoSquare = ~std::uint32_t{0};
 
 /// Aims of the rays to `ends_m` [m, map frame], and the places of their ends.
+/// @tparam Point  Eigen::Vector3d or Eigen::Vector3f
 /// @return how many places
 /// REQUIRES room for kWrittenBeyond more than there are ends
-std::size_t aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+template <class Point>
+std::size_t aim_rays(Lanes lanes, const RayFan& fan, std::uint32_t squares, std::span<const Point> ends_m,
                      const AimedRays& aimed);
 
 /// A cell as rays through one face come to it [cells, from the place where they begin].
@@ -84,7 +86,8 @@ struct CellAhead {
 /// @param left_out  bit i: not ray i
 /// @return number of the first of these rays that may cross a cell; `count` when surely none does
 /// REQUIRES count <= 64, and that all go through the same face
-std::size_t first_that_may_cross(Lanes lanes, const RayFan& fan, const CellAhead& cell,
-                                 std::span<const Eigen::Vector3d> ends_m, std::size_t count, std::uint64_t left_out);
+template <class Point>
+std::size_t first_that_may_cross(Lanes lanes, const RayFan& fan, const CellAhead& cell, std::span<const Point> ends_m,
+                                 std::size_t count, std::uint64_t left_out);
 
 }  // namespace pingvox::detail

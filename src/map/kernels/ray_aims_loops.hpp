@@ -108,13 +108,14 @@ inline void aim_some(const FanLanes& fan, std::uint32_t squares, const PointLane
   store(aims, to_aims);
 }
 
-inline std::size_t aim(const RayFan& fan, std::uint32_t squares, std::span<const Eigen::Vector3d> ends_m,
+template <class Point>
+inline std::size_t aim(const RayFan& fan, std::uint32_t squares, std::span<const Point> ends_m,
                        const AimedRays& aimed) {
   const FanLanes fan_lanes(fan);
   CellsInARow cells(aimed.places.data());
   std::uint32_t* const to_squares = aimed.square.data();
   Aim* const aims = aimed.aim.data();
-  for_each_lanes(ends_m, [&](std::size_t first, const double* some_m) {
+  for_each_lanes(ends_m, [&](std::size_t first, const auto* some_m) {
     PointLanes ends;
     load_in(fan_lanes, some_m, ends);
     cells.add(fan_lanes, ends);
@@ -124,7 +125,8 @@ inline std::size_t aim(const RayFan& fan, std::uint32_t squares, std::span<const
 }
 
 /// Bit l: ray l may cross the cell.
-inline std::uint64_t that_may_cross(const FanLanes& fan, const CellAhead& cell, const double* ends_m) {
+template <class Real>
+inline std::uint64_t that_may_cross(const FanLanes& fan, const CellAhead& cell, const Real* ends_m) {
   std::array<Doubles, 3> to;
   load(ends_m, to);
   std::array<Floats, 3> way;
@@ -156,13 +158,14 @@ inline std::uint64_t that_may_cross(const FanLanes& fan, const CellAhead& cell, 
   return bits;
 }
 
-inline std::size_t first_across(const RayFan& fan, const CellAhead& cell, std::span<const Eigen::Vector3d> ends_m,
+template <class Point>
+inline std::size_t first_across(const RayFan& fan, const CellAhead& cell, std::span<const Point> ends_m,
                                 std::size_t count, std::uint64_t left_out) {
   const FanLanes fan_lanes(fan);
   // Some beyond the last one do not matter, where there are some.
   const std::size_t looked = std::min(ends_m.size(), (count + kLanes - 1) / kLanes * kLanes);
   std::uint64_t may = 0;
-  for_each_lanes(ends_m.first(looked), [&](std::size_t first, const double* some_m) {
+  for_each_lanes(ends_m.first(looked), [&](std::size_t first, const auto* some_m) {
     may |= that_may_cross(fan_lanes, cell, some_m) << first;
   });
   may &= ~left_out;

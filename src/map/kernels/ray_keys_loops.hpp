@@ -30,8 +30,10 @@ inline void prepare(const KeyGrid& grid, std::span<const Segment> segments, std:
     std::array<Segment, kLanes> padded;
     Prepared some;
     prepare_some(grid, some_from(segments, first, padded), some);
+    std::array<ReadyRay, kLanes> rays;
+    rays_of(some, rays);
     for (std::size_t l = 0; l < lanes; ++l) {
-      ready[first + l] = ray_of(some, l);
+      ready[first + l] = rays[l];
       if (some.is_ready[l] != 0) continue;
       ready[first + l].left = 0;
       others.push_back(static_cast<std::uint32_t>(first + l));

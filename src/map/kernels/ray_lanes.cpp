@@ -113,11 +113,23 @@ void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3
   PINGVOX_BY_LANES(lanes, prepare(fan, ends_m, ready, others), plain::prepare(fan, ends_m, ready, others));
 }
 
-std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
-                       std::span<std::uint64_t> places, std::vector<std::uint32_t>& outside) {
+template <class Point>
+std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Point> points_m, std::span<std::uint64_t> places,
+                       std::vector<std::uint32_t>& outside) {
   assert(places.size() >= points_m.size() + kWrittenBeyond);
   PINGVOX_BY_LANES(lanes, find(fan, points_m, places.data(), outside),
                    plain::find(fan, points_m, places.data(), outside));
+}
+template std::size_t find_cells(Lanes, const RayFan&, std::span<const Eigen::Vector3d>, std::span<std::uint64_t>,
+                                std::vector<std::uint32_t>&);
+template std::size_t find_cells(Lanes, const RayFan&, std::span<const Eigen::Vector3f>, std::span<std::uint64_t>,
+                                std::vector<std::uint32_t>&);
+
+void find_middles(Lanes lanes, const RayFan& fan, double resolution_m, std::span<const std::uint64_t> places,
+                  std::span<Eigen::Vector3d> middles_m) {
+  assert(places.size() == middles_m.size());
+  PINGVOX_BY_LANES(lanes, find_middles(fan, resolution_m, places, middles_m),
+                   plain::find_middles(fan, resolution_m, places, middles_m));
 }
 
 void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {

@@ -43,13 +43,20 @@ void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3
 
 /// Finds the places in the window of the cells that hold points [m, map frame]. Of points in a row that share their
 /// cell it is there once.
+/// @tparam Point   Eigen::Vector3d or Eigen::Vector3f
 /// @param places   as many as are returned mean something
 /// @param outside  gets the numbers of points outside of the window
 /// @return how many
 /// REQUIRES room for kWrittenBeyond more places than there are points
 inline constexpr std::size_t kWrittenBeyond = 8;
-std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> points_m,
-                       std::span<std::uint64_t> places, std::vector<std::uint32_t>& outside);
+template <class Point>
+std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Point> points_m, std::span<std::uint64_t> places,
+                       std::vector<std::uint32_t>& outside);
+
+/// Middles [m, map frame] of cells at places in the window.
+/// REQUIRES as many middles as there are places
+void find_middles(Lanes lanes, const RayFan& fan, double resolution_m, std::span<const std::uint64_t> places,
+                  std::span<Eigen::Vector3d> middles_m);
 
 /// Marks the cells of each ray as missed, its first one included, its last one not.
 /// @param start  place of the cell where all of them begin

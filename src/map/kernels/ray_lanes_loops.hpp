@@ -57,12 +57,60 @@ inline void decide(const Words& inside, Prepared& out) {
       inside & (out.beyond_end > out.last_crossing) & (out.left <= static_cast<std::int64_t>(FaceCrossings::kFewFaces));
 }
 
-inline ReadyRay ray_of(const Prepared& some, std::size_t lane) {
-  return {{some.next[0][lane], some.next[1][lane], some.next[2][lane]},
-          {some.apart[0][lane], some.apart[1][lane], some.apart[2][lane]},
-          static_cast<std::uint32_t>(some.left[lane]),
-          static_cast<std::uint32_t>(some.ahead[lane]),
-          static_cast<std::uint64_t>(some.end[lane])};
+/// Rows become columns: blocks of kEdge rows and columns change places, then those of twice the size.
+template <std::size_t kEdge = 1>
+inline void transpose(std::array<Words, kLanes>& square) {
+  if constexpr (kEdge < kLanes) {
+    Words of_one{}, of_other{};
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      of_one[l] = static_cast<std::int64_t>((l & kEdge) != 0 ? kLanes + l - kEdge : l);
+      of_other[l] = static_cast<std::int64_t>((l & kEdge) != 0 ? kLanes + l : l + kEdge);
+    }
+    for (std::size_t i = 0; i < kLanes / 2; ++i) {
+      const std::size_t row = i / kEdge * 2 * kEdge + i % kEdge;
+      const Words one = square[row], other = square[row + kEdge];
+      pick(one, other, of_one, square[row]);
+      pick(one, other, of_other, square[row + kEdge]);
+    }
+    transpose<2 * kEdge>(square);
+  }
+}
+
+/// ReadyRays as words, side by side: those of its next faces, of how far they are apart, then these two.
+constexpr std::size_t kCounts = 6, kEnd = 7, kWordsOfRay = 8;
+static_assert(sizeof(ReadyRay) == kWordsOfRay * sizeof(std::int64_t) && kWordsOfRay % kLanes == 0);
+constexpr int kLeftAt = std::endian::native == std::endian::little ? 0 : 32, kAheadAt = 32 - kLeftAt;
+using RayWords = std::array<Words, kWordsOfRay>;
+
+inline void words_of(const std::array<const ReadyRay*, kLanes>& rays, RayWords& words) {
+  std::array<Words, kLanes> square;
+  for (std::size_t first = 0; first < kWordsOfRay; first += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      std::memcpy(&square[l], reinterpret_cast<const std::byte*>(rays[l]) + first * sizeof(std::int64_t),
+                  sizeof square[l]);
+    }
+    transpose(square);
+    for (std::size_t l = 0; l < kLanes; ++l) words[first + l] = square[l];
+  }
+}
+
+inline void rays_of(const Prepared& some, std::array<ReadyRay, kLanes>& rays) {
+  const RayWords words{some.next[0],
+                       some.next[1],
+                       some.next[2],
+                       some.apart[0],
+                       some.apart[1],
+                       some.apart[2],
+                       some.left << kLeftAt | some.ahead << kAheadAt,
+                       some.end};
+  std::array<Words, kLanes> square;
+  for (std::size_t first = 0; first < kWordsOfRay; first += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) square[l] = words[first + l];
+    transpose(square);
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      std::memcpy(reinterpret_cast<std::byte*>(&rays[l]) + first * sizeof(std::int64_t), &square[l], sizeof square[l]);
+    }
+  }
 }
 
 inline void prepare_some(const FanLanes& fan, const double* ends_m, Prepared& out) {
@@ -86,22 +134,26 @@ inline void prepare(const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, 
   for_each_lanes(ends_m, [&](std::size_t first, const double* some_m) {
     Prepared some;
     prepare_some(fan_lanes, some_m, some);
+    std::array<ReadyRay, kLanes> rays;
+    rays_of(some, rays);
     for (std::size_t l = 0; l < std::min(kLanes, ends_m.size() - first); ++l) {
-      if (some.is_ready[l] == 0) {
-        others.push_back(static_cast<std::uint32_t>(first + l));
+      ready[count] = rays[l];
+      if (some.is_ready[l] != 0) {
+        ++count;
       } else {
-        ready[count++] = ray_of(some, l);
+        others.push_back(static_cast<std::uint32_t>(first + l));
       }
     }
   });
   ready.resize(count);
 }
 
-inline std::size_t find(const RayFan& fan, std::span<const Eigen::Vector3d> points_m, std::uint64_t* places,
+template <class Point>
+inline std::size_t find(const RayFan& fan, std::span<const Point> points_m, std::uint64_t* places,
                         std::vector<std::uint32_t>& outside) {
   const FanLanes fan_lanes(fan);
   CellsInARow cells(places);
-  for_each_lanes(points_m, [&](std::size_t first, const double* some_m) {
+  for_each_lanes(points_m, [&](std::size_t first, const auto* some_m) {
     PointLanes points;
     load_in(fan_lanes, some_m, points);
     cells.add(fan_lanes, points);
@@ -113,12 +165,41 @@ inline std::size_t find(const RayFan& fan, std::span<const Eigen::Vector3d> poin
   return cells.finish();
 }
 
+inline void find_middles(const RayFan& fan, double resolution_m, std::span<const std::uint64_t> places,
+                         std::span<Eigen::Vector3d> middles_m) {
+  for (std::size_t first = 0; first < places.size(); first += kLanes) {
+    std::array<std::uint64_t, kLanes> padded;
+    Words place;
+    std::memcpy(&place, some_from(places, first, padded), sizeof place);
+    std::array<Doubles, 3> middle_m;
+    for (std::size_t a = 0; a < 3; ++a) {
+      Words cell = place >> a;
+      gather_bits(cell);
+      middle_m[a] = (__builtin_convertvector(cell + fan.window_lowest[a], Doubles) + 0.5) * resolution_m;
+    }
+    for (std::size_t l = 0; l < std::min(kLanes, places.size() - first); ++l) {
+      middles_m[first + l] = {middle_m[0][l], middle_m[1][l], middle_m[2][l]};
+    }
+  }
+}
+
 /// axis_of_least for each lane: all bits set of the axis that is next, none of the others.
 inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& along) {
   const Words is_0_first = next[0] < next[1];
   along[0] = is_0_first & (next[0] < next[2]);
   along[1] = ~is_0_first & (next[1] < next[2]);
   along[2] = ~(along[0] | along[1]);
+}
+
+/// The bit of a cell in its brick.
+inline void bit_of(const Words& place, Words& bit) {
+#ifdef PINGVOX_AVX512
+  // Turned, not shifted: that takes the lowest six bits of a place by itself.
+  const __m512i one = _mm512_set1_epi64(1);
+  bit = reinterpret_cast<Words>(_mm512_maskz_rolv_epi64(0xFF, one, reinterpret_cast<__m512i>(place)));
+#else
+  bit = (Words{} + 1) << (place & 63);
+#endif
 }
 
 /// Up to kLanes rays side by side, and how many faces the shortest and the longest cross.
@@ -130,15 +211,18 @@ struct RayLanes {
 
 /// @param order  rays by length, the longest first
 inline void gather(std::span<const ReadyRay> rays, std::span<const std::uint32_t> order, RayLanes& to) {
-  for (std::size_t l = 0; l < order.size(); ++l) {
-    const ReadyRay& ray = rays[order[l]];
-    for (std::size_t a = 0; a < 3; ++a) {
-      to.next[a][l] = ray.next[a];
-      to.apart[a][l] = ray.apart[a];
-      to.step[a][l] = static_cast<std::int64_t>(step_of(a, ((ray.ahead >> a) & 1U) != 0));
-    }
-    to.left[l] = ray.left;
+  const ReadyRay none{};
+  std::array<const ReadyRay*, kLanes> some;
+  for (std::size_t l = 0; l < kLanes; ++l) some[l] = l < order.size() ? &rays[order[l]] : &none;
+  RayWords words;
+  words_of(some, words);
+  for (std::size_t a = 0; a < 3; ++a) {
+    to.next[a] = words[a];
+    to.apart[a] = words[3 + a];
+    const auto ahead = static_cast<std::int64_t>(step_of(a, true)), back = static_cast<std::int64_t>(step_of(a, false));
+    to.step[a] = ((words[kCounts] >> (kAheadAt + static_cast<int>(a))) & 1) != 0 ? Words{} + ahead : Words{} + back;
   }
+  to.left = (words[kCounts] >> kLeftAt) & 0xFFFFFFFF;
   to.shortest = order.size() == kLanes ? rays[order.back()].left : 0;
   to.longest = rays[order.front()].left;
 }
@@ -158,11 +242,11 @@ inline void mark_some(const RayLanes& rays, std::uint64_t start, ScanWindow& win
     const Words entered = at >> 6;
     Words cell;
     bit_of(at, cell);
-    Which left;
-    differ(brick, entered, left);
+    Some left;
+    find_different(brick, entered, left);
     store_some(left, brick, to_set.brick.data() + count);
     count += store_some(left, marks, to_set.marks.data() + count);
-    keep_unless(left, marks);
+    clear_some(left, marks);
     marks |= cell;
     brick = entered;
     if (count > MarksToSet::kRoom - 2 * kLanes) {
@@ -190,8 +274,8 @@ inline void mark_some(const RayLanes& rays, std::uint64_t start, ScanWindow& win
     enter(rays.left > n ? place[0] | place[1] | place[2] : begin);
     cross();
   }
-  Which all;
-  differ(begin, begin - 1, all);
+  Some all;
+  find_different(begin, ~begin, all);
   store_some(all, brick, to_set.brick.data() + count);
   to_set.count = count + store_some(all, marks, to_set.marks.data() + count);
 }

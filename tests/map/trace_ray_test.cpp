@@ -1,0 +1,127 @@
+#include "pingvox/map/trace_ray.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "pingvox/map/occupancy_map.hpp"
+#include "support/differences.hpp"
+
+using namespace pingvox;
+
+namespace {
+
+struct Case {
+  Lattice lattice{0.1};
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3f> points_m;
+  PointScanOptions options;
+};
+
+/// Few points and many, in clumps that share cells; some are no numbers, and in small lattices some lie outside.
+Case drawn_case(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  Case one{.lattice = Lattice(0.1, seed % 3 == 0 ? 6 : 16), .points_m = {}, .options = {}};
+  one.origin_m = {uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)};
+  const auto clumps = seed % 4 == 0 ? 2 : 200;
+  for (int clump = 0; clump < clumps; ++clump) {
+    const Eigen::Vector3d middle_m(uniform(-4.0, 4.0), uniform(-4.0, 4.0), uniform(-4.0, 4.0));
+    for (auto n = random() % 12; n > 0; --n) {
+      const Eigen::Vector3d beside_m(uniform(-0.1, 0.1), uniform(-0.1, 0.1), uniform(-0.1, 0.1));
+      one.points_m.emplace_back((middle_m + beside_m).cast<float>());
+    }
+  }
+  one.points_m.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
+  one.points_m.emplace_back(1e30F, 0.0F, 0.0F);
+  if (seed % 2 == 0) one.options.max_range_m = 2.5;
+  if (seed % 5 == 0) one.options.ray = RayAlgorithm::kBresenham;
+  return one;
+}
+
+struct Traced {
+  std::vector<test::Node> nodes;
+  std::size_t outside = 0;
+};
+
+Traced applied(const Case& one, const ScanUpdate& scan, std::size_t outside) {
+  OccupancyMap map({.resolution_m = one.lattice.resolution_m(), .depth = one.lattice.depth()});
+  EXPECT_TRUE(map.apply(scan));
+  return {test::nodes_of(map), outside};
+}
+
+template <class Point>
+Traced traced(const Case& one, const std::vector<Point>& points_m) {
+  ScanUpdate scan;
+  const std::size_t outside =
+      trace_points(one.lattice, one.origin_m, std::span<const Point>(points_m), one.options, scan);
+  return applied(one, scan, outside);
+}
+
+std::vector<Eigen::Vector3d> as_doubles(const std::vector<Eigen::Vector3f>& points_m) {
+  std::vector<Eigen::Vector3d> same_m;
+  for (const Eigen::Vector3f& point_m : points_m) same_m.push_back(point_m.cast<double>());
+  return same_m;
+}
+
+// Kills a path on which points in single precision are traced as others are: to cells, cut at a range, one by one.
+TEST(TracePoints, SinglePrecisionMakesTheSameMap) {
+  std::size_t nodes = 0, outside = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Case one = drawn_case(seed);
+    for (const EndPoints ends : {EndPoints::kExact, EndPoints::kCells}) {
+      one.options.ends = ends;
+      const Traced found = traced(one, one.points_m), expected = traced(one, as_doubles(one.points_m));
+      ASSERT_EQ(found.outside, expected.outside);
+      ASSERT_EQ(test::first_difference(found.nodes, expected.nodes), "");
+      nodes += found.nodes.size();
+      outside += found.outside;
+    }
+  }
+  EXPECT_GT(nodes, 100'000U);
+  EXPECT_GT(outside, 200U);
+}
+
+// Kills a cell whose ray is walked twice or not at all, one that stays hit although it is too far away, a ray that ends
+// beside the middle of its cell.
+TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Case one = drawn_case(seed);
+    std::map<std::tuple<std::uint16_t, std::uint16_t, std::uint16_t>, Eigen::Vector3d> middles_m;
+    std::vector<Eigen::Vector3d> ends_m;
+    for (const Eigen::Vector3d& point_m : as_doubles(one.points_m)) {
+      if (const auto key = one.lattice.key_of(point_m)) {
+        middles_m.emplace(std::tuple(key->x, key->y, key->z), one.lattice.centre_of(*key));
+      } else {
+        ends_m.push_back(point_m);
+      }
+    }
+    for (const auto& [cell, middle_m] : middles_m) ends_m.push_back(middle_m);
+    ScanUpdate scan;
+    std::size_t outside = 0;
+    for (const Eigen::Vector3d& end_m : ends_m) {
+      const double range_m = (end_m - one.origin_m).norm();
+      if (range_m > one.options.max_range_m) {
+        const Eigen::Vector3d cut_m = one.origin_m + (end_m - one.origin_m) * (one.options.max_range_m / range_m);
+        outside += trace_ray(one.lattice, one.origin_m, cut_m, one.options.ray, scan) ? 0 : 1;
+        continue;
+      }
+      if (const auto key = one.lattice.key_of(end_m)) scan.add_hit(*key, one.options.hit);
+      outside += trace_ray(one.lattice, one.origin_m, end_m, one.options.ray, scan) ? 0 : 1;
+    }
+    one.options.ends = EndPoints::kCells;
+    const Traced found = traced(one, one.points_m), expected = applied(one, scan, outside);
+    ASSERT_EQ(found.outside, expected.outside);
+    ASSERT_EQ(test::first_difference(found.nodes, expected.nodes), "");
+  }
+}
+
+}  // namespace
