@@ -1,7 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 
+#include "bench/speed/tank_echoes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/map/trace_ray.hpp"
@@ -9,10 +11,10 @@
 namespace pingvox::bench {
 
 /// Each scan traced and applied. `scan` is room that is used for all of them, empty before and after.
-inline void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const PointScan> scans,
+inline void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const RayCloud> scans,
                    const PointScanOptions& options = {}) {
-  for (const PointScan& points : scans) {
-    trace_points(map.lattice(), points, options, scan);
+  for (const RayCloud& ends_m : scans) {
+    trace_points(map.lattice(), Eigen::Vector3d::Zero(), ends_m, options, scan);
     (void)map.apply(scan);
     scan.clear();
   }

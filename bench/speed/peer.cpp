@@ -4,13 +4,11 @@
 
 namespace pingvox::bench {
 
-std::vector<octomap::Pointcloud> clouds_of(std::span<const PointScan> scans) {
+std::vector<octomap::Pointcloud> clouds_of(std::span<const RayCloud> scans) {
   std::vector<octomap::Pointcloud> clouds(scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    clouds[i].reserve(scans[i].points_m.size());
-    for (const Eigen::Vector3d& point : scans[i].points_m) {
-      clouds[i].push_back(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z()));
-    }
+    clouds[i].reserve(scans[i].size());
+    for (const Eigen::Vector3f& end_m : scans[i]) clouds[i].push_back(end_m.x(), end_m.y(), end_m.z());
   }
   return clouds;
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "pingvox/map/point_scan.hpp"
+#include "tank_echoes.hpp"
 
 namespace pingvox::bench {
 
@@ -20,7 +20,7 @@ enum class PeerEnds {
   kCells,  ///< a ray to the middle of each cell with a point: `discretize`
 };
 
-std::vector<octomap::Pointcloud> clouds_of(std::span<const PointScan> scans);
+std::vector<octomap::Pointcloud> clouds_of(std::span<const RayCloud> scans);
 
 void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, PeerEnds ends, PeerMode mode);
 

@@ -15,7 +15,7 @@ struct ScanWork {
   std::string name;
   std::string input;
   double resolution_m = 0.05;
-  std::vector<PointScan> scans;
+  std::vector<RayCloud> scans;
   EndPoints ends = EndPoints::kExact;
   /// liboctomap walks rays in single precision with sums that drift: the most cells (as a share) that may differ.
   double tolerated = 1e-4;

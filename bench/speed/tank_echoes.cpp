@@ -29,10 +29,6 @@ std::vector<std::vector<BeamEcho>> echoes_of(std::span<const Beam> beams) {
   return sweeps;
 }
 
-Eigen::Vector3d as_floats(const Eigen::Vector3d& point_m) {
-  return point_m.cast<float>().cast<double>();
-}
-
 }  // namespace
 
 Result<TankEchoes> tank_echoes() {
@@ -41,17 +37,17 @@ Result<TankEchoes> tank_echoes() {
   return TankEchoes{std::move(tank->input), echoes_of(tank->beams)};
 }
 
-PointScan rays_of(const std::vector<BeamEcho>& sweep) {
-  PointScan scan;
+RayCloud rays_of(const std::vector<BeamEcho>& sweep) {
+  RayCloud ends_m;
   for (const BeamEcho& echo : sweep) {
-    scan.points_m.push_back(
-        as_floats({echo.range_m * std::cos(echo.bearing_rad), echo.range_m * std::sin(echo.bearing_rad), 0.0}));
+    const Eigen::Vector3d direction(std::cos(echo.bearing_rad), std::sin(echo.bearing_rad), 0.0);
+    ends_m.emplace_back((echo.range_m * direction).cast<float>());
   }
-  return scan;
+  return ends_m;
 }
 
-PointScan bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
-  PointScan scan;
+RayCloud bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
+  RayCloud ends_m;
   for (const BeamEcho& echo : sweep) {
     for (int u = 0; u < up; ++u) {
       const double elevation = 35.0 * kDegree * ((u + 0.5) / up - 0.5);
@@ -59,11 +55,11 @@ PointScan bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
         const double bearing = echo.bearing_rad + 3.0 * kDegree * ((a + 0.5) / across - 0.5);
         const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing),
                                         std::cos(elevation) * std::sin(bearing), std::sin(elevation));
-        scan.points_m.push_back(as_floats(echo.range_m * direction));
+        ends_m.emplace_back((echo.range_m * direction).cast<float>());
       }
     }
   }
-  return scan;
+  return ends_m;
 }
 
 Result<TankBundles> tank_bundles(std::size_t sweeps) {

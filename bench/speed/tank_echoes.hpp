@@ -1,11 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "pingvox/map/point_scan.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox::bench {
@@ -24,17 +24,19 @@ struct TankEchoes {
 };
 Result<TankEchoes> tank_echoes();
 
-/// One ray for each echo, in the plane of the head; the sensor is at the origin. Coordinates are those of floats, so
-/// that liboctomap can be given the same.
-PointScan rays_of(const std::vector<BeamEcho>& sweep);
+/// Where rays from the origin end [m], in single precision: what liboctomap's clouds hold.
+using RayCloud = std::vector<Eigen::Vector3f>;
+
+/// One ray for each echo, in the plane of the head.
+RayCloud rays_of(const std::vector<BeamEcho>& sweep);
 
 /// Each echo as a bundle of `across` x `up` rays, evenly over 3 x 35 degrees on the sphere, all with the echo's range.
-PointScan bundles_of(const std::vector<BeamEcho>& sweep, int across, int up);
+RayCloud bundles_of(const std::vector<BeamEcho>& sweep, int across, int up);
 
 /// The first sweeps of tank_echoes(), each echo as a bundle of 32 x 64 rays.
 struct TankBundles {
   std::string input;  ///< as in TankBeams
-  std::vector<PointScan> scans;
+  std::vector<RayCloud> scans;
 };
 Result<TankBundles> tank_bundles(std::size_t sweeps);
 
