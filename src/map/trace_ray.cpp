@@ -87,7 +87,8 @@ class FanTracer {
     if (!std::isfinite(options_.max_range_m)) return trace(ends_m, Ends::kHit);
     std::vector<Eigen::Vector3d> near_m, cut_m;
     for (const Point& point : ends_m) {
-      const Eigen::Vector3d end_m = point.template cast<double>(), way_m = end_m - origin_m_;
+      const Eigen::Vector3d& end_m = point.template cast<double>();
+      const Eigen::Vector3d way_m = end_m - origin_m_;
       const double range_m = way_m.norm();
       if (range_m > options_.max_range_m) {
         cut_m.emplace_back(origin_m_ + way_m * (options_.max_range_m / range_m));
@@ -106,7 +107,7 @@ class FanTracer {
     middles_m_.clear();
     std::set<WideKey> seen;  // of those outside of the window
     const auto add_singly = [&](const Point& point) {
-      const Eigen::Vector3d point_m = point.template cast<double>();
+      const Eigen::Vector3d& point_m = point.template cast<double>();
       const auto key = lattice_.key_of<WideWord>(point_m);
       if (!key || seen.insert(*key).second) middles_m_.push_back(key ? lattice_.centre_of(*key) : point_m);
     };
@@ -166,7 +167,7 @@ class FanTracer {
   std::size_t trace_singly(std::span<const Point> ends_m, Ends ends) {
     std::size_t outside = 0;
     for (const Point& point : ends_m) {
-      const Eigen::Vector3d end_m = point.template cast<double>();
+      const Eigen::Vector3d& end_m = point.template cast<double>();
       if (ends == Ends::kHit) {
         if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_.add_hit(*end, options_.hit);
       }
@@ -239,17 +240,16 @@ class FanTracer {
   std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
   detail::Lanes lanes_ = detail::widest_lanes();
   std::vector<std::uint32_t> others_;
-  std::vector<std::uint64_t> found_;         ///< places of cells with points
-  std::vector<Eigen::Vector3d> middles_m_;   ///< of these, and of others
+  std::vector<std::uint64_t> found_;        ///< places of cells with points
+  std::vector<Eigen::Vector3d> middles_m_;  ///< of these, and of others
 };
 
 template <class Point>
 std::size_t trace_fan(const Lattice& lattice, const Eigen::Vector3d& origin_m, std::span<const Point> points_m,
                       const PointScanOptions& options, ScanUpdate& scan) {
   FanTracer tracer(lattice, origin_m, options, points_m, scan);
-  const std::size_t outside = options.ends == EndPoints::kCells
-                                  ? tracer.trace(tracer.cells_of(points_m))
-                                  : tracer.trace(points_m);
+  const std::size_t outside =
+      options.ends == EndPoints::kCells ? tracer.trace(tracer.cells_of(points_m)) : tracer.trace(points_m);
   tracer.finish();
   return outside;
 }

@@ -89,7 +89,7 @@ TEST(TracePoints, SinglePrecisionMakesTheSameMap) {
   EXPECT_GT(outside, 200U);
 }
 
-// Kills a cell whose ray is walked twice or not at all, one that stays hit although it is too far away, a ray that ends
+// Kills a cell whose ray is not walked, one that stays hit although it is too far away, a ray that ends
 // beside the middle of its cell.
 TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

@@ -57,22 +57,22 @@ inline void decide(const Words& inside, Prepared& out) {
       inside & (out.beyond_end > out.last_crossing) & (out.left <= static_cast<std::int64_t>(FaceCrossings::kFewFaces));
 }
 
-/// Rows become columns: blocks of kEdge rows and columns change places, then those of twice the size.
-template <std::size_t kEdge = 1>
+/// Rows become columns: blocks of `Edge` rows and columns change places, then those of twice the size.
+template <std::size_t Edge = 1>
 inline void transpose(std::array<Words, kLanes>& square) {
-  if constexpr (kEdge < kLanes) {
+  if constexpr (Edge < kLanes) {
     Words of_one{}, of_other{};
     for (std::size_t l = 0; l < kLanes; ++l) {
-      of_one[l] = static_cast<std::int64_t>((l & kEdge) != 0 ? kLanes + l - kEdge : l);
-      of_other[l] = static_cast<std::int64_t>((l & kEdge) != 0 ? kLanes + l : l + kEdge);
+      of_one[l] = static_cast<std::int64_t>((l & Edge) != 0 ? kLanes + l - Edge : l);
+      of_other[l] = static_cast<std::int64_t>((l & Edge) != 0 ? kLanes + l : l + Edge);
     }
     for (std::size_t i = 0; i < kLanes / 2; ++i) {
-      const std::size_t row = i / kEdge * 2 * kEdge + i % kEdge;
-      const Words one = square[row], other = square[row + kEdge];
+      const std::size_t row = i / Edge * 2 * Edge + i % Edge;
+      const Words one = square[row], other = square[row + Edge];
       pick(one, other, of_one, square[row]);
-      pick(one, other, of_other, square[row + kEdge]);
+      pick(one, other, of_other, square[row + Edge]);
     }
-    transpose<2 * kEdge>(square);
+    transpose<2 * Edge>(square);
   }
 }
 
