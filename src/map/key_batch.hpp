@@ -6,7 +6,9 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "map/tree_order.hpp"
@@ -40,6 +42,14 @@ inline void sort_by_code(std::vector<BrickCells>& all, std::vector<BrickCells>& 
   }
 }
 
+/// A bit for each byte of a word that is not 0, the first one in memory lowest.
+inline std::uint64_t bytes_in_use(std::uint64_t word) {
+  constexpr std::uint64_t kLow = 0x7F7F7F7F7F7F7F7F;
+  if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
+  const std::uint64_t high_bits = (((word & kLow) + kLow) | word) & ~kLow;
+  return ((high_bits >> 7) * 0x0102040810204080) >> 56;
+}
+
 /// Counts how often cells are named within a cube of 128^3 cells, a byte each: what batches that are dense in space
 /// need no sorting for.
 class CountWindow {
@@ -54,30 +64,44 @@ class CountWindow {
     lowest_ = {base(around.x), base(around.y), base(around.z)};
   }
 
-  /// @return false, and nothing is counted, when the key is outside or its counter is full
-  bool count(const BasicKey<std::uint64_t>& key) {
-    const std::uint64_t x = key.x - lowest_.x, y = key.y - lowest_.y, z = key.z - lowest_.z;
-    if ((x | y | z) >= kEdge) return false;
-    const std::uint64_t place = kSpread[x] | kSpread[y] << 1 | kSpread[z] << 2;
-    std::uint8_t& times = counts_[place];
-    if (times == 255) return false;
-    ++times;
-    touched_[place >> 12] |= std::uint64_t{1} << ((place >> 6) & 63);
-    return true;
+  /// Counts keys, and calls other(key) for those that are outside or whose counter is full.
+  template <KeyWord W, class F>
+  void count(std::span<const BasicKey<W>> keys, F&& other) {
+    // By themselves, not as members: to the compiler, a byte that is written may be any part of anything.
+    const BasicKey<std::uint64_t> lowest = lowest_;
+    std::uint8_t* const counts = counts_.data();
+    std::uint8_t* const touched = touched_.data();
+    for (const BasicKey<W>& key : keys) {
+      const auto along = [](W word, std::uint64_t from) { return static_cast<std::uint64_t>(word) - from; };
+      const std::uint64_t x = along(key.x, lowest.x), y = along(key.y, lowest.y), z = along(key.z, lowest.z);
+      if ((x | y | z) < kEdge) {
+        const std::uint64_t place = kSpread[x] | kSpread[y] << 1 | kSpread[z] << 2;
+        if (counts[place] < 255) {
+          ++counts[place];
+          touched[place / kPage] = 1;
+          continue;
+        }
+      }
+      other(key.template as<std::uint64_t>());
+    }
   }
 
-  /// Calls f(lowest cell, counters of its 64 cells) for each brick with counts, and empties the window.
+  /// Counters of the 64 cells of a brick, eight in a word.
+  using Counts = std::array<std::uint64_t, 8>;
+
+  /// Calls f(lowest cell, Counts) for each brick with counts, and empties the window.
   template <class F>
   void take(F&& f) {
-    for (std::size_t word = 0; word < touched_.size(); ++word) {
-      for (std::uint64_t left = touched_[word]; left != 0; left &= left - 1) {
-        const std::uint64_t brick = word * 64 + static_cast<std::uint64_t>(std::countr_zero(left));
-        const std::span<std::uint8_t, 64> counts(counts_.data() + brick * 64, 64);
+    for (std::size_t page = 0; page < touched_.size(); ++page) {
+      if (std::exchange(touched_[page], std::uint8_t{0}) == 0) continue;
+      for (std::uint64_t brick = page * (kPage / 64); brick < (page + 1) * (kPage / 64); ++brick) {
+        Counts counts;
+        std::memcpy(counts.data(), counts_.data() + brick * 64, sizeof counts);
+        if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t eight) { return eight == 0; })) continue;
+        std::memset(counts_.data() + brick * 64, 0, sizeof counts);
         const BasicKey<std::uint64_t> at = key_of_code(brick);
         f(BasicKey<std::uint64_t>{lowest_.x + 4 * at.x, lowest_.y + 4 * at.y, lowest_.z + 4 * at.z}, counts);
-        std::fill(counts.begin(), counts.end(), std::uint8_t{0});
       }
-      touched_[word] = 0;
     }
   }
 
@@ -88,9 +112,11 @@ class CountWindow {
     return spread;
   }();
 
+  static constexpr std::size_t kPage = 4096;  ///< cells
+
   BasicKey<std::uint64_t> lowest_;
   std::vector<std::uint8_t> counts_;
-  std::array<std::uint64_t, (kEdge / 4) * (kEdge / 4) * (kEdge / 4) / 64> touched_{};
+  std::array<std::uint8_t, std::size_t{kEdge} * kEdge * kEdge / kPage> touched_{};  ///< pages
 };
 
 /// The keys of a batch of updates, gathered by brick, about in the tree's order. Its memory is kept for the next batch.
@@ -109,10 +135,7 @@ class KeyBatch {
       for (const BasicKey<W>& key : keys) add(key.template as<std::uint64_t>());
     } else {
       window_.open(middle_of(keys));
-      for (const BasicKey<W>& key : keys) {
-        const auto same = key.template as<std::uint64_t>();
-        if (!window_.count(same)) add(same);
-      }
+      window_.count(keys, [this](const BasicKey<std::uint64_t>& key) { add(key); });
     }
     add_entry();
     if (!entries_.empty()) sort_by_code(entries_, room_);
@@ -129,12 +152,16 @@ class KeyBatch {
   template <class F>
   void take(F&& f) {
     std::array<std::uint32_t, 64> times{};
-    window_.take([&](const BasicKey<std::uint64_t>& lowest, std::span<const std::uint8_t, 64> counts) {
+    window_.take([&](const BasicKey<std::uint64_t>& lowest, const CountWindow::Counts& counts) {
       std::uint64_t once = 0, more = 0;
-      for (std::size_t cell = 0; cell < 64; ++cell) {
-        times[cell] = counts[cell];
-        once |= std::uint64_t{counts[cell] > 0} << cell;
-        more |= std::uint64_t{counts[cell] > 1} << cell;
+      for (std::size_t octant = 0; octant < 8; ++octant) {
+        once |= bytes_in_use(counts[octant]) << (8 * octant);
+        more |= bytes_in_use(counts[octant] & 0xFEFEFEFEFEFEFEFE) << (8 * octant);
+      }
+      if (more != 0) {
+        for (std::size_t cell = 0; cell < 64; ++cell) {
+          times[cell] = reinterpret_cast<const std::uint8_t*>(counts.data())[cell];
+        }
       }
       f(lowest, Cells{once, more, times});
     });
