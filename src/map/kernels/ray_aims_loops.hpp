@@ -81,12 +81,14 @@ inline void store(const Aims& aims, Aim* to) {
   std::array<Numbers, 2> first, second;
   interleave<Numbers, Numbers>(pairs[0], pairs[1], first[0], first[1]);
   interleave<Numbers, Numbers>(pairs[2], pairs[3], second[0], second[1]);
-  std::array<Pairs, 4> out;
+  // Each vector by itself: an array of them would be copied in larger pieces than it was just stored in, which waits.
+  auto* const bytes = reinterpret_cast<std::byte*>(to);
   for (std::size_t half = 0; half < 2; ++half) {
-    interleave<Pairs, Pairs>(reinterpret_cast<Pairs>(first[half]), reinterpret_cast<Pairs>(second[half]), out[2 * half],
-                             out[2 * half + 1]);
+    Pairs low, high;
+    interleave<Pairs, Pairs>(reinterpret_cast<Pairs>(first[half]), reinterpret_cast<Pairs>(second[half]), low, high);
+    std::memcpy(bytes + 2 * half * sizeof low, &low, sizeof low);
+    std::memcpy(bytes + (2 * half + 1) * sizeof low, &high, sizeof high);
   }
-  std::memcpy(static_cast<void*>(to), out.data(), sizeof out);
 }
 
 inline void aim_some(const FanLanes& fan, std::uint32_t squares, const PointLanes& ends, std::uint32_t* to_squares,
@@ -124,6 +126,22 @@ inline std::size_t aim(const RayFan& fan, std::uint32_t squares, std::span<const
   return cells.finish();
 }
 
+/// Bit l: lane l is true.
+inline std::uint64_t bits_of(const Numbers& truth) {
+#ifdef PINGVOX_AVX512
+  return _mm256_movepi32_mask(reinterpret_cast<__m256i>(truth));
+#else
+  std::array<std::uint64_t, kLanes / 2> pairs;
+  std::memcpy(pairs.data(), &truth, sizeof truth);
+  std::uint64_t any = 0;
+  for (const std::uint64_t pair : pairs) any |= pair;
+  if (any == 0) return 0;  // as most often
+  std::uint64_t bits = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) bits |= static_cast<std::uint64_t>(truth[l] & 1) << l;
+  return bits;
+#endif
+}
+
 /// Bit l: ray l may cross the cell.
 template <class Real>
 inline std::uint64_t that_may_cross(const FanLanes& fan, const CellAhead& cell, const Real* ends_m) {
@@ -148,14 +166,7 @@ inline std::uint64_t that_may_cross(const FanLanes& fan, const CellAhead& cell, 
   const Numbers is_astride = magnitude(aims.across * cell.up - aims.up * cell.across) <=
                              (magnitude(aims.across) + magnitude(aims.up)) * cell.half_width;
   const Numbers may = (aims.reach >= cell.near) & is_level & is_astride;
-  std::array<std::uint64_t, kLanes / 2> pairs;
-  std::memcpy(pairs.data(), &may, sizeof may);
-  std::uint64_t any = 0;
-  for (const std::uint64_t pair : pairs) any |= pair;
-  if (any == 0) return 0;  // as most often
-  std::uint64_t bits = 0;
-  for (std::size_t l = 0; l < kLanes; ++l) bits |= static_cast<std::uint64_t>(may[l] & 1) << l;
-  return bits;
+  return bits_of(may);
 }
 
 template <class Point>
