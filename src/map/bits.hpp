@@ -12,6 +12,15 @@ void for_each_bit(std::uint64_t word, F&& f) {
   for (std::uint64_t left = word; left != 0; left &= left - 1) f(static_cast<std::size_t>(std::countr_zero(left)));
 }
 
+/// Bit b set where byte b of a word is not 0.
+constexpr std::uint64_t bytes_in_use(std::uint64_t word) {
+  word |= word >> 4;
+  word |= word >> 2;
+  word |= word >> 1;
+  // Moves the lowest bit of byte b to bit 56 + b.
+  return (word & 0x0101010101010101) * 0x0102040810204080 >> 56;
+}
+
 /// How many bits of a word are set. Without an instruction that not every x86-64 has, and the call for lack of it.
 constexpr std::uint64_t count_bits(std::uint64_t word) {
   word -= word >> 1 & 0x5555555555555555;

@@ -19,12 +19,6 @@ int octant_known(const Brick& brick, int octant) {
   return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
 }
 
-Group group_of(Entry entry) {
-  Group group;
-  if (entry.is_leaf()) group.child.fill(entry);
-  return group;
-}
-
 /// Belief of a cell after more evidence, as raw floats; `updated_by` has the rule.
 float added(float belief, LogOdds evidence, const Clamp& clamp) {
   return updated_by(LogOdds(belief), evidence, clamp).value();
@@ -34,13 +28,6 @@ float clamped(float value, const Clamp& clamp) {
   return std::clamp(value, clamp.lowest.value(), clamp.highest.value());
 }
 
-/// The evidence that each cell of a brick gets alike; nullopt: not all of them do.
-std::optional<LogOdds> for_all_cells(const Votes& votes) {
-  if (votes.missed == kAllCells) return votes.miss;
-  if (votes.hit == kAllCells && votes.hits == nullptr) return votes.all_hits;
-  return std::nullopt;
-}
-
 /// Index of the highest bit that is set. REQUIRES that one is.
 int highest_bit(std::uint64_t word) {
   return 63 - std::countl_zero(word);
@@ -48,27 +35,6 @@ int highest_bit(std::uint64_t word) {
 int highest_bit(WideWord word) {
   const auto high = static_cast<std::uint64_t>(word >> 64);
   return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<std::uint64_t>(word));
-}
-
-/// What a brick became: itself, or less when it is uniform.
-Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
-  const Brick& brick = tree.bricks[index];
-  if (pruning != Pruning::kNever && is_uniform(brick)) {
-    const Entry leaf = Entry::leaf(brick.value[0]);
-    tree.bricks.release(index);
-    return leaf;
-  }
-  return {index, summary_of(brick, parents)};
-}
-
-Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
-  const Group& group = tree.groups[index];
-  if (pruning != Pruning::kNever && is_uniform(group)) {
-    const Entry leaf = group.child[0];
-    tree.groups.release(index);
-    return leaf;
-  }
-  return {index, summary_of(group, parents)};
 }
 
 Entry pruned(BrickTree& tree, Entry entry, int depth, Parents parents) {
@@ -139,6 +105,38 @@ Brick brick_of(Entry entry) {
     brick.value.fill(entry.value);
   }
   return brick;
+}
+
+std::optional<LogOdds> for_all_cells(const Votes& votes) {
+  if (votes.missed == kAllCells) return votes.miss;
+  if (votes.hit == kAllCells && votes.hits == nullptr) return votes.all_hits;
+  return std::nullopt;
+}
+
+Group group_of(Entry entry) {
+  Group group;
+  if (entry.is_leaf()) group.child.fill(entry);
+  return group;
+}
+
+Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+  const Brick& brick = tree.bricks[index];
+  if (pruning != Pruning::kNever && is_uniform(brick)) {
+    const Entry leaf = Entry::leaf(brick.value[0]);
+    tree.bricks.release(index);
+    return leaf;
+  }
+  return {index, summary_of(brick, parents)};
+}
+
+Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+  const Group& group = tree.groups[index];
+  if (pruning != Pruning::kNever && is_uniform(group)) {
+    const Entry leaf = group.child[0];
+    tree.groups.release(index);
+    return leaf;
+  }
+  return {index, summary_of(group, parents)};
 }
 
 CellStates classified(const Brick& brick, const Thresholds& thresholds) {
@@ -293,7 +291,7 @@ Entry& Cursor<W>::entry_at(int depth) {
 }
 
 template <KeyWord W>
-void Cursor<W>::move_to(const BasicKey<W>& key) {
+void Cursor<W>::move_to(const BasicKey<W>& key, int depth) {
   if (is_placed_) {
     if ((((key_.x ^ key.x) | (key_.y ^ key.y) | (key_.z ^ key.z)) >> 2) == 0) {
       key_ = key;
@@ -309,14 +307,14 @@ void Cursor<W>::move_to(const BasicKey<W>& key) {
   is_placed_ = true;
   key_ = key;
   Entry entry = entry_at(reach_);
-  while (reach_ < tree_.brick_depth() && entry.is_inner()) {
+  while (reach_ < depth && entry.is_inner()) {
     const auto at = static_cast<std::size_t>(reach_);
     group_[at] = entry.link;
     stale_[at] = false;
     ++reach_;
     entry = tree_.groups[entry.link].child[static_cast<std::size_t>(octant_at(reach_ - 1))];
   }
-  brick_ = entry.is_inner() ? entry.link : Entry::kNone;
+  brick_ = reach_ == tree_.brick_depth() && entry.is_inner() ? entry.link : Entry::kNone;
 }
 
 template <KeyWord W>
@@ -537,23 +535,17 @@ typename Cursor<W>::Reach Cursor<W>::reach(const BasicKey<W>& key) {
 }
 
 template <KeyWord W>
-void Cursor<W>::look_at(const BasicKey<W>& key, std::uint64_t bricks, PageEntries& entries) {
-  move_to(key);
-  const int depth = tree_.brick_depth() - kPageLevels;
-  if (reach_ <= depth) {
-    entries.fill(entry_at(reach_));
-    return;
-  }
-  const Group& page = tree_.groups[group_[static_cast<std::size_t>(depth)]];
-  for (int o = 0; o < 8; ++o) {
-    if ((bricks & octant_mask(o)) == 0) continue;
-    const Entry entry = page.child[static_cast<std::size_t>(o)];
-    if (entry.is_inner()) {
-      std::copy_n(tree_.groups[entry.link].child.begin(), 8, entries.begin() + o * 8);
-    } else {
-      std::fill_n(entries.begin() + o * 8, 8, entry);
-    }
-  }
+Entry Cursor<W>::look_at(const BasicKey<W>& key, int depth) {
+  assert(reach_ <= depth);
+  move_to(key, depth);
+  return entry_at(reach_);
+}
+
+template <KeyWord W>
+void Cursor<W>::put(int depth, Entry entry) {
+  grow_to(depth);
+  entry_at(depth) = entry;
+  mark_stale_above(depth);
 }
 
 template class Cursor<std::uint64_t>;

@@ -10,7 +10,9 @@
 #include <variant>
 
 #include "map/bits.hpp"
+#include "map/kernels/words.hpp"
 #include "map/key_batch.hpp"
+#include "map/page_votes.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -110,13 +112,6 @@ BasicKey<W> lowest_in(const ScanUpdate::Page& page, std::size_t brick) {
   return {lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
 }
 
-detail::Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick) {
-  if ((page.bricks_hit >> brick & 1) == 0) return {page.missed[brick], scan.miss(), 0, nullptr, {}};
-  const std::uint64_t hit = page.hit[brick];
-  const ScanUpdate::Hits hits = scan.hits(page, brick);
-  return {page.missed[brick] & ~hit, scan.miss(), hit, hits.of_cell, hits.all};
-}
-
 /// Foresees what the tree's storage grows by, brick by brick: an upper bound. Bricks that stay as they are need
 /// nothing: a map at its limit still takes in what it knows already.
 template <KeyWord W>
@@ -158,7 +153,7 @@ std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Cla
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
     detail::for_each_bit(page.bricks, [&](std::size_t brick) {
-      growth.add(lowest_in<W>(page, brick), votes_on(scan, page, brick), Growth<W>::More::kNo);
+      growth.add(lowest_in<W>(page, brick), detail::votes_on(scan, page, brick), Growth<W>::More::kNo);
     });
   }
   return growth.bytes();
@@ -173,53 +168,31 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
   return growth.bytes();
 }
 
-/// Tells which bricks of a page misses leave as they are, because all that is known there is as free as can be. It asks
-/// for one word of a brick and goes nowhere: after some scans from one place that is nearly all there is to do.
-template <KeyWord W>
-class FreeBricks {
- public:
-  FreeBricks(const detail::BrickTree& tree, const detail::CursorRules& rules, LogOdds miss)
-      : tree_(tree),
-        lowest_(rules.clamp.lowest),
-        // Only a maximum tells of each cell.
-        is_asked_(rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax && miss < LogOdds(0.0F) &&
-                  tree.brick_depth() >= detail::kPageLevels) {}
-
-  void go_to(const ScanUpdate::Page& page, detail::Cursor<W>& cursor) {
-    if (is_asked_) cursor.look_at(page.lowest.as<W>(), page.bricks, entries_);
-  }
-  bool stays(std::size_t brick, std::uint64_t missed) const {
-    const detail::Entry entry = entries_[brick];
-    if (entry.is_none() || LogOdds(entry.value) > lowest_) return false;
-    return entry.is_leaf() || (missed & ~tree_.bricks[entry.link].known) == 0;
-  }
-
- private:
-  const detail::BrickTree& tree_;
-  LogOdds lowest_;
-  bool is_asked_;
-  detail::PageEntries entries_;  ///< none where they are not asked for
-};
+void count_votes(const ScanUpdate::Page& page, ApplyReport& report) {
+  report.cells_freed += detail::count_cells(page.missed.data());
+  detail::for_each_bit(page.bricks_hit, [&](std::size_t brick) {
+    report.cells_freed -= detail::count_bits(page.missed[brick] & page.hit[brick]);
+    report.cells_hit += detail::count_bits(page.hit[brick]);
+  });
+}
 
 template <KeyWord W>
 ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
   ApplyReport report;
   detail::Cursor<W> cursor(tree, rules);
-  FreeBricks<W> free_bricks(tree, rules, scan.miss());
+  const int page_depth = tree.brick_depth() - detail::kPageLevels;
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
-    free_bricks.go_to(page, cursor);
-    detail::for_each_bit(page.bricks, [&](std::size_t brick) {
-      const bool has_hits = (page.bricks_hit >> brick & 1) != 0;
-      if (!has_hits && free_bricks.stays(brick, page.missed[brick])) {
-        report.cells_freed += detail::count_bits(page.missed[brick]);
-        return;
-      }
-      const detail::Votes votes = votes_on(scan, page, brick);
-      report.cells_freed += detail::count_bits(votes.missed);
-      report.cells_hit += detail::count_bits(votes.hit);
-      cursor.vote(lowest_in<W>(page, brick), votes);
-    });
+    count_votes(page, report);
+    if (page_depth < 0) {
+      detail::for_each_bit(page.bricks, [&](std::size_t brick) {
+        cursor.vote(lowest_in<W>(page, brick), detail::votes_on(scan, page, brick));
+      });
+      continue;
+    }
+    const detail::Entry before = cursor.look_at(page.lowest.as<W>(), page_depth);
+    const detail::Entry after = detail::voted(tree, rules, scan, page, before);
+    if (after != before) cursor.put(page_depth, after);
   }
   cursor.flush();
   return report;

@@ -134,12 +134,29 @@ TEST(BrickKernels, WordsInUseAreThoseWithABit) {
   }
 }
 
+TEST(BrickKernels, CellsAreCountedInAllWords) {
+  for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::array<std::uint64_t, 64> words{};
+    std::uint64_t count = 0;
+    for (std::uint64_t& word : words) {
+      // Of a page in which nothing is marked, one in which everything is, and those in between.
+      word = seed % 10 == 0 ? 0 : (seed % 10 == 1 ? ~std::uint64_t{0} : random() & random());
+      count += static_cast<std::uint64_t>(std::popcount(word));
+    }
+    for (const Lanes lanes : lanes_here()) EXPECT_EQ(count_cells(words.data(), lanes), count);
+  }
+}
+
 TEST(BrickKernels, MasksOfOctantsAreTheirBytes) {
   for (unsigned octants = 0; octants < 256; ++octants) {
     std::uint64_t cells = 0;
     for (std::size_t o = 0; o < 8; ++o) cells |= (octants >> o & 1) != 0 ? std::uint64_t{0xFF} << (o * 8) : 0;
     EXPECT_EQ(cells_of_octants(octants), cells);
     EXPECT_EQ(full_bytes(cells), octants);
+    EXPECT_EQ(bytes_in_use(cells), octants);
+    EXPECT_EQ(bytes_in_use(cells & 0x0180401008040220), octants);  // one bit of each byte
   }
 }
 

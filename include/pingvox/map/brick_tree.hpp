@@ -167,8 +167,13 @@ struct Votes {
 /// Adds evidence to a brick. @return whether anything changed
 bool add(const Votes& votes, const Clamp& clamp, Brick& brick);
 
+/// The evidence that each cell of a brick gets alike; nullopt: not all of them do.
+std::optional<LogOdds> for_all_cells(const Votes& votes);
+
 /// A brick that stands for an entry without one: of an unknown or a joined cell.
 Brick brick_of(Entry entry);
+/// The same for a group.
+Group group_of(Entry entry);
 
 /// Which cells of a brick are what. Those in neither mask are unknown, or in between the thresholds.
 struct CellStates {
@@ -186,16 +191,17 @@ Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parent
 /// than 64 levels.
 std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
+/// What a brick that changed became: itself, or less when it is uniform.
+Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
+/// The same for a group whose children are settled.
+Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
+
 /// Frees all that hangs below an entry of `depth`.
 void release_below(BrickTree& tree, Entry entry, int depth);
 /// Recomputes all inner nodes, and joins equal leaves everywhere. Sets `pruned`, and the shortcut.
 void prune_all(BrickTree& tree, Parents parents);
 /// Recomputes and returns `a` with the leaves of `b` (of another tree of the same levels) added, clamped.
 Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
-
-/// Levels from a page of 4^3 bricks (ScanUpdate::Page) to its bricks, and its bricks' entries, in the tree's order.
-inline constexpr int kPageLevels = 2;
-using PageEntries = std::array<Entry, 64>;
 
 /// How a cursor changes a tree.
 struct CursorRules {
@@ -231,12 +237,16 @@ class Cursor {
     Entry end;  ///< inner: the brick is there
   };
   Reach reach(const BasicKey<W>& key);
-  /// What the tree has for some bricks (a bit each) of the page whose lowest cell is `key`. Moves there.
-  /// REQUIRES brick_depth >= kPageLevels
-  void look_at(const BasicKey<W>& key, std::uint64_t bricks, PageEntries& entries);
+  /// The entry of the node of `depth` that holds `key`, or of the leaf (or what is not known) that this is part of.
+  /// Moves there. REQUIRES that the cursor was nowhere deeper.
+  Entry look_at(const BasicKey<W>& key, int depth);
+  /// Puts what became of the node that was looked at last there.
+  void put(int depth, Entry entry);
 
  private:
-  void move_to(const BasicKey<W>& key);
+  void move_to(const BasicKey<W>& key) { move_to(key, tree_.brick_depth()); }
+  /// To a node of `depth` at most.
+  void move_to(const BasicKey<W>& key, int depth);
   Entry& entry_at(int depth);
   int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
   void grow_to(int depth);

@@ -10,4 +10,7 @@ namespace pingvox::detail {
 /// for each of 64 words: its bit set where the word is not 0
 std::uint64_t words_in_use(const std::uint64_t* words, Lanes lanes = widest_lanes());
 
+/// for each of 64 words: how many of its bits are set, all together
+std::uint64_t count_cells(const std::uint64_t* words, Lanes lanes = widest_lanes());
+
 }  // namespace pingvox::detail

@@ -15,3 +15,19 @@ inline std::uint64_t words_in_use(const std::uint64_t* words) {
   for (std::size_t l = 0; l < kLanes; ++l) all |= used[l];
   return static_cast<std::uint64_t>(all);
 }
+
+inline std::uint64_t count_cells(const std::uint64_t* words) {
+  using Unsigned = std::uint64_t __attribute__((vector_size(kLanes * sizeof(std::uint64_t))));
+  Unsigned quarters{};  // sums of 16 bits: there are 4096 bits in all
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    Unsigned some;
+    std::memcpy(&some, words + first, sizeof some);
+    some -= some >> 1 & 0x5555555555555555;
+    some = (some & 0x3333333333333333) + (some >> 2 & 0x3333333333333333);
+    some = (some + (some >> 4)) & 0x0F0F0F0F0F0F0F0F;
+    quarters += (some + (some >> 8)) & 0x00FF00FF00FF00FF;
+  }
+  std::uint64_t all = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) all += quarters[l];
+  return all * 0x0001000100010001 >> 48;
+}

@@ -1,0 +1,114 @@
+#include "map/page_votes.hpp"
+
+#include <cassert>
+
+#include "map/bits.hpp"
+
+namespace pingvox::detail {
+namespace {
+
+/// The votes of one page. A node that changed is settled once, when all of its children are.
+class PageVoter {
+ public:
+  PageVoter(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page)
+      : tree_(tree),
+        rules_(rules),
+        scan_(scan),
+        page_(page),
+        // Only a maximum tells of each cell.
+        may_stay_(rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax && scan.miss() < LogOdds(0.0F)) {
+  }
+
+  /// What becomes of the page.
+  Entry page(Entry entry) {
+    return children(entry, bytes_in_use(page_.bricks), [this](std::size_t o, Entry octant) {
+      if (stays(octant, o)) return octant;
+      return children(octant, page_.bricks >> (8 * o) & 0xFF,
+                      [this, o](std::size_t i, Entry at) { return brick(at, 8 * o + i); });
+    });
+  }
+
+ private:
+  /// What becomes of a node.
+  /// @param which  of its children have votes: a bit each
+  /// @param f      f(number, entry) is what becomes of one of them
+  template <class F>
+  Entry children(Entry entry, std::uint64_t which, F&& f) {
+    bool changed = rules_.early_drop == EarlyDrop::kOff;
+    if (!entry.is_inner()) {
+      Group group = group_of(entry);
+      for_each_bit(which, [&](std::size_t o) {
+        const Entry now = f(o, group.child[o]);
+        changed |= now != group.child[o];
+        group.child[o] = now;
+      });
+      return changed ? built(tree_, group, rules_.parents) : entry;
+    }
+    for_each_bit(which, [&](std::size_t o) {
+      // Groups may be elsewhere when f has made one.
+      const Entry before = tree_.groups[entry.link].child[o], now = f(o, before);
+      if (now == before) return;
+      tree_.groups[entry.link].child[o] = now;
+      changed = true;
+    });
+    return changed ? settled_group(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
+  }
+
+  Entry brick(Entry entry, std::size_t number) {
+    const Votes votes = votes_on(scan_, page_, number);
+    if (entry.is_inner()) {
+      const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
+      return changed ? settled_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
+    }
+    if (const auto evidence = for_all_cells(votes)) {
+      // The same for the whole of a leaf: what becomes of it is a leaf.
+      return *evidence == LogOdds(0.0F)
+                 ? entry
+                 : Entry::leaf(updated_by(LogOdds(entry.value), *evidence, rules_.clamp).value());
+    }
+    Brick made = brick_of(entry);
+    if (!add(votes, rules_.clamp, made)) return entry;
+    if (is_uniform(made)) return Entry::leaf(made.value[0]);
+    return {tree_.bricks.allocate(made), summary_of(made, rules_.parents)};
+  }
+
+  /// Whether an octant stays as it is because there are misses only, and all that is known there is as free as can be.
+  /// That asks for one word of each brick: after some scans from one place that is nearly all there is to do.
+  bool stays(Entry octant, std::size_t o) const {
+    if (!may_stay_ || LogOdds(octant.value) > rules_.clamp.lowest || (page_.bricks_hit >> (8 * o) & 0xFF) != 0)
+      return false;
+    if (octant.is_leaf()) return true;
+    if (octant.is_none()) return false;
+    const Group& group = tree_.groups[octant.link];
+    std::uint64_t unknown = 0;
+    for_each_bit(page_.bricks >> (8 * o) & 0xFF, [&](std::size_t i) {
+      const Entry& at = group.child[i];
+      if (at.is_leaf()) return;
+      unknown |= page_.missed[8 * o + i] & ~(at.is_inner() ? tree_.bricks[at.link].known : 0);
+    });
+    return unknown == 0;
+  }
+
+  BrickTree& tree_;
+  const CursorRules& rules_;
+  const ScanUpdate& scan_;
+  const ScanUpdate::Page& page_;
+  bool may_stay_;
+};
+
+}  // namespace
+
+Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick) {
+  if ((page.bricks_hit >> brick & 1) == 0) return {page.missed[brick], scan.miss(), 0, nullptr, {}};
+  const std::uint64_t hit = page.hit[brick];
+  const ScanUpdate::Hits hits = scan.hits(page, brick);
+  return {page.missed[brick] & ~hit, scan.miss(), hit, hits.of_cell, hits.all};
+}
+
+Entry voted(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page,
+            Entry entry) {
+  assert(tree.brick_depth() >= kPageLevels && rules.pruning != Pruning::kNever);
+  return PageVoter(tree, rules, scan, page).page(entry);
+}
+
+}  // namespace pingvox::detail
