@@ -22,10 +22,14 @@ class Arena {
 
   explicit Arena(Pages pages = Pages::kHuge) : pages_(pages) {}
   Arena(Arena&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)), pages_(other.pages_) {}
+      : data_(std::exchange(other.data_, nullptr)),
+        size_(std::exchange(other.size_, 0)),
+        room_(std::exchange(other.room_, 0)),
+        pages_(other.pages_) {}
   Arena& operator=(Arena&& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
+    std::swap(room_, other.room_);
     std::swap(pages_, other.pages_);
     return *this;
   }
@@ -40,7 +44,8 @@ class Arena {
 
  private:
   std::byte* data_ = nullptr;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0;  ///< that may be used
+  std::size_t room_ = 0;  ///< of addresses: what is behind size_ was never touched
   Pages pages_;
 };
 
