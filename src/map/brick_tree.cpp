@@ -544,7 +544,10 @@ Entry Cursor<W>::look_at(const BasicKey<W>& key, int depth) {
 template <KeyWord W>
 void Cursor<W>::put(int depth, Entry entry) {
   grow_to(depth);
-  entry_at(depth) = entry;
+  Entry& before = entry_at(depth);
+  // Of a leaf the shortcut holds the value, too.
+  if (!entry.is_inner() || entry.link != before.link) drop_shortcut_at(depth);
+  before = entry;
   mark_stale_above(depth);
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "map/bits.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/brick_tree.hpp"
@@ -40,14 +41,6 @@ inline void sort_by_code(std::vector<BrickCells>& all, std::vector<BrickCells>& 
     for (const BrickCells& one : all) sorted[place[(one.code >> shift) & kMask]++] = one;
     all.swap(sorted);
   }
-}
-
-/// A bit for each byte of a word that is not 0, the first one in memory lowest.
-inline std::uint64_t bytes_in_use(std::uint64_t word) {
-  constexpr std::uint64_t kLow = 0x7F7F7F7F7F7F7F7F;
-  if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
-  const std::uint64_t high_bits = (((word & kLow) + kLow) | word) & ~kLow;
-  return ((high_bits >> 7) * 0x0102040810204080) >> 56;
 }
 
 /// Counts how often cells are named within a cube of 128^3 cells, a byte each: what batches that are dense in space
@@ -86,7 +79,7 @@ class CountWindow {
     }
   }
 
-  /// Counters of the 64 cells of a brick, eight in a word.
+  /// Counters of the 64 cells of a brick, those of an octant in a word: its first cell's is the lowest byte.
   using Counts = std::array<std::uint64_t, 8>;
 
   /// Calls f(lowest cell, Counts) for each brick with counts, and empties the window.
@@ -97,6 +90,9 @@ class CountWindow {
       for (std::uint64_t brick = page * (kPage / 64); brick < (page + 1) * (kPage / 64); ++brick) {
         Counts counts;
         std::memcpy(counts.data(), counts_.data() + brick * 64, sizeof counts);
+        if constexpr (std::endian::native == std::endian::big) {
+          for (std::uint64_t& eight : counts) eight = __builtin_bswap64(eight);
+        }
         if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t eight) { return eight == 0; })) continue;
         std::memset(counts_.data() + brick * 64, 0, sizeof counts);
         const BasicKey<std::uint64_t> at = key_of_code(brick);
@@ -160,7 +156,7 @@ class KeyBatch {
       }
       if (more != 0) {
         for (std::size_t cell = 0; cell < 64; ++cell) {
-          times[cell] = reinterpret_cast<const std::uint8_t*>(counts.data())[cell];
+          times[cell] = static_cast<std::uint8_t>(counts[cell / 8] >> (8 * (cell % 8)));
         }
       }
       f(lowest, Cells{once, more, times});

@@ -1,10 +1,15 @@
 #include <array>
 #include <bit>
 
+#include "map/page_votes.hpp"
 #include "pingvox/map/brick_tree.hpp"
 
 namespace pingvox::detail {
 namespace {
+
+/// That of pages. Links below come and go: with them it would be made again after each scan, and votes on a page change
+/// them by themselves.
+constexpr int kLowestLevel = 2 + kPageLevels;
 
 /// Calls f(child, place) for the known children of eight nodes: a place is 0..3 along each axis.
 template <class F>
@@ -43,10 +48,11 @@ std::optional<Shortcut> one_below(const BrickTree& tree, const Shortcut& above) 
 }  // namespace
 
 std::optional<Shortcut> shortcut_of(const BrickTree& tree) {
-  // Links to bricks come and go: with them it would be made again after each scan.
-  if (!tree.root.is_inner() || tree.brick_depth() < 2 || tree.levels > kLevelsOf<std::uint64_t>) return std::nullopt;
+  if (!tree.root.is_inner() || tree.levels <= kLowestLevel || tree.levels > kLevelsOf<std::uint64_t>) {
+    return std::nullopt;
+  }
   std::optional<Shortcut> found = one_below(tree, {tree.levels, {}, {tree.root}});
-  while (found && found->level > 3) {
+  while (found && found->level > kLowestLevel) {
     const auto next = one_below(tree, *found);
     if (!next) break;
     found = next;

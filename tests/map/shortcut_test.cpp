@@ -64,7 +64,7 @@ class LookUps {
       case 3:
         return fill_cube();
       case 4:
-        return scan();
+        return random_() % 4 == 0 ? scan_cube() : scan();
       case 5:
         return batch();
       case 6:
@@ -151,19 +151,24 @@ class LookUps {
 
   // Until its nodes are one leaf, cell by cell.
   void fill_cube() {
-    const WideWord inside = (WideWord{1} << (2 + random_() % 3)) - 1, used = test::highest_word(map_.lattice().depth());
+    const WideWord inside = (WideWord{1} << (2 + random_() % 3)) - 1;
     const WideKey some = region_.key();
     Editor editor = map_.edit(static_cast<Pruning>(random_() % 3));
+    for_each_in_cube(some, inside, [&](const WideKey& key) { editor.update(key, LogOdds(4.0F)); });
+    look_up(20);
+  }
+
+  /// Calls f(key) for the cells of the cube of inside + 1 cells along each axis that holds a key.
+  template <class F>
+  void for_each_in_cube(const WideKey& some, WideWord inside, F&& f) const {
+    const WideWord used = test::highest_word(map_.lattice().depth());
     for (WideWord i = 0; i <= inside; ++i) {
       for (WideWord j = 0; j <= inside; ++j) {
         for (WideWord k = 0; k <= inside; ++k) {
-          editor.update(WideKey{((some.x & ~inside) + i) & used, ((some.y & ~inside) + j) & used,
-                                ((some.z & ~inside) + k) & used},
-                        LogOdds(4.0F));
+          f(WideKey{((some.x & ~inside) + i) & used, ((some.y & ~inside) + j) & used, ((some.z & ~inside) + k) & used});
         }
       }
     }
-    look_up(20);
   }
 
   void scan() {
@@ -173,6 +178,17 @@ class LookUps {
       scan.add_hit(region_.key(), LogOdds(0.8F));
     }
     refused_ += map_.apply(scan) ? 0 : 1;
+  }
+
+  // Pages become leaves, and these others, at once.
+  void scan_cube() {
+    const WideKey some = region_.key();
+    for (const LogOdds miss : {LogOdds(-0.5F), LogOdds(-0.25F)}) {
+      ScanUpdate scan(miss);
+      for_each_in_cube(some, 31, [&](const WideKey& key) { scan.add_miss(key); });
+      refused_ += map_.apply(scan) ? 0 : 1;
+      ASSERT_NO_FATAL_FAILURE(check());
+    }
   }
 
   void batch() {
@@ -265,8 +281,8 @@ TEST(Shortcut, LeadsToEightNodesThatAreNoWiderThanTheMap) {
   const std::vector<WideKey> at_the_border{{65535, 0, 127}, {65520, 15, 128}};
   const OccupancyMap border = map_of(16, at_the_border);
   ASSERT_TRUE(border.tree().shortcut);
-  EXPECT_EQ(border.tree().shortcut->level, 3);
-  EXPECT_EQ(border.tree().shortcut->lowest, (BasicKey<std::uint64_t>{8190, 0, 15}));
+  EXPECT_EQ(border.tree().shortcut->level, 4);
+  EXPECT_EQ(border.tree().shortcut->lowest, (BasicKey<std::uint64_t>{4095, 0, 7}));
   EXPECT_EQ(border.at(WideKey{65535, 0, 127}), LogOdds(0.8F));
   EXPECT_EQ(border.at(WideKey{0, 0, 127}), std::nullopt);
 
@@ -282,8 +298,8 @@ TEST(Shortcut, IsNoneWhereItLeadsNowhere) {
   one_leaf.edit().set(WideKey{}, 0, LogOdds(1.0F));
   EXPECT_FALSE(one_leaf.tree().shortcut);
   const std::vector<WideKey> keys{{0, 0, 0}};
-  for (const int depth : {1, 2, 3, 65, 128}) EXPECT_FALSE(map_of(depth, keys).tree().shortcut);
-  for (const int depth : {4, 64}) EXPECT_TRUE(map_of(depth, keys).tree().shortcut);
+  for (const int depth : {1, 2, 3, 4, 65, 128}) EXPECT_FALSE(map_of(depth, keys).tree().shortcut);
+  for (const int depth : {5, 64}) EXPECT_TRUE(map_of(depth, keys).tree().shortcut);
 
   // What may be left where memory ran out between making a group and what it is for.
   BrickTree tree(16);

@@ -187,7 +187,7 @@ Entry built(BrickTree& tree, const Group& group, Parents parents);
 /// The same for a brick of cells that are as sure as can be. REQUIRES masks without a common bit.
 Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
 
-/// The shortcut that leads farthest down, though not to bricks. None where it would lead nowhere, nor in a tree of more
+/// The shortcut that leads farthest down, though not below pages. None where it would lead nowhere, nor in a tree of more
 /// than 64 levels.
 std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
