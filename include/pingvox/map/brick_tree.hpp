@@ -238,7 +238,7 @@ class Cursor {
   };
   Reach reach(const BasicKey<W>& key);
   /// The entry of the node of `depth` that holds `key`, or of the leaf (or what is not known) that this is part of.
-  /// Moves there. REQUIRES that the cursor was nowhere deeper.
+  /// Moves there; what hangs below may be changed before the next move. REQUIRES that the cursor was nowhere deeper.
   Entry look_at(const BasicKey<W>& key, int depth);
   /// Puts what became of the node that was looked at last there.
   void put(int depth, Entry entry);
