@@ -16,8 +16,10 @@ namespace pingvox::detail {
 /// What the last cells of rays say.
 enum class RayEnds { kHit, kNothing };
 
-/// What a DenseFan works in. Nothing in it means anything between fans.
+/// What tracers of fans work in. Nothing in it means anything between fans.
 struct FanRoom {
+  std::vector<std::uint64_t> cells;  ///< places of those with points
+  std::vector<Eigen::Vector3d> middles_m;
   RayRuns rays;
   std::vector<Eigen::Vector3d> walked_ends_m;
   std::vector<ReadyRay> ready;

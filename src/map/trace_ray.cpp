@@ -104,33 +104,35 @@ class FanTracer {
   /// long as the scan.
   template <class Point>
   std::span<const Eigen::Vector3d> cells_of(std::span<const Point> points_m) {
-    middles_m_.clear();
+    std::vector<Eigen::Vector3d>& middles_m = room().middles_m;
+    middles_m.clear();
     std::set<WideKey> seen;  // of those outside of the window
     const auto add_singly = [&](const Point& point) {
       const Eigen::Vector3d& point_m = point.template cast<double>();
       const auto key = lattice_.key_of<WideWord>(point_m);
-      if (!key || seen.insert(*key).second) middles_m_.push_back(key ? lattice_.centre_of(*key) : point_m);
+      if (!key || seen.insert(*key).second) middles_m.push_back(key ? lattice_.centre_of(*key) : point_m);
     };
     if (window_ == nullptr) {
       std::for_each(points_m.begin(), points_m.end(), add_singly);
-      return middles_m_;
+      return middles_m;
     }
-    found_.clear();
+    std::vector<std::uint64_t>& found = room().cells;
+    found.clear();
     std::vector<std::uint32_t> outside;
     std::array<std::uint64_t, kBlock + detail::kWrittenBeyond> places;
     for_each_block(points_m, [&](std::span<const Point> block) {
       outside.clear();
       const std::size_t count = detail::find_cells(lanes_, fan_, block, places, outside);
       const std::size_t fresh = detail::mark_hits(std::span(places).first(count), *window_, places.data());
-      found_.insert(found_.end(), places.begin(), places.begin() + static_cast<std::ptrdiff_t>(fresh));
+      found.insert(found.end(), places.begin(), places.begin() + static_cast<std::ptrdiff_t>(fresh));
       for (const std::uint32_t i : outside) add_singly(block[i]);
     });
-    const std::size_t singly = middles_m_.size();
-    middles_m_.resize(singly + found_.size());
-    detail::find_middles(lanes_, fan_, lattice_.resolution_m(), found_, std::span(middles_m_).subspan(singly));
+    const std::size_t singly = middles_m.size();
+    middles_m.resize(singly + found.size());
+    detail::find_middles(lanes_, fan_, lattice_.resolution_m(), found, std::span(middles_m).subspan(singly));
     // Marked only to know it again; whether it is a hit its range decides.
-    for (const std::uint64_t place : found_) window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
-    return middles_m_;
+    for (const std::uint64_t place : found) window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
+    return middles_m;
   }
 
   /// Hands what was marked to the scan. To be called last.
@@ -144,6 +146,8 @@ class FanTracer {
   static constexpr std::size_t kBlock = 2048;
   // Of directions, at the far ends of the rays.
   static constexpr double kSquaresPerCell = 0.8;
+
+  detail::FanRoom& room() { return window_ != nullptr ? window_->fan_room() : own_room_; }
 
   template <class Point, class F>
   static void for_each_block(std::span<const Point> all, F&& f) {
@@ -240,8 +244,7 @@ class FanTracer {
   std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
   detail::Lanes lanes_ = detail::widest_lanes();
   std::vector<std::uint32_t> others_;
-  std::vector<std::uint64_t> found_;        ///< places of cells with points
-  std::vector<Eigen::Vector3d> middles_m_;  ///< of these, and of others
+  detail::FanRoom own_room_;  ///< without a window
 };
 
 template <class Point>
