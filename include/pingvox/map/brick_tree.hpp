@@ -187,8 +187,8 @@ Entry built(BrickTree& tree, const Group& group, Parents parents);
 /// The same for a brick of cells that are as sure as can be. REQUIRES masks without a common bit.
 Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
 
-/// The shortcut that leads farthest down, though not below pages. None where it would lead nowhere, nor in a tree of more
-/// than 64 levels.
+/// The shortcut that leads farthest down, though not below pages. None where it would lead nowhere, nor in a tree of
+/// more than 64 levels.
 std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
 /// What a brick that changed became: itself, or less when it is uniform.
