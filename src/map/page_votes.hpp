@@ -14,7 +14,8 @@ inline constexpr int kPageLevels = 2;
 Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick);
 
 /// Adds what a scan says of a page to a tree: from the page's node down, without a path that is kept for each brick.
-/// Nothing is made where nothing changes. Throws std::bad_alloc; parents are to be made right by prune_all then.
+/// Nothing is made where nothing changes. Throws std::bad_alloc; parents are to be made right by prune_all then, and of
+/// the few nodes made for this page some may be lost until the map is cleared.
 /// @param entry  of the page's node; where that is part of a leaf, or of a node that nothing is known of, its entry
 /// @return what the node is now, to be put there
 /// REQUIRES brick_depth >= kPageLevels and pruning

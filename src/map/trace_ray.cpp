@@ -101,7 +101,7 @@ class FanTracer {
   }
 
   /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are. They last as
-  /// long as the scan.
+  /// long as the tracer, and until it is asked again.
   template <class Point>
   std::span<const Eigen::Vector3d> cells_of(std::span<const Point> points_m) {
     std::vector<Eigen::Vector3d>& middles_m = room().middles_m;
@@ -226,12 +226,6 @@ class FanTracer {
       return n < 0 ? centre - static_cast<WideWord>(-n) : centre + static_cast<WideWord>(n);
     };
     return {word(cell[0]), word(cell[1]), word(cell[2])};
-  }
-
-  WideKey key_at(std::uint64_t place) const {
-    const BasicKey<std::uint64_t> at = detail::key_of_code(place);
-    const WideKey lowest = key_of(fan_.window_lowest);
-    return {lowest.x + at.x, lowest.y + at.y, lowest.z + at.z};
   }
 
   const Lattice& lattice_;

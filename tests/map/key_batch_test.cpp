@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <limits>
 #include <map>
 #include <random>
 #include <tuple>
@@ -15,12 +18,20 @@ namespace {
 
 using Place = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t>;
 
+/// Of the keys of a width that fit into a batch, or a little less.
+template <KeyWord W>
+std::uint64_t middle_of_range() {
+  return std::min<std::uint64_t>((std::uint64_t{1} << 20) - 1, std::numeric_limits<W>::max()) / 2;
+}
+
 /// Keys in a cube of `edge` cells, in no order; some of them again and again, some far away.
 template <KeyWord W>
 std::vector<BasicKey<W>> drawn_keys(std::mt19937_64& random, std::size_t count, std::uint64_t edge) {
   std::vector<BasicKey<W>> keys;
-  const std::uint64_t most = std::min<std::uint64_t>((std::uint64_t{1} << 20) - 1, std::numeric_limits<W>::max());
-  const auto word = [&](std::uint64_t among) { return static_cast<W>((most / 2 + random() % among) & most); };
+  const std::uint64_t most = 2 * middle_of_range<W>() + 1;
+  const auto word = [&](std::uint64_t among) {
+    return static_cast<W>((middle_of_range<W>() + random() % among) & most);
+  };
   while (keys.size() < count) {
     const std::uint64_t kind = random() % 1000;
     const BasicKey<W> key =
@@ -51,7 +62,7 @@ std::map<Place, std::uint64_t> taken_from(KeyBatch& batch) {
 // no whole block; counts that are left for the next batch; a byte taken for another one.
 TEST(KeyBatch, TellsHowOftenEachCellIsNamed) {
   KeyBatch batch;
-  std::size_t often = 0, outside = 0;
+  std::size_t often = 0, outside = 0, cells = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
@@ -63,15 +74,20 @@ TEST(KeyBatch, TellsHowOftenEachCellIsNamed) {
       for (const BasicKey<W>& key : keys) ++expected[{key.x, key.y, key.z}];
       batch.gather(std::span<const BasicKey<W>>(keys));
       ASSERT_EQ(taken_from(batch), expected);
-      for (const auto& [place, times] : expected) often += times > 255 ? 1 : 0;
-      outside += expected.size();
+      const std::uint64_t middle = middle_of_range<W>();
+      for (const auto& [place, times] : expected) {
+        often += times > 255 ? 1 : 0;
+        outside += count > KeyBatch::kWorthAWindow && std::get<0>(place) + 1000 < middle ? 1 : 0;
+      }
+      cells += expected.size();
     };
     expect_counts.operator()<std::uint8_t>();
     expect_counts.operator()<std::uint16_t>();
     expect_counts.operator()<std::uint32_t>();
   }
   EXPECT_GT(often, 100U);
-  EXPECT_GT(outside, 100'000U);
+  EXPECT_GT(outside, 100U);
+  EXPECT_GT(cells, 100'000U);
 }
 
 // Kills evidence that is added once for a cell that is named twice, or in another order than one by one.

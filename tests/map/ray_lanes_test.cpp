@@ -100,7 +100,7 @@ TEST(RayLanes, FindTheMiddlesOfCells) {
     RayFan fan;
     for (std::int64_t& lowest : fan.window_lowest) lowest = static_cast<std::int64_t>(random() % 16384) - 8192;
     std::vector<std::uint64_t> places(count);
-    std::vector<Eigen::Vector3d> expected, middles(count);
+    std::vector<Eigen::Vector3d> expected;
     for (std::uint64_t& place : places) {
       place = random() >> (64 - 3 * ScanWindow::kMostBits);
       const BasicKey<std::uint64_t> at = key_of_code(place);
@@ -110,6 +110,7 @@ TEST(RayLanes, FindTheMiddlesOfCells) {
       expected.push_back(lattice.centre_of(Key{word(0, at.x), word(1, at.y), word(2, at.z)}));
     }
     for (const Lanes lanes : lanes_here()) {
+      std::vector<Eigen::Vector3d> middles(count);
       find_middles(lanes, fan, lattice.resolution_m(), places, middles);
       ASSERT_EQ(middles, expected);
     }

@@ -22,7 +22,8 @@ struct Case {
   PointScanOptions options;
 };
 
-/// Few points and many, in clumps that share cells; some are no numbers, and in small lattices some lie outside.
+/// Few points and many, in clumps that share cells; some are no numbers, and in small lattices some lie outside. Now
+/// and then one is so far away that no window is made for all of them.
 Case drawn_case(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&](double low, double high) {
@@ -39,7 +40,7 @@ Case drawn_case(std::uint64_t seed) {
     }
   }
   one.points_m.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
-  one.points_m.emplace_back(1e30F, 0.0F, 0.0F);
+  if (seed % 7 == 1) one.points_m.emplace_back(1e30F, 0.0F, 0.0F);
   if (seed % 2 == 0) one.options.max_range_m = 2.5;
   if (seed % 5 == 0) one.options.ray = RayAlgorithm::kBresenham;
   return one;

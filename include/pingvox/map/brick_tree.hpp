@@ -88,7 +88,8 @@ struct BrickTree {
   explicit BrickTree(int lattice_depth)
       : levels(lattice_depth < 2 ? 2 : lattice_depth), extra_levels(levels - lattice_depth) {}
   BrickTree(const BrickTree&) = default;
-  BrickTree& operator=(const BrickTree&) = default;
+  /// Throws std::bad_alloc, as copying does; then it is as it was.
+  BrickTree& operator=(const BrickTree& other) { return *this = BrickTree(other); }
   /// Leaves an empty tree of the same levels behind.
   BrickTree(BrickTree&& other) noexcept
       : levels(other.levels),
@@ -211,9 +212,9 @@ struct CursorRules {
   Clamp clamp{};
 };
 
-/// A place in a tree and the path to it: the one piece of code that changes trees. Moving on settles what it leaves, so
-/// that keys in the tree's order (or near it) cost a few steps each and every parent is recomputed once.
-/// Two widths are compiled: 64 bits, and wide for lattices that are deeper.
+/// A place in a tree and the path to it: what changes trees (below pages so does `voted`, map/page_votes.hpp). Moving
+/// on settles what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every parent is
+/// recomputed once. Two widths are compiled: 64 bits, and wide for lattices that are deeper.
 template <KeyWord W>
 class Cursor {
  public:

@@ -12,7 +12,8 @@
 namespace pingvox::detail {
 
 /// Room for a growing array of bytes, page-aligned and zeroed. Growing keeps the content and may move it; room that was
-/// never touched costs no memory. On Linux it asks for huge pages and grows without copying.
+/// never touched costs no memory, but for a step of 64 KB that is made ready. On Linux it asks for huge pages and grows
+/// without copying.
 class Arena {
  public:
   enum class Pages {

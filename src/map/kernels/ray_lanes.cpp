@@ -1,6 +1,7 @@
 #include "map/kernels/ray_lanes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>

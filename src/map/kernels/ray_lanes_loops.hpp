@@ -76,8 +76,8 @@ inline void transpose(std::array<Words, kLanes>& square) {
   }
 }
 
-/// ReadyRays as words, side by side: those of its next faces, of how far they are apart, then these two.
-constexpr std::size_t kCounts = 6, kEnd = 7, kWordsOfRay = 8;
+/// ReadyRays as words, side by side: next faces, how far they are apart, faces left with ways ahead, ends.
+constexpr std::size_t kCounts = 6, kWordsOfRay = 8;
 static_assert(sizeof(ReadyRay) == kWordsOfRay * sizeof(std::int64_t) && kWordsOfRay % kLanes == 0);
 constexpr int kLeftAt = std::endian::native == std::endian::little ? 0 : 32, kAheadAt = 32 - kLeftAt;
 using RayWords = std::array<Words, kWordsOfRay>;

@@ -1,4 +1,4 @@
-// The loop over words, included by words.cpp once for each kind of machine (see ray_lanes_loops.hpp).
+// The loops over words, included by words.cpp once for each kind of machine (see ray_lanes_loops.hpp).
 
 #include "map/kernels/doubles_loops.hpp"
 
