@@ -177,8 +177,8 @@ void DenseFan<Point>::ask_brick(std::uint64_t brick) {
     border |= along.ahead(here) | along.behind(here) | along.before_next(marked(next_number(brick, axis, all_bricks))) |
               along.after_last(marked(number_before(brick, axis, all_bricks)));
   }
-  if ((border & open) != 0)
-    asked |= room_.rays.take_some_across(corner_of(brick * 64), border & open, ends_m_, room_.found);
+  if ((border & open) == 0) return;
+  asked |= room_.rays.take_some_across(corner_of(brick * 64), border & open, ends_m_, room_.found);
 }
 
 template <class Point>

@@ -75,8 +75,8 @@ class PageVoter {
   /// Whether an octant stays as it is because there are misses only, and all that is known there is as free as can be.
   /// That asks for one word of each brick: after some scans from one place that is nearly all there is to do.
   bool stays(Entry octant, std::size_t o) const {
-    if (!may_stay_ || LogOdds(octant.value) > rules_.clamp.lowest || (page_.bricks_hit >> (8 * o) & 0xFF) != 0)
-      return false;
+    const std::uint64_t hit = page_.bricks_hit >> (8 * o) & 0xFF;
+    if (!may_stay_ || hit != 0 || LogOdds(octant.value) > rules_.clamp.lowest) return false;
     if (octant.is_leaf()) return true;
     if (octant.is_none()) return false;
     const Group& group = tree_.groups[octant.link];

@@ -5,6 +5,8 @@
 /// As many numbers as the machine's vectors hold.
 using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Words = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+/// For sums that may wrap around, and shifts that bring in no sign.
+using UnsignedWords = std::uint64_t __attribute__((vector_size(kLanes * sizeof(std::uint64_t))));
 
 /// Adding this leaves no room for a fraction. REQUIRES numbers below 2^51.
 constexpr double kWhole = 0x1.8p52;

@@ -5,8 +5,7 @@
 
 /// Added without minding the sign: a sum that does not fit wraps around.
 inline Words sum_of(const Words& one, const Words& other) {
-  using Unsigned = std::uint64_t __attribute__((vector_size(kLanes * sizeof(std::uint64_t))));
-  return reinterpret_cast<Words>(reinterpret_cast<Unsigned>(one) + reinterpret_cast<Unsigned>(other));
+  return reinterpret_cast<Words>(reinterpret_cast<UnsignedWords>(one) + reinterpret_cast<UnsignedWords>(other));
 }
 
 /// kLanes items from `first` on; of fewer that are left the last one again and again.

@@ -17,10 +17,9 @@ inline std::uint64_t words_in_use(const std::uint64_t* words) {
 }
 
 inline std::uint64_t count_cells(const std::uint64_t* words) {
-  using Unsigned = std::uint64_t __attribute__((vector_size(kLanes * sizeof(std::uint64_t))));
-  Unsigned quarters{};  // sums of 16 bits: there are 4096 bits in all
+  UnsignedWords quarters{};  // sums of 16 bits: there are 4096 bits in all
   for (std::size_t first = 0; first < 64; first += kLanes) {
-    Unsigned some;
+    UnsignedWords some;
     std::memcpy(&some, words + first, sizeof some);
     some -= some >> 1 & 0x5555555555555555;
     some = (some & 0x3333333333333333) + (some >> 2 & 0x3333333333333333);
