@@ -64,7 +64,7 @@ std::size_t DenseFan<Point>::mark(std::span<const Point> ends_m, RayEnds ends, s
   others_ = &others;
   walked_ = 0;
   // The cells where rays end without a hit would ask for all of them.
-  if (ends != RayEnds::kHit || !mark_dense()) walk_all(ends);
+  if (ends == RayEnds::kNothing || !mark_dense()) walk_all(ends);
   return walked_;
 }
 
@@ -95,33 +95,34 @@ bool DenseFan<Point>::mark_dense() {
 
 template <class Point>
 void DenseFan<Point>::walk_all(RayEnds ends) {
-  walk_each(ends_m_.size(), ends, [](std::size_t i) { return static_cast<std::uint32_t>(i); });
+  for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
+    walk_some(ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), ends,
+              [first](std::uint32_t i) { return static_cast<std::uint32_t>(first) + i; });
+  }
 }
 
 template <class Point>
 void DenseFan<Point>::walk(std::span<const std::uint32_t> rays) {
-  // Their hits are marked already.
-  walk_each(rays.size(), RayEnds::kNothing, [&](std::size_t i) { return rays[i]; });
+  for (std::size_t first = 0; first < rays.size(); first += kBlock) {
+    const std::span<const std::uint32_t> some = rays.subspan(first, std::min(kBlock, rays.size() - first));
+    room_.walked_ends_m.clear();
+    for (const std::uint32_t ray : some) room_.walked_ends_m.push_back(ends_m_[ray].template cast<double>());
+    walk_some(std::span<const Eigen::Vector3d>(room_.walked_ends_m), RayEnds::kMarked,
+              [some](std::uint32_t i) { return some[i]; });
+  }
 }
 
 template <class Point>
-template <class NumberOf>
-void DenseFan<Point>::walk_each(std::size_t count, RayEnds ends, NumberOf&& number_of) {
-  walked_ += count;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t last = std::min(first + kBlock, count);
-    room_.walked_ends_m.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      room_.walked_ends_m.push_back(ends_m_[number_of(i)].template cast<double>());
-    }
-    room_.not_ready.clear();
-    prepare_rays(lanes_, fan_, room_.walked_ends_m, room_.ready, room_.not_ready);
-    if (ends == RayEnds::kHit) {
-      for (const ReadyRay& ray : room_.ready) mark_hit(ray.end, window_);
-    }
-    mark_rays(lanes_, room_.ready, start_, window_);
-    for (const std::uint32_t number : room_.not_ready) others_->push_back(number_of(first + number));
+template <class End, class NumberOf>
+void DenseFan<Point>::walk_some(std::span<const End> ends_m, RayEnds ends, NumberOf&& number_of) {
+  walked_ += ends_m.size();
+  room_.not_ready.clear();
+  prepare_rays(lanes_, fan_, ends_m, room_.ready, room_.not_ready);
+  if (ends == RayEnds::kHit) {
+    for (const ReadyRay& ray : room_.ready) mark_hit(ray.end, window_);
   }
+  mark_rays(lanes_, room_.ready, start_, window_);
+  for (const std::uint32_t i : room_.not_ready) others_->push_back(number_of(i));
 }
 
 template <class Point>

@@ -14,7 +14,11 @@
 namespace pingvox::detail {
 
 /// What the last cells of rays say.
-enum class RayEnds { kHit, kNothing };
+enum class RayEnds {
+  kHit,
+  kMarked,  ///< hits that are marked already
+  kNothing,
+};
 
 /// What tracers of fans work in. Nothing in it means anything between fans.
 struct FanRoom {
@@ -54,10 +58,11 @@ class DenseFan {
   /// For rays that hit. @return whether it pays; if not only hits were marked, and not all
   bool mark_dense();
   void walk_all(RayEnds ends);
+  /// Their ends are marked already.
   void walk(std::span<const std::uint32_t> rays);
-  /// @param number_of  of the first of so many rays, the second, ...
-  template <class NumberOf>
-  void walk_each(std::size_t count, RayEnds ends, NumberOf&& number_of);
+  /// @param number_of  of the first of these rays, the second, ...
+  template <class End, class NumberOf>
+  void walk_some(std::span<const End> ends_m, RayEnds ends, NumberOf&& number_of);
   void walk_the_rest();
   void ask_page(std::uint64_t page);
   void ask_brick(std::uint64_t brick);

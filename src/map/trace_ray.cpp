@@ -83,8 +83,37 @@ class FanTracer {
   /// Marks the cells of rays as missed, and where they end as hit unless that is too far away.
   /// @return how many of them leave the lattice
   template <class Point>
-  std::size_t trace(std::span<const Point> ends_m) {
-    if (!std::isfinite(options_.max_range_m)) return trace(ends_m, Ends::kHit);
+  std::size_t trace_points(std::span<const Point> points_m) {
+    return has_range() ? trace_in_range(points_m) : trace(points_m, Ends::kHit);
+  }
+
+  /// The same for rays to the middles of the cells that hold points, each cell once.
+  template <class Point>
+  std::size_t trace_cells(std::span<const Point> points_m) {
+    const std::span<const Eigen::Vector3d> middles_m = cells_of(points_m);
+    if (!has_range()) return trace(middles_m, Ends::kMarked);
+    // Marked only to know them again; whether each is a hit its range decides.
+    for (const std::uint64_t place : room().cells) window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
+    return trace_in_range(middles_m);
+  }
+
+  /// Hands what was marked to the scan. To be called last.
+  void finish() {
+    if (window_ != nullptr) scan_.take_window(key_of(fan_.window_lowest), options_.hit);
+  }
+
+ private:
+  // Below, opening and emptying a window costs more than it saves.
+  static constexpr std::size_t kFewRays = 16;
+  static constexpr std::size_t kBlock = 2048;
+  // Of directions, at the far ends of the rays.
+  static constexpr double kSquaresPerCell = 0.8;
+
+  bool has_range() const { return std::isfinite(options_.max_range_m); }
+  detail::FanRoom& room() { return window_ != nullptr ? window_->fan_room() : own_room_; }
+
+  template <class Point>
+  std::size_t trace_in_range(std::span<const Point> ends_m) {
     std::vector<Eigen::Vector3d> near_m, cut_m;
     for (const Point& point : ends_m) {
       const Eigen::Vector3d& end_m = point.template cast<double>();
@@ -101,7 +130,7 @@ class FanTracer {
   }
 
   /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are. They last as
-  /// long as the tracer, and until it is asked again.
+  /// long as the tracer, and until it is asked again. Those in the window are marked as hit, and are room().cells.
   template <class Point>
   std::span<const Eigen::Vector3d> cells_of(std::span<const Point> points_m) {
     std::vector<Eigen::Vector3d>& middles_m = room().middles_m;
@@ -130,24 +159,8 @@ class FanTracer {
     const std::size_t singly = middles_m.size();
     middles_m.resize(singly + found.size());
     detail::find_middles(lanes_, fan_, lattice_.resolution_m(), found, std::span(middles_m).subspan(singly));
-    // Marked only to know it again; whether it is a hit its range decides.
-    for (const std::uint64_t place : found) window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
     return middles_m;
   }
-
-  /// Hands what was marked to the scan. To be called last.
-  void finish() {
-    if (window_ != nullptr) scan_.take_window(key_of(fan_.window_lowest), options_.hit);
-  }
-
- private:
-  // Below, opening and emptying a window costs more than it saves.
-  static constexpr std::size_t kFewRays = 16;
-  static constexpr std::size_t kBlock = 2048;
-  // Of directions, at the far ends of the rays.
-  static constexpr double kSquaresPerCell = 0.8;
-
-  detail::FanRoom& room() { return window_ != nullptr ? window_->fan_room() : own_room_; }
 
   template <class Point, class F>
   static void for_each_block(std::span<const Point> all, F&& f) {
@@ -156,7 +169,7 @@ class FanTracer {
     }
   }
 
-  /// @param ends  what their last cells are: hit, or nothing is known of them
+  /// @param ends  what their last cells say
   template <class Point>
   std::size_t trace(std::span<const Point> ends_m, Ends ends) {
     if (window_ == nullptr) return trace_singly(ends_m, ends);
@@ -172,7 +185,7 @@ class FanTracer {
     std::size_t outside = 0;
     for (const Point& point : ends_m) {
       const Eigen::Vector3d& end_m = point.template cast<double>();
-      if (ends == Ends::kHit) {
+      if (ends != Ends::kNothing) {
         if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_.add_hit(*end, options_.hit);
       }
       if (!trace_ray(lattice_, origin_m_, end_m, options_.ray, scan_)) ++outside;
@@ -246,7 +259,7 @@ std::size_t trace_fan(const Lattice& lattice, const Eigen::Vector3d& origin_m, s
                       const PointScanOptions& options, ScanUpdate& scan) {
   FanTracer tracer(lattice, origin_m, options, points_m, scan);
   const std::size_t outside =
-      options.ends == EndPoints::kCells ? tracer.trace(tracer.cells_of(points_m)) : tracer.trace(points_m);
+      options.ends == EndPoints::kCells ? tracer.trace_cells(points_m) : tracer.trace_points(points_m);
   tracer.finish();
   return outside;
 }

@@ -109,10 +109,15 @@ void write_one_by_one(std::span<const ReadyRay> rays, std::span<Key* const> keys
 
 }  // namespace
 
-void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
+template <class Point>
+void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Point> ends_m, std::vector<ReadyRay>& ready,
                   std::vector<std::uint32_t>& others) {
   PINGVOX_BY_LANES(lanes, prepare(fan, ends_m, ready, others), plain::prepare(fan, ends_m, ready, others));
 }
+template void prepare_rays(Lanes, const RayFan&, std::span<const Eigen::Vector3d>, std::vector<ReadyRay>&,
+                           std::vector<std::uint32_t>&);
+template void prepare_rays(Lanes, const RayFan&, std::span<const Eigen::Vector3f>, std::vector<ReadyRay>&,
+                           std::vector<std::uint32_t>&);
 
 template <class Point>
 std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Point> points_m, std::span<std::uint64_t> places,

@@ -36,9 +36,11 @@ struct alignas(64) ReadyRay {
 };
 
 /// Prepares rays to `ends_m` [m, map frame].
+/// @tparam Point   Eigen::Vector3d or Eigen::Vector3f
 /// @param others   gets the numbers of all others: outside of the window, no numbers, too many faces, or so close to a
 ///                 corner at their end that only exact counting tells which face comes last
-void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
+template <class Point>
+void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Point> ends_m, std::vector<ReadyRay>& ready,
                   std::vector<std::uint32_t>& others);
 
 /// Finds the places in the window of the cells that hold points [m, map frame]. Of points in a row that share their

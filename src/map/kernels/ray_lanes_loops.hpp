@@ -112,7 +112,8 @@ inline void rays_of(const Prepared& some, std::array<ReadyRay, kLanes>& rays) {
   }
 }
 
-inline void prepare_some(const FanLanes& fan, const double* ends_m, Prepared& out) {
+template <class Real>
+inline void prepare_some(const FanLanes& fan, const Real* ends_m, Prepared& out) {
   PointLanes ends;
   load_in(fan, ends_m, ends);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -125,12 +126,13 @@ inline void prepare_some(const FanLanes& fan, const double* ends_m, Prepared& ou
   decide(ends.is_inside, out);
 }
 
-inline void prepare(const RayFan& fan, std::span<const Eigen::Vector3d> ends_m, std::vector<ReadyRay>& ready,
+template <class Point>
+inline void prepare(const RayFan& fan, std::span<const Point> ends_m, std::vector<ReadyRay>& ready,
                     std::vector<std::uint32_t>& others) {
   ready.resize(ends_m.size());
   std::size_t count = 0;
   const FanLanes fan_lanes(fan);
-  for_each_lanes(ends_m, [&](std::size_t first, const double* some_m) {
+  for_each_lanes(ends_m, [&](std::size_t first, const auto* some_m) {
     Prepared some;
     prepare_some(fan_lanes, some_m, some);
     std::array<ReadyRay, kLanes> rays;
