@@ -30,22 +30,34 @@ inline void gather_bits(Words& words) {
   words = (words | words >> 16) & 0x7FF;
 }
 
-/// Coordinates of kLanes points that stand one after the other.
-inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
-  std::array<Doubles, 3> words;
-  std::memcpy(words.data(), points, sizeof words);
+/// Coordinates of points that stand one after the other, as many as a vector has lanes.
+/// @tparam Places  numbers of lanes, as wide as the coordinates
+template <class Places, class Real, class Vector>
+inline void load_each(const Real* points, std::array<Vector, 3>& coordinates) {
+  constexpr std::size_t kCount = sizeof(Vector) / sizeof(Real);
+  using Place = std::remove_cvref_t<decltype(Places{}[0])>;
+  // Each by itself: copied as an array they would be written to memory once more.
+  Vector first, second, third;
+  std::memcpy(&first, points, sizeof first);
+  std::memcpy(&second, points + kCount, sizeof second);
+  std::memcpy(&third, points + 2 * kCount, sizeof third);
   for (std::size_t a = 0; a < 3; ++a) {
     // Where each lane's number stands: in the first two vectors, then in these or the third.
-    Words in_two{}, in_all{};
-    for (std::size_t l = 0; l < kLanes; ++l) {
+    Places in_two{}, in_all{};
+    for (std::size_t l = 0; l < kCount; ++l) {
       const std::size_t at = 3 * l + a;
-      in_two[l] = at < 2 * kLanes ? static_cast<std::int64_t>(at) : 0;
-      in_all[l] = static_cast<std::int64_t>(at < 2 * kLanes ? l : at - kLanes);
+      in_two[l] = static_cast<Place>(at < 2 * kCount ? at : 0);
+      in_all[l] = static_cast<Place>(at < 2 * kCount ? l : at - kCount);
     }
-    Doubles of_two;
-    pick(words[0], words[1], in_two, of_two);
-    pick(of_two, words[2], in_all, coordinates[a]);
+    Vector of_two;
+    pick(first, second, in_two, of_two);
+    pick(of_two, third, in_all, coordinates[a]);
   }
+}
+
+/// Coordinates of kLanes points.
+inline void load(const double* points, std::array<Doubles, 3>& coordinates) {
+  load_each<Words>(points, coordinates);
 }
 
 inline void load(const float* points, std::array<Doubles, 3>& coordinates) {
@@ -66,31 +78,32 @@ inline void load(const float* points, std::array<Doubles, 3>& coordinates) {
 #endif
 }
 
-/// Asks for the points some way ahead, beyond the page where the machine stops to do so by itself.
-template <class Point>
+/// Asks for as many points some way ahead, beyond the page where the machine stops to do so by itself. Beyond the last
+/// one too, where often the next block begins: asking reads nothing.
+template <std::size_t Count, class Point>
 inline void fetch_ahead(std::span<const Point> points_m, std::size_t first) {
-  constexpr std::size_t kAhead = 1536, kLine = 64;
-  const std::span<const std::byte> all = std::as_bytes(points_m);
-  for (std::size_t byte = 0; byte < kLanes * sizeof(Point); byte += kLine) {
-    __builtin_prefetch(&all[std::min(first * sizeof(Point) + kAhead + byte, all.size() - 1)]);
+  constexpr std::size_t kAhead = 3072, kLine = 64;
+  const auto begin = reinterpret_cast<std::uintptr_t>(points_m.data());
+  for (std::size_t byte = 0; byte < Count * sizeof(Point); byte += kLine) {
+    __builtin_prefetch(reinterpret_cast<const void*>(begin + first * sizeof(Point) + kAhead + byte));
   }
 }
 
-/// Calls f(first, points) for kLanes points each; the last ones stand together with some that are no
+/// Calls f(first, points) for `Count` points each; the last ones stand together with some that are no
 /// numbers, and so outside of any window.
-template <class Point, class F>
+template <std::size_t Count = kLanes, class Point, class F>
 inline void for_each_lanes(std::span<const Point> points_m, F&& f) {
   using Real = typename Point::Scalar;
-  const std::size_t whole = points_m.size() / kLanes * kLanes;
-  std::array<Real, 3 * kLanes> padded;
+  const std::size_t whole = points_m.size() / Count * Count;
+  std::array<Real, 3 * Count> padded;
   padded.fill(std::numeric_limits<Real>::quiet_NaN());
   for (std::size_t i = whole; i < points_m.size(); ++i) {
     std::memcpy(&padded[3 * (i - whole)], points_m[i].data(), sizeof(Point));
   }
   // f stands here once, so that it becomes part of the loop.
-  for (std::size_t first = 0; first < points_m.size(); first += kLanes) {
+  for (std::size_t first = 0; first < points_m.size(); first += Count) {
     const Real* const some_m = points_m[first].data();
-    fetch_ahead(points_m, first);
+    fetch_ahead<Count>(points_m, first);
     f(first, first < whole ? some_m : padded.data());
   }
 }
@@ -170,6 +183,18 @@ inline bool are_all(const Words& truth) {
 #endif
 }
 
+/// Numbers of the cells of points, counted from the window's first one: Bits an axis, x in the lowest; all bits set of
+/// points outside.
+template <int Bits>
+inline void number_cells(const FanLanes& fan, const PointLanes& points, Words& cells) {
+  cells = ~points.is_inside;
+  for (std::size_t a = 0; a < 3; ++a) {
+    Words cell;
+    floor_of(points.at[a], cell);
+    cells |= (cell - fan.window_lowest[a]) << (Bits * static_cast<int>(a));
+  }
+}
+
 /// Finds the cells that hold points, and of points in a row that share theirs only one.
 class CellsInARow {
  public:
@@ -177,13 +202,8 @@ class CellsInARow {
 
   /// Takes in the cells of kLanes points, where there is room for kLanes.
   void add(const FanLanes& fan, const PointLanes& points) {
-    Words cells = ~points.is_inside;
-    for (std::size_t a = 0; a < 3; ++a) {
-      Words cell;
-      floor_of(points.at[a], cell);
-      cells |= (cell - fan.window_lowest[a]) << (kBitsOfAxis * static_cast<int>(a));
-    }
-    Words before, one_back;
+    Words cells, before, one_back;
+    number_cells<kBitsOfAxis>(fan, points, cells);
     for (std::size_t l = 0; l < kLanes; ++l) one_back[l] = static_cast<std::int64_t>(kLanes - 1 + l);
     pick(last_, cells, one_back, before);
     Some others;

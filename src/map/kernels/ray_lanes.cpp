@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "map/tree_order.hpp"
 #include "pingvox/map/ray_dda.hpp"

@@ -50,7 +50,7 @@ void prepare_rays(Lanes lanes, const RayFan& fan, std::span<const Point> ends_m,
 /// @param outside  gets the numbers of points outside of the window
 /// @return how many
 /// REQUIRES room for kWrittenBeyond more places than there are points
-inline constexpr std::size_t kWrittenBeyond = 8;
+inline constexpr std::size_t kWrittenBeyond = 16;
 template <class Point>
 std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Point> points_m, std::span<std::uint64_t> places,
                        std::vector<std::uint32_t>& outside);

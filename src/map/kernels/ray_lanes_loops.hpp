@@ -149,23 +149,6 @@ inline void prepare(const RayFan& fan, std::span<const Point> ends_m, std::vecto
   ready.resize(count);
 }
 
-template <class Point>
-inline std::size_t find(const RayFan& fan, std::span<const Point> points_m, std::uint64_t* places,
-                        std::vector<std::uint32_t>& outside) {
-  const FanLanes fan_lanes(fan);
-  CellsInARow cells(places);
-  for_each_lanes(points_m, [&](std::size_t first, const auto* some_m) {
-    PointLanes points;
-    load_in(fan_lanes, some_m, points);
-    cells.add(fan_lanes, points);
-    if (are_all(points.is_inside)) return;  // as most often
-    for (std::size_t l = 0; l < std::min(kLanes, points_m.size() - first); ++l) {
-      if (points.is_inside[l] == 0) outside.push_back(static_cast<std::uint32_t>(first + l));
-    }
-  });
-  return cells.finish();
-}
-
 inline void find_middles(const RayFan& fan, double resolution_m, std::span<const std::uint64_t> places,
                          std::span<Eigen::Vector3d> middles_m) {
   for (std::size_t first = 0; first < places.size(); first += kLanes) {
@@ -295,4 +278,5 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
   set_marks(to_set, to_set.count, window);
 }
 
+#include "map/kernels/find_cells_loops.hpp"
 #include "map/kernels/ray_keys_loops.hpp"
