@@ -102,10 +102,7 @@ void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
                          lowest.z + (at.z << kPageBits)};
     const std::uint32_t index = all_are_new ? add_page(corner) : page_of(corner);
     Page& page = pages_[index];
-    std::uint64_t* const missed = window_.missed() + number * 64;
-    const std::uint64_t bricks = detail::words_in_use(missed);
-    page.bricks |= bricks;
-    for_each_bit(bricks, [&](std::size_t brick) { page.missed[brick] |= std::exchange(missed[brick], 0); });
+    page.bricks |= detail::move_words(window_.missed() + number * 64, page.missed.data());
     if (std::exchange(window_.with_hits()[number], std::uint8_t{0}) == 0) return;
     std::uint64_t* const hits = window_.hit() + number * 64;
     for_each_bit(detail::words_in_use(hits),
@@ -117,7 +114,8 @@ void ScanUpdate::clear() {
   // Of a scan that was moved from there are no pages left.
   for (std::size_t i = 0; i < std::min(used_, pages_.size()); ++i) {
     Page& page = pages_[i];
-    for_each_bit(std::exchange(page.bricks, 0), [&](std::size_t brick) { page.missed[brick] = 0; });
+    page.bricks = 0;
+    page.missed.fill(0);
     for_each_bit(std::exchange(page.bricks_hit, 0), [&](std::size_t brick) { page.hit[brick] = 0; });
   }
   used_ = 0;

@@ -15,6 +15,10 @@ std::uint64_t words_in_use(const std::uint64_t* words, Lanes lanes) {
   PINGVOX_BY_LANES(lanes, words_in_use(words), plain::words_in_use(words));
 }
 
+std::uint64_t move_words(std::uint64_t* from, std::uint64_t* to, Lanes lanes) {
+  PINGVOX_BY_LANES(lanes, move_words(from, to), plain::move_words(from, to));
+}
+
 std::uint64_t count_cells(const std::uint64_t* words, Lanes lanes) {
   PINGVOX_BY_LANES(lanes, count_cells(words), plain::count_cells(words));
 }

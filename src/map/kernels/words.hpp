@@ -10,6 +10,10 @@ namespace pingvox::detail {
 /// for each of 64 words: its bit set where the word is not 0
 std::uint64_t words_in_use(const std::uint64_t* words, Lanes lanes = widest_lanes());
 
+/// for each of 64 words: to |= from, and from = 0
+/// @return their bits as words_in_use(from) before
+std::uint64_t move_words(std::uint64_t* from, std::uint64_t* to, Lanes lanes = widest_lanes());
+
 /// for each of 64 words: how many of its bits are set, all together
 std::uint64_t count_cells(const std::uint64_t* words, Lanes lanes = widest_lanes());
 

@@ -2,18 +2,36 @@
 
 #include "map/kernels/doubles_loops.hpp"
 
-inline std::uint64_t words_in_use(const std::uint64_t* words) {
+/// Calls f(first) for kLanes words each, which gives them in its second argument. @return the bits of those in use
+template <class F>
+inline std::uint64_t used_of(F&& f) {
   Words bits{}, used{};
   for (std::size_t l = 0; l < kLanes; ++l) bits[l] = std::int64_t{1} << l;
   for (std::size_t first = 0; first < 64; first += kLanes) {
     Words some;
-    std::memcpy(&some, words + first, sizeof some);
+    f(first, some);
     used |= (some != 0) & bits;
     bits <<= kLanes;
   }
   std::int64_t all = 0;
   for (std::size_t l = 0; l < kLanes; ++l) all |= used[l];
   return static_cast<std::uint64_t>(all);
+}
+
+inline std::uint64_t words_in_use(const std::uint64_t* words) {
+  return used_of([&](std::size_t first, Words& some) { std::memcpy(&some, words + first, sizeof some); });
+}
+
+inline std::uint64_t move_words(std::uint64_t* from, std::uint64_t* to) {
+  return used_of([&](std::size_t first, Words& some) {
+    Words together;
+    std::memcpy(&some, from + first, sizeof some);
+    std::memcpy(&together, to + first, sizeof together);
+    together |= some;
+    std::memcpy(to + first, &together, sizeof together);
+    together = Words{};
+    std::memcpy(from + first, &together, sizeof together);
+  });
 }
 
 inline std::uint64_t count_cells(const std::uint64_t* words) {
