@@ -123,7 +123,11 @@ class TreeReader {
 class TreeWords {
  public:
   explicit TreeWords(const OccupancyMap& map)
-      : tree_(map.tree()), thresholds_(map.options().thresholds), words_(room_for(tree_)), end_(words_.get()) {
+      : tree_(map.tree()),
+        thresholds_(map.options().thresholds),
+        has_maxima_(map.options().parents == Parents::kMax),
+        words_(room_for(tree_)),
+        end_(words_.get()) {
     const unsigned state = add(tree_.root, 0);
     // The format cannot say what a root without children is: liboctomap reads it as occupied.
     if (state == kFree || state == kOccupied) *end_++ = state == kFree ? kAllFree : kAllOccupied;
@@ -150,12 +154,14 @@ class TreeWords {
   unsigned add(const detail::Entry& entry, int depth) {
     if (entry.is_none()) return kUnknown;
     if (entry.is_leaf()) return state_of_leaf(LogOdds(entry.value));
-    return depth == kBrickDepth ? add(tree_.bricks[entry.link]) : add(tree_.groups[entry.link], depth);
+    if (depth < kBrickDepth) return add(tree_.groups[entry.link], depth);
+    const detail::Brick& brick = tree_.bricks[entry.link];
+    return add(is_all_free(entry) ? detail::CellStates{brick.known, 0} : detail::classified(brick, thresholds_));
   }
 
   unsigned add(const detail::Group& group, int depth) {
     std::uint16_t* const at = end_++;
-    if (depth + 1 == kBrickDepth) detail::fetch_bricks(tree_, group);
+    if (depth + 1 == kBrickDepth) fetch_bricks(group);
     unsigned word = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) word |= add(group.child[octant], depth + 1) << (2 * octant);
     if (is_alike(word)) {
@@ -167,8 +173,24 @@ class TreeWords {
     return kInner;
   }
 
-  unsigned add(const detail::Brick& brick) {
-    const detail::CellStates cells = detail::classified(brick, thresholds_);
+  /// Whether all that is known below a node is free: of most bricks that is told without their values, which lie in
+  /// four times as much memory as the rest.
+  bool is_all_free(const detail::Entry& entry) const {
+    return has_maxima_ && state_of_leaf(LogOdds(entry.value)) == kFree;
+  }
+
+  /// Asks for what is to be read of the bricks below a group.
+  void fetch_bricks(const detail::Group& group) const {
+    for (const detail::Entry& child : group.child) {
+      if (!child.is_inner()) continue;
+      const detail::Brick& brick = tree_.bricks[child.link];
+      __builtin_prefetch(&brick.known);
+      if (is_all_free(child)) continue;
+      for (std::size_t line = 0; line < 4; ++line) __builtin_prefetch(&brick.value[line * 16 + 14]);
+    }
+  }
+
+  unsigned add(const detail::CellStates& cells) {
     const EightWords octants = words_of(cells.free, cells.occupied);
     const EightWords are_inner = mixed(octants);
     const unsigned word = word_above(octants, are_inner);
@@ -197,6 +219,7 @@ class TreeWords {
 
   const detail::BrickTree& tree_;
   Thresholds thresholds_;
+  bool has_maxima_;  ///< a node's value is the greatest below it
   std::unique_ptr<std::uint16_t[]> words_;
   std::uint16_t* end_;  ///< behind the last word
 };

@@ -420,6 +420,15 @@ void Cursor<W>::brick_changed() {
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
 }
 
+// For a cell of the brick that is now as large. Also where the brick is stale: see Entry::value.
+template <KeyWord W>
+void Cursor<W>::raise_maximum(float value) {
+  Entry& at_brick = entry_at(tree_.brick_depth());
+  if (rules_.parents != Parents::kMax || value <= at_brick.value) return;
+  at_brick.value = value;
+  mark_stale_above(reach_);
+}
+
 template <KeyWord W>
 void Cursor<W>::flush() {
   settle_down_to(0);
@@ -447,17 +456,10 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
   brick.value[cell] = after;
   brick_stale_ = true;
   // A maximum that grows, or loses none of its cells, needs no look at the other cells.
-  Entry& at_brick = entry_at(tree_.brick_depth());
-  const bool keeps_maximum =
-      rules_.parents == Parents::kMax && !is_first && (!known || after >= before || before < at_brick.value);
-  if (keeps_maximum && brick_summary_ == Summary::kRight) {
-    if (after > at_brick.value) {
-      at_brick.value = after;
-      mark_stale_above(reach_);
-    }
-  } else {
-    brick_summary_ = Summary::kStale;
-  }
+  const bool keeps_maximum = rules_.parents == Parents::kMax && !is_first &&
+                             (!known || after >= before || before < entry_at(tree_.brick_depth()).value);
+  if (!keeps_maximum) brick_summary_ = Summary::kStale;
+  raise_maximum(after);
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
 }
 
@@ -525,6 +527,7 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
   const int count = whole_octant ? 8 : 1;
   brick.known |= whole_octant ? octant_mask(key.octant(1)) : std::uint64_t{1} << first;
   std::fill_n(brick.value.begin() + first, count, value);
+  raise_maximum(value);
   brick_changed();
 }
 

@@ -134,6 +134,35 @@ TEST(Bt, WritesTheBytesOfLiboctomapAfterScans) {
   }
 }
 
+// Kills a brick that is taken for free by the maximum that its node had before an editor raised a cell of it.
+TEST(Bt, WritesWhatAnEditorHasNotSettledYet) {
+  std::size_t different = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const MapOptions options{.parents = seed % 4 == 0 ? Parents::kMean : Parents::kMax};
+    OccupancyMap changed(options), settled(options);
+    Editor unsettling = changed.edit(seed % 3 == 0 ? Pruning::kNever : Pruning::kWhenSettled);
+    Editor settling = settled.edit(Pruning::kEachUpdate);
+    Bytes last;
+    for (int step = 0; step < 200; ++step) {
+      const auto word = [&] { return WideWord{32768 + random() % 6}; };
+      const WideKey key{word(), word(), word()};
+      const LogOdds evidence(random() % 3 == 0 ? 4.0F : -4.0F);
+      const int depth = 13 + static_cast<int>(random() % 4);
+      const bool is_set = random() % 8 == 0;
+      for (Editor* editor : {&unsettling, &settling}) {
+        is_set ? editor->set(key, depth, evidence) : editor->update(key, evidence);
+      }
+      const Bytes ours = written(changed, Format::kBt);
+      ASSERT_EQ(ours, written(settled, Format::kBt)) << step;
+      different += ours != last ? 1 : 0;
+      last = ours;
+    }
+  }
+  EXPECT_GT(different, 1000U);
+}
+
 TEST(Ot, WritesTheBytesOfLiboctomap) {
   std::size_t bytes = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

@@ -70,7 +70,7 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
   window.open(kWindowBits);
   std::vector<ReadyRay> ready;
   std::vector<std::uint32_t> others;
-  prepare_rays(Lanes::kOne, fan, ends_m, ready, others);
+  prepare_rays(Lanes::kOne, fan, std::span<const Eigen::Vector3d>(ends_m), ready, others);
   for (const ReadyRay& ray : ready) mark_hit(ray.end, window);
   mark_rays(Lanes::kOne, ready, start_of(fan), window);
   Marks marks = taken_from(window);

@@ -237,7 +237,7 @@ TEST(RayLanes, MarkTheCellsOfFaceCrossings) {
       SCOPED_TRACE(static_cast<int>(lanes));
       std::vector<ReadyRay> ready;
       std::vector<std::uint32_t> others;
-      prepare_rays(lanes, fan, ends, ready, others);
+      prepare_rays(lanes, fan, std::span<const Eigen::Vector3d>(ends), ready, others);
       ASSERT_EQ(ready.size() + others.size(), ends.size());
       left_out += others.size();
 

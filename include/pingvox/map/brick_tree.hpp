@@ -38,7 +38,9 @@ struct Entry {
   static constexpr std::uint32_t kNone = 0;  ///< nothing is known below; value is 0
   static constexpr std::uint32_t kLeaf = 1;  ///< value holds for the whole cell
   std::uint32_t link = kNone;                ///< else: index of its Group, or at brick level of its Brick
-  float value = 0.0F;                        ///< of an inner node: what it says of its children
+  /// Of an inner node: what it says of its children. At brick level a maximum is never less than the values below, also
+  /// where an editor has not settled it yet: writers trust that.
+  float value = 0.0F;
 
   static Entry leaf(float value) { return {kLeaf, value}; }
   bool is_none() const { return link == kNone; }
@@ -260,6 +262,7 @@ class Cursor {
   void settle_down_to(int depth);
   void after_change(int depth);
   void brick_changed();
+  void raise_maximum(float value);
   void forget_brick();
 
   BrickTree& tree_;
