@@ -278,6 +278,19 @@ Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int dept
   return settled_group(tree, index, parents, Pruning::kWhenSettled);
 }
 
+Entry voted(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry) {
+  assert(!entry.is_inner());
+  const bool may_join = rules.pruning != Pruning::kNever;
+  if (const auto evidence = for_all_cells(votes); evidence && may_join) {
+    // The same for the whole of a leaf: what becomes of it is a leaf.
+    return *evidence == LogOdds(0.0F) ? entry : Entry::leaf(added(entry.value, *evidence, rules.clamp));
+  }
+  Brick made = brick_of(entry);
+  if (!add(votes, rules.clamp, made)) return entry;
+  if (may_join && is_uniform(made)) return Entry::leaf(made.value[0]);
+  return {tree.bricks.allocate(made), summary_of(made, rules.parents)};
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <KeyWord W>
@@ -472,34 +485,13 @@ bool Cursor<W>::vote(const BasicKey<W>& key, const Votes& votes) {
     if (changed || rules_.early_drop == EarlyDrop::kOff) brick_changed();
     return changed;
   }
-  if (const auto evidence = for_all_cells(votes); evidence && rules_.pruning != Pruning::kNever) {
-    // The same for the whole of a leaf: what becomes of it is a leaf.
-    const float after = added(entry.value, *evidence, rules_.clamp);
-    if (*evidence == LogOdds(0.0F) || (entry.is_leaf() && after == entry.value)) return false;
-    make_leaf(after);
-    return true;
-  }
-  Brick brick = brick_of(entry);
-  if (!add(votes, rules_.clamp, brick)) return false;
-  if (rules_.pruning != Pruning::kNever && is_uniform(brick)) {
-    make_leaf(brick.value[0]);
-    return true;
-  }
+  const Entry now = voted(tree_, rules_, votes, entry);
+  if (now == entry) return false;
   grow_to(tree_.brick_depth());
-  Entry& at_brick = entry_at(tree_.brick_depth());
-  brick_ = tree_.bricks.allocate(brick);
-  at_brick.link = brick_;
-  mark_stale_above(reach_);
-  brick_changed();
-  return true;
-}
-
-// Where there is no brick.
-template <KeyWord W>
-void Cursor<W>::make_leaf(float value) {
-  grow_to(tree_.brick_depth());
-  entry_at(tree_.brick_depth()) = Entry::leaf(value);
+  entry_at(tree_.brick_depth()) = now;
+  brick_ = now.is_inner() ? now.link : Entry::kNone;
   after_change(reach_);
+  return true;
 }
 
 template <KeyWord W>

@@ -56,20 +56,9 @@ class PageVoter {
 
   Entry brick(Entry entry, std::size_t number) {
     const Votes votes = votes_on(scan_, page_, number);
-    if (entry.is_inner()) {
-      const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
-      return changed ? settled_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
-    }
-    if (const auto evidence = for_all_cells(votes)) {
-      // The same for the whole of a leaf: what becomes of it is a leaf.
-      return *evidence == LogOdds(0.0F)
-                 ? entry
-                 : Entry::leaf(updated_by(LogOdds(entry.value), *evidence, rules_.clamp).value());
-    }
-    Brick made = brick_of(entry);
-    if (!add(votes, rules_.clamp, made)) return entry;
-    if (is_uniform(made)) return Entry::leaf(made.value[0]);
-    return {tree_.bricks.allocate(made), summary_of(made, rules_.parents)};
+    if (!entry.is_inner()) return voted(tree_, rules_, votes, entry);
+    const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
+    return changed ? settled_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }
 
   /// Whether an octant stays as it is because there are misses only, and all that is known there is as free as can be.

@@ -214,6 +214,10 @@ struct CursorRules {
   Clamp clamp{};
 };
 
+/// What becomes of an entry at brick level that has no brick, of an unknown or a joined cell. A brick is made only
+/// where something changes that no leaf can say. Throws std::bad_alloc. REQUIRES !entry.is_inner()
+Entry voted(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry);
+
 /// A place in a tree and the path to it: what changes trees (below pages so does `voted`, map/page_votes.hpp). Moving
 /// on settles what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every parent is
 /// recomputed once. Two widths are compiled: 64 bits, and wide for lattices that are deeper.
@@ -254,7 +258,6 @@ class Cursor {
   int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
   void grow_to(int depth);
   Brick& brick_made();
-  void make_leaf(float value);
   void mark_stale_above(int depth);
   void drop_shortcut_at(int depth);
   void settle_brick();
