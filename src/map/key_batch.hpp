@@ -15,6 +15,7 @@
 #include "map/tree_order.hpp"
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/brick_tree.hpp"
+#include "pingvox/map/pool.hpp"
 
 namespace pingvox::detail {
 
@@ -52,28 +53,26 @@ class CountWindow {
 
   /// Puts the window around a key. REQUIRES nothing counted in it.
   void open(const BasicKey<std::uint64_t>& around) {
-    if (counts_.empty()) counts_.resize(std::size_t{kEdge} * kEdge * kEdge);
+    counts_.grow(std::size_t{kEdge} * kEdge * kEdge);
     const auto base = [](std::uint64_t word) { return (word & ~std::uint64_t{3}) - kEdge / 2; };
     lowest_ = {base(around.x), base(around.y), base(around.z)};
   }
 
-  /// Counts keys, and calls other(key) for those that are outside or whose counter is full.
+  /// Counts keys, and calls other(key) for those that are outside.
   template <KeyWord W, class F>
   void count(std::span<const BasicKey<W>> keys, F&& other) {
     // By themselves, not as members: to the compiler, a byte that is written may be any part of anything.
     const BasicKey<std::uint64_t> lowest = lowest_;
-    std::uint8_t* const counts = counts_.data();
+    std::uint8_t* const counts = all_counts();
     std::uint8_t* const touched = touched_.data();
     for (const BasicKey<W>& key : keys) {
       const auto along = [](W word, std::uint64_t from) { return static_cast<std::uint64_t>(word) - from; };
       const std::uint64_t x = along(key.x, lowest.x), y = along(key.y, lowest.y), z = along(key.z, lowest.z);
       if ((x | y | z) < kEdge) {
-        const std::uint64_t place = kSpread[x] | kSpread[y] << 1 | kSpread[z] << 2;
-        if (counts[place] < 255) {
-          ++counts[place];
-          touched[place / kPage] = 1;
-          continue;
-        }
+        const std::uint32_t place = kSpread[x] | kSpread[y] << 1 | kSpread[z] << 2;
+        touched[place / kPage] = 1;
+        if (++counts[place] == 0) full_.push_back(place);
+        continue;
       }
       other(key.template as<std::uint64_t>());
     }
@@ -82,23 +81,25 @@ class CountWindow {
   /// Counters of the 64 cells of a brick, those of an octant in a word: its first cell's is the lowest byte.
   using Counts = std::array<std::uint64_t, 8>;
 
-  /// Calls f(lowest cell, Counts) for each brick with counts, and empties the window.
-  template <class F>
-  void take(F&& f) {
+  /// Calls f(lowest cell, Counts) for each brick with counts, and full(lowest cell, cell in the brick) each time that a
+  /// cell was named kFull times on top of them. Empties the window.
+  static constexpr std::uint32_t kFull = 256;
+  template <class F, class Full>
+  void take(F&& f, Full&& full) {
     for (std::size_t page = 0; page < touched_.size(); ++page) {
       if (std::exchange(touched_[page], std::uint8_t{0}) == 0) continue;
       for (std::uint64_t brick = page * (kPage / 64); brick < (page + 1) * (kPage / 64); ++brick) {
         Counts counts;
-        std::memcpy(counts.data(), counts_.data() + brick * 64, sizeof counts);
+        std::memcpy(counts.data(), all_counts() + brick * 64, sizeof counts);
         if constexpr (std::endian::native == std::endian::big) {
           for (std::uint64_t& eight : counts) eight = __builtin_bswap64(eight);
         }
         if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t eight) { return eight == 0; })) continue;
-        std::memset(counts_.data() + brick * 64, 0, sizeof counts);
-        const BasicKey<std::uint64_t> at = key_of_code(brick);
-        f(BasicKey<std::uint64_t>{lowest_.x + 4 * at.x, lowest_.y + 4 * at.y, lowest_.z + 4 * at.z}, counts);
+        std::memset(all_counts() + brick * 64, 0, sizeof counts);
+        f(lowest_of(brick), counts);
       }
     }
+    for (const std::uint32_t place : std::exchange(full_, {})) full(lowest_of(place / 64), place % 64);
   }
 
  private:
@@ -110,9 +111,16 @@ class CountWindow {
 
   static constexpr std::size_t kPage = 4096;  ///< cells
 
+  std::uint8_t* all_counts() { return reinterpret_cast<std::uint8_t*>(counts_.data()); }
+  BasicKey<std::uint64_t> lowest_of(std::uint64_t brick) const {
+    const BasicKey<std::uint64_t> at = key_of_code(brick);
+    return {lowest_.x + 4 * at.x, lowest_.y + 4 * at.y, lowest_.z + 4 * at.z};
+  }
+
   BasicKey<std::uint64_t> lowest_;
-  std::vector<std::uint8_t> counts_;
+  Arena counts_{Arena::Pages::kSmall};  ///< bytes, in the tree's order of their cells
   std::array<std::uint8_t, std::size_t{kEdge} * kEdge * kEdge / kPage> touched_{};  ///< pages
+  std::vector<std::uint32_t> full_;  ///< places, once each time that their counters came back to 0
 };
 
 /// The keys of a batch of updates, gathered by brick, about in the tree's order. Its memory is kept for the next batch.
@@ -148,7 +156,7 @@ class KeyBatch {
   template <class F>
   void take(F&& f) {
     std::array<std::uint32_t, 64> times{};
-    window_.take([&](const BasicKey<std::uint64_t>& lowest, const CountWindow::Counts& counts) {
+    const auto take_counts = [&](const BasicKey<std::uint64_t>& lowest, const CountWindow::Counts& counts) {
       std::uint64_t once = 0, more = 0;
       for (std::size_t octant = 0; octant < 8; ++octant) {
         once |= bytes_in_use(counts[octant]) << (8 * octant);
@@ -160,6 +168,10 @@ class KeyBatch {
         }
       }
       f(lowest, Cells{once, more, times});
+    };
+    window_.take(take_counts, [&](const BasicKey<std::uint64_t>& lowest, std::size_t cell) {
+      times[cell] = CountWindow::kFull;
+      f(lowest, Cells{std::uint64_t{1} << cell, std::uint64_t{1} << cell, times});
     });
     for (std::size_t i = 0; i < entries_.size();) {
       const std::uint64_t code = entries_[i].code;

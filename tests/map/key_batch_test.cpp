@@ -36,7 +36,7 @@ std::vector<BasicKey<W>> drawn_keys(std::mt19937_64& random, std::size_t count, 
     const std::uint64_t kind = random() % 1000;
     const BasicKey<W> key =
         kind == 0 ? BasicKey<W>{word(most), word(most), word(most)} : BasicKey<W>{word(edge), word(edge), word(edge)};
-    const std::uint64_t times = kind == 1 ? 1 + random() % 700 : 1;  // a counter has a byte
+    const std::uint64_t times = kind == 1 ? 1 + random() % 700 : (kind == 2 ? 512 : 1);  // a counter has a byte
     keys.insert(keys.end(), times, key);
   }
   keys.resize(count);
