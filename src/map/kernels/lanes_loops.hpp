@@ -85,6 +85,7 @@ inline void fetch_ahead(std::span<const Point> points_m, std::size_t first) {
   constexpr std::size_t kAhead = 3072, kLine = 64;
   const auto begin = reinterpret_cast<std::uintptr_t>(points_m.data());
   for (std::size_t byte = 0; byte < Count * sizeof(Point); byte += kLine) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): an address, as no pointer may be made that far beyond the end
     __builtin_prefetch(reinterpret_cast<const void*>(begin + first * sizeof(Point) + kAhead + byte));
   }
 }
