@@ -153,7 +153,7 @@ class TreeWords {
   /// The state of a node, after its words and those below it, if there are any.
   unsigned add(const detail::Entry& entry, int depth) {
     if (entry.is_none()) return kUnknown;
-    if (entry.is_leaf()) return state_of_leaf(LogOdds(entry.value));
+    if (entry.is_leaf()) return state_of(LogOdds(entry.value));
     if (depth < kBrickDepth) return add(tree_.groups[entry.link], depth);
     const detail::Brick& brick = tree_.bricks[entry.link];
     return add(is_all_free(entry) ? detail::CellStates{brick.known, 0} : detail::classified(brick, thresholds_));
@@ -175,18 +175,14 @@ class TreeWords {
 
   /// Whether all that is known below a node is free: of most bricks that is told without their values, which lie in
   /// four times as much memory as the rest.
-  bool is_all_free(const detail::Entry& entry) const {
-    return has_maxima_ && state_of_leaf(LogOdds(entry.value)) == kFree;
-  }
+  bool is_all_free(const detail::Entry& entry) const { return has_maxima_ && state_of(LogOdds(entry.value)) == kFree; }
 
   /// Asks for what is to be read of the bricks below a group.
   void fetch_bricks(const detail::Group& group) const {
     for (const detail::Entry& child : group.child) {
       if (!child.is_inner()) continue;
       const detail::Brick& brick = tree_.bricks[child.link];
-      __builtin_prefetch(&brick.known);
-      if (is_all_free(child)) continue;
-      for (std::size_t line = 0; line < 4; ++line) __builtin_prefetch(&brick.value[line * 16 + 14]);
+      is_all_free(child) ? __builtin_prefetch(&brick.known) : detail::fetch(brick);
     }
   }
 
@@ -205,7 +201,7 @@ class TreeWords {
     return kInner;
   }
 
-  unsigned state_of_leaf(LogOdds belief) const {
+  unsigned state_of(LogOdds belief) const {
     switch (classified(belief, thresholds_)) {
       case Occupancy::kOccupied:
         return kOccupied;
@@ -219,7 +215,7 @@ class TreeWords {
 
   const detail::BrickTree& tree_;
   Thresholds thresholds_;
-  bool has_maxima_;  ///< a node's value is the greatest below it
+  bool has_maxima_;  ///< nothing below a node is greater than its value
   std::unique_ptr<std::uint16_t[]> words_;
   std::uint16_t* end_;  ///< behind the last word
 };

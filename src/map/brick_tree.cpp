@@ -278,16 +278,15 @@ Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int dept
   return settled_group(tree, index, parents, Pruning::kWhenSettled);
 }
 
-Entry voted(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry) {
-  assert(!entry.is_inner());
-  const bool may_join = rules.pruning != Pruning::kNever;
-  if (const auto evidence = for_all_cells(votes); evidence && may_join) {
+Entry voted_without_brick(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry) {
+  assert(!entry.is_inner() && rules.pruning != Pruning::kNever);
+  if (const auto evidence = for_all_cells(votes)) {
     // The same for the whole of a leaf: what becomes of it is a leaf.
     return *evidence == LogOdds(0.0F) ? entry : Entry::leaf(added(entry.value, *evidence, rules.clamp));
   }
   Brick made = brick_of(entry);
   if (!add(votes, rules.clamp, made)) return entry;
-  if (may_join && is_uniform(made)) return Entry::leaf(made.value[0]);
+  if (is_uniform(made)) return Entry::leaf(made.value[0]);
   return {tree.bricks.allocate(made), summary_of(made, rules.parents)};
 }
 
@@ -485,7 +484,7 @@ bool Cursor<W>::vote(const BasicKey<W>& key, const Votes& votes) {
     if (changed || rules_.early_drop == EarlyDrop::kOff) brick_changed();
     return changed;
   }
-  const Entry now = voted(tree_, rules_, votes, entry);
+  const Entry now = voted_without_brick(tree_, rules_, votes, entry);
   if (now == entry) return false;
   grow_to(tree_.brick_depth());
   entry_at(tree_.brick_depth()) = now;

@@ -81,11 +81,16 @@ class CountWindow {
   /// Counters of the 64 cells of a brick, those of an octant in a word: its first cell's is the lowest byte.
   using Counts = std::array<std::uint64_t, 8>;
 
-  /// Calls f(lowest cell, Counts) for each brick with counts, and full(lowest cell, cell in the brick) each time that a
-  /// cell was named kFull times on top of them. Empties the window.
+  /// What a counter holds when it comes back to 0.
   static constexpr std::uint32_t kFull = 256;
-  template <class F, class Full>
-  void take(F&& f, Full&& full) {
+
+  /// Calls f(lowest cell, Counts, full) for each brick with keys, and empties the window. `full` are cells of the
+  /// window, of which the lowest six bits are the number in the brick: each stands there once for kFull keys that its
+  /// counter leaves out.
+  template <class F>
+  void take(F&& f) {
+    std::sort(full_.begin(), full_.end());
+    std::span<const std::uint32_t> full = full_;  // of this brick, and of those to come
     for (std::size_t page = 0; page < touched_.size(); ++page) {
       if (std::exchange(touched_[page], std::uint8_t{0}) == 0) continue;
       for (std::uint64_t brick = page * (kPage / 64); brick < (page + 1) * (kPage / 64); ++brick) {
@@ -94,12 +99,20 @@ class CountWindow {
         if constexpr (std::endian::native == std::endian::big) {
           for (std::uint64_t& eight : counts) eight = __builtin_bswap64(eight);
         }
-        if (std::all_of(counts.begin(), counts.end(), [](std::uint64_t eight) { return eight == 0; })) continue;
+        const bool is_full = !full.empty() && full.front() / 64 == brick;
+        if (!is_full && std::all_of(counts.begin(), counts.end(), [](std::uint64_t eight) { return eight == 0; })) {
+          continue;
+        }
         std::memset(all_counts() + brick * 64, 0, sizeof counts);
-        f(lowest_of(brick), counts);
+        const BasicKey<std::uint64_t> at = key_of_code(brick);
+        const auto end = std::find_if(full.begin(), full.end(), [&](std::uint32_t cell) { return cell / 64 != brick; });
+        const auto in_brick = full.first(static_cast<std::size_t>(end - full.begin()));
+        f(BasicKey<std::uint64_t>{lowest_.x + 4 * at.x, lowest_.y + 4 * at.y, lowest_.z + 4 * at.z}, counts, in_brick);
+        full = full.subspan(in_brick.size());
       }
     }
-    for (const std::uint32_t place : std::exchange(full_, {})) full(lowest_of(place / 64), place % 64);
+    assert(full.empty());
+    full_.clear();
   }
 
  private:
@@ -112,15 +125,10 @@ class CountWindow {
   static constexpr std::size_t kPage = 4096;  ///< cells
 
   std::uint8_t* all_counts() { return reinterpret_cast<std::uint8_t*>(counts_.data()); }
-  BasicKey<std::uint64_t> lowest_of(std::uint64_t brick) const {
-    const BasicKey<std::uint64_t> at = key_of_code(brick);
-    return {lowest_.x + 4 * at.x, lowest_.y + 4 * at.y, lowest_.z + 4 * at.z};
-  }
-
   BasicKey<std::uint64_t> lowest_;
   Arena counts_{Arena::Pages::kSmall};  ///< bytes, in the tree's order of their cells
   std::array<std::uint8_t, std::size_t{kEdge} * kEdge * kEdge / kPage> touched_{};  ///< pages
-  std::vector<std::uint32_t> full_;  ///< places, once each time that their counters came back to 0
+  std::vector<std::uint32_t> full_;  ///< cells, once each time that their counters came back to 0
 };
 
 /// The keys of a batch of updates, gathered by brick, about in the tree's order. Its memory is kept for the next batch.
@@ -156,22 +164,24 @@ class KeyBatch {
   template <class F>
   void take(F&& f) {
     std::array<std::uint32_t, 64> times{};
-    const auto take_counts = [&](const BasicKey<std::uint64_t>& lowest, const CountWindow::Counts& counts) {
+    window_.take([&](const BasicKey<std::uint64_t>& lowest, const CountWindow::Counts& counts,
+                     std::span<const std::uint32_t> full) {
       std::uint64_t once = 0, more = 0;
       for (std::size_t octant = 0; octant < 8; ++octant) {
         once |= bytes_in_use(counts[octant]) << (8 * octant);
         more |= bytes_in_use(counts[octant] & 0xFEFEFEFEFEFEFEFE) << (8 * octant);
       }
-      if (more != 0) {
+      if (more != 0 || !full.empty()) {
         for (std::size_t cell = 0; cell < 64; ++cell) {
           times[cell] = static_cast<std::uint8_t>(counts[cell / 8] >> (8 * (cell % 8)));
         }
       }
+      for (const std::uint32_t cell : full) {
+        times[cell % 64] += CountWindow::kFull;
+        once |= std::uint64_t{1} << (cell % 64);
+        more |= std::uint64_t{1} << (cell % 64);
+      }
       f(lowest, Cells{once, more, times});
-    };
-    window_.take(take_counts, [&](const BasicKey<std::uint64_t>& lowest, std::size_t cell) {
-      times[cell] = CountWindow::kFull;
-      f(lowest, Cells{std::uint64_t{1} << cell, std::uint64_t{1} << cell, times});
     });
     for (std::size_t i = 0; i < entries_.size();) {
       const std::uint64_t code = entries_[i].code;

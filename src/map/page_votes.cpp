@@ -56,7 +56,7 @@ class PageVoter {
 
   Entry brick(Entry entry, std::size_t number) {
     const Votes votes = votes_on(scan_, page_, number);
-    if (!entry.is_inner()) return voted(tree_, rules_, votes, entry);
+    if (!entry.is_inner()) return voted_without_brick(tree_, rules_, votes, entry);
     const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
     return changed ? settled_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }

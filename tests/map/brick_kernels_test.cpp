@@ -134,6 +134,28 @@ TEST(BrickKernels, WordsInUseAreThoseWithABit) {
   }
 }
 
+// Kills words that stay where they were, that take the place of those they come to, or that are not told as used.
+TEST(BrickKernels, WordsAreMovedToOthers) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::array<std::uint64_t, 64> from{}, to{}, together{};
+    std::uint64_t used = 0;
+    for (std::size_t word = 0; word < 64; ++word) {
+      from[word] = random() % 3 == 0 ? random() & random() : 0;
+      to[word] = random() % 2 == 0 ? random() & random() : 0;
+      together[word] = from[word] | to[word];
+      used |= std::uint64_t{from[word] != 0} << word;
+    }
+    for (const Lanes lanes : lanes_here()) {
+      std::array<std::uint64_t, 64> emptied = from, filled = to;
+      EXPECT_EQ(move_words(emptied.data(), filled.data(), lanes), used);
+      EXPECT_EQ(filled, together);
+      EXPECT_EQ(emptied, (std::array<std::uint64_t, 64>{}));
+    }
+  }
+}
+
 TEST(BrickKernels, CellsAreCountedInAllWords) {
   for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
     SCOPED_TRACE(seed);

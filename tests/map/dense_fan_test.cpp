@@ -79,13 +79,17 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
 }
 
 /// @param window  the fans before went through it, too
+/// @param marked  hits that are marked before
 template <class Point>
 Marks walked_as_fan(Lanes lanes, const RayFan& fan, const std::vector<Point>& ends_m, std::uint32_t squares,
-                    ScanWindow& window) {
+                    ScanWindow& window, const std::vector<std::uint64_t>& marked = {}) {
   window.open(kWindowBits);
+  for (std::uint64_t place = 0; place < 64 * marked.size(); ++place) {
+    if ((marked[place / 64] >> (place % 64) & 1) != 0) mark_hit(place, window);
+  }
   std::vector<std::uint32_t> others;
   DenseFan<Point> dense(lanes, fan, start_of(fan), squares, window);
-  const std::size_t walked = dense.mark(ends_m, RayEnds::kHit, others);
+  const std::size_t walked = dense.mark(ends_m, marked.empty() ? RayEnds::kHit : RayEnds::kMarked, others);
   Marks marks = taken_from(window);
   std::fill_n(window.missed(), kWords, 0);
   std::fill_n(window.hit(), kWords, 0);
@@ -169,6 +173,27 @@ TEST(DenseFan, MarksTheSameCellsForEndsInSinglePrecision) {
   }
   EXPECT_LT(walked, rays * 3 / 4);
   EXPECT_GT(walked, rays / 4);
+}
+
+// Kills hits that are lost where they are marked already, and rays to them that are taken for such without one, which
+// are walked one by one.
+TEST(DenseFan, TakesHitsThatAreMarkedAlready) {
+  std::size_t rays = 0, walked = 0;
+  ScanWindow window;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    const std::vector<Eigen::Vector3d> ends_m = bundles(random, from_m, uniform(random, 10.0, 50.0));
+    const RayFan fan = fan_from(from_m);
+    const Marks expected = walked_one_by_one(fan, ends_m);
+    const Marks found = walked_as_fan(widest_lanes(), fan, ends_m, 64, window, expected.hit);
+    expect_same_cells(found, expected);
+    EXPECT_EQ(found.walked, walked_as_fan(widest_lanes(), fan, ends_m, 64, window).walked);
+    rays += ends_m.size();
+    walked += found.walked;
+  }
+  EXPECT_LT(walked, rays * 2 / 3);
 }
 
 // Kills sorting rays that go each their own way, and a decision that leaves some of them out.

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <span>
+#include <vector>
 
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -79,6 +81,14 @@ TEST(MemoryLimit, LetsAFullMapTakeInWhatItKnowsAlready) {
   }
   EXPECT_TRUE(is_full);
   EXPECT_TRUE(map.apply(scan)) << "nothing changes, so nothing is needed";
+}
+
+// Kills a brick that is foreseen once for each time that a counter of the batch was full.
+TEST(MemoryLimit, LetsABatchTakeInTheSameCellAgainAndAgain) {
+  OccupancyMap map({.memory_limit_bytes = 4'000});
+  const std::vector<Key> keys(1'000'000, Key{40'000, 40'001, 40'002});
+  ASSERT_TRUE(map.update(std::span<const Key>(keys), LogOdds(0.001F)));
+  EXPECT_LE(map.memory_bytes(), 4'000U);
 }
 
 TEST(MemoryLimit, HoldsForMergesToo) {

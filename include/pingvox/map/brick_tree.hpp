@@ -38,8 +38,8 @@ struct Entry {
   static constexpr std::uint32_t kNone = 0;  ///< nothing is known below; value is 0
   static constexpr std::uint32_t kLeaf = 1;  ///< value holds for the whole cell
   std::uint32_t link = kNone;                ///< else: index of its Group, or at brick level of its Brick
-  /// Of an inner node: what it says of its children. At brick level a maximum is never less than the values below, also
-  /// where an editor has not settled it yet: writers trust that.
+  /// Of an inner node: what it says of its children. At brick level, whenever a map can be read, a maximum is never
+  /// less than the values below, also where an editor has not settled it yet: writers trust that.
   float value = 0.0F;
 
   static Entry leaf(float value) { return {kLeaf, value}; }
@@ -135,13 +135,16 @@ struct BrickTree {
   }
 };
 
+/// Asks for a brick from memory.
+inline void fetch(const Brick& brick) {
+  constexpr std::size_t kLine = 64;
+  const auto* const first = reinterpret_cast<const std::byte*>(&brick);
+  for (std::size_t byte = 0; byte < sizeof(Brick); byte += kLine) __builtin_prefetch(first + byte);
+}
 /// Asks for the bricks below a group: they lie anywhere, and are there when a walk over them comes to the next one.
 inline void fetch_bricks(const BrickTree& tree, const Group& group) {
-  constexpr std::size_t kLine = 64;
   for (const Entry& child : group.child) {
-    if (!child.is_inner()) continue;
-    const auto* const first = reinterpret_cast<const std::byte*>(&tree.bricks[child.link]);
-    for (std::size_t byte = 0; byte < sizeof(Brick); byte += kLine) __builtin_prefetch(first + byte);
+    if (child.is_inner()) fetch(tree.bricks[child.link]);
   }
 }
 
@@ -215,8 +218,8 @@ struct CursorRules {
 };
 
 /// What becomes of an entry at brick level that has no brick, of an unknown or a joined cell. A brick is made only
-/// where something changes that no leaf can say. Throws std::bad_alloc. REQUIRES !entry.is_inner()
-Entry voted(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry);
+/// where something changes that no leaf can say. Throws std::bad_alloc. REQUIRES !entry.is_inner(), and pruning
+Entry voted_without_brick(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry);
 
 /// A place in a tree and the path to it: what changes trees (below pages so does `voted`, map/page_votes.hpp). Moving
 /// on settles what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every parent is
@@ -229,7 +232,8 @@ class Cursor {
   /// Adds evidence to one cell.
   void update(const BasicKey<W>& key, LogOdds evidence);
 
-  /// Adds evidence to the cells of the brick that holds `key`. @return whether anything changed
+  /// Adds evidence to the cells of the brick that holds `key`. Throws std::bad_alloc: a brick that was made for it may
+  /// then be lost until the map is cleared. @return whether anything changed. REQUIRES pruning
   bool vote(const BasicKey<W>& key, const Votes& votes);
 
   /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
