@@ -25,6 +25,11 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
+/// Where rays begin [m].
+Eigen::Vector3d drawn_start(std::mt19937_64& random) {
+  return {uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0)};
+}
+
 /// Beams side by side as bundles of rays, each of its own length; somewhere in all directions.
 std::vector<Eigen::Vector3d> bundles(std::mt19937_64& random, const Eigen::Vector3d& from_m, double most_m) {
   constexpr int kAcross = 32, kUp = 64;
@@ -121,7 +126,7 @@ TEST(DenseFan, MarksTheCellsOfWalkingEachRay) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const double cells_per_m = uniform(random, 0.5, 3.0);
-    Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    Eigen::Vector3d from_m = drawn_start(random);
     if (seed % 3 == 0) from_m = from_m.array().round() / cells_per_m;  // corners of cells
     std::vector<Eigen::Vector3d> ends_m = bundles(random, from_m, uniform(random, 5.0, 55.0) / cells_per_m);
     // Some leave the window, some are none.
@@ -154,7 +159,7 @@ TEST(DenseFan, MarksTheSameCellsForEndsInSinglePrecision) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    const Eigen::Vector3d from_m = drawn_start(random);
     std::vector<Eigen::Vector3f> ends_m;
     std::vector<Eigen::Vector3d> same_m;
     for (const Eigen::Vector3d& end_m : bundles(random, from_m, uniform(random, 10.0, 80.0))) {
@@ -183,7 +188,7 @@ TEST(DenseFan, TakesHitsThatAreMarkedAlready) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    const Eigen::Vector3d from_m = drawn_start(random);
     const std::vector<Eigen::Vector3d> ends_m = bundles(random, from_m, uniform(random, 10.0, 50.0));
     const RayFan fan = fan_from(from_m);
     const Marks expected = walked_one_by_one(fan, ends_m);
@@ -218,7 +223,7 @@ TEST(DenseFan, AScanMayBeUsedAgain) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const Eigen::Vector3d from_m(uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    const Eigen::Vector3d from_m = drawn_start(random);
     const PointScan scan{from_m, bundles(random, from_m, seed % 2 == 0 ? 12.0 : 50.0)};
     ScanUpdate fresh, copied = used;
     OccupancyMap expected, found, of_copy;

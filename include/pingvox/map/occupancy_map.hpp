@@ -118,8 +118,9 @@ class OccupancyMap {
   detail::BrickTree tree_;
 };
 
-/// Changes single cells. Inner nodes may be stale between `synchronize` calls, as `Pruning` says; leaves never are.
-/// Holds a path into the tree, so neighbouring updates are cheap. Does not look at memory_limit_bytes.
+/// Changes single cells. Inner nodes may be stale between `synchronize` calls, as `Pruning` says, and stay so in copies
+/// of the map that are made then; leaves never are. Holds a path into the tree, so neighbouring updates are cheap. Does
+/// not look at memory_limit_bytes.
 class Editor {
  public:
   Editor(OccupancyMap& map, Pruning pruning);
