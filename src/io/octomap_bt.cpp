@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstddef>
@@ -135,9 +136,18 @@ class TreeWords {
 
   std::span<std::uint16_t> words() { return {words_.get(), end_}; }
 
-  std::uint64_t nodes() const {
-    std::uint64_t nodes = end_ == words_.get() ? 0 : 1;
-    for (const std::uint16_t* word = words_.get(); word != end_; ++word) nodes += children_of(*word);
+  std::uint64_t nodes() {
+    // Blocks whose sums fit into 16 bits, so that as many words are counted side by side as fit into a vector.
+    constexpr std::size_t kBlock = 4096;
+    const std::span<const std::uint16_t> all = words();
+    std::uint64_t nodes = all.empty() ? 0 : 1;
+    for (std::size_t first = 0; first < all.size(); first += kBlock) {
+      std::uint16_t children = 0;
+      for (const std::uint16_t word : all.subspan(first, std::min(kBlock, all.size() - first))) {
+        children = static_cast<std::uint16_t>(children + children_of(word));
+      }
+      nodes += children;
+    }
     return nodes;
   }
 
@@ -155,7 +165,7 @@ class TreeWords {
     if (entry.is_none()) return kUnknown;
     if (entry.is_leaf()) return state_of(LogOdds(entry.value));
     if (depth < kBrickDepth) return add(tree_.groups[entry.link], depth);
-    const detail::Brick& brick = tree_.bricks[entry.link];
+    const detail::BrickView brick = tree_.bricks[entry.link];
     return add(is_all_free(entry) ? detail::CellStates{brick.known, 0} : detail::classified(brick, thresholds_));
   }
 
@@ -181,7 +191,7 @@ class TreeWords {
   void fetch_bricks(const detail::Group& group) const {
     for (const detail::Entry& child : group.child) {
       if (!child.is_inner()) continue;
-      const detail::Brick& brick = tree_.bricks[child.link];
+      const detail::BrickView brick = tree_.bricks[child.link];
       is_all_free(child) ? __builtin_prefetch(&brick.known) : detail::fetch(brick);
     }
   }

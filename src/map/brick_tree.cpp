@@ -15,7 +15,7 @@ std::uint64_t octant_mask(int octant) {
   return std::uint64_t{0xFF} << (octant * 8);
 }
 
-int octant_known(const Brick& brick, int octant) {
+int octant_known(BrickView brick, int octant) {
   return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
 }
 
@@ -74,8 +74,8 @@ Entry copied(BrickTree& tree, const BrickTree& other, Entry entry, int depth, Pa
 
 Entry merged_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Parents parents, const Clamp& clamp) {
   const std::uint32_t index = a.is_inner() ? a.link : tree.bricks.allocate(brick_of(a));
-  Brick& into = tree.bricks[index];
-  const Brick from = b.is_leaf() ? brick_of(b) : other.bricks[b.link];
+  const BrickRef into = tree.bricks[index];
+  const Brick from = b.is_leaf() ? brick_of(b) : Brick(other.bricks[b.link]);
   for (std::size_t i = 0; i < 64; ++i) {
     if (!((from.known >> i) & 1)) continue;
     const bool known = (into.known >> i) & 1;
@@ -120,7 +120,7 @@ Group group_of(Entry entry) {
 }
 
 Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
-  const Brick& brick = tree.bricks[index];
+  const BrickView brick = tree.bricks[index];
   if (pruning != Pruning::kNever && is_uniform(brick)) {
     const Entry leaf = Entry::leaf(brick.value[0]);
     tree.bricks.release(index);
@@ -139,7 +139,7 @@ Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruni
   return {index, summary_of(group, parents)};
 }
 
-CellStates classified(const Brick& brick, const Thresholds& thresholds) {
+CellStates classified(BrickView brick, const Thresholds& thresholds) {
   const std::uint64_t occupied = brick.known & cells_from(brick, thresholds.upper.value());
   const std::uint64_t lower =
       thresholds.lower == thresholds.upper ? occupied : cells_from(brick, thresholds.lower.value());
@@ -166,7 +166,7 @@ Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parent
   return {tree.bricks.allocate(brick), parents == Parents::kMax ? most : summary_of(brick, parents)};
 }
 
-bool add(const Votes& votes, const Clamp& clamp, Brick& brick) {
+bool add(const Votes& votes, const Clamp& clamp, BrickRef brick) {
   assert((votes.missed & votes.hit) == 0);
   bool changed = false;
   const auto add_to = [&](std::uint64_t cells, LogOdds evidence) {
@@ -207,7 +207,7 @@ float summary_of(const Group& group, Parents parents) {
   return parents == Parents::kMax ? highest : static_cast<float>(sum / known);
 }
 
-float summary_of_octant(const Brick& brick, int octant, Parents parents) {
+float summary_of_octant(BrickView brick, int octant, Parents parents) {
   const int mask = octant_known(brick, octant);
   assert(mask != 0);
   const float* const value = brick.value.data() + octant * 8;
@@ -221,7 +221,7 @@ float summary_of_octant(const Brick& brick, int octant, Parents parents) {
   return parents == Parents::kMax ? highest : static_cast<float>(sum / std::popcount(static_cast<unsigned>(mask)));
 }
 
-float summary_of(const Brick& brick, Parents parents) {
+float summary_of(BrickView brick, Parents parents) {
   assert(brick.known != 0);
   if (parents == Parents::kMax) return highest_of(brick);
   double sum = 0.0;
@@ -239,11 +239,11 @@ bool is_uniform(const Group& group) {
          std::all_of(group.child.begin(), group.child.end(), [&](const Entry& c) { return c == group.child[0]; });
 }
 
-bool is_uniform(const Brick& brick) {
+bool is_uniform(BrickView brick) {
   return brick.known == kAllCells && are_equal(brick);
 }
 
-std::uint64_t cells_of_uniform_octants(const Brick& brick) {
+std::uint64_t cells_of_uniform_octants(BrickView brick) {
   return cells_of_octants(full_bytes(brick.known) & ~octants_that_differ(brick));
 }
 
@@ -344,7 +344,7 @@ void Cursor<W>::grow_to(int depth) {
 }
 
 template <KeyWord W>
-Brick& Cursor<W>::brick_made() {
+BrickRef Cursor<W>::brick_made() {
   if (brick_ == Entry::kNone) {
     grow_to(tree_.brick_depth());
     Entry& entry = entry_at(tree_.brick_depth());
@@ -462,7 +462,7 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
   // What changes nothing is dropped before anything is made or marked. Evidence of nothing makes no cell known.
   const bool changes = known ? after != before : evidence != LogOdds(0.0F);
   if (!changes && (rules_.early_drop == EarlyDrop::kOn || !in_brick || !known)) return;
-  Brick& brick = brick_made();
+  const BrickRef brick = brick_made();
   const bool is_first = brick.known == 0;
   brick.known |= bit;
   brick.value[cell] = after;
@@ -512,7 +512,7 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
     after_change(at);
     return;
   }
-  Brick& brick = brick_made();
+  const BrickRef brick = brick_made();
   const bool whole_octant = depth == tree_.levels - 1;
   const int first = whole_octant ? key.octant(1) * 8 : cell_in_brick(key);
   const int count = whole_octant ? 8 : 1;
@@ -569,7 +569,7 @@ std::optional<NodeView> NodeView::child(int octant) const {
     case Kind::kGroup:
       return of(*tree_, tree_->groups[index_].child[static_cast<std::size_t>(octant)], depth_ + 1, parents_);
     case Kind::kBrick: {
-      const detail::Brick& brick = tree_->bricks[index_];
+      const detail::BrickView brick = tree_->bricks[index_];
       if (detail::octant_known(brick, octant) == 0) return std::nullopt;
       const bool joined = tree_->pruned && ((detail::cells_of_uniform_octants(brick) >> (octant * 8)) & 1) != 0;
       NodeView view(*tree_, joined ? Kind::kLeaf : Kind::kOctant, depth_ + 1, parents_, index_,
@@ -579,7 +579,7 @@ std::optional<NodeView> NodeView::child(int octant) const {
       return view;
     }
     case Kind::kOctant: {
-      const detail::Brick& brick = tree_->bricks[index_];
+      const detail::BrickView brick = tree_->bricks[index_];
       const int cell = octant_ * 8 + octant;
       if (((brick.known >> cell) & 1) == 0) return std::nullopt;
       return NodeView(*tree_, Kind::kLeaf, depth_ + 1, parents_, 0, brick.value[static_cast<std::size_t>(cell)]);

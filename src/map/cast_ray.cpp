@@ -153,7 +153,7 @@ class NodeWalk {
 
   /// Goes on from cell to cell until the ray has left the brick. Which face comes next is as good as random: there are
   /// no branches on it.
-  Stop cross(const detail::Brick& brick) {
+  Stop cross(detail::BrickView brick) {
     // Of each axis 4 bits with 4 + the cell's place in the brick: out of it are 3 and 8.
     constexpr std::uint32_t kHigh = 0xCCC, kIn = 0x444, kLow = 0x333;
     std::uint32_t place = kIn + static_cast<std::uint32_t>(key_[0] & 3) +

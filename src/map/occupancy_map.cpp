@@ -280,7 +280,7 @@ std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
   const detail::Entry entry = entry_above(tree_, key, octants);
   if (entry.is_none()) return std::nullopt;
   if (entry.is_leaf()) return LogOdds(entry.value);
-  const detail::Brick& brick = tree_.bricks[entry.link];
+  const detail::BrickView brick = tree_.bricks[entry.link];
   const std::size_t cell = octants.cell_in_brick();
   if (((brick.known >> cell) & 1) == 0) return std::nullopt;
   return LogOdds(brick.value[cell]);
@@ -300,7 +300,7 @@ Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
   float value = entry.value;
   unsigned is_known = entry.is_none() ? 0 : 1;
   if (entry.is_inner()) {
-    const detail::Brick& brick = tree_.bricks[entry.link];
+    const detail::BrickView brick = tree_.bricks[entry.link];
     const std::size_t cell = octants.cell_in_brick();
     value = brick.value[cell];
     is_known = static_cast<unsigned>(brick.known >> cell) & 1U;

@@ -9,6 +9,7 @@
 #include "map/bits.hpp"
 #include "map/kernels/brick.hpp"
 #include "map/kernels/words.hpp"
+#include "pingvox/map/brick_tree.hpp"
 #include "support/lanes.hpp"
 
 namespace pingvox::detail {
@@ -102,7 +103,7 @@ TEST(BrickKernels, MasksAreWhatThePlainLoopsGive) {
     for (const float threshold : {-2.0F, -0.0F, 0.85F}) {
       std::uint64_t cells = 0;
       for (std::size_t i = 0; i < 64; ++i) cells |= std::uint64_t{brick.value[i] >= threshold} << i;
-      EXPECT_EQ(cells_from(brick, threshold), cells);
+      for (const Lanes lanes : lanes_here()) EXPECT_EQ(cells_from(brick, threshold, lanes), cells);
       from += static_cast<std::size_t>(std::popcount(cells));
     }
 

@@ -54,7 +54,7 @@ TEST(PageVotes, OneCellOfALeafMakesOneBrick) {
   EXPECT_EQ(tree.bricks.bytes(), sizeof(Brick));
   const Group& bricks = tree.groups[tree.groups[page.link].child[7].link];
   EXPECT_EQ(bricks.child[6], Entry::leaf(-1.0F));
-  const Brick& brick = tree.bricks[bricks.child[7].link];
+  const BrickView brick = tree.bricks[bricks.child[7].link];
   EXPECT_EQ(brick.value[0], -1.0F + 0.85F);
   EXPECT_EQ(brick.value[1], -1.0F - 0.4F);
   EXPECT_EQ(bricks.child[7].value, brick.value[0]);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pingvox/geometry/key.hpp"
+#include "pingvox/map/brick.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/pool.hpp"
 
@@ -53,19 +54,6 @@ struct Entry {
 struct alignas(64) Group {
   std::array<Entry, 8> child;
 };
-
-/// The bottom two levels: 4 x 4 x 4 cells. Cell o * 8 + i is child i of octant o, so that each octant is a byte of the
-/// mask. The value of an unknown cell is 0.
-struct Brick {
-  std::uint64_t known = 0;
-  std::array<float, 64> value{};
-};
-
-/// Number of a cell in its brick.
-template <KeyWord W>
-constexpr int cell_in_brick(const BasicKey<W>& key) {
-  return key.octant(1) * 8 + key.octant(0);
-}
 
 /// Where look-ups start: eight nodes of one size, side by side, that hold all that is known. A map fits into eight that
 /// are as wide as it is or wider, wherever it lies, and hardly anything forks between the root and them.
@@ -122,7 +110,7 @@ struct BrickTree {
   /// Always right: it is dropped when a link at or above its nodes changes, and made again when that is settled.
   std::optional<Shortcut> shortcut;
   Pool<Group> groups;
-  Pool<Brick> bricks;
+  BrickPool bricks;
 
   int brick_depth() const { return levels - 2; }
   /// Depth of the deepest node, brick_depth at most, that holds both keys.
@@ -135,12 +123,6 @@ struct BrickTree {
   }
 };
 
-/// Asks for a brick from memory.
-inline void fetch(const Brick& brick) {
-  constexpr std::size_t kLine = 64;
-  const auto* const first = reinterpret_cast<const std::byte*>(&brick);
-  for (std::size_t byte = 0; byte < sizeof(Brick); byte += kLine) __builtin_prefetch(first + byte);
-}
 /// Asks for the bricks below a group: they lie anywhere, and are there when a walk over them comes to the next one.
 inline void fetch_bricks(const BrickTree& tree, const Group& group) {
   for (const Entry& child : group.child) {
@@ -151,15 +133,15 @@ inline void fetch_bricks(const BrickTree& tree, const Group& group) {
 /// What a group says of its children. REQUIRES at least one known child.
 float summary_of(const Group& group, Parents parents);
 /// What an octant of a brick says of its cells. REQUIRES a known cell in it.
-float summary_of_octant(const Brick& brick, int octant, Parents parents);
+float summary_of_octant(BrickView brick, int octant, Parents parents);
 /// What a brick says of its octants. REQUIRES a known cell.
-float summary_of(const Brick& brick, Parents parents);
+float summary_of(BrickView brick, Parents parents);
 /// All eight leaves, and equal.
 bool is_uniform(const Group& group);
 /// All cells known, and equal.
-bool is_uniform(const Brick& brick);
+bool is_uniform(BrickView brick);
 /// The cells of those octants of which all cells are known, and equal.
-std::uint64_t cells_of_uniform_octants(const Brick& brick);
+std::uint64_t cells_of_uniform_octants(BrickView brick);
 
 /// Evidence for the cells of one brick: `miss` where a bit of `missed` is set; where bit i of `hit` is set hits[i], or
 /// `all_hits` when there are none. REQUIRES missed and hit to be disjoint.
@@ -171,7 +153,7 @@ struct Votes {
   LogOdds all_hits;
 };
 /// Adds evidence to a brick. @return whether anything changed
-bool add(const Votes& votes, const Clamp& clamp, Brick& brick);
+bool add(const Votes& votes, const Clamp& clamp, BrickRef brick);
 
 /// The evidence that each cell of a brick gets alike; nullopt: not all of them do.
 std::optional<LogOdds> for_all_cells(const Votes& votes);
@@ -185,7 +167,7 @@ Group group_of(Entry entry);
 struct CellStates {
   std::uint64_t free = 0, occupied = 0;
 };
-CellStates classified(const Brick& brick, const Thresholds& thresholds);
+CellStates classified(BrickView brick, const Thresholds& thresholds);
 
 /// For readers that build a tree from below: the entry for what they put together, which is stored unless that is
 /// uniform, or nothing is known in it. Throws std::bad_alloc.
@@ -261,7 +243,7 @@ class Cursor {
   Entry& entry_at(int depth);
   int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
   void grow_to(int depth);
-  Brick& brick_made();
+  BrickRef brick_made();
   void mark_stale_above(int depth);
   void drop_shortcut_at(int depth);
   void settle_brick();

@@ -96,7 +96,7 @@ class LeafWalk {
  private:
   static constexpr std::uint64_t kFirstCells = 0x0101010101010101;  ///< of each octant
 
-  void over(const Brick& brick, const BasicKey<W>& key, int depth) {
+  void over(BrickView brick, const BasicKey<W>& key, int depth) {
     if (depth + 1 == max_depth_) {
       over_octants(brick, key, depth);
       return;
@@ -113,7 +113,7 @@ class LeafWalk {
     }
   }
 
-  void over_octants(const Brick& brick, const BasicKey<W>& key, int depth) {
+  void over_octants(BrickView brick, const BasicKey<W>& key, int depth) {
     for (std::size_t octant = 0; octant < 8; ++octant) {
       if ((brick.known >> (octant * 8) & 0xFF) == 0) continue;
       const BasicKey<W> octant_key = cell_below(key, octant * 8);

@@ -5,7 +5,8 @@
 #include <cstring>
 
 #include "map/kernels/lanes.hpp"
-#include "pingvox/map/brick_tree.hpp"
+#include "pingvox/map/brick.hpp"
+#include "pingvox/map/log_odds.hpp"
 
 /// Loops over the 64 values of a brick, as many at a time as the machine's vectors hold. Each gives, to the last bit,
 /// what the plain loop in its comment gives (tests/map/brick_kernels_test.cpp).
@@ -14,19 +15,22 @@ namespace pingvox::detail {
 /// for each cell of `cells`: value = updated_by(value, evidence, clamp). REQUIRES evidence != 0 and unknown cells to be
 /// 0.
 /// @return whether a value changed
-bool add_alike(Brick& brick, std::uint64_t cells, float evidence, const Clamp& clamp, Lanes lanes = widest_lanes());
+bool add_alike(BrickRef brick, std::uint64_t cells, float evidence, const Clamp& clamp, Lanes lanes = widest_lanes());
 
 /// for each known cell: highest = max(highest, value)
-float highest_of(const Brick& brick, Lanes lanes = widest_lanes());
+float highest_of(BrickView brick, Lanes lanes = widest_lanes());
 
 /// for each cell: value == value[0]
-bool are_equal(const Brick& brick, Lanes lanes = widest_lanes());
+bool are_equal(BrickView brick, Lanes lanes = widest_lanes());
+
+/// for each cell, known or not: its bit set where value >= threshold
+std::uint64_t cells_from(BrickView brick, float threshold, Lanes lanes = widest_lanes());
 
 /// Four values at a time, for what is too short for more.
 using Four = float __attribute__((vector_size(16)));
 using FourMasks = std::int32_t __attribute__((vector_size(16)));
 
-inline Four four_at(const Brick& brick, std::size_t first) {
+inline Four four_at(BrickView brick, std::size_t first) {
   Four values;
   std::memcpy(&values, brick.value.data() + first, sizeof values);
   return values;
@@ -39,7 +43,7 @@ inline FourMasks lanes_of(std::uint64_t cells) {
 }
 
 /// for each octant o: bit o set where a cell's value is not that of the octant's first
-inline unsigned octants_that_differ(const Brick& brick) {
+inline unsigned octants_that_differ(BrickView brick) {
   FourMasks different{};
   for (std::size_t o = 0; o < 8; ++o) {
     const float first = brick.value[o * 8];
@@ -48,21 +52,8 @@ inline unsigned octants_that_differ(const Brick& brick) {
   return static_cast<unsigned>(different[0] | different[1] | different[2] | different[3]);
 }
 
-/// for each cell, known or not: its bit set where value >= threshold
-inline std::uint64_t cells_from(const Brick& brick, float threshold) {
-  const auto half = [&](std::size_t from) {
-    FourMasks cells{}, bits{1, 2, 4, 8};
-    for (std::size_t first = 0; first < 32; first += 4) {
-      cells |= (four_at(brick, from + first) >= threshold) & bits;
-      bits <<= 4;
-    }
-    return static_cast<std::uint32_t>(cells[0] | cells[1] | cells[2] | cells[3]);
-  };
-  return std::uint64_t{half(32)} << 32 | half(0);
-}
-
 /// for each cell of `a`: value = value_a, for each of `b`: value = value_b, else 0. REQUIRES a and b to be disjoint.
-inline void fill(Brick& brick, std::uint64_t a, float value_a, std::uint64_t b, float value_b) {
+inline void fill(BrickRef brick, std::uint64_t a, float value_a, std::uint64_t b, float value_b) {
   for (std::size_t first = 0; first < 64; first += 4) {
     const Four zero{};
     const Four other = lanes_of(b >> first) != 0 ? zero + value_b : zero;

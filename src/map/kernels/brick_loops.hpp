@@ -8,7 +8,7 @@ using Values = float __attribute__((vector_size(kValues * sizeof(float))));
 using Masks = std::int32_t __attribute__((vector_size(kValues * sizeof(float))));
 constexpr std::uint64_t kSome = (std::uint64_t{1} << kValues) - 1;
 
-inline Values values_at(const Brick& brick, std::size_t first) {
+inline Values values_at(BrickView brick, std::size_t first) {
   Values values;
   std::memcpy(&values, brick.value.data() + first, sizeof values);
   return values;
@@ -32,7 +32,7 @@ inline bool any_of(Masks lanes) {
 /// for each cell of `cells`: value = updated_by(value, evidence, clamp). REQUIRES evidence != 0 and unknown cells to be
 /// 0.
 /// @return whether a value changed
-inline bool add_alike(Brick& brick, std::uint64_t cells, float evidence, const Clamp& clamp) {
+inline bool add_alike(BrickRef brick, std::uint64_t cells, float evidence, const Clamp& clamp) {
   const float lowest = clamp.lowest.value(), highest = clamp.highest.value();
   const bool is_hit = evidence > 0.0F;
   Masks changed{};
@@ -67,7 +67,7 @@ inline float most_of(const Values& values) {
 }
 
 /// for each known cell: highest = max(highest, value)
-inline float highest_of(const Brick& brick) {
+inline float highest_of(BrickView brick) {
   Values highest = Values{} + std::numeric_limits<float>::lowest();
   for (std::size_t first = 0; first < 64; first += kValues) {
     if ((brick.known >> first & kSome) == 0) continue;  // as half of each brick in a flat map
@@ -78,8 +78,32 @@ inline float highest_of(const Brick& brick) {
 }
 
 /// for each cell: value == value[0]
-inline bool are_equal(const Brick& brick) {
+inline bool are_equal(BrickView brick) {
   Masks different{};
   for (std::size_t first = 0; first < 64; first += kValues) different |= values_at(brick, first) != brick.value[0];
   return !any_of(different);
+}
+
+/// for each cell, known or not: its bit set where value >= threshold
+inline std::uint64_t cells_from(BrickView brick, float threshold) {
+  std::uint64_t cells = 0;
+#ifdef PINGVOX_AVX512
+  for (std::size_t first = 0; first < 64; first += kValues) {
+    const auto values = reinterpret_cast<__m512>(values_at(brick, first));
+    cells |= std::uint64_t{_mm512_cmp_ps_mask(values, _mm512_set1_ps(threshold), _CMP_GE_OQ)} << first;
+  }
+#else
+  for (std::size_t half = 0; half < 64; half += 32) {
+    Masks some{}, bits{};
+    for (std::size_t i = 0; i < kValues; ++i) bits[i] = std::int32_t{1} << i;
+    for (std::size_t first = 0; first < 32; first += kValues) {
+      some |= (values_at(brick, half + first) >= threshold) & bits;
+      bits <<= kValues;
+    }
+    std::uint32_t all = 0;
+    for (std::size_t i = 0; i < kValues; ++i) all |= static_cast<std::uint32_t>(some[i]);
+    cells |= std::uint64_t{all} << half;
+  }
+#endif
+  return cells;
 }
