@@ -55,7 +55,7 @@ std::uint32_t ScanUpdate::page_at(const WideKey& key) {
   return slots_[slot] != kFree ? slots_[slot] - 1 : add_page(corner);
 }
 
-std::uint32_t ScanUpdate::add_page(const WideKey& lowest) {
+inline std::uint32_t ScanUpdate::add_page(const WideKey& lowest) {
   if (used_ == pages_.size()) pages_.emplace_back();
   pages_[used_].lowest = lowest;
   return static_cast<std::uint32_t>(used_++);
@@ -98,9 +98,10 @@ void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
   const bool all_are_new = empty();
   detail::take_touched(window_, [&](std::uint64_t number) {
     const BasicKey<std::uint64_t> at = detail::key_of_code(number);
-    const WideKey corner{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits),
-                         lowest.z + (at.z << kPageBits)};
-    const std::uint32_t index = all_are_new ? add_page(corner) : page_of(corner);
+    const auto corner = [&] {
+      return WideKey{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)};
+    };
+    const std::uint32_t index = all_are_new ? add_page(corner()) : page_of(corner());
     Page& page = pages_[index];
     page.bricks |= detail::move_words(window_.missed() + number * 64, page.missed.data());
     if (std::exchange(window_.with_hits()[number], std::uint8_t{0}) == 0) return;
@@ -114,8 +115,10 @@ void ScanUpdate::clear() {
   // Of a scan that was moved from there are no pages left.
   for (std::size_t i = 0; i < std::min(used_, pages_.size()); ++i) {
     Page& page = pages_[i];
-    page.bricks = 0;
-    page.missed.fill(0);
+    const std::uint64_t bricks = std::exchange(page.bricks, 0);
+    for (std::size_t octant = 0; octant < 8; ++octant) {  // of a flat scan half have marks
+      if ((bricks >> (8 * octant) & 0xFF) != 0) std::fill_n(&page.missed[8 * octant], 8, 0);
+    }
     for_each_bit(std::exchange(page.bricks_hit, 0), [&](std::size_t brick) { page.hit[brick] = 0; });
   }
   used_ = 0;
