@@ -96,7 +96,7 @@ bool DenseFan<Point>::mark_dense() {
 template <class Point>
 void DenseFan<Point>::walk_all(RayEnds ends) {
   for (std::size_t first = 0; first < ends_m_.size(); first += kBlock) {
-    walk_some(ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), ends,
+    walk_some(ends_m_.subspan(first, std::min(kBlock, ends_m_.size() - first)), ends, MissesIn::kMaskOrLayer,
               [first](std::uint32_t i) { return static_cast<std::uint32_t>(first) + i; });
   }
 }
@@ -107,21 +107,21 @@ void DenseFan<Point>::walk(std::span<const std::uint32_t> rays) {
     const std::span<const std::uint32_t> some = rays.subspan(first, std::min(kBlock, rays.size() - first));
     room_.walked_ends_m.clear();
     for (const std::uint32_t ray : some) room_.walked_ends_m.push_back(ends_m_[ray].template cast<double>());
-    walk_some(std::span<const Eigen::Vector3d>(room_.walked_ends_m), RayEnds::kMarked,
+    walk_some(std::span<const Eigen::Vector3d>(room_.walked_ends_m), RayEnds::kMarked, MissesIn::kMask,
               [some](std::uint32_t i) { return some[i]; });
   }
 }
 
 template <class Point>
 template <class End, class NumberOf>
-void DenseFan<Point>::walk_some(std::span<const End> ends_m, RayEnds ends, NumberOf&& number_of) {
+void DenseFan<Point>::walk_some(std::span<const End> ends_m, RayEnds ends, MissesIn where, NumberOf&& number_of) {
   walked_ += ends_m.size();
   room_.not_ready.clear();
   prepare_rays(lanes_, fan_, ends_m, room_.ready, room_.not_ready);
   if (ends == RayEnds::kHit) {
     for (const ReadyRay& ray : room_.ready) mark_hit(ray.end, window_);
   }
-  mark_rays(lanes_, room_.ready, start_, window_);
+  mark_rays(lanes_, room_.ready, start_, where, window_);
   for (const std::uint32_t i : room_.not_ready) others_->push_back(number_of(i));
 }
 
@@ -138,7 +138,7 @@ void DenseFan<Point>::walk_the_rest() {
     const auto ask = [&](std::uint64_t page) {
       if (std::exchange(room_.is_to_ask[page], std::uint8_t{1}) == 0) to_ask.push_back(page);
     };
-    take_touched(window_, [&](std::uint64_t page) {
+    take_touched(window_, [&](std::uint64_t page, std::uint8_t) {
       touched[page] = 1;
       ask(page);
       for (unsigned axis = 0; axis < 3; ++axis) {

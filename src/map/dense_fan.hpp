@@ -62,7 +62,7 @@ class DenseFan {
   void walk(std::span<const std::uint32_t> rays);
   /// @param number_of  of the first of these rays, the second, ...
   template <class End, class NumberOf>
-  void walk_some(std::span<const End> ends_m, RayEnds ends, NumberOf&& number_of);
+  void walk_some(std::span<const End> ends_m, RayEnds ends, MissesIn where, NumberOf&& number_of);
   void walk_the_rest();
   void ask_page(std::uint64_t page);
   void ask_brick(std::uint64_t brick);

@@ -95,20 +95,28 @@ detail::ScanWindow& ScanUpdate::window(int bits) {
 }
 
 void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
+  using Window = detail::ScanWindow;
   const bool all_are_new = empty();
-  detail::take_touched(window_, [&](std::uint64_t number) {
+  window_.touch_layer();
+  detail::take_touched(window_, [&](std::uint64_t number, std::uint8_t where) {
     const BasicKey<std::uint64_t> at = detail::key_of_code(number);
     const auto corner = [&] {
       return WideKey{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)};
     };
     const std::uint32_t index = all_are_new ? add_page(corner()) : page_of(corner());
     Page& page = pages_[index];
+    if ((where & Window::kInLayer) != 0) {
+      std::uint64_t* const cells = window_.layer() + 4 * detail::without_z(number);
+      page.bricks |= detail::take_layer(cells, *window_.layer_z(), page.missed.data());
+    }
+    if ((where & Window::kInMask) == 0) return;
     page.bricks |= detail::move_words(window_.missed() + number * 64, page.missed.data());
     if (std::exchange(window_.with_hits()[number], std::uint8_t{0}) == 0) return;
     std::uint64_t* const hits = window_.hit() + number * 64;
     for_each_bit(detail::words_in_use(hits),
                  [&](std::size_t brick) { mark_hit_in(index, brick, std::exchange(hits[brick], 0), hit); });
   });
+  window_.layer_z().reset();
 }
 
 void ScanUpdate::clear() {

@@ -65,6 +65,14 @@ constexpr std::uint64_t code_of(const BasicKey<W>& key) {
   return spread(key.x) | spread(key.y) << 1 | spread(key.z) << 2;
 }
 
+/// That number without the bits of z, two bits a level. REQUIRES up to 16 levels.
+constexpr std::uint64_t without_z(std::uint64_t code) {
+  code = (code & 0x0C30C30C30C3U) | (code >> 1 & 0x30C30C30C30CU);
+  code = (code & 0x00F00F00F00FU) | (code >> 2 & 0x0F00F00F00F0U);
+  code = (code & 0x0000FF0000FFU) | (code >> 4 & 0x00FF0000FF00U);
+  return (code & 0xFFFFU) | (code >> 8 & 0xFFFF0000U);
+}
+
 /// The key with that number.
 constexpr BasicKey<std::uint64_t> key_of_code(std::uint64_t code) {
   return {gathered_bits(code), gathered_bits(code >> 1), gathered_bits(code >> 2)};

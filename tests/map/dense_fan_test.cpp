@@ -77,7 +77,7 @@ Marks walked_one_by_one(const RayFan& fan, const std::vector<Eigen::Vector3d>& e
   std::vector<std::uint32_t> others;
   prepare_rays(Lanes::kOne, fan, std::span<const Eigen::Vector3d>(ends_m), ready, others);
   for (const ReadyRay& ray : ready) mark_hit(ray.end, window);
-  mark_rays(Lanes::kOne, ready, start_of(fan), window);
+  mark_rays(Lanes::kOne, ready, start_of(fan), MissesIn::kMask, window);
   Marks marks = taken_from(window);
   marks.others = others;
   return marks;
@@ -199,6 +199,33 @@ TEST(DenseFan, TakesHitsThatAreMarkedAlready) {
     walked += found.walked;
   }
   EXPECT_LT(walked, rays * 2 / 3);
+}
+
+// Kills marks of a flat fan that go into the window's layer, where no cell that borders on them is looked for.
+TEST(DenseFan, FlatFansMarkTheMask) {
+  constexpr int kRays = 40'000;
+  std::size_t walked = 0;
+  ScanWindow window;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Eigen::Vector3d from_m = drawn_start(random);
+    const RayFan fan = fan_from(from_m);
+    std::vector<Eigen::Vector3d> ends_m;
+    for (int ray = 0; ray < kRays; ++ray) {
+      const double bearing = 2.0 * ray / kRays, range_m = 40.0 + 15.0 * std::sin(20.0 * bearing);
+      ends_m.emplace_back(from_m + range_m * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0));
+    }
+    const Marks expected = walked_one_by_one(fan, ends_m);
+    for (const Lanes lanes : lanes_here()) {
+      SCOPED_TRACE(static_cast<int>(lanes));
+      const Marks found = walked_as_fan(lanes, fan, ends_m, 64, window);
+      expect_same_cells(found, expected);
+      EXPECT_FALSE(window.layer_z());
+      walked += found.walked;
+    }
+  }
+  EXPECT_LT(walked, 6 * lanes_here().size() * kRays / 2) << "most must not be walked, or this tests nothing";
 }
 
 // Kills sorting rays that go each their own way, and a decision that leaves some of them out.

@@ -263,7 +263,7 @@ TEST(RayLanes, MarkTheCellsOfFaceCrossings) {
 
       ScanWindow window;
       window.open(kWindowBits);
-      mark_rays(lanes, ready, start_of(fan), window);
+      mark_rays(lanes, ready, start_of(fan), MissesIn::kMask, window);
       std::set<std::uint64_t> found;
       for (std::uint64_t place = 0; place < std::uint64_t{1} << (3 * kWindowBits); ++place) {
         if (((window.missed()[place / 64] >> (place % 64)) & 1) == 0) continue;
@@ -278,6 +278,83 @@ TEST(RayLanes, MarkTheCellsOfFaceCrossings) {
   EXPECT_GT(marked, 100'000U);
   EXPECT_GT(taken, 10'000U);
   EXPECT_GT(left_out, 500U);
+}
+
+/// Places that are marked as missed in a window, wherever.
+std::set<std::uint64_t> missed_in(ScanWindow& window) {
+  std::set<std::uint64_t> missed;
+  for (std::uint64_t place = 0; place < std::uint64_t{1} << (3 * kWindowBits); ++place) {
+    const std::uint64_t flat = without_z(place);
+    const bool is_in_layer =
+        window.layer_z() == (place & kAxisBits[2]) && ((window.layer()[flat / 64] >> (flat % 64)) & 1) != 0;
+    if (is_in_layer || ((window.missed()[place / 64] >> (place % 64)) & 1) != 0) missed.insert(place);
+  }
+  return missed;
+}
+
+/// Ends in the layer of cells where rays begin: anywhere in the window, at its borders, on corners of cells.
+std::vector<Eigen::Vector3d> ends_in_layer(const Eigen::Vector3d& from, std::mt19937_64& random) {
+  std::vector<Eigen::Vector3d> ends;
+  for (auto n = 20 + random() % 60; n > 0; --n) {
+    Eigen::Vector3d end;
+    for (const Eigen::Index a : {0, 1}) {
+      end[a] = static_cast<double>(random() >> 11) * 0x1p-46 - 64.0;
+      if (random() % 8 == 0) end[a] = random() % 2 == 0 ? -64.0 : 63.5;
+      if (random() % 8 == 0) end[a] = std::floor(end[a]);
+      if (random() % 16 == 0) end[a] = from[a];
+    }
+    end.z() = std::floor(from.z()) + 0.25 * static_cast<double>(random() % 4);
+    ends.push_back(end);
+  }
+  return ends;
+}
+
+// Kills a flat ray that takes another cell than with its third axis (ties, ways back, one axis without faces, borders
+// of the window), one that stays in the layer although it or another of its block leaves it (along z only, too), a
+// layer at another height, and one that the caller does not look for.
+TEST(RayLanes, FlatRaysMarkTheSameCellsInALayer) {
+  std::size_t in_layer = 0, in_mask = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto anywhere = [&](double lowest, std::uint64_t cells) {
+      return lowest + 0.25 * static_cast<double>(random() % (4 * cells));
+    };
+    Eigen::Vector3d from(anywhere(-20.0, 40), anywhere(-20.0, 40), anywhere(-64.0, 128));
+    if (seed % 4 == 0) from = {-64.0, 63.75, seed % 8 == 0 ? -64.0 : 63.75};
+    const RayFan fan = fan_from(from);
+    std::vector<Eigen::Vector3d> ends = ends_in_layer(from, random);
+    Eigen::Vector3d& one = ends[random() % ends.size()];
+    const double beyond = from.z() < 0.0 ? from.z() + 1.0 : from.z() - 1.0;
+    if (seed % 3 == 0) one = {seed % 2 == 0 ? from.x() : one.x(), seed % 2 == 0 ? from.y() : one.y(), beyond};
+    for (const Lanes lanes : lanes_here()) {
+      SCOPED_TRACE(static_cast<int>(lanes));
+      std::vector<ReadyRay> ready;
+      std::vector<std::uint32_t> others;
+      prepare_rays(lanes, fan, std::span<const Eigen::Vector3d>(ends), ready, others);
+      const bool is_flat = std::all_of(ready.begin(), ready.end(), [&](const ReadyRay& ray) {
+        return ((ray.end ^ start_of(fan)) & kAxisBits[2]) == 0;
+      });
+      ScanWindow plain, window;
+      for (ScanWindow* const each : {&plain, &window}) each->open(kWindowBits);
+      mark_rays(Lanes::kOne, ready, start_of(fan), MissesIn::kMask, plain);
+      mark_rays(lanes, ready, start_of(fan), MissesIn::kMaskOrLayer, window);
+      const std::set<std::uint64_t> found = missed_in(window);
+      ASSERT_EQ(found, missed_in(plain));
+      if (lanes == Lanes::kOne) continue;
+      ASSERT_TRUE(is_flat || !window.layer_z());
+      (window.layer_z() ? in_layer : in_mask) += found.size();
+
+      ScanWindow masked;
+      masked.open(kWindowBits);
+      mark_rays(lanes, ready, start_of(fan), MissesIn::kMask, masked);
+      ASSERT_FALSE(masked.layer_z());
+      ASSERT_EQ(missed_in(masked), found);
+    }
+  }
+  if (widest_lanes() == Lanes::kOne) return;
+  EXPECT_GT(in_layer, 100'000U);
+  EXPECT_GT(in_mask, 50'000U);
 }
 
 // Kills keys that spill over into the ray behind, a lane that goes on when its ray has ended, a borrow that runs from

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <random>
@@ -91,6 +93,46 @@ TEST(TracePoints, SinglePrecisionMakesTheSameMap) {
 }
 
 // Kills a cell whose ray is not walked, one that stays hit although it is too far away, a ray that ends
+// Kills a flat sweep's layer that is at another height or beside its place in the map, left out where rays of the same
+// scan leave it or are cut, or still there in the next scan.
+TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
+  ScanUpdate together;
+  std::size_t nodes = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+    };
+    Case one{.lattice = Lattice(0.1), .points_m = {}, .options = {}};
+    one.origin_m = {uniform(-2.0, 2.0), uniform(-2.0, 2.0), uniform(-2.0, 2.0)};
+    if (seed % 2 == 0) one.options.max_range_m = 3.0;
+    const int rays = seed % 5 == 0 ? 2500 : 200;  // in one block and in several
+    for (int ray = 0; ray < rays; ++ray) {
+      const double bearing = uniform(-3.0, 3.0), range_m = uniform(0.5, 6.0);
+      Eigen::Vector3d end_m = one.origin_m + range_m * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
+      if (seed % 3 == 0 && ray >= rays - 10) end_m.z() += uniform(-3.0, 3.0);
+      one.points_m.emplace_back(end_m.cast<float>());
+    }
+    ScanUpdate singly;
+    for (const Eigen::Vector3f& point_m : one.points_m) {
+      const Eigen::Vector3d end_m = point_m.cast<double>(), way_m = end_m - one.origin_m;
+      const double part = std::min(1.0, one.options.max_range_m / way_m.norm());
+      if (part == 1.0) singly.add_hit(*one.lattice.key_of<WideWord>(end_m), one.options.hit);
+      const Eigen::Vector3d cut_m = part == 1.0 ? end_m : Eigen::Vector3d(one.origin_m + way_m * part);
+      ASSERT_TRUE(trace_ray(one.lattice, one.origin_m, cut_m, one.options.ray, singly));
+    }
+    ASSERT_EQ(
+        trace_points(one.lattice, one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), one.options, together),
+        0U);
+    const Traced expected = applied(one, singly, 0), found = applied(one, together, 0);
+    ASSERT_EQ(found.nodes, expected.nodes);
+    nodes += found.nodes.size();
+    together.clear();
+  }
+  EXPECT_GT(nodes, 50'000U);
+}
+
 // beside the middle of its cell.
 TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

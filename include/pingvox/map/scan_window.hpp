@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -22,6 +23,8 @@ class ScanWindow {
   static constexpr int kMostBits = 11;
   /// Cells of a page: what ScanUpdate keeps together.
   static constexpr int kPageCellBits = 12;
+  /// Where marks of a page may be.
+  static constexpr std::uint8_t kInMask = 1, kInLayer = 2;
 
   ScanWindow() = default;
   ScanWindow(const ScanWindow&) : ScanWindow() {}
@@ -43,7 +46,15 @@ class ScanWindow {
   std::uint64_t* hit() { return reinterpret_cast<std::uint64_t*>(hit_.data()); }
   /// The same for a tracer's own use: it leaves it empty.
   std::uint64_t* asked() { return reinterpret_cast<std::uint64_t*>(asked_.data()); }
-  /// A byte a page, 1 where either may have a mark; pages are numbered like cells.
+  /// Misses in one layer of cells, besides those above: what a flat fan marks stays close together here. Cells are in
+  /// the tree's order without z: 8 by 8 of them are a word, four words a page's.
+  std::uint64_t* layer() { return reinterpret_cast<std::uint64_t*>(layer_.data()); }
+  std::size_t layer_pages() const { return std::size_t{1} << (2 * (bits_ - kPageCellBits / 3)); }
+  /// The bits of z in places of its cells; nothing while it is empty.
+  std::optional<std::uint64_t>& layer_z() { return layer_z_; }
+  /// Adds kInLayer to the bytes of pages with marks in the layer.
+  void touch_layer();
+  /// A byte a page, kInMask where either may have a mark; pages are numbered like cells.
   std::uint8_t* touched() { return reinterpret_cast<std::uint8_t*>(touched_.data()); }
   /// The same for pages where some may be hit: few of those that rays cross.
   std::uint8_t* with_hits() { return reinterpret_cast<std::uint8_t*>(with_hits_.data()); }
@@ -55,7 +66,8 @@ class ScanWindow {
  private:
   int bits_ = 0;
   Arena missed_{Arena::Pages::kSmall}, hit_{Arena::Pages::kSmall}, asked_{Arena::Pages::kSmall},
-      touched_{Arena::Pages::kSmall}, with_hits_{Arena::Pages::kSmall};
+      layer_{Arena::Pages::kSmall}, touched_{Arena::Pages::kSmall}, with_hits_{Arena::Pages::kSmall};
+  std::optional<std::uint64_t> layer_z_;
   std::shared_ptr<FanRoom> fan_room_;  ///< made when it is asked for
 };
 
@@ -95,7 +107,7 @@ inline std::size_t mark_hits(std::span<const std::uint64_t> places, ScanWindow& 
   return count;
 }
 
-/// Calls f(page) for each page that is touched, and clears its byte.
+/// Calls f(page, byte) for each page that is touched, and clears its byte.
 template <class F>
 void take_touched(ScanWindow& window, F&& f) {
   constexpr std::size_t kTogether = 8;
@@ -105,7 +117,7 @@ void take_touched(ScanWindow& window, F&& f) {
     std::memcpy(&some, touched + first, sizeof some);
     if (some == 0) continue;
     for (std::size_t page = first; page < first + kTogether; ++page) {
-      if (std::exchange(touched[page], std::uint8_t{0}) != 0) f(page);
+      if (touched[page] != 0) f(page, std::exchange(touched[page], std::uint8_t{0}));
     }
   }
 }

@@ -19,8 +19,9 @@ constexpr double kUnits = 0x1p62;  // of a ray's length
 
 /// What to add to an axis' bits, before they are masked, for one cell ahead or back: a carry must run through the bits
 /// of the other axes.
-constexpr std::uint64_t step_of(std::size_t axis, bool is_ahead) {
-  return is_ahead ? ~kAxisBits[axis] + 1 : ~(std::uint64_t{1} << axis) + 1;
+constexpr std::uint64_t step_of(std::uint64_t axis_bits, bool is_ahead) {
+  const std::uint64_t lowest = axis_bits & (~axis_bits + 1);
+  return is_ahead ? ~axis_bits + 1 : ~lowest + 1;
 }
 
 void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
@@ -30,7 +31,7 @@ void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     std::array<std::int64_t, 3> next = ray.next;
     std::array<std::uint64_t, 3> step{}, place{};
     for (std::size_t a = 0; a < 3; ++a) {
-      step[a] = step_of(a, ((ray.ahead >> a) & 1U) != 0);
+      step[a] = step_of(kAxisBits[a], ((ray.ahead >> a) & 1U) != 0);
       place[a] = start & kAxisBits[a];
     }
     for (std::uint32_t left = ray.left; left > 0; --left) {
@@ -60,10 +61,10 @@ class ByLength {
   std::vector<std::uint32_t> order_;
 };
 
-/// Marks of bricks that are to be set in a window: walked together, a ray's marks in a brick are one word.
+/// Words of marks that are to be set: walked together, a ray's marks in a brick are one word.
 struct MarksToSet {
   static constexpr std::size_t kRoom = 1024;
-  std::array<std::uint64_t, kRoom> brick, marks;
+  std::array<std::uint64_t, kRoom> word, marks;
   std::size_t count = 0;
 };
 
@@ -71,9 +72,31 @@ void set_marks(const MarksToSet& to_set, std::size_t count, ScanWindow& window) 
   std::uint64_t* const missed = window.missed();
   std::uint8_t* const touched = window.touched();
   for (std::size_t i = 0; i < count; ++i) {
-    missed[to_set.brick[i]] |= to_set.marks[i];
-    touched[to_set.brick[i] / 64] = 1;
+    missed[to_set.word[i]] |= to_set.marks[i];
+    touched[to_set.word[i] / 64] = 1;
   }
+}
+
+/// The words of a window's layer.
+struct Layer {
+  std::uint64_t* words;
+};
+/// Bits of x and y in a place in a layer.
+constexpr std::array<std::uint64_t, 2> kLayerBits{0x5555555555555555U, 0xAAAAAAAAAAAAAAAAU};
+
+void set_marks(const MarksToSet& to_set, std::size_t count, const Layer& layer) {
+  for (std::size_t i = 0; i < count; ++i) layer.words[to_set.word[i]] |= to_set.marks[i];
+}
+
+/// Whether rays stay in the layer of cells where they begin, and cross so many that it pays to look for its pages.
+bool are_flat(std::span<const ReadyRay> rays, const ScanWindow& window) {
+  constexpr std::size_t kFacesPerPage = 8;
+  std::size_t faces = 0;
+  for (const ReadyRay& ray : rays) {
+    if (ray.next[2] != kNever) return false;
+    faces += ray.left;
+  }
+  return faces > kFacesPerPage * window.layer_pages();
 }
 
 /// What one face along an axis adds to a packed key.
@@ -139,8 +162,9 @@ void find_middles(Lanes lanes, const RayFan& fan, double resolution_m, std::span
                    plain::find_middles(fan, resolution_m, places, middles_m));
 }
 
-void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
-  PINGVOX_BY_LANES(lanes, mark_all(rays, start, window), mark_one_by_one(rays, start, window));
+void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, [[maybe_unused]] MissesIn where,
+               ScanWindow& window) {
+  PINGVOX_BY_LANES(lanes, mark_all(rays, start, where, window), mark_one_by_one(rays, start, window));
 }
 
 void prepare_rays(Lanes lanes, const KeyGrid& grid, std::span<const Segment> segments, std::span<ReadyRay> ready,

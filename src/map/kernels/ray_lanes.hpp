@@ -60,9 +60,15 @@ std::size_t find_cells(Lanes lanes, const RayFan& fan, std::span<const Point> po
 void find_middles(Lanes lanes, const RayFan& fan, double resolution_m, std::span<const std::uint64_t> places,
                   std::span<Eigen::Vector3d> middles_m);
 
+/// Where rays leave their marks.
+enum class MissesIn {
+  kMask,        ///< ScanWindow::missed
+  kMaskOrLayer  ///< or ScanWindow::layer, if they are many and none leaves the layer where they begin
+};
+
 /// Marks the cells of each ray as missed, its first one included, its last one not.
-/// @param start  place of the cell where all of them begin
-void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window);
+/// @param start  place of the cell where all of them begin; the same as that of others in the window's layer
+void mark_rays(Lanes lanes, std::span<const ReadyRay> rays, std::uint64_t start, MissesIn where, ScanWindow& window);
 
 /// A lattice of 16 levels at most, where rays begin and end anywhere.
 struct KeyGrid {

@@ -188,7 +188,7 @@ inline void bit_of(const Words& place, Words& bit) {
 
 /// Up to kLanes rays side by side, and how many faces the shortest and the longest cross.
 struct RayLanes {
-  std::array<Words, 3> next{}, apart{}, step{};
+  std::array<Words, 3> next{}, apart{}, is_ahead{};
   Words left{};
   std::int64_t shortest = 0, longest = 0;
 };
@@ -203,68 +203,112 @@ inline void gather(std::span<const ReadyRay> rays, std::span<const std::uint32_t
   for (std::size_t a = 0; a < 3; ++a) {
     to.next[a] = words[a];
     to.apart[a] = words[3 + a];
-    const auto ahead = static_cast<std::int64_t>(step_of(a, true)), back = static_cast<std::int64_t>(step_of(a, false));
-    to.step[a] = ((words[kCounts] >> (kAheadAt + static_cast<int>(a))) & 1) != 0 ? Words{} + ahead : Words{} + back;
+    to.is_ahead[a] = ((words[kCounts] >> (kAheadAt + static_cast<int>(a))) & 1) != 0;
   }
   to.left = (words[kCounts] >> kLeftAt) & 0xFFFFFFFF;
   to.shortest = order.size() == kLanes ? rays[order.back()].left : 0;
   to.longest = rays[order.front()].left;
 }
 
-/// Walks rays of about the same length, face by face.
-inline void mark_some(const RayLanes& rays, std::uint64_t start, ScanWindow& window, MarksToSet& to_set) {
-  std::array<Words, 3> next = rays.next;
-  const Words begin = Words{} + static_cast<std::int64_t>(start);
-  std::array<Words, 3> bits, place;
-  for (std::size_t a = 0; a < 3; ++a) {
-    bits[a] = Words{} + static_cast<std::int64_t>(kAxisBits[a]);
-    place[a] = begin & bits[a];
+/// step_of for each lane.
+inline void choose_steps(std::uint64_t axis_bits, const Words& is_ahead, Words& step) {
+  const auto ahead = static_cast<std::int64_t>(step_of(axis_bits, true)),
+             back = static_cast<std::int64_t>(step_of(axis_bits, false));
+  step = is_ahead ? Words{} + ahead : Words{} + back;
+}
+
+/// Where rays are in a window, face by face.
+struct Steps {
+  Steps(const RayLanes& rays, std::uint64_t start) : next(rays.next), apart(rays.apart) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      choose_steps(kAxisBits[a], rays.is_ahead[a], step[a]);
+      bits[a] = Words{} + static_cast<std::int64_t>(kAxisBits[a]);
+      place[a] = (Words{} + static_cast<std::int64_t>(start)) & bits[a];
+    }
   }
-  Words brick = begin >> 6, marks{};
+  void find(Words& at) const { at = place[0] | place[1] | place[2]; }
+  void cross() {
+    std::array<Words, 3> along;
+    choose_axes(next, along);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Words after = sum_of(next[a], apart[a]);  // those of rays that have ended mean nothing
+      next[a] = along[a] ? after : next[a];
+      const Words moved = (place[a] + step[a]) & bits[a];
+      place[a] = along[a] ? moved : place[a];
+    }
+  }
+  std::array<Words, 3> next, apart, step, bits, place;
+};
+
+/// The same in a layer, for rays that cross no face along z: of two axes the lesser is told by the sign of a
+/// difference.
+struct FlatSteps {
+  FlatSteps(const RayLanes& rays, std::uint64_t start)
+      : x_before_y(rays.next[0] - rays.next[1]), apart_x(rays.apart[0]), apart_y(-rays.apart[1]) {
+    for (std::size_t a = 0; a < 2; ++a) {
+      choose_steps(kLayerBits[a], rays.is_ahead[a], step[a]);
+      bits[a] = Words{} + static_cast<std::int64_t>(kLayerBits[a]);
+    }
+    place = Words{} + static_cast<std::int64_t>(start);
+  }
+  void find(Words& at) const { at = place; }
+  void cross() {
+    const Words is_x = x_before_y < 0;
+    x_before_y = sum_of(x_before_y, is_x ? apart_x : apart_y);
+    const Words along = is_x ? bits[0] : bits[1], by = is_x ? step[0] : step[1];
+    const Words moved = (place & along) + by;
+    place = (moved & along) | (place & ~along);
+  }
+  Words x_before_y, apart_x, apart_y;
+  std::array<Words, 2> step, bits;
+  Words place;
+};
+
+/// Walks rays of about the same length, face by face.
+/// @param to  where set_marks sets marks
+template <class Steps, class To>
+inline void mark_some(const RayLanes& rays, std::uint64_t start, To& to, MarksToSet& to_set) {
+  Steps steps(rays, start);
+  const Words begin = Words{} + static_cast<std::int64_t>(start);
+  Words word = begin >> 6, marks{};
   std::size_t count = to_set.count;
   const auto enter = [&](const Words& at) {
     const Words entered = at >> 6;
     Words cell;
     bit_of(at, cell);
     Some left;
-    find_different(brick, entered, left);
-    store_some(left, brick, to_set.brick.data() + count);
+    find_different(word, entered, left);
+    store_some(left, word, to_set.word.data() + count);
     count += store_some(left, marks, to_set.marks.data() + count);
     clear_some(left, marks);
     marks |= cell;
-    brick = entered;
+    word = entered;
     if (count > MarksToSet::kRoom - 2 * kLanes) {
-      set_marks(to_set, count, window);
+      set_marks(to_set, count, to);
       count = 0;
     }
   };
-  const auto cross = [&] {
-    std::array<Words, 3> along;
-    choose_axes(next, along);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Words after = sum_of(next[a], rays.apart[a]);  // those of rays that have ended mean nothing
-      next[a] = along[a] ? after : next[a];
-      const Words moved = (place[a] + rays.step[a]) & bits[a];
-      place[a] = along[a] ? moved : place[a];
-    }
-  };
   std::int64_t n = 0;
+  Words at;
   for (; n < rays.shortest; ++n) {
-    enter(place[0] | place[1] | place[2]);
-    cross();
+    steps.find(at);
+    enter(at);
+    steps.cross();
   }
   for (; n < rays.longest; ++n) {
     // A ray that has ended marks where it began once more.
-    enter(rays.left > n ? place[0] | place[1] | place[2] : begin);
-    cross();
+    steps.find(at);
+    enter(rays.left > n ? at : begin);
+    steps.cross();
   }
   Some all;
   find_different(begin, ~begin, all);
-  store_some(all, brick, to_set.brick.data() + count);
+  store_some(all, word, to_set.word.data() + count);
   to_set.count = count + store_some(all, marks, to_set.marks.data() + count);
 }
 
-inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
+template <class Steps, class To>
+inline void mark_by_length(std::span<const ReadyRay> rays, std::uint64_t start, To& to) {
   const ByLength by_length(rays);
   std::span<const std::uint32_t> order = by_length.order();
   MarksToSet to_set;
@@ -272,10 +316,20 @@ inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     RayLanes lanes;
     const std::size_t some = std::min(kLanes, order.size());
     gather(rays, order.first(some), lanes);
-    mark_some(lanes, start, window, to_set);
+    mark_some<Steps>(lanes, start, to, to_set);
     order = order.subspan(some);
   }
-  set_marks(to_set, to_set.count, window);
+  set_marks(to_set, to_set.count, to);
+}
+
+inline void mark_all(std::span<const ReadyRay> rays, std::uint64_t start, MissesIn where, ScanWindow& window) {
+  if (where == MissesIn::kMaskOrLayer && are_flat(rays, window)) {
+    const Layer layer{window.layer()};
+    mark_by_length<FlatSteps>(rays, without_z(start), layer);
+    window.layer_z() = start & kAxisBits[2];
+  } else {
+    mark_by_length<Steps>(rays, start, window);
+  }
 }
 
 #include "map/kernels/find_cells_loops.hpp"

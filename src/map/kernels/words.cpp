@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 namespace pingvox::detail {
 namespace {
@@ -17,6 +18,10 @@ std::uint64_t words_in_use(const std::uint64_t* words, Lanes lanes) {
 
 std::uint64_t move_words(std::uint64_t* from, std::uint64_t* to, Lanes lanes) {
   PINGVOX_BY_LANES(lanes, move_words(from, to), plain::move_words(from, to));
+}
+
+std::uint64_t take_layer(std::uint64_t* from, std::uint64_t z, std::uint64_t* to, Lanes lanes) {
+  PINGVOX_BY_LANES(lanes, take_layer(from, z, to), plain::take_layer(from, z, to));
 }
 
 std::uint64_t count_cells(const std::uint64_t* words, Lanes lanes) {

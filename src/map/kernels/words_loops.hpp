@@ -34,6 +34,25 @@ inline std::uint64_t move_words(std::uint64_t* from, std::uint64_t* to) {
   });
 }
 
+inline std::uint64_t take_layer(std::uint64_t* from, std::uint64_t z, std::uint64_t* to) {
+  using Bricks = std::uint64_t __attribute__((vector_size(32)));  // those of a word, 4 by 4 cells each
+  constexpr std::uint64_t kBrickZ = 0b100100;                     // of a cell in its brick, and of a brick in its page
+  const auto cell_z = static_cast<int>(z & kBrickZ);
+  std::uint64_t* const bricks = to + (z >> 6 & kBrickZ);
+  Bricks used{};
+  for (std::size_t w = 0; w < 4; ++w) {
+    Bricks cells = ((Bricks{} + std::exchange(from[w], 0)) >> Bricks{0, 16, 32, 48}) & 0xFFFF, together;
+    used |= (cells != 0) & (Bricks{1, 2, 4, 8} << static_cast<int>(8 * w));
+    // Each four bits leave room for the four at another height.
+    cells = (cells | cells << 8) & 0x00FF00FF;
+    cells = (cells | cells << 4) & 0x0F0F0F0F;
+    std::memcpy(&together, bricks + 8 * w, sizeof together);
+    together |= cells << cell_z;
+    std::memcpy(bricks + 8 * w, &together, sizeof together);
+  }
+  return (used[0] | used[1] | used[2] | used[3]) << (bricks - to);
+}
+
 inline std::uint64_t count_cells(const std::uint64_t* words) {
   UnsignedWords quarters{};  // sums of 16 bits: there are 4096 bits in all
   for (std::size_t first = 0; first < 64; first += kLanes) {
