@@ -6,6 +6,7 @@
 #include <bit>
 #include <cassert>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -139,6 +140,7 @@ class TreeWords {
   std::uint64_t nodes() {
     // Blocks whose sums fit into 16 bits, so that as many words are counted side by side as fit into a vector.
     constexpr std::size_t kBlock = 4096;
+    static_assert(kBlock * 8 <= std::numeric_limits<std::uint16_t>::max());
     const std::span<const std::uint16_t> all = words();
     std::uint64_t nodes = all.empty() ? 0 : 1;
     for (std::size_t first = 0; first < all.size(); first += kBlock) {

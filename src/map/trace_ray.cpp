@@ -257,11 +257,16 @@ class FanTracer {
 template <class Point>
 std::size_t trace_fan(const Lattice& lattice, const Eigen::Vector3d& origin_m, std::span<const Point> points_m,
                       const PointScanOptions& options, ScanUpdate& scan) {
-  FanTracer tracer(lattice, origin_m, options, points_m, scan);
-  const std::size_t outside =
-      options.ends == EndPoints::kCells ? tracer.trace_cells(points_m) : tracer.trace_points(points_m);
-  tracer.finish();
-  return outside;
+  try {
+    FanTracer tracer(lattice, origin_m, options, points_m, scan);
+    const std::size_t outside =
+        options.ends == EndPoints::kCells ? tracer.trace_cells(points_m) : tracer.trace_points(points_m);
+    tracer.finish();
+    return outside;
+  } catch (...) {
+    scan.drop_window();  // or its marks would become those of the next scan, at another place
+    throw;
+  }
 }
 
 /// Those that a ray crosses; none when an end of it lies outside of the lattice.

@@ -11,6 +11,8 @@
 
 #include "map/kernels/words.hpp"
 #include "map/tree_order.hpp"
+#include "pingvox/map/log_odds.hpp"
+#include "pingvox/map/scan_update.hpp"
 #include "support/lanes.hpp"
 
 namespace pingvox::detail {
@@ -92,6 +94,20 @@ TEST(ScanWindow, PagesWithMarksInTheLayerAreTouched) {
       ASSERT_EQ(window.touched()[page], before[page] | (expected.count(page) != 0 ? ScanWindow::kInLayer : 0));
     }
   }
+}
+
+// Kills marks of a scan that was given up in the next one.
+TEST(ScanWindow, LeavesNothingWhenItIsDropped) {
+  ScanUpdate scan;
+  ScanWindow& window = scan.window(5);
+  mark_place(77, window.missed(), window.touched());
+  mark_hit(4097, window);
+  window.layer()[2] = 1;
+  window.layer_z() = 0;
+  scan.drop_window();
+  EXPECT_FALSE(scan.window(5).layer_z());
+  scan.take_window({}, LogOdds(0.85F));
+  EXPECT_TRUE(scan.empty());
 }
 
 }  // namespace

@@ -92,7 +92,6 @@ TEST(TracePoints, SinglePrecisionMakesTheSameMap) {
   EXPECT_GT(outside, 200U);
 }
 
-// Kills a cell whose ray is not walked, one that stays hit although it is too far away, a ray that ends
 // Kills a flat sweep's layer that is at another height or beside its place in the map, left out where rays of the same
 // scan leave it or are cut, or still there in the next scan.
 TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
@@ -104,7 +103,8 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
     const auto uniform = [&](double low, double high) {
       return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
     };
-    Case one{.lattice = Lattice(0.1), .points_m = {}, .options = {}};
+    // Windows of 8 bits, and of 11.
+    Case one{.lattice = Lattice(seed % 30 == 15 ? 0.01 : 0.1), .points_m = {}, .options = {}};
     one.origin_m = {uniform(-2.0, 2.0), uniform(-2.0, 2.0), uniform(-2.0, 2.0)};
     if (seed % 2 == 0) one.options.max_range_m = 3.0;
     const int rays = seed % 5 == 0 ? 2500 : 200;  // in one block and in several
@@ -129,10 +129,12 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
     ASSERT_EQ(found.nodes, expected.nodes);
     nodes += found.nodes.size();
     together.clear();
+    ASSERT_FALSE(together.window(4).layer_z()) << "each scan from now on would look for marks in the layer";
   }
   EXPECT_GT(nodes, 50'000U);
 }
 
+// Kills a cell whose ray is not walked, one that stays hit although it is too far away, a ray that ends
 // beside the middle of its cell.
 TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

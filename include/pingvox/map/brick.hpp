@@ -44,7 +44,7 @@ class BrickPool {
   BrickRef operator[](std::uint32_t index) { return {known_[index], value_[index]}; }
   BrickView operator[](std::uint32_t index) const { return {known_[index], value_[index]}; }
 
-  /// A new brick. Throws std::bad_alloc; then it is as it was.
+  /// A new brick. Throws std::bad_alloc; then the others are as they were.
   std::uint32_t allocate(const Brick& brick) {
     const std::uint32_t index = known_.allocate(brick.known);
     try {

@@ -102,6 +102,8 @@ class ScanUpdate {
   /// @param lowest  its lowest cell, the lowest of a page, too
   /// @param hit     evidence of all its hits
   void take_window(const WideKey& lowest, LogOdds hit);
+  /// Gives back the window with what is marked in it: where memory ran out before it could be taken over.
+  void drop_window() { window_ = detail::ScanWindow(); }
 
   /// The pages in the tree's order.
   std::vector<std::uint32_t> pages_in_order() const;

@@ -63,7 +63,7 @@ void find_middles(Lanes lanes, const RayFan& fan, double resolution_m, std::span
 /// Where rays leave their marks.
 enum class MissesIn {
   kMask,        ///< ScanWindow::missed
-  kMaskOrLayer  ///< or ScanWindow::layer, if they are many and none leaves the layer where they begin
+  kMaskOrLayer  ///< or ScanWindow::layer, if many walk side by side and none leaves the layer where they begin
 };
 
 /// Marks the cells of each ray as missed, its first one included, its last one not.
