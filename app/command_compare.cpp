@@ -8,6 +8,7 @@
 #include "json.hpp"
 #include "map_agreement.hpp"
 #include "map_report.hpp"
+#include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/compare.hpp"
@@ -18,7 +19,19 @@ namespace {
 Result<MapFile> map_at(const std::string& path) {
   const Result<FileBytes> file = read_file(path);
   if (!file) return tl::unexpected(file.error());
+  if (const auto format = format_of(file->view()); format && kind_of(*format) != FormatKind::kMap) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: is {}, not a map (.bt, .ot or .pvx)", file->name, described(*format)));
+  }
   return read_map(*file);
+}
+
+/// How two lattices differ.
+std::string difference_of(const std::string& name_a, const Lattice& a, const std::string& name_b, const Lattice& b) {
+  if (a.resolution_m() != b.resolution_m()) {
+    return fmt::format("{} has cells of {} m, {} of {} m", name_a, a.resolution_m(), name_b, b.resolution_m());
+  }
+  return fmt::format("{} has {} levels, {} has {}", name_a, a.depth(), name_b, b.depth());
 }
 
 void add_share(JsonObject& json, std::string_view key, const std::optional<double>& share) {
@@ -63,13 +76,17 @@ std::string share_text(const std::optional<double>& share) {
 
 std::string text_of(const MapComparison& found, const MapAgreement& agreement, Sameness sameness) {
   const std::uint64_t cells = found.cells();
+  // A map that holds no log-odds says nothing about how far they differ.
+  const std::string log_odds =
+      sameness == Sameness::kLogOdds
+          ? report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference))
+          : "";
   const char* by = sameness == Sameness::kLogOdds ? "by log-odds" : "by occupied or free";
   return fmt::format("{} % of {} cells are the same ({})\n", share_text(found.same, cells), cells, by) +
          report_line("same", fmt::format("{}", found.same)) +
          report_line("different", fmt::format("{}", found.different)) +
          report_line("only in A", fmt::format("{}", found.only_a)) +
-         report_line("only in B", fmt::format("{}", found.only_b)) +
-         report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference)) +
+         report_line("only in B", fmt::format("{}", found.only_b)) + log_odds +
          report_line("occupied", fmt::format("{} in A, {} in B, {} in both", agreement.occupied_a, agreement.occupied_b,
                                              agreement.occupied_both)) +
          report_line("free", fmt::format("{} in A, {} in B, {} in both", agreement.free_a, agreement.free_b,
@@ -91,7 +108,9 @@ Result<int> run(const CompareCommand& command, Console& console) {
   const Sameness sameness = has_bt ? Sameness::kOccupancy : Sameness::kLogOdds;
   const Result<MapComparison> found = compare_maps(a->map, b->map, sameness);
   if (!found) {
-    return fail(found.error().code, fmt::format("{}: {}: {}", command.a, command.b, found.error().message));
+    return fail(found.error().code,
+                fmt::format("{}: only maps of the same cells can be compared",
+                            difference_of(command.a, a->map.lattice(), command.b, b->map.lattice())));
   }
   const MapAgreement agreement = agreement_of(a->map, b->map);
   const Result<void> told = command.manner.report == Report::kJson

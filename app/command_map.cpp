@@ -43,6 +43,7 @@ struct Totals {
     report.sweeps += log.sweeps;
     report.echoes += log.echoes;
     report.skipped += log.skipped;
+    report.outside += log.outside;
     report.cells_freed += log.cells_freed;
     report.cells_hit += log.cells_hit;
     report.seconds.read += log.seconds.read;
@@ -106,12 +107,24 @@ std::string text_of(const Totals& totals, const OccupancyMap& map, const std::st
                         totals.scans == 1 ? "" : "s");
   }
   if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
+  if (report.outside > 0) read += fmt::format(", {} of them outside of the map", report.outside);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
   return name + "\n" + report_line("read", read) + map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
                                  totals.total_s, s.read, s.detect, s.trace, s.apply, totals.write_s));
+}
+
+/// Why a map knows nothing, as far as that can be told.
+std::string why_empty(const BuildReport& report, const Lattice& lattice) {
+  if (report.outside > 0) {
+    return fmt::format(
+        "{} beams or points lie outside of the map, which with cells of {} m reaches {:.3g} m from its origin: larger "
+        "cells (--resolution) reach farther",
+        report.outside, lattice.resolution_m(), std::ldexp(lattice.resolution_m(), lattice.depth() - 1));
+  }
+  return "no echoes and no free space in range (--min-range, --max-range, --threshold, --silent)";
 }
 
 }  // namespace
@@ -159,6 +172,9 @@ Result<int> run(const MapCommand& command, Console& console) {
                                 ? console.print(json_of(totals, *map))
                                 : console.summarise(text_of(totals, *map, command.output), command.output);
   if (!told) return tl::unexpected(told.error());
+  if (!map->root()) {
+    console.say(fmt::format("{}: nothing was mapped: {}", command.output, why_empty(totals.report, map->lattice())));
+  }
   return 0;
 }
 

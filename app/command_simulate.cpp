@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "map_log.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/tum.hpp"
+#include "stranger.hpp"
 #include "world_map.hpp"
 #include "write_map_file.hpp"
 
@@ -68,9 +70,7 @@ Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, c
     return static_cast<std::size_t>(std::clamp(std::ceil(seconds / turn_s), 1.0, static_cast<double>(kMostTurns)));
   };
   if (command.poses) {
-    const Result<FileBytes> file = read_file(*command.poses);
-    if (!file) return tl::unexpected(file.error());
-    Result<Trajectory> way = read_tum(*file);
+    Result<Trajectory> way = trajectory_of(command.poses);
     if (!way) return tl::unexpected(way.error());
     const double duration = way->poses().back().time_s - way->poses().front().time_s;
     // Both ends count: a beam is sent at the last pose, too.
@@ -99,7 +99,7 @@ std::string text_of(const std::optional<double>& value) {
 Result<void> write_ranges(const std::string& path, const SonarSimulator& simulator,
                           const std::vector<Witness::Sent>& sent, const SonarOptions& sonar) {
   return write_file(path, [&](std::ostream& out) -> Result<void> {
-    out << "time_s,bearing_rad,true_bearing_rad,axis_range_m,cone_range_m\n";
+    out << kTrueRangesHeader << '\n';
     for (const auto& [bearing_rad, ping] : sent) {
       const TrueRange range = true_range(simulator.world(), ping.map_from_sensor, ping.bearing_rad, sonar);
       out << fmt::format("{},{},{},{},{}\n", ping.time_s, bearing_rad, ping.bearing_rad, text_of(range.axis_m),

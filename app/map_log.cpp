@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/io/tum.hpp"
 
 namespace pingvox::app {
@@ -25,7 +26,12 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   if (!poses) return Trajectory::still(Pose::Identity());
   const Result<FileBytes> file = read_file(*poses);
   if (!file) return tl::unexpected(file.error());
-  return read_tum(*file);
+  Result<Trajectory> trajectory = read_tum(*file);
+  if (trajectory) return trajectory;
+  // A damaged trajectory may be taken for points as text.
+  const std::optional<Format> format = format_of(file->view());
+  if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
+  return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, described(*format)));
 }
 
 Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,

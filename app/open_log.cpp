@@ -10,7 +10,7 @@ namespace pingvox::app {
 
 Result<Format> recognised(const FileBytes& file) {
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
-  if (const auto format = format_of(file.view())) return *format;
+  if (const auto format = format_of(file.view()); format && !is_true_ranges(file.view())) return *format;
   return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, stranger_text(file.view())));
 }
 

@@ -86,8 +86,11 @@ std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
         choice("--show", kShownImages, "the intensities as heard, or as --filter makes them", panel.image),
         choice("--echoes", kEchoMarks, "a mark on each echo", panel.marks),
         choice("--between", kBetweens, "of --view cartesian: what is drawn between the beams", panel.between),
-        {"--size", 0, "PX", "about as long is the longer side of the picture, or of each", "1000; of several 640",
-         into_optional(words.size_px)},
+        {"--size", 0, "PX",
+         "16..3072, of the drawing itself, without axes and legend: about the longer side of a map, the width of a "
+         "polar "
+         "picture (its height goes by the beams), both sides of a Cartesian one",
+         "1000; of several 640", into_optional(words.size_px)},
         {"--caption", 0, "TEXT", "below the picture", "what differs from those beside it", into(panel.caption)}}},
       echo_group(words.build.echoes, words.build.build.sound_speed_ratio,
                  into_number(words.build.build.model.max_range_m)),

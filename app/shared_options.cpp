@@ -61,6 +61,10 @@ Result<Format> output_format(const std::string& path, const std::optional<Format
 
   Words suffixes;
   for (const auto& word : known) suffixes.push_back(fmt::format(".{}", word.word));
+  if (path.ends_with('/') || std::filesystem::is_directory(status)) {
+    return off(
+        fmt::format("{}: is a folder, not a file: name one in it that ends in {}", path, fmt::join(suffixes, " or ")));
+  }
   const std::string ending = std::filesystem::path(path).extension().string();
   return off(
       fmt::format("{}: its suffix must be {}{}", path, fmt::join(suffixes, " or "), did_you_mean(ending, suffixes)));

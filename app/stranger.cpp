@@ -15,7 +15,9 @@ using namespace std::string_view_literals;
 constexpr std::string_view kCompressed = "is compressed", kUnpack = "unpack it first";
 constexpr std::string_view kUtf16 = "is text in UTF-16", kSaveAgain = "save it as UTF-8";
 constexpr std::string_view kAsCsv =
-    "write its beams as CSV, with 'time_s,bearing_deg,bin_length_m,intensities' as the first line (docs/formats.md)";
+    "write its beams as CSV, with 'time_s,bearing_cw_deg,bin_length_m,intensities' as the first line "
+    "(bearings clockwise from ahead, as most sonars count them; bearing_deg is counter-clockwise; docs/formats.md)";
+constexpr std::string_view kWrittenOnly = "written, not read";
 
 /// Files that people have beside their sonar, by how they begin.
 struct Stranger {
@@ -31,6 +33,10 @@ constexpr std::array kStrangers = {
     Stranger{"\xff\xfe"sv, kUtf16, kSaveAgain},
     Stranger{"\xfe\xff"sv, kUtf16, kSaveAgain},
     Stranger{"\x89PNG"sv, "is a picture", "pictures are written, not read"},
+    Stranger{"P5\n# pingvox"sv, "is a grid for map_server", kWrittenOnly},
+    Stranger{"image: "sv, "describes a grid for map_server", kWrittenOnly},
+    Stranger{"ncols "sv, "is a grid of heights", kWrittenOnly},
+    Stranger{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
     Stranger{"#ROSBAG "sv, "is a ROS bag", kAsCsv},
     Stranger{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
     Stranger{"\0\0\0\x34\0P\0i\0n\0g\0V\0i\0e\0w\0e\0r"sv, "is a log of Ping Viewer", kAsCsv},
@@ -56,6 +62,10 @@ std::string stranger_text(std::span<const std::uint8_t> bytes) {
       is_text(text) ? "is text, but its first line names no columns of beams, and it is no scan log, cloud or mesh"
                     : "is none of the logs, clouds, maps, meshes and trajectories that pingvox reads";
   return fmt::format("{}: {}", what, kAsCsv);
+}
+
+bool is_true_ranges(std::span<const std::uint8_t> bytes) {
+  return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()).starts_with(kTrueRangesHeader);
 }
 
 }  // namespace pingvox::app

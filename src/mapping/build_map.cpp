@@ -155,7 +155,7 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
   ScanUpdate scan(options.model.miss);
   ScanParts parts(options.threads);
   BuildReport report;
-  std::size_t unplaced = 0;  // beams that the trajectory or the lattice has no place for
+  std::size_t unplaced = 0;  // beams that the trajectory has no place for
   Stopwatch watch;
   for (;;) {
     const Result<std::optional<Sweep>> sweep = sweeps.next();
@@ -186,11 +186,11 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
         BeamTracer tracer(map.lattice(), options.model);
         for (std::size_t i = first; i < last; ++i) outside += trace((*placed)[i], tracer, part);
       });
-      unplaced += outside;
+      report.outside += outside;
     } else {
       BeamTracer tracer(map.lattice(), options.model);
       for (const PlacedBeam& beam : *placed) {
-        unplaced += trace(beam, tracer, scan);
+        report.outside += trace(beam, tracer, scan);
         watch.lap(report.seconds.trace);
         if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
         watch.lap(report.seconds.apply);
@@ -201,10 +201,10 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
     watch.lap(report.seconds.apply);
 
     report.sweeps += (*sweep)->extent != Sweep::Extent::kCut;
-    report.skipped = source.skipped() + unplaced;
+    report.skipped = source.skipped() + unplaced + report.outside;
     if (progress) progress(report);
   }
-  report.skipped = source.skipped() + unplaced;
+  report.skipped = source.skipped() + unplaced + report.outside;
   return report;
 }
 
@@ -216,7 +216,6 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
   ScanUpdate scan(options.model.miss);
   ScanParts parts(options.threads);
   BuildReport report;
-  std::size_t unplaced = 0;
   Stopwatch watch;
   for (;;) {
     const Result<std::optional<PointScan>> points = source.next();
@@ -228,17 +227,17 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
     parts.run(all_m.size(), scan, [&](std::size_t first, std::size_t last, ScanUpdate& part) {
       outside += trace_points(map.lattice(), (*points)->origin_m, all_m.subspan(first, last - first), how, part);
     });
-    unplaced += outside;
+    report.outside += outside;
     watch.lap(report.seconds.trace);
     if (const auto applied = apply(scan, map, report); !applied) return tl::unexpected(applied.error());
     watch.lap(report.seconds.apply);
     report.beams += (*points)->points_m.size();
     report.echoes += (*points)->points_m.size();
     ++report.sweeps;
-    report.skipped = source.skipped() + unplaced;
+    report.skipped = source.skipped() + report.outside;
     if (progress) progress(report);
   }
-  report.skipped = source.skipped() + unplaced;
+  report.skipped = source.skipped() + report.outside;
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -66,8 +67,13 @@ TEST(Files, TheWrongKindIsNamed) {
   const auto files_before = here.files();
   expect_complaint(here.call({"map", "good.ot", "-o", "out.bt"}), 1, {"good.ot", "a map", "not a log"});
   expect_complaint(here.call({"map", "poses.txt", "-o", "out.bt"}), 1, {"poses.txt", "a trajectory", "not a log"});
-  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1, {"good.ot"});
-  expect_complaint(here.call({"compare", "tank.csv", "good.ot"}), 2, {"tank.csv"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1,
+                   {"good.ot: is a map (.ot), not a trajectory"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "tank.csv"}), 1,
+                   {"tank.csv: is a log of beams (.csv), not a trajectory"});
+  expect_complaint(here.call({"simulate", "tank", "-o", "out.csv", "--poses", "tank.csv"}), 1,
+                   {"tank.csv: is a log of beams (.csv), not a trajectory"});
+  expect_complaint(here.call({"compare", "tank.csv", "good.ot"}), 2, {"tank.csv: is a log of beams (.csv), not a map"});
   expect_complaint(here.call({"convert", "tank.csv", "-o", "out.bt"}), 2, {"tank.csv", "pingvox map"});
   expect_complaint(here.call({"convert", "good.ot", "-o", "out.csv"}), 2, {"good.ot", "a map"});
   expect_complaint(here.call({"render", "poses.txt", "-o", "out.png"}), 1, {"poses.txt", "a trajectory"});
@@ -82,6 +88,8 @@ TEST(Files, ThoseOfOthersAreNamedWithWhatToDo) {
       {"\xff\xfet\0i\0"s, {"UTF-16", "UTF-8"}},
       {"version https://git-lfs.github.com/spec/v1\n", {"git lfs pull"}},
       {"time;angle;range\n1;2;3\n", {"is text", "first line", "bin_length_m"}},
+      // Taken for counter-clockwise, a map would be its mirror image.
+      {"ping,angle,range\n1,2,3\n", {"time_s,bearing_cw_deg,", "clockwise from ahead", "bearing_deg is counter"}},
       {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "bin_length_m"}},
   };
   for (const auto& [content, texts] : strangers) {
@@ -89,6 +97,24 @@ TEST(Files, ThoseOfOthersAreNamedWithWhatToDo) {
     here.write("stranger", content);
     expect_complaint(here.call({"info", "stranger"}), 1, texts);
     expect_complaint(here.call({"map", "stranger", "-o", "out.bt"}), 1, texts);
+  }
+}
+
+TEST(Files, ThoseThatAreOnlyWrittenAreNoLogsOfOthers) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "tank.csv", "--turns", "1", "--truth", "truth", "--quiet"}).status, 0);
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt", "--quiet"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "tank.bt", "-o", "grid.yaml", "--quiet"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "tank.bt", "-o", "tank.asc", "--quiet"}).status, 0);
+  const std::vector<std::pair<std::string, std::string>> written = {{"grid.yaml", "grid for map_server"},
+                                                                    {"grid.pgm", "grid for map_server"},
+                                                                    {"tank.asc", "grid of heights"},
+                                                                    {"truth/ranges.csv", "true ranges"}};
+  for (const auto& [name, what] : written) {
+    SCOPED_TRACE(name);
+    const Outcome outcome = here.call({"info", name});
+    expect_complaint(outcome, 1, {name, what, "written, not read"});
+    EXPECT_EQ(outcome.err.find("bearing_cw_deg"), std::string::npos);
   }
 }
 
@@ -147,6 +173,40 @@ TEST(Files, ALogInWhichNothingCanBeMappedIsNoMap) {
   EXPECT_FALSE(here.has("out.bt"));
 }
 
+// One line on standard error, and all else as of any map.
+TEST(Map, ThatKnowsNothingSaysWhy) {
+  struct Case {
+    std::vector<std::string> options, texts;
+  };
+  const std::vector<Case> cases = {
+      {{"--min-range", "100"}, {"nothing was mapped: no echoes and no free space", "--min-range"}},
+      {{"--resolution", "1e-5"}, {"nothing was mapped: 400 beams", "0.328 m from its origin", "larger cells"}},
+  };
+  const Workplace here;
+  here.simulate_tank();
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.texts.front());
+    std::vector<std::string> words = {"map", "tank.csv", "-o", "out.bt"};
+    words.insert(words.end(), c.options.begin(), c.options.end());
+    const Outcome outcome = here.call(words);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, ::testing::HasSubstr("nothing is known"));
+    EXPECT_THAT(outcome.err, ::testing::StartsWith("pingvox: out.bt: "));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+    for (const std::string& text : c.texts) EXPECT_THAT(outcome.err, ::testing::HasSubstr(text));
+    words.push_back("--quiet");
+    EXPECT_EQ(here.call(words).err, "");
+  }
+  EXPECT_EQ(here.call({"map", "tank.csv", "-o", "out.bt"}).err, "");
+}
+
+TEST(Map, BeamsOutsideOfItAreCalledThat) {
+  const Workplace here;
+  here.write("a.txt", "NODE 0 0 0 0 0 0\n1 0 0\n1e6 0 0\nx\n");
+  EXPECT_THAT(here.call({"map", "a.txt", "-o", "a.bt"}).out,
+              ::testing::HasSubstr("; 2 left out, 1 of them outside of the map\n"));
+}
+
 TEST(Output, AFailedCallKeepsTheOldFile) {
   const Workplace here;
   here.simulate_tank();
@@ -174,6 +234,11 @@ TEST(Output, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
   fs::create_directory(here.folder() / "folder.bt");
   expect_complaint(here.call({"map", "missing.csv", "-o", "folder.bt"}), 1, {"folder.bt", "is a folder"});
   expect_complaint(here.call({"map", "missing.csv", "-o", "no/out.bt"}), 1, {"no folder 'no'"});
+  fs::create_directory(here.folder() / "folder");
+  for (const std::string output : {"folder", "folder/", "no/"}) {
+    expect_complaint(here.call({"map", "missing.csv", "-o", output}), 2, {output + ": is a folder", ".bt"});
+  }
+  expect_complaint(here.call({"render", "missing.csv", "-o", "folder"}), 2, {"folder: is a folder", ".png"});
 }
 
 TEST(Output, AFolderWithoutTheRightToWriteIsNamed) {

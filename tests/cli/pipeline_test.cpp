@@ -178,7 +178,9 @@ TEST(Compare, SaysWhatDiffers) {
   EXPECT_EQ((*json)["against_b.free_true"], "1");
 
   ASSERT_EQ(here.call({"map", "b.txt", "-o", "fine.ot", "--resolution", "0.05"}).status, 0);
-  expect_complaint(here.call({"compare", "a.ot", "fine.ot"}), 2, {"a.ot", "fine.ot", "0.05"});
+  expect_complaint(here.call({"compare", "a.ot", "fine.ot"}), 2, {"a.ot has cells of 0.1 m, fine.ot of 0.05 m"});
+  ASSERT_EQ(here.call({"map", "b.txt", "-o", "deep.pvx", "--resolution", "0.1", "--depth", "20"}).status, 0);
+  expect_complaint(here.call({"compare", "a.ot", "deep.pvx"}), 2, {"a.ot has 16 levels, deep.pvx has 20"});
 }
 
 TEST(Compare, LogOddsDecideUnlessAFileHoldsNone) {
@@ -187,8 +189,15 @@ TEST(Compare, LogOddsDecideUnlessAFileHoldsNone) {
   ASSERT_EQ(here.call({"map", "a.txt", "-o", "once.ot"}).status, 0);
   ASSERT_EQ(here.call({"map", "a.txt", "a.txt", "-o", "twice.ot"}).status, 0);
   ASSERT_EQ(here.call({"map", "a.txt", "a.txt", "-o", "twice.bt"}).status, 0);
-  EXPECT_EQ(here.call({"compare", "once.ot", "twice.ot"}).status, 1);
-  EXPECT_EQ(here.call({"compare", "once.ot", "twice.bt"}).status, 0);
+  const Outcome with = here.call({"compare", "once.ot", "twice.ot"}),
+                without = here.call({"compare", "once.ot", "twice.bt"});
+  EXPECT_EQ(with.status, 1);
+  EXPECT_EQ(without.status, 0);
+  // How far they differ from what a .bt is read as is no difference of beliefs.
+  EXPECT_THAT(with.out, ::testing::HasSubstr("differ by"));
+  EXPECT_THAT(without.out, ::testing::Not(::testing::HasSubstr("differ by")));
+  EXPECT_THAT(here.call({"compare", "once.ot", "twice.bt", "--json"}).out,
+              ::testing::HasSubstr("max_log_odds_difference"));
 }
 
 TEST(Info, KnowsPointScansAndTrajectories) {

@@ -140,6 +140,11 @@ TEST(Words, EachCommandExplainsItselfWithExamples) {
   }
 }
 
+// 1 is no failure there.
+TEST(Words, TheOverviewTellsTheStatusOfCompareApart) {
+  EXPECT_THAT(Workplace().call({"--help"}).out, HasSubstr("Of compare: 0 the same, 1 different, 2 trouble"));
+}
+
 TEST(Words, VersionIsOneLine) {
   const Outcome outcome = Workplace().call({"--version"});
   EXPECT_EQ(outcome.status, 0);

@@ -44,6 +44,7 @@ struct BuildReport {
   std::size_t sweeps = 0;   ///< complete ones (or point scans)
   std::size_t echoes = 0;   ///< within the model's range; of point scans all points
   std::size_t skipped = 0;  ///< damaged, outside of the trajectory's time, or outside of the lattice
+  std::size_t outside = 0;  ///< of those skipped, the ones that a part of lies outside of the lattice
   std::uint64_t cells_freed = 0, cells_hit = 0;  ///< votes, summed over scans
   struct Seconds {
     double read = 0, detect = 0, trace = 0, apply = 0;
