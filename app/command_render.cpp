@@ -109,9 +109,7 @@ class CartesianGatherer {
 template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage damage) {
   const std::string name = file.name;
-  if (const auto within = panel.build.echo_within_range(); !within) {
-    return fail(within.error().code, fmt::format("{}: {}", name, within.error().message));
-  }
+  if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
   const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
   if (!source) return tl::unexpected(source.error());
   Gatherer gatherer(panel);

@@ -142,6 +142,12 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   SonarOptions sonar = command.sonar;
   const double range = command.range_m.value_or(scene->sonar_range_m);
   sonar.bin_length_m = command.bin_length_m.value_or(range / static_cast<double>(sonar.bins));
+  if (sonar.bin_length_m > 1.0) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("simulate: --bins: {} make bins of {:.6g} m of this world's {:.6g} m "
+                            "of range, and 1 m is the longest: more of them, or a --range",
+                            sonar.bins, sonar.bin_length_m, range));
+  }
   if (const auto valid = sonar.validate(); !valid) return tl::unexpected(valid.error());
   const Result<Journey> journey = journey_of(command, *scene, sonar);
   if (!journey) return tl::unexpected(journey.error());

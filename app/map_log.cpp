@@ -15,6 +15,8 @@ namespace {
 Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const BuildOptions& options, OccupancyMap& map,
                           const Progress& progress) {
   if (const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) {
+    // Scans of points have no blanking range.
+    if (const auto ranges = check_ranges(options); !ranges) return tl::unexpected(ranges.error());
     return build_map(**beams, trajectory, options, map, progress);
   }
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
@@ -34,13 +36,22 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, described(*format)));
 }
 
+Result<void> check_ranges(const BuildOptions& options) {
+  if (options.echo_within_range()) return {};
+  const double nearest_m = options.echo.min_range_m.value_or(0.0);
+  return fail(Error::Code::kBadOption,
+              fmt::format("--max-range: must be above --min-range, which is {:.6g} m{}, is {:.6g} m", nearest_m,
+                          nearest_m == EchoOptions::kUsualBlanking_m ? " when it is not given" : "",
+                          options.model.max_range_m));
+}
+
 Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
                             const BuildOptions& options, OccupancyMap& map, const Progress& progress) {
   Result<BuildReport> report = build(log, trajectory, options, map, progress);
   if (!report) {
-    // Errors of the map itself, and of options that do not fit beams, name no file.
+    // Errors of the map itself name no file; those of options need none.
     const Error::Code code = report.error().code;
-    if (code != Error::Code::kLimit && code != Error::Code::kBadOption) return report;
+    if (code != Error::Code::kLimit) return report;
     return fail(code, fmt::format("{}: {}", name, report.error().message));
   }
   if (report->beams == 0) {

@@ -13,6 +13,9 @@ namespace pingvox::app {
 /// The trajectory in a file of TUM lines; without one the vehicle stood still at the origin.
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses);
 
+/// Whether the range in which echoes are looked for is one; kBadOption names the options.
+Result<void> check_ranges(const BuildOptions& options);
+
 /// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
 /// @param name  of the log, for messages
 Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,

@@ -50,6 +50,15 @@ Take into_min_range(std::optional<double>& target) {
   };
 }
 
+Take into_kernel(std::optional<int>& target) {
+  const Take take = within({1.0, 99.0}, into_optional(target));
+  return [&target, take](const std::string& text) -> Result<void> {
+    if (auto taken = take(text); !taken) return taken;
+    if (*target % 2 == 0) return off(fmt::format("must be odd, is {}", text));
+    return {};
+  };
+}
+
 Take into_clamp(Clamp& target) {
   return [&target](const std::string& text) -> Result<void> {
     const auto p = numbers_from<2>(text);
@@ -83,21 +92,23 @@ OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const
   return {
       "Echoes",
       {{"--min-range", 0, "M|auto", "nearer bins are the head's own ringing, and no evidence; auto: as it is found",
-        shown(EchoOptions::kUsualBlanking_m), into_min_range(echo.min_range_m)},
+        shown(EchoOptions::kUsualBlanking_m),
+        within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_min_range(echo.min_range_m))},
        {"--min-bin", 0, "N", "nor are those before this one, counted from 0", fmt::format("{}", echo.min_bin),
         into_number(echo.min_bin)},
        {"--max-range", 0, "M",
         "farther echoes and cells do not count; a beam that heard only such echoes frees up to there", "none",
         max_range},
        {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
-        into_sound_speed_ratio(sound_speed_ratio)},
+        within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
+               into_sound_speed_ratio(sound_speed_ratio))},
        choice("--filter", kFilters,
               "how sweeps are smoothed before echoes are looked for; with none their noise leaves more beams silent",
               words.filter),
        {"--kernel", 0, "N", "edge of the filter's window in beams and bins, odd", "5, canny: 11",
-        into_optional(words.kernel)},
+        into_kernel(words.kernel)},
        {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
-        into_optional(words.sigma)},
+        within({0.0, 1000.0, Limits::Ends::kLowOut}, into_optional(words.sigma))},
        choice("--detect", kDetectors, "how echoes are found", echo.detector),
        {"--threshold", 0, "T", "the rise, level or gradient (canny) that makes an echo", "by the gain",
         into_optional(echo.threshold)},
@@ -113,9 +124,9 @@ OptionTable::Group map_group(BuildWords& words) {
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot hold 16", fmt::format("{}", map.depth),
         into_number(map.depth)},
        {"--hit", 0, "P", "probability that an echo gives a cell", shown(model.hit.probability()),
-        into_probability(model.hit)},
+        within({0.5, 1.0, Limits::Ends::kBothOut}, into_probability(model.hit))},
        {"--miss", 0, "P", "probability that sound passing gives a cell", shown(model.miss.probability()),
-        into_probability(model.miss)},
+        within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(model.miss))},
        {"--clamp", 0, "P,P", "probabilities beyond which a cell does not go",
         shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), into_clamp(map.clamp)},
        choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", words.build.vote),
@@ -132,11 +143,11 @@ OptionTable::Group sensor_group(BuildWords& words) {
             "0,0,0,0,0,0", into_mount(words.build.body_from_sensor)},
            choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
            {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
-            into_number(model.width_rad, kDegree_rad)},
+            within({0.0, 180.0, Limits::Ends::kLowOut}, into_number(model.width_rad, kDegree_rad))},
            {"--beam-height", 0, "DEG", "vertically, full angle", shown(model.height_rad / kDegree_rad),
-            into_number(model.height_rad, kDegree_rad)},
+            within({0.0, 180.0, Limits::Ends::kBothOut}, into_number(model.height_rad, kDegree_rad))},
            {"--free-share", 0, "S", "of width and height, about the axis: so much of a beam frees what it passed",
-            shown(model.free_share), into_number(model.free_share)},
+            shown(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
            choice("--ray", kRays, "how rays go from cell to cell", model.ray),
            choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
            choice("--silent", kSilents, "what a beam without an echo says", model.silent)}};

@@ -22,6 +22,31 @@ Result<std::size_t> bytes_from(std::string_view text) {
   return *count << shift;
 }
 
+bool Limits::hold(double value) const {
+  const bool has_low = ends == Ends::kIn || ends == Ends::kHighOut,
+             has_high = ends == Ends::kIn || ends == Ends::kLowOut;
+  return (has_low ? value >= low : value > low) && (has_high ? value <= high : value < high);
+}
+
+std::string Limits::text() const {
+  const bool has_low = ends == Ends::kIn || ends == Ends::kHighOut,
+             has_high = ends == Ends::kIn || ends == Ends::kLowOut;
+  if (std::isfinite(high) && ends == Ends::kIn) return fmt::format("{:.6g}..{:.6g}", low, high);
+  if (!std::isfinite(low) && !std::isfinite(high)) return "finite";
+  const std::string from = fmt::format("{} {:.6g}", has_low ? "at least" : "above", low);
+  if (!std::isfinite(high)) return from + (has_high ? "" : " and finite");
+  return fmt::format("{} and {} {:.6g}", from, has_high ? "at most" : "below", high);
+}
+
+Take within(const Limits& limits, Take take) {
+  return [limits, take = std::move(take)](const std::string& text) -> Result<void> {
+    if (auto taken = take(text); !taken) return taken;
+    const Result<double> value = number_from<double>(text);
+    if (value && !limits.hold(*value)) return off(fmt::format("must be {}, is {}", limits.text(), text));
+    return {};
+  };
+}
+
 Take into(std::string& target) {
   return [&target](const std::string& text) -> Result<void> {
     if (text.empty()) return off("is empty");

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -93,6 +94,21 @@ Take into_optional(std::optional<Number>& target) {
     return {};
   };
 }
+
+/// The numbers that an option takes, as typed.
+struct Limits {
+  enum class Ends { kIn, kLowOut, kHighOut, kBothOut };
+  double low = 0.0, high = 1.0;
+  Ends ends = Ends::kIn;
+
+  bool hold(double value) const;
+  std::string text() const;  ///< "0..1", "above 0 and at most 100"
+};
+
+inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
+
+/// The same, and a number outside of the limits is refused. What is no number is for `take` to judge.
+Take within(const Limits& limits, Take take);
 
 Take into_probability(LogOdds& target);
 /// More than none.

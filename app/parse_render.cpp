@@ -78,7 +78,8 @@ std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
          "a log as it was heard; or a map, also that of a log, from one of its sides, or one layer of cells",
          "polar of a log, above of a map", view},
         choice("--from", kSides, "of --view side: where one stands, as seen from the vehicle", words.from),
-        {"--z", 0, "M", "of --view slice: a height in the layer", "none", into_optional(words.slice_z_m)},
+        {"--z", 0, "M", "of --view slice: a height in the layer", "none",
+         within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, into_optional(words.slice_z_m))},
         {"--min-z", 0, "M", "of a map, draw nothing below", "none", into_optional(panel.map_picture.min_z_m)},
         {"--max-z", 0, "M", "of a map, draw nothing above", "none", into_optional(panel.map_picture.max_z_m)},
         {"--sweep", 0, "N", "of a log, draw only this sweep, counted from 1", "all; cartesian: the first complete one",
@@ -90,10 +91,10 @@ std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
          "16..3072, of the drawing itself, without axes and legend: about the longer side of a map, the width of a "
          "polar "
          "picture (its height goes by the beams), both sides of a Cartesian one",
-         "1000; of several 640", into_optional(words.size_px)},
+         "1000; of several 640", within({16.0, 3072.0}, into_optional(words.size_px))},
         {"--caption", 0, "TEXT", "below the picture", "what differs from those beside it", into(panel.caption)}}},
       echo_group(words.build.echoes, words.build.build.sound_speed_ratio,
-                 into_number(words.build.build.model.max_range_m)),
+                 within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(words.build.build.model.max_range_m))),
       map_group(words.build),
       sensor_group(words.build)};
   note_in(words.given, groups);
@@ -131,6 +132,13 @@ Result<PanelCommand> panel_command(const PanelWords& words, std::size_t usual_si
     panel.map_picture.layer_z_m = words.slice_z_m;
   }
   if (panel.sweep == 0U) return off("--sweep: counts from 1");
+  const auto& [low_m, high_m] = std::pair(panel.map_picture.min_z_m, panel.map_picture.max_z_m);
+  if (low_m && high_m && *low_m >= *high_m) {
+    return off(fmt::format("--min-z must be below --max-z, they are {} and {}", shown(*low_m), shown(*high_m)));
+  }
+  if (panel.view == PictureView::kSlice && (low_m || high_m)) {
+    return off("--view slice: is one layer, the one at --z: it has no --min-z and --max-z");
+  }
   if (const auto valid = panel.map_picture.validate(); !valid) return tl::unexpected(valid.error());
   if (const auto valid = panel.map.validate(); !valid) return tl::unexpected(valid.error());
   if (const auto valid = panel.build.validate(); !valid) return tl::unexpected(valid.error());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -56,47 +57,55 @@ Result<Command> simulate_command(const Words& words) {
           into_number(command.truth_resolution_m)},
          quiet_option(command.manner)}},
        {"World and vehicle",
-        {{"--side", 0, "M", "of the square tank", shown(tank.side_m), into_number(tank.side_m)},
+        {{"--side", 0, "M", "of the square tank", shown(tank.side_m),
+          within({2.0 * std::max(std::abs(tank.sensor_x_m), std::abs(tank.sensor_y_m)), 1000.0, Limits::Ends::kLowOut},
+                 into_number(tank.side_m))},
          choice("--trajectory", kMotions, "what the vehicle does; still is at 0,0,0", command.motion),
          {"--poses", 0, "FILE", "its way as TUM lines, instead of a trajectory of ours", "none", into(poses)},
          {"--speed", 0, "M/S", "of the vehicle", shown(command.travel.speed_m_s),
-          into_number(command.travel.speed_m_s)},
+          within({0.0, 100.0, Limits::Ends::kLowOut}, into_number(command.travel.speed_m_s))},
          {"--turns", 0, "N", "how often the head turns round", "5; of a vehicle that moves, until it has arrived",
           into_optional(command.turns)},
          {"--drift", 0, "M", "how far reported positions stray in a minute (standard deviation)",
-          shown(command.drift.position_m), into_number(command.drift.position_m)},
+          shown(command.drift.position_m), within({0.0, 1000.0}, into_number(command.drift.position_m))},
          {"--heading-drift", 0, "DEG", "how far reported headings stray in a minute",
-          shown(command.drift.heading_rad / kDegree_rad), into_number(command.drift.heading_rad, kDegree_rad)}}},
+          shown(command.drift.heading_rad / kDegree_rad),
+          within({0.0, 572.95}, into_number(command.drift.heading_rad, kDegree_rad))}}},
        {"Sonar",
         {{"--seed", 0, "N", "of speckle, noise, dropouts and drift", fmt::format("{}", sonar.seed),
           into_number(sonar.seed)},
          {"--range", 0, "M", "to the end of the last bin", "by world", into_optional(command.range_m)},
-         {"--bins", 0, "N", "of a beam", fmt::format("{}", sonar.bins), into_number(sonar.bins)},
-         {"--bin-length", 0, "M", "of a bin, instead of --range", "by world", into_optional(command.bin_length_m)},
+         {"--bins", 0, "N", "of a beam", fmt::format("{}", sonar.bins),
+          within({1.0, 10'000.0}, into_number(sonar.bins))},
+         {"--bin-length", 0, "M", "of a bin, instead of --range", "by world",
+          within({1e-6, 1.0}, into_optional(command.bin_length_m))},
          {"--beams-per-turn", 0, "N", "directions of the head", fmt::format("{}", sonar.beams_per_turn),
-          into_number(sonar.beams_per_turn)},
+          within({4.0, 6400.0}, into_number(sonar.beams_per_turn))},
          {"--beam-width", 0, "DEG", "horizontally, between the points of half power",
-          shown(sonar.beam_width_rad / kDegree_rad), into_number(sonar.beam_width_rad, kDegree_rad)},
+          shown(sonar.beam_width_rad / kDegree_rad),
+          within({0.0, 57.29, Limits::Ends::kLowOut}, into_number(sonar.beam_width_rad, kDegree_rad))},
          {"--beam-height", 0, "DEG", "the same vertically", shown(sonar.beam_height_rad / kDegree_rad),
-          into_number(sonar.beam_height_rad, kDegree_rad)},
+          within({0.0, 114.59, Limits::Ends::kLowOut}, into_number(sonar.beam_height_rad, kDegree_rad))},
          {"--side-lobes", 0, "S", "0 none, 1 those of a plain rectangular face", shown(sonar.side_lobes),
-          into_number(sonar.side_lobes)},
+          within({0.0, 1.0}, into_number(sonar.side_lobes))},
          {"--gain", 0, "G", "share of the loss with range that is made up for, 0..1", shown(sonar.gain),
-          into_number(sonar.gain)},
+          within({0.0, 1.0}, into_number(sonar.gain))},
          {"--compression", 0, "C", "exponent by which amplitudes become 8 bits: 1 linear, less brings out the faint",
-          shown(sonar.compression), into_number(sonar.compression)},
+          shown(sonar.compression), within({0.1, 1.0}, into_number(sonar.compression))},
          {"--absorption", 0, "DB/M", "by the water, one way", shown(sonar.absorption_db_per_m),
-          into_number(sonar.absorption_db_per_m)},
+          within({0.0, 10.0}, into_number(sonar.absorption_db_per_m))},
          {"--ringing", 0, "M", "up to which the head hears itself", shown(sonar.ringing_m),
-          into_number(sonar.ringing_m)},
-         {"--speckle", 0, "S", "0 none, 1 full fading of each bin", shown(sonar.speckle), into_number(sonar.speckle)},
+          within({0.0, 10'000.0}, into_number(sonar.ringing_m))},
+         {"--speckle", 0, "S", "0 none, 1 full fading of each bin", shown(sonar.speckle),
+          within({0.0, 1.0}, into_number(sonar.speckle))},
          {"--noise", 0, "N", "mean amplitude of the background near the head, of 255", shown(sonar.noise),
-          into_number(sonar.noise)},
+          within({0.0, 255.0}, into_number(sonar.noise))},
          {"--multipath", 0, "S", "share of what surfaces mirror that goes on, 0..1", shown(sonar.multipath),
-          into_number(sonar.multipath)},
+          within({0.0, 1.0}, into_number(sonar.multipath))},
          {"--bubbles", 0, "S", "share of beams in which nothing is heard but noise", shown(sonar.silent),
-          into_number(sonar.silent)},
-         {"--lost", 0, "S", "share of beams that are missing in the log", shown(sonar.lost), into_number(sonar.lost)},
+          within({0.0, 1.0}, into_number(sonar.silent))},
+         {"--lost", 0, "S", "share of beams that are missing in the log", shown(sonar.lost),
+          within({0.0, 1.0, Limits::Ends::kHighOut}, into_number(sonar.lost))},
          config_option()}}},
       {"pingvox simulate tank -o tank.csv", "pingvox simulate tank -o - --seed 7 | pingvox map - -o tank.bt",
        "pingvox simulate harbour -o harbour.csv --trajectory loop --truth harbour-truth",
@@ -118,6 +127,14 @@ Result<Command> simulate_command(const Words& words) {
     }
     if (const auto lattice = Lattice::make(command.truth_resolution_m); !lattice) {
       return tl::unexpected(lattice.error());
+    }
+    if (command.range_m) {
+      const auto bins = static_cast<double>(sonar.bins);
+      const Limits bins_m{1e-6 * bins, bins};
+      if (!bins_m.hold(*command.range_m)) {
+        return off(fmt::format("--range: must be {} m with {} bins, is {} m", bins_m.text(), sonar.bins,
+                               shown(*command.range_m)));
+      }
     }
     // Of the sonar all but the bin length, which waits for the world.
     SonarOptions set = sonar;

@@ -252,7 +252,8 @@ TEST(Map, RangeAndShareOfBeamsCount) {
   FlatJson map = json_with(here.call({"info", "c.bt", "--json"}), info_map_keys());
   EXPECT_EQ(map["occupied_cells"], "0");
   EXPECT_GT(std::stol(map["free_cells"]), 300);
-  expect_complaint(here.call({"map", "tank.csv", "-o", "d.bt", "--max-range", "0.5"}), 2, {"tank.csv", "max range"});
+  expect_complaint(here.call({"map", "tank.csv", "-o", "d.bt", "--max-range", "0.5"}), 2,
+                   {"--max-range: must be above --min-range, which is 0.75 m when it is not given, is 0.5 m"});
 }
 
 TEST(Map, TheRecordingOfTheTankHas28SweepsAnd4BeamsOver) {

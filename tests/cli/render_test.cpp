@@ -102,7 +102,7 @@ TEST(Render, SaysWhatAFileHasNoPictureOf) {
   expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--view", "above", "--poses", "none.tum"}), 1,
                    {"none.tum"});
   expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--max-range", "0.5"}), 2,
-                   {"tank.csv", "max range"});
+                   {"--max-range: must be above --min-range"});
   EXPECT_FALSE(here.has("p.png"));
 }
 

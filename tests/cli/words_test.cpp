@@ -54,13 +54,14 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"map", "log.csv", "-o", "m.bt", "--mount", "1,2,3,4,5,inf"}, {"--mount", "finite"}},
       {{"map", "log.csv", "-o", "m.bt", "--sound-speed", "0"}, {"--sound-speed"}},
       {{"map", "log.csv", "-o", "m.bt", "--threads", "0"}, {"--threads"}},
-      {{"map", "log.csv", "-o", "m.bt", "--kernel", "4"}, {"kernel"}},
+      {{"map", "log.csv", "-o", "m.bt", "--kernel", "4"}, {"--kernel: must be odd, is 4"}},
       {{"map", "log.csv", "-o", "m.bt", "--threshold", "0"}, {"threshold"}},
       {{"map", "log.csv", "-o", "m.bt", "--threshold", "300"}, {"threshold", "1..255"}},
       {{"map", "log.csv", "-o", "m.bt", "--detect", "canny", "--threshold", "3000"}, {"threshold", "1..2040"}},
       {{"map", "log.csv", "-o", "m.bt", "--cfar", "go"}, {"--cfar", "ca or so or os"}},
-      {{"map", "log.csv", "-o", "m.bt", "--free-share", "1.5"}, {"free share", "(0, 1]", "1.5"}},
-      {{"map", "log.csv", "-o", "m.bt", "--hit", "0.3"}, {"hit", "(0.5, 1), is 0.3"}},
+      {{"map", "log.csv", "-o", "m.bt", "--free-share", "1.5"},
+       {"--free-share: must be above 0 and at most 1, is 1.5"}},
+      {{"map", "log.csv", "-o", "m.bt", "--hit", "0.3"}, {"--hit: must be above 0.5 and below 1, is 0.3"}},
       {{"map", "log.csv", "-o", "m.bt", "--min-range", "outo"}, {"--min-range"}},
       {{"map", "log.csv", "-o", "m.bt", "--min-bin", "-1"}, {"--min-bin"}},
       {{"map", "log.csv", "-o", "m.bt", "--memory-limit", "2X"}, {"--memory-limit", "512M"}},
@@ -98,13 +99,18 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"render", "a.csv", "-o", "a.png", "--view", "slice"}, {"--view slice", "--z"}},
       {{"render", "a.csv", "-o", "a.png", "--z", "1"}, {"--z", "--view slice"}},
       {{"render", "a.csv", "-o", "a.png", "--from", "left"}, {"--from", "--view side"}},
-      {{"render", "a.csv", "-o", "a.png", "--view", "slice", "--z", "1", "--min-z", "0"}, {"min_z"}},
+      {{"render", "a.csv", "-o", "a.png", "--view", "slice", "--z", "1", "--min-z", "0"},
+       {"--view slice", "no --min-z"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--thresold 40"}, {"--beside", "did you mean '--threshold'?"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--threshold x"}, {"--beside", "--threshold", "'x'"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--caption 'x"}, {"--beside", "quotation mark"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "b.csv"}, {"--beside", "'b.csv'"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "-o b.png"}, {"--beside", "-o"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--help"}, {"--beside", "--help"}},
+      {{"render", "a.csv", "-o", "a.png", "--min-z", "2", "--max-z", "1"},
+       {"--min-z must be below --max-z", "2 and 1"}},
+      {{"simulate", "tank", "-o", "a.csv", "--range", "0"}, {"--range: must be 0.000399..399 m with 399 bins, is 0 m"}},
+      {{"simulate", "harbour", "-o", "a.csv", "--bins", "1"}, {"--bins", "1 m is the longest"}},
       {{"render", "-", "-", "-o", "a.png"}, {"standard input"}},
       {{"simulate", "-o", "a.csv"}, {"WORLD is missing"}},
       {{"simulate", "tnak", "-o", "a.csv"}, {"'tnak'", "did you mean 'tank'?"}},
@@ -116,7 +122,7 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"simulate", "tank", "-o", "a.csv", "--poses", "a.tum", "--trajectory", "loop"}, {"--poses and --trajectory"}},
       {{"simulate", "harbour", "-o", "-", "--trajectory", "loop"}, {"-o -"}},
       {{"simulate", "harbour", "-o", "a.csv", "--trajectory", "lop"}, {"did you mean 'loop'?"}},
-      {{"simulate", "harbour", "-o", "a.csv", "--drift", "-1"}, {"position_m"}},
+      {{"simulate", "harbour", "-o", "a.csv", "--drift", "-1"}, {"--drift: must be 0..1000, is -1"}},
   };
   const Workplace here;
   for (const Case& c : cases) {
@@ -137,6 +143,64 @@ TEST(Words, EachCommandExplainsItselfWithExamples) {
     EXPECT_THAT(outcome.out, HasSubstr("Examples:\n  pingvox " + command));
     EXPECT_EQ(here.call({"help", command}).out, outcome.out);
     EXPECT_THAT(here.call({"--help"}).out, HasSubstr("\n  " + command + " "));
+  }
+}
+
+// A name from inside of the program, or of a stage, says nothing to who typed an option.
+TEST(Words, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
+  struct Case {
+    std::string command, option;
+    Words good, bad;  ///< the ends of what is allowed (or near them), and what is just outside
+  };
+  const std::vector<Case> cases = {
+      {"map", "--min-range", {"0", "100", "auto"}, {"-0.1", "inf"}},
+      {"map", "--max-range", {"0.8", "inf"}, {"0", "-1"}},
+      {"map", "--sound-speed", {"151", "14999"}, {"150", "15000", "1"}},
+      {"map", "--kernel", {"1", "99"}, {"-1", "2", "101"}},
+      {"map", "--sigma", {"0.01", "1000"}, {"0", "1001"}},
+      {"map", "--hit", {"0.51", "0.99"}, {"0.5", "0.4"}},
+      {"map", "--miss", {"0.01", "0.49"}, {"0.5", "0.6"}},
+      {"map", "--beam-width", {"0.01", "180"}, {"0", "180.1"}},
+      {"map", "--beam-height", {"0.01", "179.9"}, {"0", "180"}},
+      {"map", "--free-share", {"0.01", "1"}, {"0", "1.01"}},
+      {"render", "--size", {"16", "3072"}, {"0", "15", "3073"}},
+      {"simulate", "--side", {"0.91", "1000"}, {"0", "0.9", "1001"}},
+      {"simulate", "--speed", {"0.01", "100"}, {"0", "101"}},
+      {"simulate", "--drift", {"0", "1000"}, {"-1", "1001"}},
+      {"simulate", "--heading-drift", {"0", "572.95"}, {"-1", "573"}},
+      {"simulate", "--range", {"0.0004", "399"}, {"0", "400", "inf"}},
+      {"simulate", "--bins", {"1", "10000"}, {"0", "10001"}},
+      {"simulate", "--bin-length", {"0.000001", "1"}, {"0", "1.01"}},
+      {"simulate", "--beams-per-turn", {"4", "6400"}, {"3", "6401"}},
+      {"simulate", "--beam-width", {"0.01", "57.29"}, {"0", "57.3"}},
+      {"simulate", "--beam-height", {"0.01", "114.59"}, {"0", "114.6"}},
+      {"simulate", "--side-lobes", {"0", "1"}, {"-0.1", "1.1"}},
+      {"simulate", "--gain", {"0", "1"}, {"-0.1", "1.1"}},
+      {"simulate", "--compression", {"0.1", "1"}, {"0", "1.1"}},
+      {"simulate", "--absorption", {"0", "10"}, {"-0.1", "10.1"}},
+      {"simulate", "--ringing", {"0", "10000"}, {"-0.1", "10001"}},
+      {"simulate", "--speckle", {"0", "1"}, {"-0.1", "1.1"}},
+      {"simulate", "--noise", {"0", "255"}, {"-0.1", "256"}},
+      {"simulate", "--multipath", {"0", "1"}, {"-0.1", "1.1"}},
+      {"simulate", "--bubbles", {"0", "1"}, {"-0.1", "1.1"}},
+      {"simulate", "--lost", {"0", "0.99"}, {"-0.1", "1"}},
+  };
+  const Workplace here;
+  for (const Case& c : cases) {
+    const std::string output = c.command == "map" ? "a.bt" : (c.command == "render" ? "a.png" : "a.csv");
+    const auto call = [&](const std::string& value) {
+      return here.call({c.command, "missing.stl", "-o", output, c.option, value});
+    };
+    for (const std::string& value : c.bad) {
+      SCOPED_TRACE(c.command + " " + c.option + " " + value);
+      const Outcome outcome = call(value);
+      expect_complaint(outcome, 2, {"pingvox: " + c.command + ": " + c.option + ": must be ", ", is " + value});
+      EXPECT_EQ(outcome.err.find('_'), std::string::npos) << outcome.err;
+    }
+    for (const std::string& value : c.good) {
+      SCOPED_TRACE(c.command + " " + c.option + " " + value);
+      expect_complaint(call(value), 1, {"missing.stl"});  // the words are right: there is no such file
+    }
   }
 }
 
