@@ -172,7 +172,7 @@ Result<int> run(const MapCommand& command, Console& console) {
                                 ? console.print(json_of(totals, *map))
                                 : console.summarise(text_of(totals, *map, command.output), command.output);
   if (!told) return tl::unexpected(told.error());
-  if (!map->root()) {
+  if (map->empty()) {
     console.say(fmt::format("{}: nothing was mapped: {}", command.output, why_empty(totals.report, map->lattice())));
   }
   return 0;

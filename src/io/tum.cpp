@@ -30,7 +30,7 @@ tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
 
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
   const double norm = rotation.norm();
-  if (!(std::fabs(norm - 1.0) <= 1e-3)) return tl::unexpected(fmt::format("its quaternion has length {}", norm));
+  if (!(std::fabs(norm - 1.0) <= 1e-3)) return tl::unexpected(fmt::format("its quaternion has length {:.6g}", norm));
   StampedPose pose;
   pose.time_s = n[0];
   pose.map_from_body.linear() = rotation.normalized().toRotationMatrix();

@@ -80,7 +80,7 @@ Result<void> check_size(const Beam& beam, const std::optional<Echo>& echo, const
   if (cells <= kMostCellsInBeam) return {};
   return fail(
       Error::Code::kLimit,
-      fmt::format("a beam of {:.3g} m at {} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
+      fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
                   "a shorter maximum range or a thinner beam would do",
                   range_m, beam.time_s, cells, lattice.resolution_m(), kMostCellsInBeam));
 }

@@ -1,5 +1,6 @@
 #include "pingvox/mapping/build_map.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -227,6 +228,7 @@ TEST(BuildMap, CellsTooSmallForTheBeamAreRefused) {
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, Error::Code::kLimit);
   EXPECT_NE(report.error().message.find("larger cells"), std::string::npos);
+  EXPECT_THAT(report.error().message, ::testing::ContainsRegex(" at [0-9]+\\.[0-9][0-9][0-9] s "));  // not 17 digits
 }
 
 /// One scan of three points.
