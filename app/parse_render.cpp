@@ -88,9 +88,8 @@ std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
         choice("--echoes", kEchoMarks, "a mark on each echo", panel.marks),
         choice("--between", kBetweens, "of --view cartesian: what is drawn between the beams", panel.between),
         {"--size", 0, "PX",
-         "16..3072, of the drawing itself, without axes and legend: about the longer side of a map, at most the width "
-         "of a "
-         "polar picture (its height goes by the beams), both sides of a Cartesian one",
+         "16..3072, of the drawing itself, without axes and legend: about the longer side of a map, at most the "
+         "width of a polar picture (its height goes by the beams), both sides of a Cartesian one",
          "1000; of several 640", within({16.0, 3072.0}, into_optional(words.size_px))},
         {"--caption", 0, "TEXT", "below the picture", "what differs from those beside it", into(panel.caption)}}},
       echo_group(words.build.echoes, words.build.build.sound_speed_ratio,
