@@ -87,7 +87,7 @@ Take into_mount(Pose& target) {
 
 }  // namespace
 
-OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const Take& max_range) {
+OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, double& max_range_m) {
   EchoOptions& echo = words.echo;
   return {
       "Echoes",
@@ -98,7 +98,7 @@ OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const
         into_number(echo.min_bin)},
        {"--max-range", 0, "M",
         "farther echoes and cells do not count; a beam that heard only such echoes frees up to there", "none",
-        max_range},
+        within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(max_range_m))},
        {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                into_sound_speed_ratio(sound_speed_ratio))},

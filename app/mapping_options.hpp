@@ -39,7 +39,7 @@ struct BuildWords {
 };
 
 /// Groups of options that write into what they are given, which must outlive them.
-OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, const Take& max_range);
+OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, double& max_range_m);
 OptionTable::Group map_group(BuildWords& words);
 OptionTable::Group sensor_group(BuildWords& words);
 

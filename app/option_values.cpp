@@ -23,19 +23,15 @@ Result<std::size_t> bytes_from(std::string_view text) {
 }
 
 bool Limits::hold(double value) const {
-  const bool has_low = ends == Ends::kIn || ends == Ends::kHighOut,
-             has_high = ends == Ends::kIn || ends == Ends::kLowOut;
-  return (has_low ? value >= low : value > low) && (has_high ? value <= high : value < high);
+  return (has_low() ? value >= low : value > low) && (has_high() ? value <= high : value < high);
 }
 
 std::string Limits::text() const {
-  const bool has_low = ends == Ends::kIn || ends == Ends::kHighOut,
-             has_high = ends == Ends::kIn || ends == Ends::kLowOut;
   if (std::isfinite(high) && ends == Ends::kIn) return fmt::format("{:.6g}..{:.6g}", low, high);
   if (!std::isfinite(low) && !std::isfinite(high)) return "finite";
-  const std::string from = fmt::format("{} {:.6g}", has_low ? "at least" : "above", low);
-  if (!std::isfinite(high)) return from + (has_high ? "" : " and finite");
-  return fmt::format("{} and {} {:.6g}", from, has_high ? "at most" : "below", high);
+  const std::string from = fmt::format("{} {:.6g}", has_low() ? "at least" : "above", low);
+  if (!std::isfinite(high)) return from + (has_high() ? "" : " and finite");
+  return fmt::format("{} and {} {:.6g}", from, has_high() ? "at most" : "below", high);
 }
 
 Take within(const Limits& limits, Take take) {

@@ -101,6 +101,8 @@ struct Limits {
   double low = 0.0, high = 1.0;
   Ends ends = Ends::kIn;
 
+  bool has_low() const { return ends == Ends::kIn || ends == Ends::kHighOut; }
+  bool has_high() const { return ends == Ends::kIn || ends == Ends::kLowOut; }
   bool hold(double value) const;
   std::string text() const;  ///< "0..1", "above 0 and at most 100"
 };

@@ -92,8 +92,7 @@ std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
          "width of a polar picture (its height goes by the beams), both sides of a Cartesian one",
          "1000; of several 640", within({16.0, 3072.0}, into_optional(words.size_px))},
         {"--caption", 0, "TEXT", "below the picture", "what differs from those beside it", into(panel.caption)}}},
-      echo_group(words.build.echoes, words.build.build.sound_speed_ratio,
-                 within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(words.build.build.model.max_range_m))),
+      echo_group(words.build.echoes, words.build.build.sound_speed_ratio, words.build.build.model.max_range_m),
       map_group(words.build),
       sensor_group(words.build)};
   note_in(words.given, groups);

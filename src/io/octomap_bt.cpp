@@ -137,11 +137,11 @@ class TreeWords {
 
   std::span<std::uint16_t> words() { return {words_.get(), end_}; }
 
-  std::uint64_t nodes() {
+  std::uint64_t nodes() const {
     // Blocks whose sums fit into 16 bits, so that as many words are counted side by side as fit into a vector.
     constexpr std::size_t kBlock = 4096;
     static_assert(kBlock * 8 <= std::numeric_limits<std::uint16_t>::max());
-    const std::span<const std::uint16_t> all = words();
+    const std::span<const std::uint16_t> all(words_.get(), end_);
     std::uint64_t nodes = all.empty() ? 0 : 1;
     for (std::size_t first = 0; first < all.size(); first += kBlock) {
       std::uint16_t children = 0;

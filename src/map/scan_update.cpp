@@ -100,6 +100,7 @@ void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
   window_.touch_layer();
   detail::take_touched(window_, [&](std::uint64_t number, std::uint8_t where) {
     const BasicKey<std::uint64_t> at = detail::key_of_code(number);
+    // Made where it goes: a copy in vectors would wait for the halves that it is written in.
     const auto corner = [&] {
       return WideKey{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)};
     };

@@ -7,13 +7,12 @@
 #include <random>
 
 #include "support/lanes.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox::detail {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
+using test::uniform;
 
 /// Half-spaces all around, some of them along axes, so that something is left more often than not.
 ConvexBody random_body(std::mt19937_64& random) {

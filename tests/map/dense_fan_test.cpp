@@ -15,15 +15,14 @@
 #include "support/differences.hpp"
 #include "support/fan.hpp"
 #include "support/lanes.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox::detail {
 namespace {
 
 constexpr std::size_t kWords = (std::size_t{1} << (3 * kWindowBits)) / 64;
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
+using test::uniform;
 
 /// Where rays begin [m].
 Eigen::Vector3d drawn_start(std::mt19937_64& random) {

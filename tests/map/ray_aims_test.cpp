@@ -10,15 +10,14 @@
 #include "pingvox/map/ray_dda.hpp"
 #include "support/fan.hpp"
 #include "support/lanes.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox::detail {
 namespace {
 
 constexpr std::uint32_t kSquares = 37;
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
+using test::uniform;
 
 Eigen::Vector3d somewhere(std::mt19937_64& random, double most) {
   return {uniform(random, -most, most), uniform(random, -most, most), uniform(random, -most, most)};

@@ -11,13 +11,12 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "support/lanes.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox::detail {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
+using test::uniform;
 
 // Kills ends that are rounded otherwise than those of single rays, cells and pages that are mixed up, the last rays of
 // a number that fills no vector, and places for what is outside or no number at all.

@@ -12,10 +12,13 @@
 
 #include "pingvox/map/occupancy_map.hpp"
 #include "support/differences.hpp"
+#include "support/uniform.hpp"
 
 using namespace pingvox;
 
 namespace {
+
+using test::uniform;
 
 struct Case {
   Lattice lattice{0.1};
@@ -28,16 +31,14 @@ struct Case {
 /// and then one is so far away that no window is made for all of them.
 Case drawn_case(std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-  };
   Case one{.lattice = Lattice(0.1, seed % 3 == 0 ? 6 : 16), .points_m = {}, .options = {}};
-  one.origin_m = {uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)};
+  one.origin_m = {uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0)};
   const auto clumps = seed % 4 == 0 ? 2 : 200;
   for (int clump = 0; clump < clumps; ++clump) {
-    const Eigen::Vector3d middle_m(uniform(-4.0, 4.0), uniform(-4.0, 4.0), uniform(-4.0, 4.0));
+    const Eigen::Vector3d middle_m(uniform(random, -4.0, 4.0), uniform(random, -4.0, 4.0), uniform(random, -4.0, 4.0));
     for (auto n = random() % 12; n > 0; --n) {
-      const Eigen::Vector3d beside_m(uniform(-0.1, 0.1), uniform(-0.1, 0.1), uniform(-0.1, 0.1));
+      const Eigen::Vector3d beside_m(uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1),
+                                     uniform(random, -0.1, 0.1));
       one.points_m.emplace_back((middle_m + beside_m).cast<float>());
     }
   }
@@ -100,18 +101,15 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const auto uniform = [&](double low, double high) {
-      return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
-    };
     // Windows of 8 bits, and of 11.
     Case one{.lattice = Lattice(seed % 30 == 15 ? 0.01 : 0.1), .points_m = {}, .options = {}};
-    one.origin_m = {uniform(-2.0, 2.0), uniform(-2.0, 2.0), uniform(-2.0, 2.0)};
+    one.origin_m = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0)};
     if (seed % 2 == 0) one.options.max_range_m = 3.0;
     const int rays = seed % 5 == 0 ? 2500 : 200;  // in one block and in several
     for (int ray = 0; ray < rays; ++ray) {
-      const double bearing = uniform(-3.0, 3.0), range_m = uniform(0.5, 6.0);
+      const double bearing = uniform(random, -3.0, 3.0), range_m = uniform(random, 0.5, 6.0);
       Eigen::Vector3d end_m = one.origin_m + range_m * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
-      if (seed % 3 == 0 && ray >= rays - 10) end_m.z() += uniform(-3.0, 3.0);
+      if (seed % 3 == 0 && ray >= rays - 10) end_m.z() += uniform(random, -3.0, 3.0);
       one.points_m.emplace_back(end_m.cast<float>());
     }
     ScanUpdate singly;
