@@ -17,6 +17,9 @@ function(pingvox_compile_options target)
   target_compile_options(
     ${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast
                       -Woverloaded-virtual $<$<BOOL:${PINGVOX_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(PINGVOX_MOST_LANES)
+    target_compile_definitions(${target} PRIVATE PINGVOX_MOST_LANES=${PINGVOX_MOST_LANES})
+  endif()
   if(PINGVOX_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${PINGVOX_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)

@@ -13,6 +13,7 @@
 #include "pingvox/map/trace_ray.hpp"
 #include "support/fan.hpp"
 #include "support/lanes.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox::detail {
 namespace {
@@ -192,6 +193,35 @@ TEST(RayLanes, FindTheCellsOfFloatsWhereverTheWindowIs) {
   EXPECT_GT(outside, 20'000U);
   EXPECT_GT(told_by_doubles, 10'000U);
   EXPECT_GT(rounded_up, 1000U);
+}
+
+// Kills a scale that is too near where products are rounded, one below one that makes nothing of the least numbers:
+// one point at a time, so that no other one of its vector sends it to the doubles.
+TEST(RayLanes, FindTheCellOfAFloatNextToABorder) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity(), kLeast = std::numeric_limits<float>::denorm_min();
+  const double half_between_floats = 1.0 / (static_cast<double>(1.99F) - 0.49 * 0x1p-23);
+  for (const double resolution_m : {0.05, 0.0625, 0.1, 0.35, 0.7, 1.0, 3.0, half_between_floats}) {
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+      SCOPED_TRACE(testing::Message() << resolution_m << " m, seed " << seed);
+      std::mt19937_64 random(seed);
+      const double border = std::floor(std::exp2(test::uniform(random, 0.0, 14.5)));
+      const RayFan fan = window_at(resolution_m, 9, border, 0x1p40);
+      const double beside = (border + 0.5) * resolution_m;
+      auto x = static_cast<float>(border * resolution_m);
+      for (auto steps = random() % 3; steps > 0; --steps) x = std::nextafter(x, seed % 2 == 0 ? kInfinity : -kInfinity);
+      const Eigen::Vector3f point(x, -static_cast<float>(beside), static_cast<float>(beside));
+      expect_places(fan, std::span(&point, 1));
+      ASSERT_FALSE(HasFailure());
+    }
+    const RayFan fan = window_at(resolution_m, 9, 0.0, 0x1p40);
+    const auto middle = static_cast<float>(0.5 * resolution_m);
+    for (const float x :
+         {0.0F, -0.0F, kLeast, -kLeast, 3.0F * kLeast, -3.0F * kLeast, -std::numeric_limits<float>::min()}) {
+      SCOPED_TRACE(testing::Message() << resolution_m << " m, " << x);
+      const Eigen::Vector3f point(x, middle, -middle);
+      expect_places(fan, std::span(&point, 1));
+    }
+  }
 }
 
 // Kills axes that are mixed up, a bit of a place that is lost, the last cells when they fill no vector; a middle that

@@ -14,10 +14,12 @@ constexpr std::size_t kLanes = PINGVOX_PLAIN_LANES;
 #ifdef PINGVOX_X86_LANES
 #pragma GCC push_options
 #pragma GCC target("avx2")
+#define PINGVOX_AVX2
 namespace avx2 {
 constexpr std::size_t kLanes = 4;
 #include PINGVOX_LOOPS
 }  // namespace avx2
+#undef PINGVOX_AVX2
 #pragma GCC pop_options
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl")

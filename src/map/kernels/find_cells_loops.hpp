@@ -17,8 +17,6 @@ inline std::size_t find_in_doubles(const RayFan& fan, std::span<const Point> poi
   return cells.finish();
 }
 
-#ifdef PINGVOX_AVX512
-
 /// In single precision, twice as many stand side by side.
 constexpr std::size_t kFloats = 2 * kLanes;
 using Floats = float __attribute__((vector_size(kFloats * sizeof(float))));
@@ -37,12 +35,20 @@ struct FloatFan {
   explicit FloatFan(const RayFan& fan) {
     if (!(fan.cells_per_m < 0x1p100)) return;
     const auto per_m = static_cast<float>(fan.cells_per_m);
+    constexpr float kMore = std::numeric_limits<float>::infinity();
+#ifdef PINGVOX_AVX512
     const bool is_less = static_cast<double>(per_m) < fan.cells_per_m;
     const bool is_more = static_cast<double>(per_m) > fan.cells_per_m;
     at_least = Floats{} + (is_more ? std::nextafter(per_m, 0.0F) : per_m);
-    at_most = Floats{} + (is_less ? std::nextafter(per_m, std::numeric_limits<float>::infinity()) : per_m);
+    at_most = Floats{} + (is_less ? std::nextafter(per_m, kMore) : per_m);
     // Products lie farther apart the larger they are; beyond this they would not name the same cell often enough.
     const double farthest = is_less || is_more ? 0x1p17 : 0x1p21;
+#else
+    if (!(fan.cells_per_m >= 1.0)) return;  // or products of the least numbers would become nothing
+    at_least = Floats{} + std::nextafter(std::nextafter(per_m, 0.0F), 0.0F);
+    at_most = Floats{} + std::nextafter(std::nextafter(per_m, kMore), kMore);
+    const double farthest = 0x1p15;
+#endif
     for (std::size_t a = 0; a < 3; ++a) {
       const double lowest = fan.lowest[a], end = fan.highest[a] + 1.0;
       if (lowest != static_cast<double>(fan.window_lowest[a])) return;  // cut by the lattice
@@ -52,56 +58,131 @@ struct FloatFan {
     }
     is_usable = true;
   }
-  bool is_usable = false;               ///< whether floats can tell these cells, and they have such numbers
-  Floats at_least, at_most;             ///< floats next to cells_per_m, on both sides of it or both the same
+  bool is_usable = false;  ///< whether floats can tell these cells, and they have such numbers
+  /// Floats next to cells_per_m, on both sides of it or both the same; where products are rounded, the next but one.
+  Floats at_least, at_most;
   std::array<Numbers, 3> first, count;  ///< cells in the window, from this sum of the lowest and kWholeFloat on
 };
+
+/// Some of kFloats lanes.
+#ifdef PINGVOX_AVX512
+using SomeNumbers = __mmask16;
+constexpr SomeNumbers kAllNumbers = 0xFFFF;
+inline void keep_below(const Numbers& end, const Numbers& numbers, SomeNumbers& some) {
+  some = _mm512_mask_cmplt_epu32_mask(some, reinterpret_cast<__m512i>(numbers), reinterpret_cast<__m512i>(end));
+}
+inline void keep_different(const Numbers& from, const Numbers& numbers, SomeNumbers& some) {
+  some = _mm512_mask_cmpneq_epu32_mask(some, reinterpret_cast<__m512i>(numbers), reinterpret_cast<__m512i>(from));
+}
+inline void fill_others(SomeNumbers some, Numbers& numbers) {
+  const __m512i all_bits = _mm512_set1_epi32(-1);
+  numbers = reinterpret_cast<Numbers>(_mm512_mask_mov_epi32(all_bits, some, reinterpret_cast<__m512i>(numbers)));
+}
+inline std::uint32_t bits_of(SomeNumbers some) {
+  return some;
+}
+inline bool is_any(const Numbers& bits) {
+  return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(bits), reinterpret_cast<__m512i>(bits)) != 0;
+}
+#else
+using SomeNumbers = Numbers;  // true is -1
+constexpr SomeNumbers kAllNumbers = Numbers{} - 1U;
+inline void keep_below(const Numbers& end, const Numbers& numbers, SomeNumbers& some) {
+  some &= reinterpret_cast<Numbers>(numbers < end);
+}
+inline void keep_different(const Numbers& from, const Numbers& numbers, SomeNumbers& some) {
+  some &= reinterpret_cast<Numbers>(numbers != from);
+}
+inline void fill_others(const SomeNumbers& some, Numbers& numbers) {
+  numbers |= ~some;
+}
+#ifdef PINGVOX_AVX2
+inline std::uint32_t bits_of(const SomeNumbers& some) {
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(some)));
+}
+#else
+inline std::uint32_t bits_of(const SomeNumbers& some) {
+  std::uint32_t bits = 0;
+  for (std::size_t l = 0; l < kFloats; ++l) bits |= (some[l] & 1U) << l;
+  return bits;
+}
+#endif
+inline bool is_any(const Numbers& bits) {
+  return bits_of(reinterpret_cast<Numbers>(bits != 0U)) != 0;
+}
+#endif
+
+/// Stores some numbers, one after the other, where there is room for all of them. @return how many
+inline std::size_t store_some(const SomeNumbers& some, const Numbers& numbers, std::byte* to) {
+#ifdef PINGVOX_AVX512
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(some, reinterpret_cast<__m512i>(numbers)));
+  return static_cast<std::size_t>(__builtin_popcount(some));
+#else
+  std::size_t count = 0;
+  for (std::uint32_t left = bits_of(some); left != 0; left &= left - 1) {
+    const std::uint32_t number = numbers[std::countr_zero(left)];
+    std::memcpy(to + count++ * sizeof number, &number, sizeof number);
+  }
+  return count;
+#endif
+}
 
 /// Numbers of cells; those of points outside mean nothing.
 struct CellsOfFloats {
   Numbers number{};
-  __mmask16 is_inside = 0xFFFF;
+  SomeNumbers is_inside = kAllNumbers;
 };
 
-/// Finds cells in single precision. Nothing is rounded but the sum of an exact product and a whole number, and that
-/// down to a whole number: these are the cells where points lie, exactly, when the scale is either neighbour of
-/// cells_per_m. Where both are the same, points lie there with cells_per_m as well, and with a product of doubles:
-/// should that be rounded up to a whole number, then by less than what the larger neighbour (of negative numbers the
-/// smaller one) adds, which comes as far.
+/// Largest whole numbers that are not larger than products, as bits of their sum with kWholeFloat.
+inline void floor_of_product(const Floats& one, const Floats& other, Numbers& bits) {
+#ifdef PINGVOX_AVX512
+  constexpr int kDown = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
+  bits = reinterpret_cast<Numbers>(_mm512_fmadd_round_ps(one, other, Floats{} + kWholeFloat, kDown));
+#else
+  const Floats product = one * other, near = product + kWholeFloat;
+  bits = reinterpret_cast<Numbers>(near) + reinterpret_cast<Numbers>(near - kWholeFloat > product);  // true is -1
+#endif
+}
+
+/// Finds cells in single precision: twice, with floats on both sides of cells_per_m, as the exact product lies between
+/// theirs. Where products are rounded, one that is a little less than a whole number may become it: the second float on
+/// that side is less by more than that. With AVX-512 nothing is rounded but the sum with a whole number, and that down:
+/// the cells are those where points lie, exactly, with either scale. Where both are cells_per_m, points lie there with
+/// a product of doubles, too: should that be rounded up to a whole number, then by less than what the larger neighbour
+/// (of negative numbers the smaller one) adds, which comes as far.
 /// @return whether both are the same for all points
 inline bool find_by_floats(const FloatFan& fan, const float* points_m, CellsOfFloats& found) {
-  constexpr int kDown = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
   std::array<Floats, 3> at_m;
   load_each<Signed>(points_m, at_m);
-  const Floats whole = Floats{} + kWholeFloat;
   Numbers different{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto one = reinterpret_cast<Numbers>(_mm512_fmadd_round_ps(at_m[a], fan.at_least, whole, kDown));
-    const auto other = reinterpret_cast<Numbers>(_mm512_fmadd_round_ps(at_m[a], fan.at_most, whole, kDown));
+    Numbers one, other;
+    floor_of_product(at_m[a], fan.at_least, one);
+    floor_of_product(at_m[a], fan.at_most, other);
     different |= one ^ other;
     // What is no number, or too large, is far from any cell of the window.
     const Numbers cell = one - fan.first[a];
     found.number |= cell << (kBitsOfNumber * static_cast<int>(a));
-    found.is_inside = _mm512_mask_cmplt_epu32_mask(found.is_inside, reinterpret_cast<__m512i>(cell),
-                                                   reinterpret_cast<__m512i>(fan.count[a]));
+    keep_below(fan.count[a], cell, found.is_inside);
   }
-  const auto bits = reinterpret_cast<__m512i>(different);
-  return _mm512_test_epi32_mask(bits, bits) == 0;
+  return !is_any(different);
 }
 
 inline void find_by_doubles(const FanLanes& fan, const float* points_m, CellsOfFloats& found) {
-  std::array<HalfNumbers, 2> halves;
-  unsigned is_inside = 0;
+  std::array<HalfNumbers, 2> numbers, is_inside;
   for (std::size_t half = 0; half < 2; ++half) {
     PointLanes points;
     load_in(fan, points_m + half * 3 * kLanes, points);
-    Words numbers;
-    number_cells<kBitsOfNumber>(fan, points, numbers);
-    halves[half] = __builtin_convertvector(numbers, HalfNumbers);
-    is_inside |= unsigned{_mm512_movepi64_mask(reinterpret_cast<__m512i>(points.is_inside))} << (half * kLanes);
+    Words number;
+    number_cells<kBitsOfNumber>(fan, points, number);
+    numbers[half] = __builtin_convertvector(number, HalfNumbers);
+    is_inside[half] = __builtin_convertvector(points.is_inside, HalfNumbers);
   }
-  std::memcpy(&found.number, halves.data(), sizeof found.number);
-  found.is_inside = static_cast<__mmask16>(is_inside);
+  std::memcpy(&found.number, numbers.data(), sizeof found.number);
+  Numbers inside;
+  std::memcpy(&inside, is_inside.data(), sizeof inside);
+  found.is_inside = kAllNumbers;
+  keep_different(Numbers{}, inside, found.is_inside);
 }
 
 /// spread_bits for each lane. REQUIRES up to kBitsOfNumber bits
@@ -119,17 +200,13 @@ class NumbersInARow {
 
   /// Takes in the cells of kFloats points, where there is room for kLanes.
   void add(const CellsOfFloats& found) {
-    const __m512i outside = _mm512_set1_epi32(-1);
-    const Numbers number = reinterpret_cast<Numbers>(
-        _mm512_mask_mov_epi32(outside, found.is_inside, reinterpret_cast<__m512i>(found.number)));
-    Numbers before, one_back;
+    Numbers number = found.number, before, one_back;
+    fill_others(found.is_inside, number);
     for (std::size_t l = 0; l < kFloats; ++l) one_back[l] = static_cast<std::uint32_t>(kFloats - 1 + l);
     pick(last_, number, one_back, before);
-    const __mmask16 others = _mm512_mask_cmpneq_epi32_mask(found.is_inside, reinterpret_cast<__m512i>(number),
-                                                           reinterpret_cast<__m512i>(before));
-    const __m512i some = _mm512_maskz_compress_epi32(others, reinterpret_cast<__m512i>(number));
-    _mm512_storeu_si512(to_ + count_ * sizeof(std::uint32_t), some);
-    count_ += static_cast<std::size_t>(__builtin_popcount(others));
+    SomeNumbers others = found.is_inside;
+    keep_different(before, number, others);
+    count_ += store_some(others, number, to_ + count_ * sizeof(std::uint32_t));
     last_ = number;
   }
 
@@ -168,24 +245,21 @@ inline std::size_t find_in_floats(const RayFan& fan, const FloatFan& float_fan,
     CellsOfFloats found;
     if (!find_by_floats(float_fan, some_m, found)) find_by_doubles(fan_lanes, some_m, found);
     cells.add(found);
-    if (found.is_inside == 0xFFFF) return;  // as most often
+    const std::uint32_t is_inside = bits_of(found.is_inside);
+    if (is_inside == bits_of(kAllNumbers)) return;  // as most often
     for (std::size_t l = 0; l < std::min(kFloats, points_m.size() - first); ++l) {
-      if ((found.is_inside >> l & 1) == 0) outside.push_back(static_cast<std::uint32_t>(first + l));
+      if ((is_inside >> l & 1) == 0) outside.push_back(static_cast<std::uint32_t>(first + l));
     }
   });
   return cells.finish();
 }
 
-#endif
-
 template <class Point>
 inline std::size_t find(const RayFan& fan, std::span<const Point> points_m, std::uint64_t* places,
                         std::vector<std::uint32_t>& outside) {
-#ifdef PINGVOX_AVX512
   if constexpr (std::is_same_v<Point, Eigen::Vector3f>) {
     const FloatFan float_fan(fan);
     if (float_fan.is_usable) return find_in_floats(fan, float_fan, points_m, places, outside);
   }
-#endif
   return find_in_doubles(fan, points_m, places, outside);
 }

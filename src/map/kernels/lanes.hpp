@@ -1,7 +1,11 @@
 #pragma once
 
-// clang has no pragmas to compile for another machine; there the plain loops do.
-#if defined(__x86_64__) && !defined(__clang__)
+// clang has no pragmas to compile for another machine; there the plain loops do. PINGVOX_MOST_LANES (CMake) leaves out
+// wider ones than 1 (what every machine has) or 4 (AVX2), to see what a machine without them would do.
+#ifndef PINGVOX_MOST_LANES
+#define PINGVOX_MOST_LANES 8
+#endif
+#if defined(__x86_64__) && !defined(__clang__) && PINGVOX_MOST_LANES >= 4
 #define PINGVOX_X86_LANES
 #include <immintrin.h>
 #endif
@@ -18,7 +22,8 @@ enum class Lanes {
 /// The widest that this machine has.
 inline Lanes widest_lanes() {
 #ifdef PINGVOX_X86_LANES
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
+  if (PINGVOX_MOST_LANES >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl")) {
     return Lanes::kAvx512;
   }
   if (__builtin_cpu_supports("avx2")) return Lanes::kAvx2;

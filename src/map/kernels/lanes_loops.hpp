@@ -2,14 +2,15 @@
 
 #include "map/kernels/doubles_loops.hpp"
 
-/// Largest whole numbers that are not larger. REQUIRES numbers below 2^53.
+/// Largest whole numbers that are not larger. REQUIRES numbers below 2^51.
 inline void floor_of(const Doubles& numbers, Words& whole) {
 #ifdef PINGVOX_AVX512
   constexpr int kDown = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
   whole = reinterpret_cast<Words>(_mm512_cvt_roundpd_epi64(reinterpret_cast<__m512d>(numbers), kDown));
 #else
-  whole = __builtin_convertvector(numbers, Words);
-  whole += __builtin_convertvector(whole, Doubles) > numbers;  // true is -1
+  const Doubles near = numbers + kWhole;
+  whole = reinterpret_cast<Words>(near) - std::bit_cast<std::int64_t>(kWhole);
+  whole += near - kWhole > numbers;  // true is -1
 #endif
 }
 
@@ -71,6 +72,12 @@ inline void load(const float* points, std::array<Doubles, 3>& coordinates) {
     std::memcpy(&eight, &along, sizeof eight);
     coordinates[a] = reinterpret_cast<Doubles>(_mm512_maskz_cvtps_pd(0xFF, eight));
   }
+#elif defined(PINGVOX_AVX2)
+  using Fours = float __attribute__((vector_size(4 * sizeof(float))));
+  using Places = std::int32_t __attribute__((vector_size(sizeof(Fours))));
+  std::array<Fours, 3> fours;
+  load_each<Places>(points, fours);
+  for (std::size_t a = 0; a < 3; ++a) coordinates[a] = __builtin_convertvector(fours[a], Doubles);
 #else
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t l = 0; l < kLanes; ++l) coordinates[a][l] = points[3 * l + a];
@@ -157,20 +164,50 @@ inline std::size_t store_some(Some some, const Words& words, std::uint64_t* to) 
   return static_cast<std::size_t>(__builtin_popcount(some));
 }
 #else
-using Some = Words;  // true is -1
+#ifdef PINGVOX_AVX2
+/// Of four words some: how many, and where their halves stand.
+struct OfFour {
+  std::array<std::uint8_t, 8> halves{};
+  std::uint64_t count = 0;
+};
+/// For each choice of words that are left out, a bit each.
+constexpr std::array<OfFour, 16> kLeavingOut = [] {
+  std::array<OfFour, 16> all{};
+  for (std::size_t left_out = 0; left_out < all.size(); ++left_out) {
+    OfFour& some = all[left_out];
+    for (std::size_t half = 0; half < 8; ++half) {
+      if ((left_out >> half / 2 & 1) == 0) some.halves[some.count++] = static_cast<std::uint8_t>(half);
+    }
+    some.count /= 2;
+  }
+  return all;
+}();
+#endif
+struct Some {
+  Words left_out;  ///< true is -1
+};
 inline void find_different(const Words& one, const Words& other, Some& some) {
-  some = one != other;
+  some.left_out = one == other;
 }
 inline void clear_some(const Some& some, Words& words) {
-  words &= ~some;
+  words &= some.left_out;
 }
 inline std::size_t store_some(const Some& some, const Words& words, std::uint64_t* to) {
+#ifdef PINGVOX_AVX2
+  const auto left_out = static_cast<std::size_t>(_mm256_movemask_pd(reinterpret_cast<__m256d>(some.left_out)));
+  const OfFour& chosen = kLeavingOut[left_out];
+  const __m128i halves = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(chosen.halves.data()));
+  const __m256i together = _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(words), _mm256_cvtepu8_epi32(halves));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), together);
+  return chosen.count;
+#else
   std::size_t count = 0;
   for (std::size_t l = 0; l < kLanes; ++l) {
     to[count] = static_cast<std::uint64_t>(words[l]);
-    count -= static_cast<std::size_t>(some[l]);
+    count += static_cast<std::size_t>(1 + some.left_out[l]);
   }
   return count;
+#endif
 }
 #endif
 

@@ -24,6 +24,20 @@ constexpr std::uint64_t step_of(std::uint64_t axis_bits, bool is_ahead) {
   return is_ahead ? ~axis_bits + 1 : ~lowest + 1;
 }
 
+/// All bits set of the axis that axis_of_least gives, none of the others. There are no branches and no numbers picked
+/// by their place: which axis is next is as good as random, and picking waits for what was just written.
+std::array<std::uint64_t, 3> along_least(const std::array<std::int64_t, 3>& next) {
+  const auto is_0_first = static_cast<std::uint64_t>(next[0] < next[1]);
+  const auto is_0 = is_0_first & static_cast<std::uint64_t>(next[0] < next[2]);
+  const auto is_1 = ~is_0_first & static_cast<std::uint64_t>(next[1] < next[2]);
+  return {0 - is_0, 0 - is_1, (is_0 | is_1) - 1};
+}
+
+/// Those of the axes that along_least gives.
+std::int64_t some_of(std::int64_t number, std::uint64_t along) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(number) & along);
+}
+
 void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWindow& window) {
   std::uint64_t* const missed = window.missed();
   std::uint8_t* const touched = window.touched();
@@ -36,9 +50,11 @@ void mark_one_by_one(std::span<const ReadyRay> rays, std::uint64_t start, ScanWi
     }
     for (std::uint32_t left = ray.left; left > 0; --left) {
       mark_place(place[0] | place[1] | place[2], missed, touched);
-      const std::size_t axis = axis_of_least(next);
-      next[axis] += ray.apart[axis];
-      place[axis] = (place[axis] + step[axis]) & kAxisBits[axis];
+      const std::array<std::uint64_t, 3> along = along_least(next);
+      for (std::size_t a = 0; a < 3; ++a) {
+        next[a] += some_of(ray.apart[a], along[a]);
+        place[a] = (place[a] + (step[a] & along[a])) & kAxisBits[a];
+      }
     }
   }
 }
@@ -117,9 +133,11 @@ void write_one(const ReadyRay& ray, Key* keys) {
   auto at = static_cast<std::int64_t>(ray.end);
   for (std::uint32_t n = 0; n < ray.left; ++n) {
     put(static_cast<std::uint64_t>(at), keys + n);
-    const std::size_t axis = axis_of_least(next);
-    next[axis] += ray.apart[axis];
-    at += step[axis];
+    const std::array<std::uint64_t, 3> along = along_least(next);
+    for (std::size_t a = 0; a < 3; ++a) {
+      next[a] += some_of(ray.apart[a], along[a]);
+      at += some_of(step[a], along[a]);
+    }
   }
 }
 

@@ -169,10 +169,52 @@ inline void find_middles(const RayFan& fan, double resolution_m, std::span<const
 
 /// axis_of_least for each lane: all bits set of the axis that is next, none of the others.
 inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& along) {
-  const Words is_0_first = next[0] < next[1];
+  const Words is_0_first = next[0] < next[1], is_1_second = next[1] < next[2];
   along[0] = is_0_first & (next[0] < next[2]);
-  along[1] = ~is_0_first & (next[1] < next[2]);
+#ifdef PINGVOX_AVX2
+  // Said in C++, g++ makes three operations of each choice between something and nothing.
+  const auto and_not = [](const Words& of, const Words& some, Words& left) {
+    left = reinterpret_cast<Words>(_mm256_andnot_si256(reinterpret_cast<__m256i>(some), reinterpret_cast<__m256i>(of)));
+  };
+  and_not(is_1_second, is_0_first, along[1]);
+  and_not(Words{} - 1, along[0] | along[1], along[2]);
+#else
+  along[1] = ~is_0_first & is_1_second;
   along[2] = ~(along[0] | along[1]);
+#endif
+}
+
+/// Of some lanes the one, of the others the other, which are the same ones again and again.
+inline void choose(const Words& some, const Words& one, const Words& other, Words& chosen) {
+#ifdef PINGVOX_AVX512
+  chosen = some ? one : other;
+#else
+  chosen = other ^ (some & (one ^ other));  // as add_where
+#endif
+}
+
+/// Adds to some lanes, without minding the sign.
+inline void add_where(const Words& some, const Words& more, Words& to) {
+#ifdef PINGVOX_AVX512
+  to = some ? sum_of(to, more) : to;
+#else
+  to = sum_of(to, some & more);  // choosing takes longer than this where there are no masks
+#endif
+}
+
+/// Adds a step of some lanes to an axis' bits of a place.
+inline void step_where(const Words& some, const Words& step, const Words& bits, Words& place) {
+#ifdef PINGVOX_AVX512
+  const Words moved = (place + step) & bits;
+  place = some ? moved : place;
+#else
+  place = (place + (some & step)) & bits;
+#endif
+}
+
+/// The word of a cell's brick.
+inline void word_of(const Words& place, Words& word) {
+  word = reinterpret_cast<Words>(reinterpret_cast<UnsignedWords>(place) >> 6);
 }
 
 /// The bit of a cell in its brick.
@@ -231,10 +273,8 @@ struct Steps {
     std::array<Words, 3> along;
     choose_axes(next, along);
     for (std::size_t a = 0; a < 3; ++a) {
-      const Words after = sum_of(next[a], apart[a]);  // those of rays that have ended mean nothing
-      next[a] = along[a] ? after : next[a];
-      const Words moved = (place[a] + step[a]) & bits[a];
-      place[a] = along[a] ? moved : place[a];
+      add_where(along[a], apart[a], next[a]);  // those of rays that have ended mean nothing
+      step_where(along[a], step[a], bits[a], place[a]);
     }
   }
   std::array<Words, 3> next, apart, step, bits, place;
@@ -254,8 +294,11 @@ struct FlatSteps {
   void find(Words& at) const { at = place; }
   void cross() {
     const Words is_x = x_before_y < 0;
-    x_before_y = sum_of(x_before_y, is_x ? apart_x : apart_y);
-    const Words along = is_x ? bits[0] : bits[1], by = is_x ? step[0] : step[1];
+    Words apart, along, by;
+    choose(is_x, apart_x, apart_y, apart);
+    choose(is_x, bits[0], bits[1], along);
+    choose(is_x, step[0], step[1], by);
+    x_before_y = sum_of(x_before_y, apart);
     const Words moved = (place & along) + by;
     place = (moved & along) | (place & ~along);
   }
@@ -270,11 +313,12 @@ template <class Steps, class To>
 inline void mark_some(const RayLanes& rays, std::uint64_t start, To& to, MarksToSet& to_set) {
   Steps steps(rays, start);
   const Words begin = Words{} + static_cast<std::int64_t>(start);
-  Words word = begin >> 6, marks{};
+  Words word, marks{};
+  word_of(begin, word);
   std::size_t count = to_set.count;
   const auto enter = [&](const Words& at) {
-    const Words entered = at >> 6;
-    Words cell;
+    Words entered, cell;
+    word_of(at, entered);
     bit_of(at, cell);
     Some left;
     find_different(word, entered, left);
