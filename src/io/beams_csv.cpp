@@ -107,7 +107,15 @@ class CsvSource : public BeamSource {
   Result<std::optional<Beam>> next() override {
     while (const auto line = lines_.next_with_content()) {
       tl::expected<Beam, std::string> beam = beam_in(*line, columns_);
-      if (beam) return std::move(*beam);
+      if (beam && !lines_.has_end() && beam->intensities.size() < bins_before_) {
+        beam =
+            tl::unexpected(fmt::format("ends after {} intensities, without an end of the line (the beam before has {})",
+                                       beam->intensities.size(), bins_before_));
+      }
+      if (beam) {
+        bins_before_ = beam->intensities.size();
+        return std::move(*beam);
+      }
       const auto damaged =
           skipped_or_failed(damage_, skipped_, file_.name, fmt::format("line {}", lines_.number()), beam.error());
       if (!damaged) return tl::unexpected(damaged.error());
@@ -124,6 +132,7 @@ class CsvSource : public BeamSource {
   Lines lines_;  ///< of file_, whose bytes stay where they are when it is moved
   std::vector<Column> columns_;
   std::size_t skipped_ = 0;
+  std::size_t bins_before_ = 0;  ///< of the last beam
 };
 
 }  // namespace

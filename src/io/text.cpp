@@ -40,8 +40,9 @@ std::optional<std::string_view> Lines::next() {
   if (rest_.empty()) return std::nullopt;
   ++number_;
   const std::size_t end = rest_.find('\n');
+  has_end_ = end != std::string_view::npos;
   std::string_view line = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  rest_.remove_prefix(has_end_ ? end + 1 : rest_.size());
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
 }

@@ -24,12 +24,15 @@ class Lines {
   std::optional<std::string_view> next_with_content();
   /// The number, from 1, of the line that next() gave last.
   std::size_t number() const { return number_; }
+  /// Whether that line has its end; the last one of a text may not.
+  bool has_end() const { return has_end_; }
   /// Characters behind that line.
   std::size_t left() const { return rest_.size(); }
 
  private:
   std::string_view rest_;
   std::size_t number_ = 0;
+  bool has_end_ = false;
 };
 
 /// Without blanks and tabs at both ends.

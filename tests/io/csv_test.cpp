@@ -59,12 +59,12 @@ TEST(Csv, TakesLineEndsMarksAndNumbersAsOtherProgramsWriteThem) {
       "time_s,bearing_rad,bin_length_m,intensities\r\n"
       "\r\n"
       "+1.0e+00,1.000000000000000000e+00,1e-1,4.300e+01,0.0\r\n"
-      "2,1,0.1,9",
+      "2,1,0.1,9,8",
       Damage::kFail);
   EXPECT_EQ(all.error, "");
   ASSERT_EQ(all.items.size(), 2U);
   EXPECT_THAT(all.items[0].intensities, ElementsAre(43, 0));
-  EXPECT_THAT(all.items[1].intensities, ElementsAre(9));
+  EXPECT_THAT(all.items[1].intensities, ElementsAre(9, 8));
 }
 
 TEST(Csv, LeavesDamagedLinesOutAndNamesTheFirstWhenAsked) {
@@ -96,6 +96,21 @@ TEST(Csv, LeavesDamagedLinesOutAndNamesTheFirstWhenAsked) {
   const auto strict = read_csv(text, Damage::kFail);
   EXPECT_EQ(strict.items.size(), 1U);
   EXPECT_EQ(strict.error, "log.csv: line 3: intensity 0, \"256\", is not a whole number in 0..255");
+}
+
+// Kills a beam cut off in its midst that counts as one that is short, and a last line that needs an end.
+TEST(Csv, LeavesOutABeamThatWasCutOff) {
+  const std::string two = "time_s,bearing_rad,bin_length_m,intensities\n1,0,0.1,7,8,9\n2,0,0.1,7,8";
+  const auto cut = read_csv(two);
+  EXPECT_EQ(cut.items.size(), 1U);
+  EXPECT_EQ(cut.skipped, 1U);
+  EXPECT_EQ(read_csv(two, Damage::kFail).error,
+            "log.csv: line 3: ends after 2 intensities, without an end of the line (the beam before has 3)");
+  for (const std::string_view rest : {"\n", "\r\n", ",9", ",9\n", ",9,10"}) {
+    const auto whole = read_csv(two + std::string(rest), Damage::kFail);
+    EXPECT_EQ(whole.error, "");
+    EXPECT_EQ(whole.items.size(), 2U);
+  }
 }
 
 TEST(Csv, SaysWhichColumnIsMissing) {
