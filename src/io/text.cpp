@@ -43,7 +43,10 @@ std::optional<std::string_view> Lines::next() {
   has_end_ = end != std::string_view::npos;
   std::string_view line = rest_.substr(0, end);
   rest_.remove_prefix(has_end_ ? end + 1 : rest_.size());
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (line.ends_with('\r')) {
+    line.remove_suffix(1);
+    has_end_ = true;
+  }
   return line;
 }
 

@@ -24,7 +24,7 @@ class Lines {
   std::optional<std::string_view> next_with_content();
   /// The number, from 1, of the line that next() gave last.
   std::size_t number() const { return number_; }
-  /// Whether that line has its end; the last one of a text may not.
+  /// Whether that line has its end (a CR counts); the last one of a text may not.
   bool has_end() const { return has_end_; }
   /// Characters behind that line.
   std::size_t left() const { return rest_.size(); }

@@ -106,11 +106,13 @@ TEST(Csv, LeavesOutABeamThatWasCutOff) {
   EXPECT_EQ(cut.skipped, 1U);
   EXPECT_EQ(read_csv(two, Damage::kFail).error,
             "log.csv: line 3: ends after 2 intensities, without an end of the line (the beam before has 3)");
-  for (const std::string_view rest : {"\n", "\r\n", ",9", ",9\n", ",9,10"}) {
+  for (const std::string_view rest : {"\n", "\r\n", "\r", "\n# the end", ",9", ",9\n", ",9,10"}) {
     const auto whole = read_csv(two + std::string(rest), Damage::kFail);
     EXPECT_EQ(whole.error, "");
     EXPECT_EQ(whole.items.size(), 2U);
   }
+  // It is the beam before that counts, not the longest.
+  EXPECT_EQ(read_csv(two + "\n3,0,0.1,7\n4,0,0.1,7,8", Damage::kFail).items.size(), 4U);
 }
 
 TEST(Csv, SaysWhichColumnIsMissing) {

@@ -199,12 +199,16 @@ TEST(RayLanes, FindTheCellsOfFloatsWhereverTheWindowIs) {
 // one point at a time, so that no other one of its vector sends it to the doubles.
 TEST(RayLanes, FindTheCellOfAFloatNextToABorder) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity(), kLeast = std::numeric_limits<float>::denorm_min();
-  const double half_between_floats = 1.0 / (static_cast<double>(1.99F) - 0.49 * 0x1p-23);
-  for (const double resolution_m : {0.05, 0.0625, 0.1, 0.35, 0.7, 1.0, 3.0, half_between_floats}) {
+  // Scales that are nearly half-way between two floats: the nearest is on one side, the margin needed on the other.
+  const double above_half = 1.0 / (static_cast<double>(1.99F) - 0.49 * 0x1p-23);
+  const double below_half = 1.0 / (static_cast<double>(1.99F) + 0.49 * 0x1p-23);
+  for (const double resolution_m :
+       {0.05, 0.0625, 0.1, 0.35, 0.7, 1.0, 1.1, 1.5, 2.0, 2.5, 2.9, 3.0, above_half, below_half}) {
     for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
       SCOPED_TRACE(testing::Message() << resolution_m << " m, seed " << seed);
       std::mt19937_64 random(seed);
-      const double border = std::floor(std::exp2(test::uniform(random, 0.0, 14.5)));
+      const double far = std::floor(std::exp2(test::uniform(random, 0.0, 14.5)));
+      const double border = seed % 4 < 2 ? far : -far;
       const RayFan fan = window_at(resolution_m, 9, border, 0x1p40);
       const double beside = (border + 0.5) * resolution_m;
       auto x = static_cast<float>(border * resolution_m);

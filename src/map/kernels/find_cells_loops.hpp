@@ -35,18 +35,18 @@ struct FloatFan {
   explicit FloatFan(const RayFan& fan) {
     if (!(fan.cells_per_m < 0x1p100)) return;
     const auto per_m = static_cast<float>(fan.cells_per_m);
-    constexpr float kMore = std::numeric_limits<float>::infinity();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
 #ifdef PINGVOX_AVX512
     const bool is_less = static_cast<double>(per_m) < fan.cells_per_m;
     const bool is_more = static_cast<double>(per_m) > fan.cells_per_m;
     at_least = Floats{} + (is_more ? std::nextafter(per_m, 0.0F) : per_m);
-    at_most = Floats{} + (is_less ? std::nextafter(per_m, kMore) : per_m);
+    at_most = Floats{} + (is_less ? std::nextafter(per_m, kInfinity) : per_m);
     // Products lie farther apart the larger they are; beyond this they would not name the same cell often enough.
     const double farthest = is_less || is_more ? 0x1p17 : 0x1p21;
 #else
     if (!(fan.cells_per_m >= 1.0)) return;  // or products of the least numbers would become nothing
     at_least = Floats{} + std::nextafter(std::nextafter(per_m, 0.0F), 0.0F);
-    at_most = Floats{} + std::nextafter(std::nextafter(per_m, kMore), kMore);
+    at_most = Floats{} + std::nextafter(std::nextafter(per_m, kInfinity), kInfinity);
     const double farthest = 0x1p15;
 #endif
     for (std::size_t a = 0; a < 3; ++a) {
@@ -59,7 +59,8 @@ struct FloatFan {
     is_usable = true;
   }
   bool is_usable = false;  ///< whether floats can tell these cells, and they have such numbers
-  /// Floats next to cells_per_m, on both sides of it or both the same; where products are rounded, the next but one.
+  /// Floats on both sides of cells_per_m, next to it or both the same; where products are rounded, the second ones from
+  /// the float nearest to it.
   Floats at_least, at_most;
   std::array<Numbers, 3> first, count;  ///< cells in the window, from this sum of the lowest and kWholeFloat on
 };
@@ -145,11 +146,13 @@ inline void floor_of_product(const Floats& one, const Floats& other, Numbers& bi
 }
 
 /// Finds cells in single precision: twice, with floats on both sides of cells_per_m, as the exact product lies between
-/// theirs. Where products are rounded, one that is a little less than a whole number may become it: the second float on
-/// that side is less by more than that. With AVX-512 nothing is rounded but the sum with a whole number, and that down:
-/// the cells are those where points lie, exactly, with either scale. Where both are cells_per_m, points lie there with
-/// a product of doubles, too: should that be rounded up to a whole number, then by less than what the larger neighbour
-/// (of negative numbers the smaller one) adds, which comes as far.
+/// theirs; where both cells are the same, points lie there.
+/// Where products are rounded, one that is a little less than a whole number may become it: of positive numbers with
+/// at_least, of negative ones with at_most. The second float on that side is less by more than what is rounded.
+/// With AVX-512 nothing is rounded but the sum with a whole number, and that down: the cells are exact with either
+/// scale. Points of which both are the same lie there with cells_per_m as a double, too: should that product be rounded
+/// up to a whole number, then by less than what the larger neighbour (of negative numbers the smaller one) adds, which
+/// comes as far.
 /// @return whether both are the same for all points
 inline bool find_by_floats(const FloatFan& fan, const float* points_m, CellsOfFloats& found) {
   std::array<Floats, 3> at_m;

@@ -165,7 +165,7 @@ inline std::size_t store_some(Some some, const Words& words, std::uint64_t* to) 
 }
 #else
 #ifdef PINGVOX_AVX2
-/// Of four words some: how many, and where their halves stand.
+/// Of four words some: how many, and where their halves stand; what follows these means nothing.
 struct OfFour {
   std::array<std::uint8_t, 8> halves{};
   std::uint64_t count = 0;
@@ -183,6 +183,7 @@ constexpr std::array<OfFour, 16> kLeavingOut = [] {
   return all;
 }();
 #endif
+/// Those that are not of them are known, as comparisons for being equal tell, without a step to turn it around.
 struct Some {
   Words left_out;  ///< true is -1
 };

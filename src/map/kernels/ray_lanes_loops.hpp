@@ -184,12 +184,12 @@ inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& 
 #endif
 }
 
-/// Of some lanes the one, of the others the other, which are the same ones again and again.
+/// Of some lanes the one, of the others the other: both the same from step to step, so that what they differ in is.
 inline void choose(const Words& some, const Words& one, const Words& other, Words& chosen) {
 #ifdef PINGVOX_AVX512
   chosen = some ? one : other;
 #else
-  chosen = other ^ (some & (one ^ other));  // as add_where
+  chosen = other ^ (some & (one ^ other));  // two operations; choosing is three where there are no masks
 #endif
 }
 
@@ -198,7 +198,7 @@ inline void add_where(const Words& some, const Words& more, Words& to) {
 #ifdef PINGVOX_AVX512
   to = some ? sum_of(to, more) : to;
 #else
-  to = sum_of(to, some & more);  // choosing takes longer than this where there are no masks
+  to = sum_of(to, some & more);
 #endif
 }
 
@@ -320,11 +320,11 @@ inline void mark_some(const RayLanes& rays, std::uint64_t start, To& to, MarksTo
     Words entered, cell;
     word_of(at, entered);
     bit_of(at, cell);
-    Some left;
-    find_different(word, entered, left);
-    store_some(left, word, to_set.word.data() + count);
-    count += store_some(left, marks, to_set.marks.data() + count);
-    clear_some(left, marks);
+    Some moved_on;
+    find_different(word, entered, moved_on);
+    store_some(moved_on, word, to_set.word.data() + count);
+    count += store_some(moved_on, marks, to_set.marks.data() + count);
+    clear_some(moved_on, marks);
     marks |= cell;
     word = entered;
     if (count > MarksToSet::kRoom - 2 * kLanes) {
