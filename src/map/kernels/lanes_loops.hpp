@@ -183,7 +183,7 @@ constexpr std::array<OfFour, 16> kLeavingOut = [] {
   return all;
 }();
 #endif
-/// Those that are not of them are known, as comparisons for being equal tell, without a step to turn it around.
+/// Kept as the lanes left out: that is what a comparison for being equal gives, without a step to turn it around.
 struct Some {
   Words left_out;  ///< true is -1
 };

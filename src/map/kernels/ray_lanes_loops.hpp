@@ -184,7 +184,7 @@ inline void choose_axes(const std::array<Words, 3>& next, std::array<Words, 3>& 
 #endif
 }
 
-/// Of some lanes the one, of the others the other: both the same from step to step, so that what they differ in is.
+/// Of some lanes the one, of the others the other. Both stay the same from step to step; so does what they differ in.
 inline void choose(const Words& some, const Words& one, const Words& other, Words& chosen) {
 #ifdef PINGVOX_AVX512
   chosen = some ? one : other;
