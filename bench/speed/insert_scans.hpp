@@ -4,9 +4,9 @@
 #include <span>
 
 #include "bench/speed/tank_echoes.hpp"
+#include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "pingvox/map/trace_ray.hpp"
 
 namespace pingvox::bench {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "map/kernels/ray_ends.hpp"
+#include "mapping/kernels/ray_ends.hpp"
 
 namespace pingvox::detail {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mapping/parts.hpp"
-#include "pingvox/map/trace_ray.hpp"
+#include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 #include "pingvox/sonar/sweep.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "map/kernels/ray_ends.hpp"
+#include "mapping/kernels/ray_ends.hpp"
 
 namespace pingvox::detail {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "map/brick_column.hpp"
-#include "map/kernels/convex_rows.hpp"
+#include "mapping/brick_column.hpp"
+#include "mapping/kernels/convex_rows.hpp"
 
 namespace pingvox {
 namespace {

@@ -6,10 +6,10 @@
 #include <random>
 #include <sstream>
 
+#include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/compare.hpp"
-#include "pingvox/map/trace_ray.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "map/tree_order.hpp"
+#include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/ray_dda.hpp"
-#include "pingvox/map/trace_ray.hpp"
 #include "support/fan.hpp"
 #include "support/lanes.hpp"
 #include "support/uniform.hpp"

@@ -5,9 +5,9 @@
 #include <thread>
 #include <vector>
 
+#include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
-#include "pingvox/map/trace_ray.hpp"
 
 using namespace pingvox;
 

@@ -2,12 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "pingvox/geometry/lattice.hpp"
-#include "pingvox/map/point_scan.hpp"
 #include "pingvox/map/scan_update.hpp"
 
 namespace pingvox {
@@ -45,31 +43,5 @@ class RayKeys {
 /// @param into  what it held is forgotten, its memory used again
 /// REQUIRES lattice.depth() <= 16
 void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& into);
-
-/// Where the rays of a point scan end.
-enum class EndPoints {
-  kExact,  ///< in each point
-  kCells,  ///< in the middle of each cell with a point, once: fewer rays, a little less exact (OctoMap's `discretize`)
-};
-
-struct PointScanOptions {
-  RayAlgorithm ray = RayAlgorithm::kDda;
-  LogOdds hit = LogOdds::from_probability(0.7);
-  double max_range_m = std::numeric_limits<double>::infinity();  ///< rays farther than this free, and hit nothing
-  EndPoints ends = EndPoints::kExact;
-};
-
-/// Marks each point of a scan as hit and the cells before it as missed: the sets of liboctomap's insertPointCloud.
-/// @return points that lie outside of the lattice, or whose ray does because the origin is; a point inside is hit also
-/// then
-std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
-                         ScanUpdate& scan);
-/// The same for some of its points.
-std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
-                         std::span<const Eigen::Vector3d> points_m, const PointScanOptions& options, ScanUpdate& scan);
-/// The same for points in single precision, as ROS, PCL and OctoMap hold them: half as many bytes to read, and quicker
-/// by that.
-std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
-                         std::span<const Eigen::Vector3f> points_m, const PointScanOptions& options, ScanUpdate& scan);
 
 }  // namespace pingvox

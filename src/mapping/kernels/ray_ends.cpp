@@ -1,11 +1,11 @@
-#include "map/kernels/ray_ends.hpp"
+#include "mapping/kernels/ray_ends.hpp"
 
 #include <cstring>
 
 namespace pingvox::detail {
 namespace {
 
-#define PINGVOX_LOOPS "map/kernels/ray_ends_loops.hpp"
+#define PINGVOX_LOOPS "mapping/kernels/ray_ends_loops.hpp"
 #include "map/kernels/each_machine.hpp"
 
 }  // namespace

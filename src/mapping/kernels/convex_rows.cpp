@@ -1,4 +1,4 @@
-#include "map/kernels/convex_rows.hpp"
+#include "mapping/kernels/convex_rows.hpp"
 
 #include <array>
 #include <bit>
@@ -15,7 +15,7 @@ constexpr std::array<double, 16> kNumbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 
 constexpr std::array<double, 16> kLayerNumbers{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 constexpr std::array<double, 16> kRowNumbers{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 
-#define PINGVOX_LOOPS "map/kernels/convex_rows_loops.hpp"
+#define PINGVOX_LOOPS "mapping/kernels/convex_rows_loops.hpp"
 #include "map/kernels/each_machine.hpp"
 
 }  // namespace

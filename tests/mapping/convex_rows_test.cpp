@@ -1,4 +1,4 @@
-#include "map/kernels/convex_rows.hpp"
+#include "mapping/kernels/convex_rows.hpp"
 
 #include <gtest/gtest.h>
 

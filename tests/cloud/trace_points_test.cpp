@@ -1,4 +1,4 @@
-#include "pingvox/map/trace_ray.hpp"
+#include "pingvox/cloud/trace_points.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "map/tree_order.hpp"
+#include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/occupancy_map.hpp"
-#include "pingvox/map/trace_ray.hpp"
 #include "support/differences.hpp"
 #include "support/fan.hpp"
 #include "support/lanes.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "map/kernels/convex_rows.hpp"
+#include "mapping/kernels/convex_rows.hpp"
 #include "pingvox/map/scan_update.hpp"
 
 namespace pingvox::detail {

@@ -1,4 +1,4 @@
-#include "map/kernels/ray_ends.hpp"
+#include "mapping/kernels/ray_ends.hpp"
 
 #include <gtest/gtest.h>
 
