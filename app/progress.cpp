@@ -22,7 +22,10 @@ bool is_wanted(const Manner& manner) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(const Manner& manner) : shown_(is_wanted(manner)), next_(Clock::now() + kInterval) {}
+// By itself it does not flicker for work that is done at once.
+ProgressBar::ProgressBar(const Manner& manner)
+    : shown_(is_wanted(manner)),
+      next_(manner.progress == ShowProgress::kAlways ? Clock::now() : Clock::now() + kInterval) {}
 
 bool ProgressBar::is_due() {
   if (!shown_) return false;

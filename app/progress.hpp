@@ -9,7 +9,7 @@
 namespace pingvox::app {
 
 /// A bar on standard error that says how far the work is, drawn over itself ten times a second. It is there only on a
-/// terminal (or when asked for), and gone when the work is done.
+/// terminal, after a tenth of a second, or from the start when it was asked for; it is gone when the work is done.
 class ProgressBar {
  public:
   explicit ProgressBar(const Manner& manner);

@@ -2,14 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <random>
-#include <thread>
 
 #include "call.hpp"
 
@@ -280,19 +279,23 @@ TEST(Output, KilledWhileWritingLeavesTheOldFile) {
   for (int attempt = 0; attempt < 20 && killed_while_writing < 3; ++attempt) {
     const pid_t child = here.start({"simulate", "tank", "-o", "log.csv", "--turns", "3000", "--quiet"});
     // Written beside its name: when that file is there and has bytes, the write is on its way.
-    bool is_writing = false;
-    for (int poll = 0; poll < 20'000 && !is_writing; ++poll) {
+    bool is_writing = false, has_ended = false;
+    while (!is_writing && !has_ended) {
       for (const auto& entry : fs::directory_iterator(here.folder())) {
         std::error_code error;
         if (entry.path().filename() != "log.csv" && entry.file_size(error) > 0 && !error) is_writing = true;
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      siginfo_t ended = {};
+      has_ended =
+          ::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == child;
     }
     ::kill(child, SIGKILL);
     if (status_of(child) == 128 + SIGKILL && is_writing) ++killed_while_writing;
     ASSERT_EQ(here.read("log.csv"), "old");
   }
   EXPECT_EQ(killed_while_writing, 3);
+  EXPECT_EQ(here.call({"simulate", "tank", "-o", "log.csv", "--turns", "1", "--quiet"}).status, 0);
+  EXPECT_THAT(here.files(), ::testing::ElementsAre("log.csv"));
 }
 
 }  // namespace

@@ -230,8 +230,7 @@ TEST(Map, ProgressGoesToStandardErrorOnlyWhenWanted) {
   here.simulate_tank();
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt"}).err, "");
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "never"}).err, "");
-  const Outcome shown =
-      here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always", "--beam", "cone", "--resolution", "0.01"});
+  const Outcome shown = here.call({"map", "tank.csv", "-o", "a.bt", "--progress", "always"});
   EXPECT_THAT(shown.err, ::testing::HasSubstr(" %  "));
   EXPECT_THAT(shown.err, ::testing::HasSubstr("beams"));
   EXPECT_TRUE(shown.err.ends_with("\r\x1b[K")) << "the line is left behind";
