@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -99,7 +100,23 @@ Result<void> write_to(int fd, std::string_view name, const Writer& write) {
   return {};
 }
 
-/// A file that disappears again unless it is moved to its place.
+/// Whether a path names the file that is open. A file that lost its name, or whose name was given to another, is not
+/// it.
+bool is_at(int fd, const fs::path& path) {
+  struct stat open = {}, named = {};
+  return ::fstat(fd, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
+         open.st_ino == named.st_ino;
+}
+
+int lock(int fd, int operation) {
+  int status = 0;
+  do status = ::flock(fd, operation);
+  while (status != 0 && errno == EINTR);
+  return status;
+}
+
+/// A file beside the one that it shall become, which disappears again unless it is moved there. It is locked while it
+/// lives: a file of its kind without a lock was left by a process that was killed.
 class TemporaryFile {
  public:
   TemporaryFile() = default;
@@ -107,17 +124,27 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
     if (!path_.empty()) ::unlink(path_.c_str());
+    if (locked_ >= 0) ::close(locked_);
   }
 
   /// A descriptor to write to, or -1 with errno.
-  int create_in(const fs::path& folder) {
-    // A name that is taken belongs to somebody else at work, or is what a killed run left.
-    for (int attempt = 0; attempt < 1000; ++attempt) {
-      const fs::path path = folder / fmt::format(".pingvox-{}-{}.tmp", ::getpid(), attempt);
+  int create_for(const fs::path& target) {
+    // So few write one file at once that none is left beyond these.
+    for (int number = 0; number < 16; ++number) remove_abandoned(path_for(target, number));
+    for (int number = 0; number < 1000; ++number) {
+      const fs::path path = path_for(target, number);
       const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (fd >= 0) path_ = path;
-      if (fd >= 0 || errno != EEXIST) return fd;
+      if (fd < 0 && errno == EEXIST) continue;
+      if (fd < 0) return -1;
+      // File systems without locks: nobody can lock the file, so nobody removes it.
+      if (lock(fd, LOCK_EX) != 0 || is_at(fd, path)) {
+        path_ = path;
+        locked_ = fd;
+        return ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+      }
+      ::close(fd);  // taken for abandoned in the moment before it was locked
     }
+    errno = EEXIST;
     return -1;
   }
 
@@ -129,7 +156,20 @@ class TemporaryFile {
   }
 
  private:
+  static fs::path path_for(const fs::path& target, int number) {
+    constexpr std::size_t kMaxName = 200;  // of the 255 bytes that a name may have
+    return target.parent_path() /
+           fmt::format(".{}.pingvox-{}.tmp", target.filename().string().substr(0, kMaxName), number);
+  }
+
+  static void remove_abandoned(const fs::path& path) {
+    // Open for writing: network file systems lock no other.
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    if (file.valid() && lock(file.get(), LOCK_EX | LOCK_NB) == 0 && is_at(file.get(), path)) ::unlink(path.c_str());
+  }
+
   fs::path path_;
+  int locked_ = -1;
 };
 
 /// 0, or why the content may not be on disk. What cannot be synced at all (some network and FUSE file systems) is none.
@@ -154,7 +194,7 @@ Result<fs::path> end_of_links(const std::string& name) {
 Result<void> replace(const fs::path& target, std::optional<mode_t> mode, const std::string& name, const Writer& write) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   TemporaryFile temporary;
-  Descriptor file(temporary.create_in(folder));
+  Descriptor file(temporary.create_for(target));
   if (!file.valid()) return refused(name, errno);
   if (mode && ::fchmod(file.get(), *mode) != 0) return refused(name, errno);
 

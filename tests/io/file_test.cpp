@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -319,11 +320,86 @@ TEST_F(Files, ThatCannotBeWrittenSayWhyAndAskTheWriterNothing) {
   EXPECT_EQ(error_of(path("new")), path("new") + ": Permission denied");
 }
 
-TEST_F(Files, LeftByAKilledRunAreNotInTheWay) {
-  put(".pingvox-" + std::to_string(::getpid()) + "-0.tmp", "left");
+/// A process that writes a file and stops in the middle of it.
+class HalfWritten {
+ public:
+  HalfWritten(const std::string& path, const std::string& content) {
+    EXPECT_EQ(::pipe(from_child_), 0);
+    EXPECT_EQ(::pipe(to_child_), 0);
+    child_ = ::fork();
+    if (child_ == 0) {
+      const auto written = write_file(path, [&](std::ostream& out) -> Result<void> {
+        out << content << std::flush;
+        char byte = 0;
+        if (::write(from_child_[1], "w", 1) != 1 || ::read(to_child_[0], &byte, 1) != 1) ::_exit(2);
+        out << content;
+        return {};
+      });
+      ::_exit(written ? 0 : 1);
+    }
+    char byte = 0;
+    EXPECT_EQ(::read(from_child_[0], &byte, 1), 1);
+  }
+  HalfWritten(const HalfWritten&) = delete;
+  HalfWritten& operator=(const HalfWritten&) = delete;
+  ~HalfWritten() {
+    for (const int fd : {from_child_[0], from_child_[1], to_child_[0], to_child_[1]}) ::close(fd);
+  }
+
+  void kill() {
+    ::kill(child_, SIGKILL);
+    EXPECT_TRUE(WIFSIGNALED(status()));
+  }
+  void finish() {
+    EXPECT_EQ(::write(to_child_[1], "g", 1), 1);
+    EXPECT_EQ(status(), 0);
+  }
+
+ private:
+  int status() const {
+    int status = -1;
+    EXPECT_EQ(::waitpid(child_, &status, 0), child_);
+    return status;
+  }
+
+  int from_child_[2] = {-1, -1}, to_child_[2] = {-1, -1};
+  pid_t child_ = -1;
+};
+
+// Kills: a temporary file that nobody ever removes, and one that makes the next write fail.
+TEST_F(Files, LeftByKilledProcessesAreRemovedByTheNextWrite) {
+  put("map", "old");
+  {
+    HalfWritten first(path("map"), "first"), second(path("map"), "second");
+    first.kill();
+    second.kill();
+  }
+  EXPECT_EQ(content("map"), "old");
+  EXPECT_EQ(names().size(), 3U) << "the test has to leave two behind";
   ASSERT_TRUE(write_file(path("map"), text("new")));
   EXPECT_EQ(content("map"), "new");
-  EXPECT_EQ(content(".pingvox-" + std::to_string(::getpid()) + "-0.tmp"), "left");
+  EXPECT_THAT(names(), UnorderedElementsAre("map"));
+}
+
+// Kills: clearing away what another process is still writing.
+TEST_F(Files, WrittenByAnotherProcessMeanwhileAreLeftToIt) {
+  HalfWritten slow(path("map"), "slow");
+  ASSERT_TRUE(write_file(path("map"), text("quick")));
+  EXPECT_EQ(content("map"), "quick");
+  EXPECT_EQ(names().size(), 2U);
+  slow.finish();
+  EXPECT_EQ(content("map"), "slowslow");
+  EXPECT_THAT(names(), UnorderedElementsAre("map"));
+}
+
+// Kills: a temporary name that is longer than names may be, and one cut so that it removes another file's.
+TEST_F(Files, WithTheLongestNamesAreWritten) {
+  const std::string name(255, 'n');
+  HalfWritten other(path(name.substr(0, 254) + "m"), "other");
+  ASSERT_TRUE(write_file(path(name), text("x")));
+  EXPECT_EQ(content(name), "x");
+  other.finish();
+  EXPECT_EQ(content(name.substr(0, 254) + "m"), "otherother");
 }
 
 TEST_F(Files, WrittenByManyAtOnceAreOneOfTheirs) {
