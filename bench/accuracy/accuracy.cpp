@@ -15,7 +15,7 @@
 #include "accuracy/map_score.hpp"
 #include "accuracy/recording.hpp"
 #include "accuracy/true_returns.hpp"
-#include "duel.hpp"
+#include "paired_timing.hpp"
 #include "pingvox/sonar/filters.hpp"
 
 namespace pingvox::bench {

@@ -23,10 +23,10 @@ void count(const std::optional<double>& off_m, const EchoJudge& judge, EchoCount
 /// The returns that can be heard: behind the blanking, before the end.
 TrueReturns audible(const TrueReturns& truth, const EchoJudge& judge) {
   TrueReturns heard;
-  if (truth.axis_m && *truth.axis_m >= judge.least_range_m) heard.axis_m = truth.axis_m;
+  if (truth.axis_m && *truth.axis_m >= judge.min_range_m) heard.axis_m = truth.axis_m;
   for (const Span& span : truth.returns) {
-    if (span.last_m < judge.least_range_m || span.first_m > judge.range_m) continue;
-    heard.returns.push_back({std::max(span.first_m, judge.least_range_m), std::min(span.last_m, judge.range_m)});
+    if (span.last_m < judge.min_range_m || span.first_m > judge.range_m) continue;
+    heard.returns.push_back({std::max(span.first_m, judge.min_range_m), std::min(span.last_m, judge.range_m)});
   }
   return heard;
 }
@@ -34,11 +34,11 @@ TrueReturns audible(const TrueReturns& truth, const EchoJudge& judge) {
 double share_within_5cm(const std::vector<Span>& returns, const EchoJudge& judge) {
   std::vector<Span> wider;
   for (const Span& span : returns) {
-    wider.push_back({std::max(span.first_m - 0.05, judge.least_range_m), std::min(span.last_m + 0.05, judge.range_m)});
+    wider.push_back({std::max(span.first_m - 0.05, judge.min_range_m), std::min(span.last_m + 0.05, judge.range_m)});
   }
   double covered = 0.0;
   for (const Span& span : joined(std::move(wider))) covered += span.last_m - span.first_m;
-  return covered / (judge.range_m - judge.least_range_m);
+  return covered / (judge.range_m - judge.min_range_m);
 }
 
 }  // namespace

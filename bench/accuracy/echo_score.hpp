@@ -13,8 +13,8 @@ namespace pingvox::bench {
 /// How echoes are held against the truth. An echo that is farther from it than `false_m` is false.
 struct EchoJudge {
   double bin_length_m = 0.0;
-  double least_range_m = 0.0;  ///< what lies nearer is in the blanking: it cannot be heard
-  double range_m = 0.0;        ///< to the end of the bins
+  double min_range_m = 0.0;  ///< what lies nearer is in the blanking: it cannot be heard
+  double range_m = 0.0;      ///< to the end of the bins
 
   static constexpr double kFalse_m = 0.10;
 };

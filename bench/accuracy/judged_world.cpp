@@ -71,10 +71,10 @@ Echoes at_first_bins(Echoes echoes, double bin_length_m) {
   return echoes;
 }
 
-Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double least_range_m) {
+Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double min_range_m) {
   Echoes echoes;
   for (const TrueReturns& truth : truths) {
-    if (!truth.axis_m || *truth.axis_m < least_range_m) {
+    if (!truth.axis_m || *truth.axis_m < min_range_m) {
       echoes.emplace_back();
       continue;
     }

@@ -53,7 +53,7 @@ Echoes detected(const Recording& recording, const FilterOptions& filter, const E
 Echoes at_first_bins(Echoes echoes, double bin_length_m);
 
 /// What a perfect detector would find on the axis of each beam.
-Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double least_range_m);
+Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double min_range_m);
 
 /// The map of given echoes: what build_map makes of them. @return kLimit when it would grow too large
 Result<OccupancyMap> mapped(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,

@@ -112,7 +112,7 @@ std::vector<TrueReturns> true_returns(const Recording& recording) {
   return truths;
 }
 
-std::vector<Vector3d> seen_in_plane_m(const Recording& recording, double least_range_m) {
+std::vector<Vector3d> seen_in_plane_m(const Recording& recording, double min_range_m) {
   constexpr int kRays = 16;  // to a step
   const double step = 2.0 * std::numbers::pi / static_cast<double>(recording.sonar.beams_per_turn);
   const bool stands_still = recording.options.motion == Motion::kStill;
@@ -126,7 +126,7 @@ std::vector<Vector3d> seen_in_plane_m(const Recording& recording, double least_r
       const SoundRay ray{ping.map_from_sensor.translation(),
                          ping.map_from_sensor.linear() * direction_of(bearing, 0.0)};
       const auto hit = recording.scene.world.first(ray, recording.sonar.range_m());
-      if (hit && hit->range_m >= least_range_m) seen.push_back(ray.at(hit->range_m));
+      if (hit && hit->range_m >= min_range_m) seen.push_back(ray.at(hit->range_m));
     }
   }
   return seen;

@@ -38,6 +38,6 @@ std::vector<TrueReturns> true_returns(const Recording& recording);
 
 /// Where rays in the plane of the head first meet a surface, from each ping's bearing half a step to either side
 /// [m, map frame]: all that lies in line of sight and in range, as far as the head's steps leave no gap.
-std::vector<Eigen::Vector3d> seen_in_plane_m(const Recording& recording, double least_range_m);
+std::vector<Eigen::Vector3d> seen_in_plane_m(const Recording& recording, double min_range_m);
 
 }  // namespace pingvox::bench

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/speed/same_map.hpp"
 #include "claim.hpp"
 #include "cube.hpp"

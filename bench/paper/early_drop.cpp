@@ -11,7 +11,7 @@
 #include <random>
 #include <span>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/speed/same_map.hpp"
 #include "claim.hpp"
 #include "pingvox/map/compare.hpp"
@@ -82,7 +82,7 @@ void add_rows(const Density& density, std::vector<Row>& rows) {
   };
   const Side with = side(on, EarlyDrop::kOn), without = side(off, EarlyDrop::kOff);
   const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(1.0); }, [&] { insert(points, *tree); }};
-  const DuelResult drop = duel(with, without, {.pairs = 3});
+  const PairedTimes drop = time_in_pairs(with, without, {.pairs = 3});
   peer.prepare();
   const double started = cpu_time_s();
   peer.work();

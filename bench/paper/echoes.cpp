@@ -8,7 +8,7 @@
 #include <string>
 
 #include "claim.hpp"
-#include "letter_detector.hpp"
+#include "paper_detector.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "tank_logs.hpp"
 
@@ -35,8 +35,8 @@ Row echo_row(const TankLog& log, const std::string& name, const char* section, V
                  .why = in_words(judgement)});
 }
 
-/// The paper's detector by the letter over a log.
-struct LetterCount {
+/// The paper's detector as it is written over a log.
+struct PaperCount {
   EchoJudgement judgement;
   std::size_t beams = 0, silent = 0, falling = 0;
 };
@@ -50,14 +50,14 @@ std::size_t first_bin_of_theirs(const Beam&) {
   return 24;
 }
 
-LetterCount letter_count(const TankLog& log, const FilterOptions& filter, int threshold,
-                         std::size_t (*first_bin)(const Beam&) = &first_bin_of) {
-  LetterCount count;
+PaperCount paper_count(const TankLog& log, const FilterOptions& filter, int threshold,
+                       std::size_t (*first_bin)(const Beam&) = &first_bin_of) {
+  PaperCount count;
   for (const Sweep& sweep : log.sweeps) {
     const PolarImage image = filtered(PolarImage(sweep), filter);
     for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
       const Beam& beam = sweep.beams[n];
-      const auto edge = letter_edge(image.row(n).first(image.bins_in(n)), first_bin(beam), threshold);
+      const auto edge = paper_edge(image.row(n).first(image.bins_in(n)), first_bin(beam), threshold);
       ++count.beams;
       count.silent += edge ? 0U : 1U;
       count.falling += edge && edge->is_falling ? 1U : 0U;
@@ -95,7 +95,7 @@ std::uint64_t occupied_beyond(const OccupancyMap& map, double range_m) {
 
 /// A map of axes only, as in the paper. Silent beams are walls in their last bin, or say nothing.
 enum class SilentBeam { kWall, kNothing };
-OccupancyMap map_by_letter(const TankLog& log, const FilterOptions& filter, int threshold, SilentBeam silent_beam) {
+OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, int threshold, SilentBeam silent_beam) {
   OccupancyMap map;
   ScanUpdate scan;
   const BeamModelOptions model{.hit_from = HitFrom::kFixed};
@@ -104,7 +104,7 @@ OccupancyMap map_by_letter(const TankLog& log, const FilterOptions& filter, int 
     scan.clear();
     for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
       const Beam& beam = sweep.beams[n];
-      const auto edge = letter_edge(image.row(n).first(image.bins_in(n)), first_bin_of(beam), threshold);
+      const auto edge = paper_edge(image.row(n).first(image.bins_in(n)), first_bin_of(beam), threshold);
       if (!edge && silent_beam == SilentBeam::kNothing) continue;
       const std::size_t bin = edge ? edge->bin : beam.intensities.size() - 1;
       Echo echo{.first = bin, .peak = bin, .last = bin, .range_m = 0.0, .intensity = 255};
@@ -119,23 +119,23 @@ OccupancyMap map_by_letter(const TankLog& log, const FilterOptions& filter, int 
 void add_thresholds(const TankLog& log, std::vector<Row>& rows) {
   const auto rise = [&](int threshold) { return judged(log, {}, EchoOptions{.threshold = threshold}); };
   const int best_rise = best_threshold([&](int threshold) { return rise(threshold).right; });
-  const int best_letter =
-      best_threshold([&](int threshold) { return letter_count(log, {}, threshold).judgement.right; });
+  const int best_of_paper =
+      best_threshold([&](int threshold) { return paper_count(log, {}, threshold).judgement.right; });
   const int best_raw =
-      best_threshold([&](int threshold) { return letter_count(log, no_filter(), threshold).judgement.right; });
+      best_threshold([&](int threshold) { return paper_count(log, no_filter(), threshold).judgement.right; });
   for (const int threshold : kThresholds) {
     const Value paper = threshold == 70 ? Value("best") : Value();
     rows.push_back(echo_row(log, fmt::format("threshold-{}-rise", threshold), "8.2", paper, rise(threshold),
                             threshold != 70   ? Holds::kNotJudged
                             : best_rise == 70 ? Holds::kYes
                                               : Holds::kNo));
-    rows.push_back(echo_row(log, fmt::format("threshold-{}-letter", threshold), "8.2", paper,
-                            letter_count(log, {}, threshold).judgement,
-                            threshold != 70     ? Holds::kNotJudged
-                            : best_letter == 70 ? Holds::kYes
-                                                : Holds::kNo));
-    rows.push_back(echo_row(log, fmt::format("threshold-{}-letter-unsmoothed", threshold), "8.2", paper,
-                            letter_count(log, no_filter(), threshold).judgement,
+    rows.push_back(echo_row(log, fmt::format("threshold-{}-paper", threshold), "8.2", paper,
+                            paper_count(log, {}, threshold).judgement,
+                            threshold != 70       ? Holds::kNotJudged
+                            : best_of_paper == 70 ? Holds::kYes
+                                                  : Holds::kNo));
+    rows.push_back(echo_row(log, fmt::format("threshold-{}-paper-unsmoothed", threshold), "8.2", paper,
+                            paper_count(log, no_filter(), threshold).judgement,
                             threshold != 70  ? Holds::kNotJudged
                             : best_raw == 70 ? Holds::kYes
                                              : Holds::kNo));
@@ -156,7 +156,7 @@ Row row_of_their_program(const TankLog& log) {
 }
 
 void add_falling(const TankLog& log, std::vector<Row>& rows) {
-  const auto row = [&](const char* what, int threshold, const LetterCount& count, const char* where) {
+  const auto row = [&](const char* what, int threshold, const PaperCount& count, const char* where) {
     const std::size_t found = count.beams - count.silent;
     rows.push_back(row_of({.name = fmt::format("falling-edges-{}-{}", what, log.name),
                            .section = "8.2",
@@ -167,23 +167,23 @@ void add_falling(const TankLog& log, std::vector<Row>& rows) {
                            .checked = found > 0,
                            .why = fmt::format("a difference of {} either way, {}", threshold, where)}));
   };
-  row("smoothed", 20, letter_count(log, {}, 20), "behind 0.75 m: where it gets quieter there is no wall");
-  row("unsmoothed", 70, letter_count(log, no_filter(), 70), "behind 0.75 m");
-  row("of-the-ringing", 20, letter_count(log, {}, 20, &first_bin_of_theirs),
+  row("smoothed", 20, paper_count(log, {}, 20), "behind 0.75 m: where it gets quieter there is no wall");
+  row("unsmoothed", 70, paper_count(log, no_filter(), 70), "behind 0.75 m");
+  row("of-the-ringing", 20, paper_count(log, {}, 20, &first_bin_of_theirs),
       "smoothed, behind 24 bins as in their program: the ringing falls");
 }
 
 void add_silent(const TankLog& log, std::vector<Row>& rows) {
-  const LetterCount count = letter_count(log, {}, 70);
+  const PaperCount count = paper_count(log, {}, 70);
   const double beyond_m = 4.9;  // the corners are nearer
-  const auto walls = occupied_beyond(map_by_letter(log, {}, 70, SilentBeam::kWall), beyond_m);
-  const auto nothing = occupied_beyond(map_by_letter(log, {}, 70, SilentBeam::kNothing), beyond_m);
+  const auto walls = occupied_beyond(map_as_in_paper(log, {}, 70, SilentBeam::kWall), beyond_m);
+  const auto nothing = occupied_beyond(map_as_in_paper(log, {}, 70, SilentBeam::kNothing), beyond_m);
   rows.push_back(row_of({.name = fmt::format("silent-beams-{}", log.name),
                          .section = "8.2",
                          .unit = "% of beams",
                          .ours = per_cent(count.silent, count.beams),
                          .checked = count.beams > 0,
-                         .why = "the letter at 70, smoothed, finds nothing in them"}));
+                         .why = "the paper's at 70, smoothed, finds nothing in them"}));
   rows.push_back(row_of({.name = fmt::format("silent-as-walls-{}", log.name),
                          .section = "8.2",
                          .unit = "cells at 5 m",

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "claim.hpp"
 #include "cube.hpp"
 #include "pingvox/map/ray_dda.hpp"
@@ -49,7 +49,7 @@ std::uint64_t walk_rays(const Lattice& lattice) {
 /// Work without a peer, in seconds: the median of `times` runs after a first one.
 template <class Prepare, class Work>
 double seconds_of(Prepare&& prepare, Work&& work) {
-  return duel({prepare, work}, {{}, [] {}}, {.pairs = 3}).ours_s;
+  return time_in_pairs({prepare, work}, {{}, [] {}}, {.pairs = 3}).ours_s;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "letter_dda.hpp"
+#include "paper_dda.hpp"
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/viewer/render_ray.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
@@ -23,9 +23,9 @@ Eigen::Vector3d metres(const Eigen::Vector3d& cells) {
   return cells / 10.0;
 }
 
-/// By the letter: the cells before the end, and the end cell, which is hit in any case.
-std::vector<Cell> letter_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LetterStop stop) {
-  std::vector<Cell> cells = letter_dda<double>(metres(from), metres(to), kCell_m, stop);
+/// As it is written: the cells before the end, and the end cell, which is hit in any case.
+std::vector<Cell> paper_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to, PaperStop stop) {
+  std::vector<Cell> cells = paper_dda<double>(metres(from), metres(to), kCell_m, stop);
   const auto axis = [&](int i) { return static_cast<std::int64_t>(std::floor(to[i])); };
   cells.push_back({axis(0), axis(1), axis(2)});
   return cells;
@@ -40,10 +40,10 @@ std::int64_t last_jump(const std::vector<Cell>& cells) {
 
 /// The first ray of some that loses most.
 template <class Ends>
-Eigen::Vector3d worst_end(const Ends& ends, const Eigen::Vector3d& from, LetterStop stop) {
+Eigen::Vector3d worst_end(const Ends& ends, const Eigen::Vector3d& from, PaperStop stop) {
   Eigen::Vector3d worst = ends.front();
   for (const Eigen::Vector3d& to : ends) {
-    if (last_jump(letter_cells(from, to, stop)) > last_jump(letter_cells(from, worst, stop))) worst = to;
+    if (last_jump(paper_cells(from, to, stop)) > last_jump(paper_cells(from, worst, stop))) worst = to;
   }
   return worst;
 }
@@ -96,12 +96,12 @@ Result<Picture> lost_ends() {
     }
   }
   const Eigen::Vector3d from(0.5, 0.5, 0.5);
-  const Eigen::Vector3d missing = worst_end(on_faces, from, LetterStop::kBeyondLength);
-  const Eigen::Vector3d snapping = worst_end(on_corners, from, LetterStop::kTravelled);
-  const std::array panels = {panel(seen(from, missing, letter_cells(from, missing, LetterStop::kBeyondLength)),
+  const Eigen::Vector3d missing = worst_end(on_faces, from, PaperStop::kBeyondLength);
+  const Eigen::Vector3d snapping = worst_end(on_corners, from, PaperStop::kTravelled);
+  const std::array panels = {panel(seen(from, missing, paper_cells(from, missing, PaperStop::kBeyondLength)),
                                    "11: the paper's DDA, stopped beyond the length: its last cell is missing"),
                              panel(seen(from, missing, our_cells(from, missing)), "ours"),
-                             panel(seen(from, snapping, letter_cells(from, snapping, LetterStop::kTravelled)),
+                             panel(seen(from, snapping, paper_cells(from, snapping, PaperStop::kTravelled)),
                                    "12: stopped by the distance travelled: past its end, and snapping back"),
                              panel(seen(from, snapping, our_cells(from, snapping)), "ours")};
   return side_by_side(panels);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "claim.hpp"
-#include "letter_dda.hpp"
+#include "paper_dda.hpp"
 #include "pingvox/map/ray_bresenham.hpp"
 #include "pingvox/map/ray_dda.hpp"
 #include "ray_cells.hpp"
@@ -120,10 +120,10 @@ void add_ends(std::vector<Row>& rows) {
     return reaches(cells, Cell{0, 0, 0}, ray.end) ? 0U : 1U;
   };
   for (const RoundRay& ray : rays) {
-    beyond_double += lost(letter_dda<double>(origin, ray.to, 0.1, LetterStop::kBeyondLength), ray);
-    beyond_float += lost(letter_dda<float>(origin, ray.to, 0.1, LetterStop::kBeyondLength), ray);
-    travelled_double += lost(letter_dda<double>(origin, ray.to, 0.1, LetterStop::kTravelled), ray);
-    travelled_float += lost(letter_dda<float>(origin, ray.to, 0.1, LetterStop::kTravelled), ray);
+    beyond_double += lost(paper_dda<double>(origin, ray.to, 0.1, PaperStop::kBeyondLength), ray);
+    beyond_float += lost(paper_dda<float>(origin, ray.to, 0.1, PaperStop::kBeyondLength), ray);
+    travelled_double += lost(paper_dda<double>(origin, ray.to, 0.1, PaperStop::kTravelled), ray);
+    travelled_float += lost(paper_dda<float>(origin, ray.to, 0.1, PaperStop::kTravelled), ray);
     const auto walk = dda<std::uint16_t>(lattice, origin, ray.to);
     std::vector<Cell> cells;
     for (const Key key : *walk) cells.push_back({key.x - 32768, key.y - 32768, key.z - 32768});
@@ -137,7 +137,7 @@ void add_ends(std::vector<Row>& rows) {
   std::size_t anywhere = 0;
   const std::vector<RandomSegment> segments = random_segments(rays.size(), 3, 4);
   for (const RandomSegment& segment : segments) {
-    const auto cells = letter_dda<double>(segment.from_cells(), segment.to_cells(), 1.0, LetterStop::kBeyondLength);
+    const auto cells = paper_dda<double>(segment.from_cells(), segment.to_cells(), 1.0, PaperStop::kBeyondLength);
     anywhere += reaches(cells, ExactSegment::cell_of(segment.from), ExactSegment::cell_of(segment.to)) ? 0U : 1U;
   }
   const auto row = [&](const char* name, const char* section, Value paper, std::size_t rays_lost, Holds holds,
@@ -153,14 +153,14 @@ void add_ends(std::vector<Row>& rows) {
                            .why = why}));
   };
   const auto found = [](std::size_t lost_rays) { return lost_rays > 0 ? Holds::kYes : Holds::kNo; };
-  row("figure-11-letter-double", "6.1", "some", beyond_double, found(beyond_double),
-      "its DDA by the letter, stopped beyond the length: rays that lack their last cells");
-  row("figure-11-letter-float", "6.1", "some", beyond_float, found(beyond_float), "the same in single precision");
-  row("figure-11-letter-anywhere", "6.1", "some", anywhere, found(anywhere),
+  row("figure-11-paper-double", "6.1", "some", beyond_double, found(beyond_double),
+      "its DDA as it is written, stopped beyond the length: rays that lack their last cells");
+  row("figure-11-paper-float", "6.1", "some", beyond_float, found(beyond_float), "the same in single precision");
+  row("figure-11-paper-anywhere", "6.1", "some", anywhere, found(anywhere),
       "ends anywhere in their cells instead of on multiples of 0.1 m");
-  row("figure-12-letter-double", "6.1", "sometimes", travelled_double, found(travelled_double),
+  row("figure-12-paper-double", "6.1", "sometimes", travelled_double, found(travelled_double),
       "stopped by the distance travelled: rays that end beside their end");
-  row("figure-12-letter-float", "6.1", "sometimes", travelled_float, found(travelled_float),
+  row("figure-12-paper-float", "6.1", "sometimes", travelled_float, found(travelled_float),
       "the same in single precision");
   row("figure-11-and-12-ours", "6.1", "some", ours, found(ours), "the number of steps is known before the first");
   row("bresenham-reaches-its-end", "6.2", "never missed", lines, lines == 0 ? Holds::kYes : Holds::kNo, "");
@@ -197,8 +197,8 @@ void add_times(std::vector<Row>& rows) {
     return all;
   });
   const auto count = static_cast<double>(segments.size());
-  const DuelResult beside = duel(face_by_face, peer, {.pairs = 5, .least_s = 0.05});
-  const DuelResult both = duel(line, face_by_face, {.pairs = 5, .least_s = 0.05});
+  const PairedTimes beside = time_in_pairs(face_by_face, peer, {.pairs = 5, .min_s = 0.05});
+  const PairedTimes both = time_in_pairs(line, face_by_face, {.pairs = 5, .min_s = 0.05});
   const auto row = [&](const char* name, const char* unit, Value paper, double ours, Value octomap, Holds holds,
                        const char* why) {
     rows.push_back(row_of({.name = name,

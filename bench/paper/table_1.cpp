@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/speed/same_map.hpp"
 #include "claim.hpp"
 #include "cube.hpp"
@@ -80,7 +80,7 @@ Times times_of(const Column& column, const PaperCube& cube, int pairs) {
                   [&] { cube.fill(*both.map, column.pruning); }};
   const Side peer{[&] { both.tree = std::make_unique<octomap::OcTree>(PaperCube::kCell_m); },
                   [&] { cube.fill(*both.tree, column.pruning); }};
-  const DuelResult result = duel(ours, peer, {.pairs = pairs});
+  const PairedTimes result = time_in_pairs(ours, peer, {.pairs = pairs});
   return {result.ours_s, result.peer_s, is_same(both)};
 }
 

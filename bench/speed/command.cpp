@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/process.hpp"
 #include "hush.hpp"
 #include "pingvox/io/file.hpp"
@@ -111,7 +111,8 @@ Result<std::vector<Row>> command(const BenchOptions&) {
   bool all_well = true;
   const Side ours{{}, [&] { all_well &= run_well(ours_words).has_value(); }};
   const Side peer{{}, [&] { all_well &= run_well(peer_words).has_value(); }};
-  Row row = speed_row("command", duel(ours, peer, {.clock_s = &childrens_cpu_time_s, .warm_up = WarmUp::kNone}), {});
+  Row row =
+      speed_row("command", time_in_pairs(ours, peer, {.clock_s = &childrens_cpu_time_s, .warm_up = WarmUp::kNone}), {});
   if (!all_well) return fail(Error::Code::kCorrupt, "a program failed while it was timed");
   row.add("points", std::uint64_t{kScans * kPoints}).add("cells", found->cells()).add("share_that_differs", differ);
   return std::vector{row};

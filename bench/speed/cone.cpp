@@ -19,9 +19,9 @@ constexpr double kCell_m = 0.05;
 constexpr std::size_t kSweeps = 3;
 /// Of the cells that the bundles touch, the most (as a share) that the cones may leave out: liboctomap walks rays in
 /// single precision with sums that drift.
-constexpr double kMostMissing = 1e-3;
+constexpr double kMaxMissing = 1e-3;
 /// How many more the cones may touch, as a share: those between the rays, and those that the cone's edge cuts.
-constexpr double kMostMore = 0.15;
+constexpr double kMaxMore = 0.15;
 
 /// An echo as the beam model takes it.
 struct Cone {
@@ -70,7 +70,7 @@ Result<ConeCells> compared(const OccupancyMap& map, const octomap::OcTree& tree)
   const auto peer_cells = static_cast<double>(found.cells - found.only_ours);
   const ConeCells shares{found.cells, static_cast<double>(found.only_peer) / peer_cells,
                          static_cast<double>(found.only_ours) / peer_cells};
-  if (shares.missing <= kMostMissing && shares.more <= kMostMore) return shares;
+  if (shares.missing <= kMaxMissing && shares.more <= kMaxMore) return shares;
   return fail(Error::Code::kCorrupt,
               fmt::format("of the {} cells of the bundles {} are not in the cones, which have {} others", peer_cells,
                           found.only_peer, found.only_ours));

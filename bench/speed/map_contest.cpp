@@ -3,12 +3,12 @@
 #include <memory>
 #include <optional>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 
 namespace pingvox::bench {
 namespace {
 
-DuelMemory memory_of(const MapContest& contest) {
+MemoryOfBoth memory_of(const MapContest& contest) {
   return {peak_memory_bytes([&] {
             OccupancyMap map({.resolution_m = contest.resolution_m});
             ScanUpdate scan;
@@ -37,8 +37,8 @@ Result<Row> measured(const MapContest& contest) {
   if (const auto checked = contest.check(*map, *tree); !checked) return tl::unexpected(checked.error());
   map.reset();
   tree.reset();
-  const DuelMemory bytes = memory_of(contest);
-  return speed_row(contest.name, duel(ours, peer), bytes);
+  const MemoryOfBoth bytes = memory_of(contest);
+  return speed_row(contest.name, time_in_pairs(ours, peer), bytes);
 }
 
 }  // namespace pingvox::bench

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "hush.hpp"
 #include "pingvox/io/maps.hpp"
 #include "same_map.hpp"
@@ -48,7 +48,7 @@ Result<std::vector<Row>> bt_write(const BenchOptions&) {
   const Side ours{[&] { ours_out = std::ostringstream(); },
                   [&] { (void)write_map(maps->ours, Format::kBt, "", ours_out); }};
   const Side peer{[&] { peer_out = std::ostringstream(); }, [&] { maps->peer->writeBinaryConst(peer_out); }};
-  const DuelResult result = duel(ours, peer, {.pairs = 21});
+  const PairedTimes result = time_in_pairs(ours, peer, {.pairs = 21});
   if (ours_out.view().empty() || ours_out.view() != peer_out.view()) {
     return fail(Error::Code::kCorrupt, fmt::format("{} bytes are not the {} bytes that liboctomap writes",
                                                    ours_out.view().size(), peer_out.view().size()));
@@ -77,7 +77,7 @@ Result<std::vector<Row>> bt_read(const BenchOptions&) {
                     in = std::istringstream(*bytes);
                   },
                   [&] { tree->readBinary(in); }};
-  const DuelResult result = duel(ours, peer, {.pairs = 21});
+  const PairedTimes result = time_in_pairs(ours, peer, {.pairs = 21});
   if (!*map) return tl::unexpected(map->error());
   if (const auto same = same_to_the_bit(map->value().map, *tree); !same) return tl::unexpected(same.error());
   Row row = speed_row("bt-read", result, {});

@@ -4,7 +4,7 @@
 #include <memory>
 #include <numeric>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "insert_scans.hpp"
 #include "peer.hpp"
 #include "same_map.hpp"

@@ -1,6 +1,6 @@
 #include "peer.hpp"
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 
 namespace pingvox::bench {
 

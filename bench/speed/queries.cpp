@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/sim/random.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kKeys = 1'000'000, kRays = 100'000;
 constexpr double kRange_m = 10.0;  ///< the tank is 5 m wide
 /// liboctomap adds up floats as it goes: the most rays (as a share) that may end elsewhere.
-constexpr double kMostOther = 0.01;
+constexpr double kMaxOther = 0.01;
 
 std::uint64_t below(Random& random, std::uint64_t end) {
   return random.bits() % end;
@@ -130,7 +130,7 @@ Result<std::vector<Row>> look_up(const BenchOptions&) {
                       ++peer_counts[static_cast<std::size_t>(classified_by(tree, key))];
                     }
                   }};
-  const DuelResult result = duel(ours, peer);
+  const PairedTimes result = time_in_pairs(ours, peer);
   if (ours_counts != counts || peer_counts != counts) return fail(Error::Code::kCorrupt, "answers changed while timed");
   Row row = speed_row("look-up", result, {});
   row.add("input", maps->input).add("keys", std::uint64_t{kKeys}).add("unknown", counts[0]);
@@ -156,7 +156,7 @@ Result<std::vector<Row>> cast_rays(const BenchOptions&) {
     hits += ours.what == Occupancy::kOccupied;
   }
   const double share = static_cast<double>(alike) / static_cast<double>(casts.size());
-  if (share < 1.0 - kMostOther) {
+  if (share < 1.0 - kMaxOther) {
     return fail(Error::Code::kCorrupt,
                 fmt::format("only {} of {} rays end where liboctomap's do", alike, casts.size()));
   }
@@ -174,7 +174,7 @@ Result<std::vector<Row>> cast_rays(const BenchOptions&) {
                       peer_hits += tree.castRay(origin, direction, end, true, kRange_m);
                     }
                   }};
-  const DuelResult result = duel(ours, peer);
+  const PairedTimes result = time_in_pairs(ours, peer);
   if (ours_hits != hits || peer_hits == 0) return fail(Error::Code::kCorrupt, "rays changed while timed");
   Row row = speed_row("cast-ray", result, {});
   row.add("input", maps->input).add("rays", std::uint64_t{casts.size()}).add("hits", hits).add("share_same", share);
@@ -204,7 +204,7 @@ Result<std::vector<Row>> leaves(const BenchOptions&) {
                       peer_sums.sizes_m += leaf.getSize();
                     }
                   }};
-  const DuelResult result = duel(ours, peer, {.pairs = 9, .least_s = 0.05});
+  const PairedTimes result = time_in_pairs(ours, peer, {.pairs = 9, .min_s = 0.05});
   // The same leaves in the same order, so the same sums to the last bit.
   if (!(ours_sums == peer_sums)) {
     return fail(Error::Code::kCorrupt, fmt::format("{} leaves with sums {} and {} against {} with {} and {}",

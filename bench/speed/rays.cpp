@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "pingvox/map/trace_ray.hpp"
 #include "pingvox/sim/random.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double kCell_m = 0.05, kHalfBox_m = 10.0;
 constexpr std::size_t kRays = 131'072;
 /// liboctomap adds up floats as it goes: the most rays (as a share) that may take another way past an edge.
-constexpr double kMostOther = 0.01;
+constexpr double kMaxOther = 0.01;
 
 std::vector<Segment> random_segments() {
   Random random(11);
@@ -70,7 +70,7 @@ Result<std::vector<Row>> rays(const BenchOptions&) {
     cells += ray.size();
   });
   const double share = static_cast<double>(same) / static_cast<double>(segments.size());
-  if (share < 1.0 - kMostOther) {
+  if (share < 1.0 - kMaxOther) {
     return fail(Error::Code::kCorrupt, fmt::format("only {} of {} rays have liboctomap's keys", same, segments.size()));
   }
 
@@ -86,7 +86,7 @@ Result<std::vector<Row>> rays(const BenchOptions&) {
                       peer_cells += peer_keys.size();
                     }
                   }};
-  const DuelResult result = duel(ours, peer);
+  const PairedTimes result = time_in_pairs(ours, peer);
   if (ours_cells % cells != 0 || peer_cells == 0) return fail(Error::Code::kCorrupt, "rays changed while timed");
   Row row = speed_row("rays", result, {});
   row.add("rays", std::uint64_t{segments.size()}).add("cells", std::uint64_t{cells}).add("share_same", share);

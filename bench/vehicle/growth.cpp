@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "pingvox/map/compare.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/insonified_volume.hpp"
@@ -20,7 +20,7 @@ namespace {
 constexpr double kCell_m = 0.05;
 constexpr std::array<std::uint64_t, 5> kSizes = {10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
 /// What the time in a large map may be of that in the smallest.
-constexpr double kMostGrowth = 1.3;
+constexpr double kMaxGrowth = 1.3;
 constexpr std::size_t kPlaces = 5, kRounds = 100;
 /// The smallest map is small, and so is the first block.
 constexpr std::uint16_t kEdge = 16, kMiddle = 32768;
@@ -179,7 +179,7 @@ Result<std::vector<Row>> rows_by_size() {
         .add("cells", cells)
         .add("apply_us", known->large_us)
         .add("growth", known->large_us / known->small_us)
-        .add_truth("within", known->large_us <= kMostGrowth * known->small_us)
+        .add_truth("within", known->large_us <= kMaxGrowth * known->small_us)
         .add("apply_new_us", median(new_us))
         .add("memory_bytes", std::uint64_t{bytes})
         .add("bytes_per_cell", static_cast<double>(bytes) / static_cast<double>(cells));
@@ -202,18 +202,18 @@ Result<std::uint64_t> steps_into(Basin& basin, std::uint64_t most) {
 /// Fills a map until its limit stops it, and looks whether it is what it was before.
 Result<Row> row_of_limit() {
   constexpr std::size_t kLimit_bytes = std::size_t{64} << 20U;
-  constexpr std::uint64_t kMostSteps = kSizes.back() / (16 * kBlock);
+  constexpr std::uint64_t kMaxSteps = kSizes.back() / (16 * kBlock);
   const MapOptions options{.resolution_m = kCell_m, .memory_limit_bytes = kLimit_bytes};
   OccupancyMap first(options), map(options);
   Basin into_first(first), into_map(map);
-  const auto steps = steps_into(into_first, kMostSteps);
+  const auto steps = steps_into(into_first, kMaxSteps);
   if (!steps) return tl::unexpected(steps.error());
   if (const auto again = steps_into(into_map, *steps); !again || *again != *steps) {
     return fail(Error::Code::kCorrupt, fmt::format("the limit let {} scans in at first", *steps));
   }
   const OccupancyMap before = map;
   const auto refused = steps_into(into_map, 1);
-  if (*steps == kMostSteps || !refused || *refused != 0) {
+  if (*steps == kMaxSteps || !refused || *refused != 0) {
     return fail(Error::Code::kCorrupt, "the memory limit stopped nothing");
   }
   const auto found = compare_maps(before, map, Sameness::kLogOdds);

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/tank_beams.hpp"
 #include "pingvox/map/compare.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"

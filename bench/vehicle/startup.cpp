@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/process.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
@@ -50,13 +50,13 @@ Result<std::vector<Row>> startup(const BenchOptions&) {
     }
     wall_ms.push_back(1e3 * run->wall_s);
   }
-  const auto [least, most] = std::minmax_element(wall_ms.begin(), wall_ms.end());
+  const auto [min, max] = std::minmax_element(wall_ms.begin(), wall_ms.end());
   Row row;
   row.add("name", "startup")
       .add_truth("checked", true)
       .add("wall_ms", median(wall_ms))
-      .add("wall_ms_min", *least)
-      .add("wall_ms_max", *most);
+      .add("wall_ms_min", *min)
+      .add("wall_ms_max", *max);
   return std::vector{row};
 }
 

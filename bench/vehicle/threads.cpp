@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "bench/duel.hpp"
+#include "bench/paired_timing.hpp"
 #include "bench/speed/tank_echoes.hpp"
 #include "pingvox/map/compare.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -56,7 +56,7 @@ Result<std::vector<Row>> threads(const BenchOptions&) {
   if (!compared) return tl::unexpected(compared.error());
   if (!compared->equal()) return fail(Error::Code::kCorrupt, "two threads make another map than one");
   // What a thread saves is time to wait, not work: by the wall clock.
-  const DuelResult result = duel(two, one, {.clock_s = &wall_time_s});
+  const PairedTimes result = time_in_pairs(two, one, {.clock_s = &wall_time_s});
   Row row;
   row.add("name", "threads")
       .add_truth("checked", true)

@@ -8,7 +8,7 @@
 namespace pingvox::bench {
 namespace {
 
-constexpr EchoJudge kJudge{.bin_length_m = 0.02, .least_range_m = 0.75, .range_m = 5.0};
+constexpr EchoJudge kJudge{.bin_length_m = 0.02, .min_range_m = 0.75, .range_m = 5.0};
 
 std::optional<Echo> echo_at(double range_m) {
   return Echo{.first = 0, .peak = 0, .last = 0, .range_m = range_m, .intensity = 100};

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "bench/paper/letter_detector.hpp"
+#include "bench/paper/paper_detector.hpp"
 #include "bench/paper/tank_logs.hpp"
 
 namespace pingvox::bench {
@@ -22,12 +22,12 @@ std::vector<std::optional<Echo>> echoes_of(const Sweep& sweep) {
   return detect_echoes(PolarImage(sweep), sweep, {.min_range_m = 0.3, .threshold = 70});
 }
 
-TEST(PaperDetector, ByTheLetterTakesTheEndOfTheRingingForAWall) {
+TEST(PaperDetector, AsWrittenTakesTheEndOfTheRingingForAWall) {
   // The ringing ends at 0.5 m, the wall is at 2 m.
   std::vector<std::uint8_t> bins(20, 10);
   std::fill_n(bins.begin(), 5, std::uint8_t{120});
   bins.insert(bins.end(), {110, 100, 10});
-  const auto edge = letter_edge(bins, 3, 70);
+  const auto edge = paper_edge(bins, 3, 70);
   ASSERT_TRUE(edge);
   EXPECT_EQ(edge->bin, 5U);
   EXPECT_TRUE(edge->is_falling);
@@ -36,26 +36,26 @@ TEST(PaperDetector, ByTheLetterTakesTheEndOfTheRingingForAWall) {
   EXPECT_EQ(echo->first, 20U);
 }
 
-TEST(PaperDetector, ByTheLetterMissesAWallThatRisesOverSomeBins) {
+TEST(PaperDetector, AsWrittenMissesAWallThatRisesOverSomeBins) {
   std::vector<std::uint8_t> bins(20, 10);
   bins.insert(bins.end(), {40, 70, 100, 120, 100, 60, 10});
-  EXPECT_FALSE(letter_edge(bins, 3, 70));
+  EXPECT_FALSE(paper_edge(bins, 3, 70));
   EXPECT_TRUE(echoes_of(sweep_of(bins)).front());
 }
 
-TEST(PaperDetector, ByTheLetterCountsTheThresholdItselfAndNothingBeforeTheFirstBin) {
+TEST(PaperDetector, ByThePaperCountsTheThresholdItselfAndNothingBeforeTheFirstBin) {
   const std::vector<std::uint8_t> bins = {0, 200, 0, 0, 69, 139, 0};
-  const auto edge = letter_edge(bins, 2, 70);
+  const auto edge = paper_edge(bins, 2, 70);
   ASSERT_TRUE(edge);
   EXPECT_EQ(edge->bin, 5U);
   EXPECT_FALSE(edge->is_falling);
-  EXPECT_FALSE(letter_edge({}, 0, 1));
+  EXPECT_FALSE(paper_edge({}, 0, 1));
 }
 
 // In the authors' program a beam without an edge has its wall in its last bin. In open water that is a ring of walls.
 TEST(PaperDetector, ASilentBeamIsNoWallAtTheEndOfItsRange) {
   const Sweep sweep = sweep_of({10});
-  ASSERT_FALSE(letter_edge(sweep.beams.front().intensities, 0, 70));
+  ASSERT_FALSE(paper_edge(sweep.beams.front().intensities, 0, 70));
   ASSERT_FALSE(echoes_of(sweep).front());
   const auto occupied = [&](const std::optional<Echo>& echo, Silent silent) {
     OccupancyMap map;
@@ -82,7 +82,7 @@ TEST(PaperDetector, OfTheFourThresholdsSeventyIsBestWhereItsDifferencesAreAddedU
     for (const Sweep& sweep : log.sweeps) {
       const PolarImage image = filtered(PolarImage(sweep), {});
       for (std::size_t n = 0; n < image.rows(); ++n) {
-        found += letter_edge(image.row(n).first(image.bins_in(n)), 60, 70) ? 1U : 0U;
+        found += paper_edge(image.row(n).first(image.bins_in(n)), 60, 70) ? 1U : 0U;
       }
     }
     EXPECT_EQ(found, 0U) << "of the smoothed beams none has a single difference of 70";

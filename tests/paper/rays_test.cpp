@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "bench/paper/letter_dda.hpp"
+#include "bench/paper/paper_dda.hpp"
 #include "bench/paper/ray_cells.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
@@ -55,7 +55,7 @@ std::int64_t apart(const Cell& a, const Cell& b) {
 }
 
 // What figures 11 and 12 show, where a ray ends on faces of cells; and that it is the ends, not how we wrote it down.
-TEST(PaperRays, DdaByTheLetterLosesItsEndOnRoundNumbersAndOursDoesNot) {
+TEST(PaperRays, DdaAsWrittenLosesItsEndOnRoundNumbersAndOursDoesNot) {
   const Lattice lattice(0.1);
   std::mt19937_64 random(6);
   std::size_t beyond = 0, travelled = 0;
@@ -68,12 +68,12 @@ TEST(PaperRays, DdaByTheLetterLosesItsEndOnRoundNumbersAndOursDoesNot) {
     const auto key = lattice.key_of(to);
     ASSERT_TRUE(key);
     const Cell end{key->x - 32768, key->y - 32768, key->z - 32768};
-    const auto lost = [&](LetterStop stop) {
-      const auto cells = letter_dda<double>(Eigen::Vector3d::Zero(), to, 0.1, stop);
+    const auto lost = [&](PaperStop stop) {
+      const auto cells = paper_dda<double>(Eigen::Vector3d::Zero(), to, 0.1, stop);
       return cells.empty() || apart(cells.back(), end) != 1 ? 1U : 0U;
     };
-    beyond += lost(LetterStop::kBeyondLength);
-    travelled += lost(LetterStop::kTravelled);
+    beyond += lost(PaperStop::kBeyondLength);
+    travelled += lost(PaperStop::kTravelled);
     const auto walk = dda<std::uint16_t>(lattice, Eigen::Vector3d::Zero(), to);
     ASSERT_TRUE(walk);
     Cell last{};
@@ -84,11 +84,11 @@ TEST(PaperRays, DdaByTheLetterLosesItsEndOnRoundNumbersAndOursDoesNot) {
   EXPECT_GT(travelled, kRays / 10);
 }
 
-TEST(PaperRays, DdaByTheLetterWalksTheSameCellsAsOursBetweenPointsInsideOfCells) {
+TEST(PaperRays, DdaAsWrittenWalksTheSameCellsAsOursBetweenPointsInsideOfCells) {
   std::size_t same = 0, all = 0;
   for (const RandomSegment& segment : random_segments(1'000, 3, 7)) {
     const Eigen::Vector3d from = segment.from_cells(), to = segment.to_cells();
-    same += letter_dda<double>(from, to, 1.0, LetterStop::kBeyondLength) == dda_cells(from, to) ? 1U : 0U;
+    same += paper_dda<double>(from, to, 1.0, PaperStop::kBeyondLength) == dda_cells(from, to) ? 1U : 0U;
     ++all;
   }
   EXPECT_GE(same, all - 1);

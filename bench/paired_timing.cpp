@@ -1,4 +1,4 @@
-#include "duel.hpp"
+#include "paired_timing.hpp"
 
 #include <malloc.h>
 #include <sys/resource.h>
@@ -20,10 +20,10 @@ namespace {
 /// Puts in order what the other side freed, or this one's first large allocations would pay for it: chunks are joined
 /// (malloc_trim), then sorted by size, of which glibc does 10,000 at most in each allocation that none of them serves.
 void tidy_heap() {
-  constexpr int kMostAllocations = 10000;
+  constexpr int kMaxAllocations = 10000;
   constexpr std::size_t kLarge = 100000;
   malloc_trim(0);
-  for (int i = 0; i < kMostAllocations; ++i) {
+  for (int i = 0; i < kMaxAllocations; ++i) {
     void* volatile chunk = std::malloc(kLarge);
     std::free(chunk);
   }
@@ -107,11 +107,11 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options) {
+PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTimingOptions& options) {
   const auto times_for = [&](const Side& side) {
     if (options.warm_up == WarmUp::kNone) return 1;
     const double once = timed(side, 1, options.clock_s);
-    return std::clamp(static_cast<int>(std::ceil(options.least_s / std::max(once, 1e-7))), 1, 100'000);
+    return std::clamp(static_cast<int>(std::ceil(options.min_s / std::max(once, 1e-7))), 1, 100'000);
   };
   const int ours_times = times_for(ours), peer_times = times_for(peer);
   std::vector<double> ours_s, peer_s, ratios;
@@ -120,8 +120,8 @@ DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options) 
     peer_s.push_back(timed(peer, peer_times, options.clock_s));
     ratios.push_back(peer_s.back() / ours_s.back());
   }
-  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
-  return {median(ours_s), median(peer_s), median(ratios), *least, *most};
+  const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
+  return {median(ours_s), median(peer_s), median(ratios), *min, *max};
 }
 
 std::uint64_t peak_memory_bytes(const std::function<void()>& work) {
@@ -132,7 +132,7 @@ std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>(
   return in_child([&] { return live_growth(build); });
 }
 
-Row speed_row(const std::string& name, const DuelResult& result, const DuelMemory& bytes) {
+Row speed_row(const std::string& name, const PairedTimes& result, const MemoryOfBoth& bytes) {
   Row row;
   row.add("name", name)
       .add_truth("checked", true)

@@ -27,7 +27,7 @@ struct Side {
 };
 
 /// Times of two sides that did the same work by turns (A B A B ...).
-struct DuelResult {
+struct PairedTimes {
   double ours_s = 0.0, peer_s = 0.0;  ///< medians
   double ratio = 0.0;                 ///< peer / ours: the median of the pairs
   double ratio_min = 0.0, ratio_max = 0.0;
@@ -39,17 +39,17 @@ enum class WarmUp {
   kNone,  ///< for long work that ran a moment ago, to be checked
 };
 
-struct DuelOptions {
+struct PairedTimingOptions {
   int pairs = 5;
   /// Work shorter than this is done several times in a row and the time divided; only for work that may be repeated
   /// without preparing it again.
-  double least_s = 0.0;
+  double min_s = 0.0;
   double (*clock_s)() = &cpu_time_s;
   WarmUp warm_up = WarmUp::kOnce;
 };
 
 /// Runs both sides by turns.
-DuelResult duel(const Side& ours, const Side& peer, const DuelOptions& options = {});
+PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTimingOptions& options = {});
 
 /// By how much the resident memory of a fresh process grows at most while `work` runs in it [bytes]; 0 when that cannot
 /// be told. `work` must not need other threads.
@@ -60,12 +60,12 @@ std::uint64_t peak_memory_bytes(const std::function<void()>& work);
 std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>()>& build);
 
 /// Memory that the two sides took [bytes]; none where the work makes nothing that lasts.
-struct DuelMemory {
+struct MemoryOfBoth {
   std::optional<std::uint64_t> ours, peer;
 };
 
 /// The row of a benchmark of speed: {name, checked, ours_s, octomap_s, ratio, ratio_min, ratio_max, ours_bytes,
 /// octomap_bytes}.
-Row speed_row(const std::string& name, const DuelResult& result, const DuelMemory& bytes);
+Row speed_row(const std::string& name, const PairedTimes& result, const MemoryOfBoth& bytes);
 
 }  // namespace pingvox::bench

@@ -1,4 +1,4 @@
-#include "letter_dda.hpp"
+#include "paper_dda.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 namespace pingvox::bench {
 
 template <class Real>
-std::vector<std::array<std::int64_t, 3>> letter_dda(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                                                    double resolution_m, LetterStop stop) {
+std::vector<std::array<std::int64_t, 3>> paper_dda(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                                   double resolution_m, PaperStop stop) {
   using Cell = std::array<std::int64_t, 3>;
   // As keys are made: times the inverse.
   const auto cell_of = [&](const Eigen::Vector3d& point) {
@@ -37,8 +37,8 @@ std::vector<std::array<std::int64_t, 3>> letter_dda(const Eigen::Vector3d& from,
   std::vector<Cell> cells;
   for (Cell at = start; at != end;) {
     const auto i = static_cast<std::size_t>(std::min_element(next.begin(), next.end()) - next.begin());
-    if (stop == LetterStop::kBeyondLength && next[i] > length) break;
-    if (stop == LetterStop::kTravelled && cells_from_start(at) > cells_from_start(end)) break;
+    if (stop == PaperStop::kBeyondLength && next[i] > length) break;
+    if (stop == PaperStop::kTravelled && cells_from_start(at) > cells_from_start(end)) break;
     cells.push_back(at);
     at[i] += step[i];
     next[i] += apart[i];
@@ -46,9 +46,9 @@ std::vector<std::array<std::int64_t, 3>> letter_dda(const Eigen::Vector3d& from,
   return cells;
 }
 
-template std::vector<std::array<std::int64_t, 3>> letter_dda<float>(const Eigen::Vector3d&, const Eigen::Vector3d&,
-                                                                    double, LetterStop);
-template std::vector<std::array<std::int64_t, 3>> letter_dda<double>(const Eigen::Vector3d&, const Eigen::Vector3d&,
-                                                                     double, LetterStop);
+template std::vector<std::array<std::int64_t, 3>> paper_dda<float>(const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                                                   double, PaperStop);
+template std::vector<std::array<std::int64_t, 3>> paper_dda<double>(const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                                                    double, PaperStop);
 
 }  // namespace pingvox::bench
