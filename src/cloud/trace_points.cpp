@@ -171,8 +171,8 @@ class FanTracer {
   }
 
   void place_window(int bits) {
-    fan_.cells_per_m = 1.0 / lattice_.resolution_m();
-    fan_.from = origin_m_ * fan_.cells_per_m;
+    fan_.cells_per_m = lattice_.cells_per_m();
+    fan_.from = lattice_.in_cells(origin_m_);
     const double edge = std::ldexp(1.0, bits), border = std::ldexp(1.0, lattice_.depth() - 1);
     start_ = 0;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -231,8 +231,7 @@ RayEnd cast(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const Eige
   const Lattice& lattice = map.lattice();
   const auto start = lattice.key_of<W>(origin_m);
   if (!start) return {Occupancy::kUnknown, {}, 0.0};
-  const double cells_per_m = 1.0 / lattice.resolution_m();
-  const FaceCrossings crossings(origin_m * cells_per_m, (origin_m + way_m) * cells_per_m);
+  const FaceCrossings crossings(lattice.in_cells(origin_m), lattice.in_cells(origin_m + way_m));
   const double range_m = way_m.norm();
   if (lattice.depth() < 2 || crossings.left() > FaceCrossings::kFewFaces) {
     return cast_far(map, *start, crossings, range_m, unknown);

@@ -74,7 +74,7 @@ void trace_keys(const Lattice& lattice, std::span<const Segment> rays, RayKeys& 
   const detail::Lanes lanes = detail::widest_lanes();
   std::vector<detail::ReadyRay> ready(rays.size());
   std::vector<std::uint32_t> others;
-  detail::prepare_rays(lanes, {1.0 / lattice.resolution_m(), std::ldexp(1.0, lattice.depth() - 1)}, rays, ready,
+  detail::prepare_rays(lanes, {lattice.cells_per_m(), std::ldexp(1.0, lattice.depth() - 1)}, rays, ready,
                        others);
 
   into.ends_.resize(rays.size());

@@ -20,7 +20,7 @@ WideWord centre_of(const Lattice& lattice) {
 RayEnds ends_of(const Lattice& lattice, const Pose& map_from_sensor, double range_m) {
   RayEnds ends;
   ends.range_m = range_m;
-  ends.cells_per_m = 1.0 / lattice.resolution_m();
+  ends.cells_per_m = lattice.cells_per_m();
   const double border = std::ldexp(1.0, lattice.depth() - 1);
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);

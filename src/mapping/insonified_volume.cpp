@@ -197,15 +197,16 @@ bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume, ScanUp
   const auto origin_key = lattice.key_of<WideWord>(origin_m);
   if (!origin_key) return false;
   const double edge_m = lattice.resolution_m();
-  const Vector origin = origin_m / edge_m;
+  const Vector origin = lattice.in_cells(origin_m);
   const Vector in_cell = origin.array() - origin.array().floor();
+  const double range = volume.range_m * lattice.cells_per_m();
 
   const auto count = static_cast<int>(std::max(1.0, std::ceil(volume.width_rad / kWidestPiece_rad)));
   std::vector<Piece> pieces;
   for (int i = 0; i < count; ++i) {
     const double width = volume.width_rad / count;
     const double bearing = volume.bearing_rad + (i + 0.5) * width - volume.width_rad / 2;
-    pieces.emplace_back(volume.map_from_sensor, bearing, width, volume.height_rad, volume.range_m / edge_m, in_cell);
+    pieces.emplace_back(volume.map_from_sensor, bearing, width, volume.height_rad, range, in_cell);
     const Vector low_m = origin_m + (pieces.back().box_min().array() - 1.0).matrix() * edge_m;
     const Vector high_m = origin_m + (pieces.back().box_max().array() + 1.0).matrix() * edge_m;
     if (!lattice.key_of<WideWord>(low_m) || !lattice.key_of<WideWord>(high_m)) return false;

@@ -43,6 +43,19 @@ TEST(Lattice, BordersOfEveryDepthAreHalfOpen) {
   }
 }
 
+// Kills coordinates and keys that round in two ways: 0.15 / 0.05 is below 3, and 0.15 * (1 / 0.05) is 3.
+TEST(Lattice, AKeyIsTheFloorOfThePointInCellsOnTypedMultiplesToo) {
+  for (const double resolution_m : {0.05, 0.1, 0.0125, 0.02, 0.3, 0.07}) {
+    const Lattice lattice(resolution_m);
+    for (int n = -2000; n <= 2000; ++n) {
+      const Eigen::Vector3d typed_m = Eigen::Vector3d::Constant(std::round(n * resolution_m * 1e6) / 1e6);
+      const auto key = lattice.key_of(typed_m);
+      ASSERT_TRUE(key);
+      ASSERT_EQ(key->x - 32768, std::floor(lattice.in_cells(typed_m).x())) << typed_m.x() << " of " << resolution_m;
+    }
+  }
+}
+
 TEST(Lattice, TheCentreOfACellLiesInTheCellAtEveryDepth) {
   std::mt19937_64 random(1);
   std::size_t checked = 0;

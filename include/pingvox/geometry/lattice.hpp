@@ -29,6 +29,12 @@ class Lattice {
   double resolution_m() const { return resolution_m_; }
   int depth() const { return depth_; }
 
+  /// What metres are multiplied by to get cells, everywhere: dividing by the resolution rounds differently, and a point
+  /// on a face would be in one cell here and in its neighbour there.
+  double cells_per_m() const { return cells_per_m_; }
+  /// A point [m, map frame] in cells, counted from the centre of the lattice. Its cell's key is the floor of it.
+  Eigen::Vector3d in_cells(const Eigen::Vector3d& point_m) const { return point_m * cells_per_m_; }
+
   /// Edge [m] of a cell at `depth`. REQUIRES 0 <= depth <= this->depth().
   double cell_size_m(int depth) const {
     // A factor of 2^levels, by its exponent: exact, and quicker than ldexp.

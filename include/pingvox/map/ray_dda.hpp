@@ -117,8 +117,7 @@ std::optional<KeyRange<DdaStepper<W>>> dda(const Lattice& lattice, const Eigen::
                                            const Eigen::Vector3d& to_m) {
   const auto start = lattice.key_of<W>(from_m);
   if (!start || !lattice.key_of<W>(to_m)) return std::nullopt;
-  const double cells_per_m = 1.0 / lattice.resolution_m();
-  const Eigen::Vector3d from = from_m * cells_per_m, to = to_m * cells_per_m;
+  const Eigen::Vector3d from = lattice.in_cells(from_m), to = lattice.in_cells(to_m);
   // Farther than 2^62 cells no walk ends; such an end is as good as outside.
   if (!((to - from).cwiseAbs().maxCoeff() < std::ldexp(1.0, 61))) return std::nullopt;
   return KeyRange(DdaStepper<W>(*start, FaceCrossings(from, to)));
