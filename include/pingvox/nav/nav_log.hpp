@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// What a sensor of the vehicle measures. The body frame is x ahead, y left, z up; the world frame x east, y north,
+/// z up (ROS REP-103); angles are counter-clockwise [rad].
+enum class NavQuantity {
+  kVelocity,  ///< over ground, in the body frame [m/s]: x, y, z
+  kAttitude,  ///< roll, pitch, yaw [rad], fixed-axis as in pose_from_rpy; yaw 0 is east unless the source says
+              ///< otherwise
+  kHeading,   ///< yaw alone [rad]: x
+  kTurnRate,  ///< about the body's axes [rad/s]: x, y, z
+  kDepth,     ///< below the surface [m], positive down: x
+  kPosition,  ///< in the source's own local frame [m]: x east, y north, z up
+  kFix,       ///< WGS 84: x latitude [rad], y longitude [rad], z altitude [m]
+  kRange,     ///< to an obstacle or the bottom along the sensor's axis [m]: x
+  kPressure,  ///< [Pa]: x
+};
+
+/// Lower-case name, as in "turn rate".
+std::string_view name_of(NavQuantity quantity);
+/// nullopt: no quantity has that name.
+std::optional<NavQuantity> nav_quantity_named(std::string_view name);
+/// How many of a sample's numbers mean something: 1 or 3.
+int numbers_of(NavQuantity quantity);
+
+/// One measurement. Numbers that the quantity does not use are 0.
+struct NavSample {
+  double time_s = 0.0;  ///< on the log's clock
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  /// Standard deviation of each number, in its unit; NaN where nobody says.
+  Eigen::Vector3d deviation = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  bool valid = true;  ///< false: the device itself says that it is not to be used
+};
+
+/// What one sensor said of one quantity, in order of time.
+struct NavSource {
+  std::string name;  ///< as the log names it: "ATTITUDE", "DISTANCE_SENSOR 1/194"
+  NavQuantity quantity = NavQuantity::kVelocity;
+  std::vector<NavSample> samples;
+};
+
+/// What the times of a log count from.
+enum class NavClock {
+  kUnix,    ///< 1970-01-01 UTC
+  kBoot,    ///< the start of the device
+  kUnknown  ///< nobody says
+};
+std::string_view name_of(NavClock clock);
+
+/// Everything that a log says of where a vehicle was and how it moved.
+class NavLog {
+ public:
+  /// Takes samples in any order; those of a source are put in order of time, equal times as they came. Sources without
+  /// samples are left out.
+  /// @return kCorrupt naming the first source with a time or value that is not finite
+  static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
+
+  const std::vector<NavSource>& sources() const { return sources_; }
+  NavClock clock() const { return clock_; }
+
+  /// The source of a quantity with most valid samples, the first of equals; nullptr: there is none.
+  const NavSource* best(NavQuantity quantity) const;
+
+ private:
+  NavLog(std::vector<NavSource> sources, NavClock clock) : sources_(std::move(sources)), clock_(clock) {}
+  std::vector<NavSource> sources_;
+  NavClock clock_;
+};
+
+/// A source at a glance.
+struct NavSummary {
+  std::size_t samples = 0;
+  std::size_t invalid = 0;  ///< of these, how many are not valid
+  double rate_hz = 0.0;     ///< one over the median step of time; 0 for less than two different times
+  std::size_t gaps = 0;     ///< steps longer than five times the median and than half a second
+  double from_s = 0.0, to_s = 0.0;
+};
+/// REQUIRES at least one sample.
+NavSummary summary_of(const NavSource& source);
+
+/// From north-east-down and forward-right-down to our frames.
+namespace from_ned {
+/// A velocity, rate or offset in the body frame: forward, right, down -> ahead, left, up.
+Eigen::Vector3d body(const Eigen::Vector3d& forward_right_down);
+/// A position or velocity in the world: north, east, down -> east, north, up.
+Eigen::Vector3d world(const Eigen::Vector3d& north_east_down);
+/// Roll, pitch and yaw [rad] of a forward-right-down body in north-east-down -> ours; yaw in (-pi, pi].
+Eigen::Vector3d attitude(const Eigen::Vector3d& roll_pitch_yaw_rad);
+/// A heading, clockwise from north [rad] -> yaw from east in (-pi, pi].
+double yaw(double heading_rad);
+}  // namespace from_ned
+
+}  // namespace pingvox

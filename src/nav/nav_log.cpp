@@ -1,0 +1,147 @@
+#include "pingvox/nav/nav_log.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace pingvox {
+namespace {
+
+constexpr std::array kNames = {std::pair{NavQuantity::kVelocity, std::string_view("velocity")},
+                               std::pair{NavQuantity::kAttitude, std::string_view("attitude")},
+                               std::pair{NavQuantity::kHeading, std::string_view("heading")},
+                               std::pair{NavQuantity::kTurnRate, std::string_view("turn rate")},
+                               std::pair{NavQuantity::kDepth, std::string_view("depth")},
+                               std::pair{NavQuantity::kPosition, std::string_view("position")},
+                               std::pair{NavQuantity::kFix, std::string_view("fix")},
+                               std::pair{NavQuantity::kRange, std::string_view("range")},
+                               std::pair{NavQuantity::kPressure, std::string_view("pressure")}};
+
+double median(std::vector<double> numbers) {
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+std::size_t valid_samples(const NavSource& source) {
+  return static_cast<std::size_t>(
+      std::count_if(source.samples.begin(), source.samples.end(), [](const NavSample& s) { return s.valid; }));
+}
+
+}  // namespace
+
+std::string_view name_of(NavQuantity quantity) {
+  for (const auto& [known, name] : kNames) {
+    if (known == quantity) return name;
+  }
+  assert(false);
+  return {};
+}
+
+std::optional<NavQuantity> nav_quantity_named(std::string_view name) {
+  for (const auto& [quantity, known] : kNames) {
+    if (known == name) return quantity;
+  }
+  return std::nullopt;
+}
+
+int numbers_of(NavQuantity quantity) {
+  switch (quantity) {
+    case NavQuantity::kHeading:
+    case NavQuantity::kDepth:
+    case NavQuantity::kRange:
+    case NavQuantity::kPressure:
+      return 1;
+    default:
+      return 3;
+  }
+}
+
+std::string_view name_of(NavClock clock) {
+  switch (clock) {
+    case NavClock::kUnix:
+      return "unix";
+    case NavClock::kBoot:
+      return "boot";
+    case NavClock::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
+  std::erase_if(sources, [](const NavSource& source) { return source.samples.empty(); });
+  for (NavSource& source : sources) {
+    for (std::size_t i = 0; i < source.samples.size(); ++i) {
+      const NavSample& sample = source.samples[i];
+      if (std::isfinite(sample.time_s) && sample.value.allFinite()) continue;
+      return fail(Error::Code::kCorrupt, fmt::format("{} of {}: sample {} has a number that is not finite",
+                                                     name_of(source.quantity), source.name, i));
+    }
+    std::stable_sort(source.samples.begin(), source.samples.end(),
+                     [](const NavSample& a, const NavSample& b) { return a.time_s < b.time_s; });
+  }
+  return NavLog(std::move(sources), clock);
+}
+
+const NavSource* NavLog::best(NavQuantity quantity) const {
+  const NavSource* best = nullptr;
+  std::size_t most = 0;
+  for (const NavSource& source : sources_) {
+    if (source.quantity != quantity) continue;
+    const std::size_t valid = valid_samples(source);
+    if (valid <= most) continue;
+    best = &source;
+    most = valid;
+  }
+  return best;
+}
+
+NavSummary summary_of(const NavSource& source) {
+  assert(!source.samples.empty());
+  NavSummary summary;
+  summary.samples = source.samples.size();
+  summary.invalid = summary.samples - valid_samples(source);
+  summary.from_s = source.samples.front().time_s;
+  summary.to_s = source.samples.back().time_s;
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < source.samples.size(); ++i) {
+    const double step_s = source.samples[i].time_s - source.samples[i - 1].time_s;
+    // Logs repeat samples, and a repetition is no step.
+    if (step_s > 0.0) steps_s.push_back(step_s);
+  }
+  if (steps_s.empty()) return summary;
+  const double usual_s = median(steps_s);
+  summary.rate_hz = 1.0 / usual_s;
+  const double longest_s = std::max(5.0 * usual_s, 0.5);
+  summary.gaps = static_cast<std::size_t>(
+      std::count_if(steps_s.begin(), steps_s.end(), [&](double step_s) { return step_s > longest_s; }));
+  return summary;
+}
+
+namespace from_ned {
+
+Eigen::Vector3d body(const Eigen::Vector3d& forward_right_down) {
+  return {forward_right_down.x(), -forward_right_down.y(), -forward_right_down.z()};
+}
+
+Eigen::Vector3d world(const Eigen::Vector3d& north_east_down) {
+  return {north_east_down.y(), north_east_down.x(), -north_east_down.z()};
+}
+
+double yaw(double heading_rad) {
+  const double yaw_rad = std::remainder(std::numbers::pi / 2.0 - heading_rad, 2.0 * std::numbers::pi);
+  return yaw_rad > -std::numbers::pi ? yaw_rad : std::numbers::pi;
+}
+
+Eigen::Vector3d attitude(const Eigen::Vector3d& roll_pitch_yaw_rad) {
+  return {roll_pitch_yaw_rad.x(), -roll_pitch_yaw_rad.y(), yaw(roll_pitch_yaw_rad.z())};
+}
+
+}  // namespace from_ned
+}  // namespace pingvox

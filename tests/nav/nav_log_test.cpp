@@ -1,0 +1,90 @@
+#include "pingvox/nav/nav_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "pingvox/geometry/pose.hpp"
+
+namespace pingvox {
+namespace {
+
+NavSource depths(std::string name, const std::vector<double>& times_s) {
+  NavSource source{std::move(name), NavQuantity::kDepth, {}};
+  for (const double time_s : times_s) {
+    NavSample sample;
+    sample.time_s = time_s;
+    sample.value.x() = static_cast<double>(source.samples.size());
+    source.samples.push_back(sample);
+  }
+  return source;
+}
+
+TEST(NavLog, PutsSamplesInOrderAndKeepsThatOfEqualTimes) {
+  const auto log = NavLog::make({depths("a", {3, 1, 2, 1}), depths("empty", {})}, NavClock::kBoot);
+  ASSERT_TRUE(log) << log.error().message;
+  ASSERT_EQ(log->sources().size(), 1U);
+  std::vector<double> came;
+  for (const NavSample& sample : log->sources()[0].samples) came.push_back(sample.value.x());
+  EXPECT_THAT(came, testing::ElementsAre(1, 3, 2, 0));
+}
+
+TEST(NavLog, RefusesWhatIsNotFinite) {
+  const auto log = NavLog::make({depths("a", {1, std::nan("")})}, NavClock::kBoot);
+  ASSERT_FALSE(log);
+  EXPECT_EQ(log.error().message, "depth of a: sample 1 has a number that is not finite");
+}
+
+TEST(NavLog, TakesTheSourceWithMostValidSamples) {
+  NavSource invalid = depths("invalid", {1, 2, 3});
+  for (NavSample& sample : invalid.samples) sample.valid = false;
+  const auto log =
+      NavLog::make({invalid, depths("few", {1}), depths("many", {1, 2}), depths("as many", {1, 2})}, NavClock::kUnix);
+  ASSERT_TRUE(log);
+  ASSERT_NE(log->best(NavQuantity::kDepth), nullptr);
+  EXPECT_EQ(log->best(NavQuantity::kDepth)->name, "many");
+  EXPECT_EQ(log->best(NavQuantity::kFix), nullptr);
+}
+
+TEST(NavSummary, CountsGapsAndIgnoresRepeatedTimes) {
+  NavSource source = depths("a", {0, 0.1, 0.1, 0.2, 0.3, 5, 5.1, 5.2});
+  source.samples[1].valid = false;
+  const NavSummary summary = summary_of(source);
+  EXPECT_EQ(summary.samples, 8U);
+  EXPECT_EQ(summary.invalid, 1U);
+  EXPECT_NEAR(summary.rate_hz, 10.0, 1e-9);
+  EXPECT_EQ(summary.gaps, 1U);
+  EXPECT_EQ(summary.from_s, 0.0);
+  EXPECT_EQ(summary.to_s, 5.2);
+  EXPECT_EQ(summary_of(depths("one", {7})).rate_hz, 0.0);
+  EXPECT_EQ(summary_of(depths("still", {7, 7})).rate_hz, 0.0);
+}
+
+TEST(NavQuantity, IsFoundByItsName) {
+  for (const auto quantity : {NavQuantity::kVelocity, NavQuantity::kTurnRate, NavQuantity::kPressure}) {
+    EXPECT_EQ(nav_quantity_named(name_of(quantity)), quantity);
+  }
+  EXPECT_EQ(nav_quantity_named("speed"), std::nullopt);
+}
+
+// The oracle turns vectors by matrices instead of angles.
+TEST(FromNed, TurnsAnAttitudeAsItTurnsVectors) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> angle(-1.5, 1.5), heading(-3.0, 6.0);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d rpy(angle(random), angle(random), heading(random));
+    const Eigen::Vector3d frd(angle(random), angle(random), angle(random));
+    const Eigen::Vector3d ned = pose_from_rpy({0, 0, 0}, rpy.x(), rpy.y(), rpy.z()) * frd;
+    const Eigen::Vector3d ours = from_ned::attitude(rpy);
+    const Eigen::Vector3d enu = pose_from_rpy({0, 0, 0}, ours.x(), ours.y(), ours.z()) * from_ned::body(frd);
+    EXPECT_TRUE(enu.isApprox(from_ned::world(ned), 1e-12)) << rpy.transpose();
+  }
+  EXPECT_NEAR(from_ned::yaw(0.0), std::numbers::pi / 2, 1e-15);                 // north
+  EXPECT_NEAR(from_ned::yaw(1.5 * std::numbers::pi), std::numbers::pi, 1e-15);  // west
+}
+
+}  // namespace
+}  // namespace pingvox
