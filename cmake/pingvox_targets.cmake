@@ -17,15 +17,29 @@ function(pingvox_compile_options target)
   target_compile_options(
     ${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast
                       -Woverloaded-virtual $<$<BOOL:${PINGVOX_WARNINGS_AS_ERRORS}>:-Werror>)
-  if(PINGVOX_MOST_LANES)
-    target_compile_definitions(${target} PRIVATE PINGVOX_MOST_LANES=${PINGVOX_MOST_LANES})
-  endif()
   if(PINGVOX_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${PINGVOX_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)
     target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)
     target_link_options(${target} PUBLIC -fsanitize=${PINGVOX_SANITIZE})
   endif()
+endfunction()
+
+# pingvox_use_highway(TARGET): vector code by Google Highway, and which machines it is compiled for: AVX-512, AVX2, NEON
+# and any (scalar). SSE4 and SVE are left out: too narrow to gain, and vectors of unknown size.
+function(pingvox_use_highway target)
+  set(disabled HWY_SSSE3 HWY_SSE4 HWY_SVE HWY_SVE2 HWY_SVE_256 HWY_SVE2_128)
+  if(PINGVOX_KERNELS)
+    list(APPEND disabled HWY_AVX3)
+  endif()
+  if(PINGVOX_KERNELS STREQUAL SCALAR)
+    list(APPEND disabled HWY_AVX2 HWY_NEON)
+  endif()
+  list(JOIN disabled "|" disabled)
+  target_compile_definitions(${target} PRIVATE HWY_COMPILE_ALL_ATTAINABLE HWY_BROKEN_EMU128=1
+                                               "HWY_DISABLED_TARGETS=(${disabled})")
+  # By name, not by path, as it is found on the machine that links.
+  target_link_libraries(${target} PRIVATE hwy)
 endfunction()
 
 # pingvox_layer(NAME [DEPENDS LAYER...]): one folder of src/ and include/pingvox/ as one target.

@@ -13,8 +13,9 @@ namespace pingvox::bench {
 /// Each scan traced and applied. `scan` is room that is used for all of them, empty before and after.
 inline void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const RayCloud> scans,
                    const PointScanOptions& options = {}) {
+  PointTracer tracer(map.lattice(), options);
   for (const RayCloud& ends_m : scans) {
-    trace_points(map.lattice(), Eigen::Vector3d::Zero(), ends_m, options, scan);
+    tracer.trace(Eigen::Vector3d::Zero(), ends_m, scan);
     (void)map.apply(scan);
     scan.clear();
   }

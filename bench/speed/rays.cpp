@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "bench/paired_timing.hpp"
-#include "pingvox/map/trace_ray.hpp"
+#include "pingvox/map/ray_dda.hpp"
 #include "pingvox/sim/random.hpp"
 
 namespace pingvox::bench {
@@ -17,6 +17,11 @@ constexpr double kCell_m = 0.05, kHalfBox_m = 10.0;
 constexpr std::size_t kRays = 131'072;
 /// liboctomap adds up floats as it goes: the most rays (as a share) that may take another way past an edge.
 constexpr double kMaxOther = 0.01;
+
+/// Two ends of a ray [m].
+struct Segment {
+  Eigen::Vector3d from_m, to_m;
+};
 
 std::vector<Segment> random_segments() {
   Random random(11);
@@ -31,13 +36,14 @@ std::vector<Segment> random_segments() {
   return segments;
 }
 
-/// Calls f(ray's number, its keys) for each ray, a few hundred at a time.
+/// Calls f(ray's number, its keys) for each ray.
 template <class F>
-void for_each_ray(const Lattice& lattice, std::span<const Segment> segments, RayKeys& keys, F&& f) {
-  constexpr std::size_t kAtOnce = 256;
-  for (std::size_t first = 0; first < segments.size(); first += kAtOnce) {
-    trace_keys(lattice, segments.subspan(first, std::min(kAtOnce, segments.size() - first)), keys);
-    for (std::size_t i = 0; i < keys.size(); ++i) f(first + i, keys[i]);
+void for_each_ray(const Lattice& lattice, std::span<const Segment> segments, std::vector<Key>& keys, F&& f) {
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    keys.clear();
+    const auto ray = dda<std::uint16_t>(lattice, segments[i].from_m, segments[i].to_m);
+    for (const Key key : *ray) keys.push_back(key);
+    f(i, std::span<const Key>(keys));
   }
 }
 
@@ -60,7 +66,7 @@ Result<std::vector<Row>> rays(const BenchOptions&) {
   std::vector<std::pair<octomap::point3d, octomap::point3d>> peer_segments;
   peer_segments.reserve(segments.size());
   for (const Segment& s : segments) peer_segments.emplace_back(as_peer(s.from_m), as_peer(s.to_m));
-  RayKeys keys;
+  std::vector<Key> keys;
   octomap::KeyRay peer_keys;
 
   std::size_t same = 0, cells = 0;

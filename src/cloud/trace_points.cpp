@@ -2,120 +2,120 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
-#include <span>
+#include <utility>
 #include <vector>
 
-#include "map/dense_fan.hpp"
-#include "map/kernels/ray_lanes.hpp"
-#include "map/tree_order.hpp"
+#include "cloud/ray_kernels.hpp"
+#include "cloud/scan_window.hpp"
 
 namespace pingvox {
 namespace {
 
-using Ends = detail::RayEnds;
+using detail::ScanWindow;
 
-/// Traces many rays from one place: those that fit into a window of the scan several at a time, the others one by one.
-class FanTracer {
+/// What the last cells of rays say.
+enum class RayEnds { kHit, kNothing };
+
+/// Below, opening and emptying a window costs more than it saves.
+constexpr std::size_t kFewRays = 16;
+/// Rays that are walked together.
+constexpr std::size_t kBlock = 1024;
+constexpr int kPageBits = ScanUpdate::kPageBits;
+
+/// A number of up to 21 bits with two zero bits between its bits, and back.
+std::uint64_t spread_bits(std::uint64_t word) {
+  std::uint64_t spread = 0;
+  for (int bit = 0; bit < 21; ++bit) spread |= (word >> bit & 1) << (3 * bit);
+  return spread;
+}
+WideWord gather_bits(std::uint64_t word) {
+  std::uint64_t gathered = 0;
+  for (int bit = 0; bit < 21; ++bit) gathered |= (word >> (3 * bit) & 1) << bit;
+  return gathered;
+}
+
+}  // namespace
+
+/// Rays that fit into a window are walked side by side, the others one by one.
+class PointTracer::Tracer {
  public:
-  /// @param some  ends of rays [m]; the window is made for them and may be too small for others
+  Tracer(const Lattice& lattice, const PointScanOptions& options) : lattice_(lattice), options_(options) {}
+
   template <class Point>
-  FanTracer(const Lattice& lattice, const Eigen::Vector3d& origin_m, const PointScanOptions& options,
-            std::span<const Point> some, ScanUpdate& scan)
-      : lattice_(lattice), origin_m_(origin_m), options_(options), scan_(scan) {
-    const double reach = reach_of(some);
-    const int bits = window_bits(reach);
-    if (options.ray != RayAlgorithm::kDda || some.size() < kFewRays || lattice.depth() <= ScanUpdate::kPageBits ||
-        bits > detail::ScanWindow::kMostBits) {
-      return;
+  std::size_t trace(const Eigen::Vector3d& origin_m, std::span<const Point> points_m, ScanUpdate& scan) {
+    origin_m_ = origin_m;
+    scan_ = &scan;
+    try {
+      open_window(points_m);
+      const std::size_t outside =
+          options_.ends == EndPoints::kCells ? trace_in_range(cells_of(points_m)) : trace_in_range(points_m);
+      if (has_window_) hand_over();
+      return outside;
+    } catch (...) {
+      window_.drop();  // or its marks would become those of the next scan, at another place
+      throw;
     }
-    window_ = &scan.window(bits);
-    squares_ = 2 * static_cast<std::uint32_t>(std::ceil(kSquaresPerCell * std::max(reach, 1.0)));
-    place_window(bits);
-  }
-
-  /// Marks the cells of rays as missed, and where they end as hit unless that is too far away.
-  /// @return how many of them leave the lattice
-  template <class Point>
-  std::size_t trace_points(std::span<const Point> points_m) {
-    return has_range() ? trace_in_range(points_m) : trace(points_m, Ends::kHit);
-  }
-
-  /// The same for rays to the middles of the cells that hold points, each cell once.
-  template <class Point>
-  std::size_t trace_cells(std::span<const Point> points_m) {
-    const std::span<const Eigen::Vector3d> middles_m = cells_of(points_m);
-    if (!has_range()) return trace(middles_m, Ends::kMarked);
-    // Marked only to know them again; whether each is a hit its range decides.
-    for (const std::uint64_t place : room().cells) window_->hit()[place / 64] &= ~(std::uint64_t{1} << (place % 64));
-    return trace_in_range(middles_m);
-  }
-
-  /// Hands what was marked to the scan. To be called last.
-  void finish() {
-    if (window_ != nullptr) scan_.take_window(key_of(fan_.window_lowest), options_.hit);
   }
 
  private:
-  // Below, opening and emptying a window costs more than it saves.
-  static constexpr std::size_t kFewRays = 16;
-  static constexpr std::size_t kBlock = 2048;
-  // Of directions, at the far ends of the rays.
-  static constexpr double kSquaresPerCell = 0.8;
-
-  bool has_range() const { return std::isfinite(options_.max_range_m); }
-  detail::FanRoom& room() { return window_ != nullptr ? window_->fan_room() : own_room_; }
-
+  /// @return how many rays leave the lattice
   template <class Point>
   std::size_t trace_in_range(std::span<const Point> ends_m) {
-    std::vector<Eigen::Vector3d> near_m, cut_m;
+    if (!std::isfinite(options_.max_range_m)) return trace_ends(ends_m, RayEnds::kHit);
+    near_m_.clear();
+    cut_m_.clear();
     for (const Point& point : ends_m) {
       const Eigen::Vector3d& end_m = point.template cast<double>();
       const Eigen::Vector3d way_m = end_m - origin_m_;
       const double range_m = way_m.norm();
       if (range_m > options_.max_range_m) {
-        cut_m.emplace_back(origin_m_ + way_m * (options_.max_range_m / range_m));
+        cut_m_.emplace_back(origin_m_ + way_m * (options_.max_range_m / range_m));
       } else {
-        near_m.push_back(end_m);
+        near_m_.push_back(end_m);
       }
     }
-    return trace(std::span<const Eigen::Vector3d>(near_m), Ends::kHit) +
-           trace(std::span<const Eigen::Vector3d>(cut_m), Ends::kNothing);
+    return trace_ends(std::span<const Eigen::Vector3d>(near_m_), RayEnds::kHit) +
+           trace_ends(std::span<const Eigen::Vector3d>(cut_m_), RayEnds::kNothing);
   }
 
-  /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are. They last as
-  /// long as the tracer, and until it is asked again. Those in the window are marked as hit, and are room().cells.
+  /// The middles of the cells that hold points, each cell once; points outside of the lattice as they are.
   template <class Point>
   std::span<const Eigen::Vector3d> cells_of(std::span<const Point> points_m) {
-    std::vector<Eigen::Vector3d>& middles_m = room().middles_m;
-    middles_m.clear();
+    middles_m_.clear();
     std::set<WideKey> seen;  // of those outside of the window
-    const auto add_singly = [&](const Point& point) {
-      const Eigen::Vector3d& point_m = point.template cast<double>();
+    const auto add_singly = [&](const Eigen::Vector3d& point_m) {
       const auto key = lattice_.key_of<WideWord>(point_m);
-      if (!key || seen.insert(*key).second) middles_m.push_back(key ? lattice_.centre_of(*key) : point_m);
+      if (!key || seen.insert(*key).second) middles_m_.push_back(key ? lattice_.centre_of(*key) : point_m);
     };
-    if (window_ == nullptr) {
-      std::for_each(points_m.begin(), points_m.end(), add_singly);
-      return middles_m;
+    if (!has_window_) {
+      for (const Point& point : points_m) add_singly(point.template cast<double>());
+      return middles_m_;
     }
-    std::vector<std::uint64_t>& found = room().cells;
-    found.clear();
-    std::vector<std::uint32_t> outside;
-    std::array<std::uint64_t, kBlock + detail::kWrittenBeyond> places;
+    // The window's hits tell which cells were found before.
+    found_.clear();
     for_each_block(points_m, [&](std::span<const Point> block) {
-      outside.clear();
-      const std::size_t count = detail::find_cells(lanes_, fan_, block, places, outside);
-      const std::size_t fresh = detail::mark_hits(std::span(places).first(count), *window_, places.data());
-      found.insert(found.end(), places.begin(), places.begin() + static_cast<std::ptrdiff_t>(fresh));
-      for (const std::uint32_t i : outside) add_singly(block[i]);
+      find_places(grid_, block, places_);
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        const std::uint64_t place = places_[i];
+        if (place == detail::kNoPlace) {
+          add_singly(block[i].template cast<double>());
+        } else if (window_.mark_hit(place)) {
+          found_.push_back(place);
+          middles_m_.push_back(middle_of(block[i].template cast<double>()));
+        }
+      }
     });
-    const std::size_t singly = middles_m.size();
-    middles_m.resize(singly + found.size());
-    detail::find_middles(lanes_, fan_, lattice_.resolution_m(), found, std::span(middles_m).subspan(singly));
-    return middles_m;
+    window_.forget_hits(found_);
+    return middles_m_;
+  }
+
+  /// The middle of the cell that holds a point in the window, as Lattice::centre_of has it.
+  Eigen::Vector3d middle_of(const Eigen::Vector3d& point_m) const {
+    return lattice_.centre_of(*lattice_.key_of<WideWord>(point_m));
   }
 
   template <class Point, class F>
@@ -125,28 +125,33 @@ class FanTracer {
     }
   }
 
-  /// @param ends  what their last cells say
   template <class Point>
-  std::size_t trace(std::span<const Point> ends_m, Ends ends) {
-    if (window_ == nullptr) return trace_singly(ends_m, ends);
-    others_.clear();
-    detail::DenseFan<Point>(lanes_, fan_, start_, squares_, *window_).mark(ends_m, ends, others_);
+  std::size_t trace_ends(std::span<const Point> ends_m, RayEnds ends) {
     std::size_t outside = 0;
-    for (const std::uint32_t other : others_) outside += trace_singly(ends_m.subspan(other, 1), ends);
+    if (!has_window_) {
+      for (const Point& point : ends_m) outside += trace_singly(point.template cast<double>(), ends);
+      return outside;
+    }
+    for_each_block(ends_m, [&](std::span<const Point> block) {
+      prepare_rays(grid_, block, rays_);
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        if (rays_.end[i] == detail::kNoPlace) {
+          outside += trace_singly(block[i].template cast<double>(), ends);
+        } else if (ends == RayEnds::kHit) {
+          window_.mark_hit(rays_.end[i]);
+        }
+      }
+      mark_rays(rays_, start_, window_);
+    });
     return outside;
   }
 
-  template <class Point>
-  std::size_t trace_singly(std::span<const Point> ends_m, Ends ends) {
-    std::size_t outside = 0;
-    for (const Point& point : ends_m) {
-      const Eigen::Vector3d& end_m = point.template cast<double>();
-      if (ends != Ends::kNothing) {
-        if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_.add_hit(*end, options_.hit);
-      }
-      if (!trace_ray(lattice_, origin_m_, end_m, options_.ray, scan_)) ++outside;
+  /// @return how many rays leave the lattice: 0 or 1
+  std::size_t trace_singly(const Eigen::Vector3d& end_m, RayEnds ends) {
+    if (ends == RayEnds::kHit) {
+      if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_->add_hit(*end, options_.hit);
     }
-    return outside;
+    return trace_ray(lattice_, origin_m_, end_m, options_.ray, *scan_) ? 0 : 1;
   }
 
   /// How far rays go along any axis [cells]: a guess from some of them.
@@ -163,83 +168,94 @@ class FanTracer {
 
   /// Of a window that holds rays of such a reach. More than there may be where it is of no use.
   int window_bits(double reach) const {
-    const double cells = 2.0 * (reach + 1.0 + (1 << ScanUpdate::kPageBits));
+    const double cells = 2.0 * (reach + 1.0 + (1 << kPageBits));
     // Farther out, doubles have gaps, and keys of deep lattices are no whole numbers of 64 bits.
     const double farthest_cell = origin_m_.cwiseAbs().maxCoeff() / lattice_.resolution_m() + cells;
-    if (!(farthest_cell < 0x1p40)) return detail::ScanWindow::kMostBits + 1;
-    return std::max(ScanUpdate::kPageBits, std::ilogb(cells) + 1);
+    if (!(farthest_cell < 0x1p40)) return ScanWindow::kMaxBits + 1;
+    return std::max(kPageBits, std::ilogb(cells) + 1);
   }
 
-  void place_window(int bits) {
-    fan_.cells_per_m = lattice_.cells_per_m();
-    fan_.from = lattice_.in_cells(origin_m_);
+  template <class Point>
+  void open_window(std::span<const Point> points_m) {
+    const int bits = window_bits(reach_of(points_m));
+    has_window_ = options_.ray == RayAlgorithm::kDda && points_m.size() >= kFewRays && lattice_.depth() > kPageBits &&
+                  bits <= ScanWindow::kMaxBits;
+    if (!has_window_) return;
+    window_.open(bits);
+    grid_.cells_per_m = lattice_.cells_per_m();
+    grid_.from = lattice_.in_cells(origin_m_);
     const double edge = std::ldexp(1.0, bits), border = std::ldexp(1.0, lattice_.depth() - 1);
     start_ = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto cell = static_cast<std::int64_t>(std::floor(fan_.from[static_cast<Eigen::Index>(a)]));
+      const auto cell = static_cast<std::int64_t>(std::floor(grid_.from[static_cast<Eigen::Index>(a)]));
       const std::int64_t lowest = cell - (std::int64_t{1} << (bits - 1));
       // Pages begin at multiples of their size, counted from the centre of the lattice.
-      fan_.window_lowest[a] = (lowest >> ScanUpdate::kPageBits) * (1 << ScanUpdate::kPageBits);
-      const auto base = static_cast<double>(fan_.window_lowest[a]);
-      fan_.lowest[a] = std::max(base, -border);
-      fan_.highest[a] = std::min(base + edge, border) - 1.0;
-      start_ |= detail::spread_bits(static_cast<std::uint64_t>(cell - fan_.window_lowest[a])) << a;
+      grid_.lowest[a] = (lowest >> kPageBits) * (1 << kPageBits);
+      const auto base = static_cast<double>(grid_.lowest[a]);
+      grid_.inside_from[a] = std::max(base, -border);
+      grid_.inside_to[a] = std::min(base + edge, border);
+      start_ |= spread_bits(static_cast<std::uint64_t>(cell - grid_.lowest[a])) << a;
     }
     // From outside of the lattice nothing is traced.
-    if (!lattice_.key_of<WideWord>(origin_m_)) fan_.highest.fill(-std::numeric_limits<double>::infinity());
+    if (!lattice_.key_of<WideWord>(origin_m_)) grid_.inside_to.fill(-std::numeric_limits<double>::infinity());
   }
 
-  WideKey key_of(const std::array<std::int64_t, 3>& cell) const {
+  /// Hands what is marked in the window to the scan, page by page, and empties it.
+  void hand_over() {
     const WideWord centre = WideWord{1} << (lattice_.depth() - 1);
-    const auto word = [&](std::int64_t n) {
+    const auto lowest = [&](std::size_t a) {
+      const std::int64_t n = grid_.lowest[a];
       return n < 0 ? centre - static_cast<WideWord>(-n) : centre + static_cast<WideWord>(n);
     };
-    return {word(cell[0]), word(cell[1]), word(cell[2])};
+    const WideKey corner{lowest(0), lowest(1), lowest(2)};
+    window_.take_touched([&](std::uint64_t number, bool has_hits) {
+      const std::uint32_t page = scan_->page_of(WideKey{corner.x + (gather_bits(number) << kPageBits),
+                                                        corner.y + (gather_bits(number >> 1) << kPageBits),
+                                                        corner.z + (gather_bits(number >> 2) << kPageBits)});
+      const std::span<std::uint64_t, 64> missed(window_.missed() + number * 64, 64);
+      scan_->mark_missed_in(page, missed);
+      std::fill(missed.begin(), missed.end(), 0);
+      if (!has_hits) return;
+      for (std::size_t brick = 0; brick < 64; ++brick) {
+        const std::uint64_t cells = std::exchange(window_.hit()[number * 64 + brick], 0);
+        if (cells != 0) scan_->mark_hit_in(page, brick, cells, options_.hit);
+      }
+    });
   }
 
-  const Lattice& lattice_;
-  Eigen::Vector3d origin_m_;
-  const PointScanOptions& options_;
-  ScanUpdate& scan_;
-  detail::ScanWindow* window_ = nullptr;  ///< nullptr: every ray by itself
-  detail::RayFan fan_;
-  std::uint32_t squares_ = 1;  ///< of directions, along an edge
-  std::uint64_t start_ = 0;    ///< place of the cell where the rays begin
-  detail::Lanes lanes_ = detail::widest_lanes();
-  std::vector<std::uint32_t> others_;
-  detail::FanRoom own_room_;  ///< without a window
+  Lattice lattice_;
+  PointScanOptions options_;
+  ScanWindow window_;
+  // Of the scan that is traced.
+  ScanUpdate* scan_ = nullptr;
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
+  bool has_window_ = false;
+  detail::RayGrid grid_;
+  std::uint64_t start_ = 0;  ///< place of the cell where the rays begin
+  // Kept for the next one.
+  detail::PreparedRays rays_;
+  std::vector<std::uint64_t> places_, found_;
+  std::vector<Eigen::Vector3d> middles_m_, near_m_, cut_m_;
 };
 
-template <class Point>
-std::size_t trace_fan(const Lattice& lattice, const Eigen::Vector3d& origin_m, std::span<const Point> points_m,
-                      const PointScanOptions& options, ScanUpdate& scan) {
-  try {
-    FanTracer tracer(lattice, origin_m, options, points_m, scan);
-    const std::size_t outside =
-        options.ends == EndPoints::kCells ? tracer.trace_cells(points_m) : tracer.trace_points(points_m);
-    tracer.finish();
-    return outside;
-  } catch (...) {
-    scan.drop_window();  // or its marks would become those of the next scan, at another place
-    throw;
-  }
-}
+PointTracer::PointTracer(const Lattice& lattice, const PointScanOptions& options)
+    : tracer_(std::make_unique<Tracer>(lattice, options)) {}
+PointTracer::PointTracer(PointTracer&& other) noexcept = default;
+PointTracer& PointTracer::operator=(PointTracer&& other) noexcept = default;
+PointTracer::~PointTracer() = default;
 
-}  // namespace
+std::size_t PointTracer::trace(const Eigen::Vector3d& origin_m, std::span<const Eigen::Vector3d> points_m,
+                               ScanUpdate& scan) {
+  return tracer_->trace(origin_m, points_m, scan);
+}
+std::size_t PointTracer::trace(const Eigen::Vector3d& origin_m, std::span<const Eigen::Vector3f> points_m,
+                               ScanUpdate& scan) {
+  return tracer_->trace(origin_m, points_m, scan);
+}
 
 std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
                          ScanUpdate& scan) {
-  return trace_points(lattice, points.origin_m, points.points_m, options, scan);
-}
-
-std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
-                         std::span<const Eigen::Vector3d> points_m, const PointScanOptions& options, ScanUpdate& scan) {
-  return trace_fan(lattice, origin_m, points_m, options, scan);
-}
-
-std::size_t trace_points(const Lattice& lattice, const Eigen::Vector3d& origin_m,
-                         std::span<const Eigen::Vector3f> points_m, const PointScanOptions& options, ScanUpdate& scan) {
-  return trace_fan(lattice, origin_m, points_m, options, scan);
+  return PointTracer(lattice, options).trace(points.origin_m, points.points_m, scan);
 }
 
 }  // namespace pingvox

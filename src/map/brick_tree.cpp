@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "map/kernels/brick.hpp"
+#include "map/brick_loops.hpp"
 
 namespace pingvox {
 namespace detail {

@@ -10,7 +10,6 @@
 #include <variant>
 
 #include "map/bits.hpp"
-#include "map/kernels/words.hpp"
 #include "map/key_batch.hpp"
 #include "map/page_votes.hpp"
 #include "map/tree_order.hpp"
@@ -169,7 +168,7 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
 }
 
 void count_votes(const ScanUpdate::Page& page, ApplyReport& report) {
-  report.cells_freed += detail::count_cells(page.missed.data());
+  report.cells_freed += detail::count_bits(page.missed);
   detail::for_each_bit(page.bricks_hit, [&](std::size_t brick) {
     report.cells_freed -= detail::count_bits(page.missed[brick] & page.hit[brick]);
     report.cells_hit += detail::count_bits(page.hit[brick]);

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "map/bits.hpp"
-#include "map/kernels/words.hpp"
 #include "map/tree_order.hpp"
 
 namespace pingvox {
@@ -89,35 +88,12 @@ void ScanUpdate::add(const ScanUpdate& other) {
   }
 }
 
-detail::ScanWindow& ScanUpdate::window(int bits) {
-  window_.open(bits);
-  return window_;
-}
-
-void ScanUpdate::take_window(const WideKey& lowest, LogOdds hit) {
-  using Window = detail::ScanWindow;
-  const bool all_are_new = empty();
-  window_.touch_layer();
-  detail::take_touched(window_, [&](std::uint64_t number, std::uint8_t where) {
-    const BasicKey<std::uint64_t> at = detail::key_of_code(number);
-    // Made where it goes: a copy in vectors would wait for the halves that it is written in.
-    const auto corner = [&] {
-      return WideKey{lowest.x + (at.x << kPageBits), lowest.y + (at.y << kPageBits), lowest.z + (at.z << kPageBits)};
-    };
-    const std::uint32_t index = all_are_new ? add_page(corner()) : page_of(corner());
-    Page& page = pages_[index];
-    if ((where & Window::kInLayer) != 0) {
-      std::uint64_t* const cells = window_.layer() + 4 * detail::without_z(number);
-      page.bricks |= detail::take_layer(cells, *window_.layer_z(), page.missed.data());
-    }
-    if ((where & Window::kInMask) == 0) return;
-    page.bricks |= detail::move_words(window_.missed() + number * 64, page.missed.data());
-    if (std::exchange(window_.with_hits()[number], std::uint8_t{0}) == 0) return;
-    std::uint64_t* const hits = window_.hit() + number * 64;
-    for_each_bit(detail::words_in_use(hits),
-                 [&](std::size_t brick) { mark_hit_in(index, brick, std::exchange(hits[brick], 0), hit); });
-  });
-  window_.layer_z().reset();
+void ScanUpdate::mark_missed_in(std::uint32_t page, std::span<const std::uint64_t, 64> cells_of_bricks) {
+  Page& in = pages_[page];
+  for (std::size_t brick = 0; brick < 64; ++brick) {
+    in.missed[brick] |= cells_of_bricks[brick];
+    in.bricks |= std::uint64_t{cells_of_bricks[brick] != 0} << brick;
+  }
 }
 
 void ScanUpdate::clear() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "pingvox/geometry/key.hpp"
@@ -23,10 +22,6 @@ constexpr bool is_before(const WideKey& a, const WideKey& b) {
   if (is_lower_in_highest_bit(most, a.x ^ b.x)) before = a.x < b.x;
   return before;
 }
-
-/// Bits of each axis in a number of the tree's order.
-inline constexpr std::array<std::uint64_t, 3> kAxisBits{0x1249249249249249U, 0x1249249249249249U << 1,
-                                                        0x1249249249249249U << 2};
 
 /// A number of up to 21 bits with two zero bits between its bits.
 constexpr std::uint64_t spread_bits(std::uint64_t word) {
@@ -63,14 +58,6 @@ constexpr std::uint64_t code_of(const BasicKey<W>& key) {
     return spread_bits(static_cast<std::uint64_t>(word));
   };
   return spread(key.x) | spread(key.y) << 1 | spread(key.z) << 2;
-}
-
-/// That number without the bits of z, two bits a level. REQUIRES up to 16 levels.
-constexpr std::uint64_t without_z(std::uint64_t code) {
-  code = (code & 0x0C30C30C30C3U) | (code >> 1 & 0x30C30C30C30CU);
-  code = (code & 0x00F00F00F00FU) | (code >> 2 & 0x0F00F00F00F0U);
-  code = (code & 0x0000FF0000FFU) | (code >> 4 & 0x00FF0000FF00U);
-  return (code & 0xFFFFU) | (code >> 8 & 0xFFFF0000U);
 }
 
 /// The key with that number.

@@ -182,7 +182,7 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
     };
     if (options.vote == Vote::kPerSweep) {
       std::atomic<std::size_t> outside = 0;
-      parts.run(placed->size(), scan, [&](std::size_t first, std::size_t last, ScanUpdate& part) {
+      parts.run(placed->size(), scan, [&](std::size_t, std::size_t first, std::size_t last, ScanUpdate& part) {
         BeamTracer tracer(map.lattice(), options.model);
         for (std::size_t i = first; i < last; ++i) outside += trace((*placed)[i], tracer, part);
       });
@@ -215,6 +215,8 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
       .ray = options.model.ray, .hit = options.model.hit, .max_range_m = options.model.max_range_m};
   ScanUpdate scan(options.model.miss);
   ScanParts parts(options.threads);
+  std::vector<PointTracer> tracers;
+  for (std::size_t i = 0; i < std::max<std::size_t>(options.threads, 1); ++i) tracers.emplace_back(map.lattice(), how);
   BuildReport report;
   Stopwatch watch;
   for (;;) {
@@ -224,8 +226,8 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
     if (!*points) break;
     const std::span<const Eigen::Vector3d> all_m = (*points)->points_m;
     std::atomic<std::size_t> outside = 0;
-    parts.run(all_m.size(), scan, [&](std::size_t first, std::size_t last, ScanUpdate& part) {
-      outside += trace_points(map.lattice(), (*points)->origin_m, all_m.subspan(first, last - first), how, part);
+    parts.run(all_m.size(), scan, [&](std::size_t number, std::size_t first, std::size_t last, ScanUpdate& part) {
+      outside += tracers[number].trace((*points)->origin_m, all_m.subspan(first, last - first), part);
     });
     report.outside += outside;
     watch.lap(report.seconds.trace);

@@ -20,8 +20,8 @@ class ScanParts {
 
   explicit ScanParts(std::size_t threads) : threads_(threads) {}
 
-  /// Calls trace(first, last, scan) for each part of 0..count; the calling thread takes the first part.
-  /// Throws what a part threw.
+  /// Calls trace(part, first, last, scan) for each part of 0..count, parts numbered from 0 on; the calling thread takes
+  /// the first part. Throws what a part threw.
   template <class Trace>
   void run(std::size_t count, ScanUpdate& scan, Trace&& trace) {
     const std::size_t parts = std::clamp<std::size_t>(count / kLeast, 1, threads_);
@@ -33,13 +33,13 @@ class ScanParts {
       for (std::size_t part = 1; part < parts; ++part) {
         threads.emplace_back([&, part] {
           try {
-            trace(begin_of(part), begin_of(part + 1), others_[part - 1]);
+            trace(part, begin_of(part), begin_of(part + 1), others_[part - 1]);
           } catch (...) {
             failed[part] = std::current_exception();
           }
         });
       }
-      trace(begin_of(0), begin_of(1), scan);
+      trace(std::size_t{0}, begin_of(0), begin_of(1), scan);
     }
     for (std::size_t part = 1; part < parts; ++part) {
       scan.add(others_[part - 1]);

@@ -153,32 +153,9 @@ Marks marks_of(const ScanUpdate& scan) {
   return marks;
 }
 
-/// Marks in a window of 32 cells along each axis, and what is said of them.
-class WindowMarks {
- public:
-  WindowMarks(ScanUpdate& scan, const WideKey& lowest) : window_(scan.window(5)), lowest_(lowest) {}
-  void miss(std::uint64_t place, Marks& expected) {
-    detail::mark_place(place, window_.missed(), window_.touched());
-    expected.emplace(key_at(place), std::nullopt);
-  }
-  void hit(std::uint64_t place, LogOdds evidence, Marks& expected) {
-    detail::mark_hit(place, window_);
-    std::optional<float>& surest = expected[key_at(place)];
-    surest = std::max(surest.value_or(evidence.value()), evidence.value());
-  }
-
- private:
-  WideKey key_at(std::uint64_t place) const {
-    const BasicKey<std::uint64_t> at = detail::key_of_code(place);
-    return {lowest_.x + at.x, lowest_.y + at.y, lowest_.z + at.z};
-  }
-  detail::ScanWindow& window_;
-  WideKey lowest_;
-};
-
-// Kills a page that a window makes although there is one, one that is not found after a window made it, and marks that
-// stay in a window or a page for the next scan.
-TEST(ScanUpdate, WindowsAndSingleMarksShareTheirPages) {
+// Kills a page that is made twice, words of a page that are told at another place, marks that stay in a page for the
+// next scan.
+TEST(ScanUpdate, WholePagesAndSingleMarksShareTheirPages) {
   ScanUpdate scan;
   std::size_t marks = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -188,14 +165,28 @@ TEST(ScanUpdate, WindowsAndSingleMarksShareTheirPages) {
     for (int part = 0; part < 4; ++part) {
       const WideKey lowest{32'768 + 16 * (random() % 2), 16 * (random() % 3), 65'504};
       const LogOdds evidence(random() % 4 == 0 ? 0.4F : 0.85F);
+      const auto key_at = [&](std::uint64_t cell) {
+        const BasicKey<std::uint64_t> at = detail::key_of_code(cell);
+        return WideKey{lowest.x + at.x, lowest.y + at.y, lowest.z + at.z};
+      };
       if (random() % 2 == 0) {
-        WindowMarks window(scan, lowest);
-        for (std::uint64_t n = random() % 300; n > 0; --n) window.miss(random() % 32'768, expected);
-        for (std::uint64_t n = random() % 20; n > 0; --n) window.hit(random() % 32'768, evidence, expected);
-        scan.take_window(lowest, evidence);
+        std::array<std::uint64_t, 64> missed{};
+        for (std::uint64_t n = random() % 300; n > 0; --n) {
+          const std::uint64_t cell = random() % 4096;
+          missed[cell / 64] |= std::uint64_t{1} << (cell % 64);
+          expected.emplace(key_at(cell), std::nullopt);
+        }
+        const std::uint32_t page = scan.page_of(lowest);
+        scan.mark_missed_in(page, missed);
+        for (std::uint64_t n = random() % 20; n > 0; --n) {
+          const std::uint64_t cell = random() % 4096;
+          scan.mark_hit_in(page, cell / 64, std::uint64_t{1} << (cell % 64), evidence);
+          std::optional<float>& surest = expected[key_at(cell)];
+          surest = std::max(surest.value_or(evidence.value()), evidence.value());
+        }
       } else {
         for (std::uint64_t n = random() % 100; n > 0; --n) {
-          const WideKey key{lowest.x + random() % 32, lowest.y + random() % 32, lowest.z + random() % 32};
+          const WideKey key = key_at(random() % 4096);
           scan.add_miss(key);
           expected.emplace(key, std::nullopt);
         }

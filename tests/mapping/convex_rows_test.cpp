@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "support/lanes.hpp"
+#include "support/kernels.hpp"
 #include "support/uniform.hpp"
 
 namespace pingvox::detail {
@@ -61,10 +61,9 @@ TEST(ConvexRows, EachMachineFindsTheCellsThatBelongToTheBody) {
     column.last_of_layer = all_rows.last.data();
     column.lowest_cell = kLowest;
     column.no_place = kNoPlace;
-    for (const Lanes lanes : lanes_here()) {
-      SCOPED_TRACE(static_cast<int>(lanes));
+    test::for_each_kernel([&] {
       RunsOfRows runs;
-      find_cells(body, column, runs, lanes);
+      find_cells(body, column, runs);
       std::int64_t lowest = kNoPlace, highest = 0;
       for (std::size_t r = 0; r < ColumnOfRows::kRows; ++r) {
         const double layer = static_cast<double>(column.first_layer) + static_cast<double>(r / 4) + 0.5;
@@ -87,7 +86,7 @@ TEST(ConvexRows, EachMachineFindsTheCellsThatBelongToTheBody) {
       }
       EXPECT_EQ(runs.lowest_begin, lowest);
       EXPECT_EQ(runs.highest_end, highest);
-    }
+    });
   }
   EXPECT_GT(rows_with_cells, 5000U);
   EXPECT_GT(cells, 50'000U);
@@ -102,13 +101,14 @@ TEST(ConvexRows, EachMachineFindsTheRowsOfLayers) {
     const ConvexBody body = random_body(random);
     const std::int64_t first_layer = static_cast<std::int64_t>(random() % 60) - 40;
     RowsOfLayers plain;
-    find_rows(body, first_layer, plain, Lanes::kOne);
-    for (const Lanes lanes : lanes_here()) {
+    hwy::SetSupportedTargetsForTest(HWY_SCALAR);
+    find_rows(body, first_layer, plain);
+    test::for_each_kernel([&] {
       RowsOfLayers rows;
-      find_rows(body, first_layer, rows, lanes);
+      find_rows(body, first_layer, rows);
       EXPECT_EQ(rows.first, plain.first);
       EXPECT_EQ(rows.last, plain.last);
-    }
+    });
     for (std::size_t l = 0; l < RowsOfLayers::kLayers; ++l) {
       for (int row = -45; row < 45; ++row) {
         const double middle = row + 0.5 - body.in_cell.row;

@@ -10,7 +10,7 @@
 #include "pingvox/geometry/lattice.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "support/lanes.hpp"
+#include "support/kernels.hpp"
 #include "support/uniform.hpp"
 
 namespace pingvox::detail {
@@ -55,10 +55,9 @@ TEST(RayEnds, EachMachineFindsTheCellsOfSingleRays) {
     if (seed % 10 == 1) up[0] = std::numeric_limits<double>::infinity();
     if (seed % 10 == 2) up[0] = -1e300;
 
-    for (const Lanes lanes : lanes_here()) {
-      SCOPED_TRACE(static_cast<int>(lanes));
+    test::for_each_kernel([&] {
       std::vector<std::uint64_t> places(count + kEndsAtOnce);
-      find_ends(ends, way_x, way_y, std::span(across).first(count), up.data(), places.data(), lanes);
+      find_ends(ends, way_x, way_y, std::span(across).first(count), up.data(), places.data());
       for (std::size_t i = 0; i < count; ++i) {
         const Eigen::Vector3d direction(across[i] * way_x, across[i] * way_y, up[i]);
         const auto key = lattice.key_of(map_from_sensor * (direction * ends.range_m));
@@ -76,7 +75,7 @@ TEST(RayEnds, EachMachineFindsTheCellsOfSingleRays) {
         }
         EXPECT_EQ(places[i], expected) << "ray " << i;
       }
-    }
+    });
   }
   EXPECT_GT(found, 2000U);
   EXPECT_GT(outside, 500U);

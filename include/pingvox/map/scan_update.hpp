@@ -5,11 +5,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/map/log_odds.hpp"
-#include "pingvox/map/scan_window.hpp"
 
 namespace pingvox {
 
@@ -68,6 +68,8 @@ class ScanUpdate {
     in.bricks |= std::uint64_t{1} << brick;
     in.missed[brick] |= cells;
   }
+  /// The same for all bricks of a page, a word each: what tracers of many rays hand over.
+  void mark_missed_in(std::uint32_t page, std::span<const std::uint64_t, 64> cells_of_bricks);
   void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence) {
     mark_hit_in(page, cell / 64, std::uint64_t{1} << (cell % 64), evidence);
   }
@@ -95,15 +97,6 @@ class ScanUpdate {
 
   /// Takes over all marks of another scan, of which several threads may each have traced a part.
   void add(const ScanUpdate& other);
-
-  /// For tracers of many rays: a window to mark cells in, empty. REQUIRES 4 <= bits <= ScanWindow::kMostBits.
-  detail::ScanWindow& window(int bits);
-  /// Takes over what was marked in the window, and empties it.
-  /// @param lowest  its lowest cell, the lowest of a page, too
-  /// @param hit     evidence of all its hits
-  void take_window(const WideKey& lowest, LogOdds hit);
-  /// Gives back the window with what is marked in it: where memory ran out before it could be taken over.
-  void drop_window() { window_ = detail::ScanWindow(); }
 
   /// The pages in the tree's order.
   std::vector<std::uint32_t> pages_in_order() const;
@@ -136,7 +129,6 @@ class ScanUpdate {
   std::size_t evidence_used_ = 0;
   bool has_hits_ = false;
   LogOdds usual_hit_{};  ///< of the first hit: most scans have no other
-  detail::ScanWindow window_;
   /// Pages that were asked for, by the lowest bits of their place: neighbours are asked for again and again.
   std::array<std::uint32_t, 64> recent_{};
   std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free

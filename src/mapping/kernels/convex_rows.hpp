@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "map/kernels/lanes.hpp"
-
 /// Which cells a convex body touches, many rows of cells at a time. Cells are those of a grid of edge 1, counted from
 /// the one that the origin is in; axes are those of the walk: of layers, of rows in a layer, of cells in a row.
 namespace pingvox::detail {
@@ -41,7 +39,7 @@ struct RowsOfLayers {
 };
 
 /// Finds the rows of 16 layers that touch all half-spaces somewhere.
-void find_rows(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& rows, Lanes lanes = widest_lanes());
+void find_rows(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& rows);
 
 /// Four rows of each of four layers: row r of layer l is number 4 * l + r.
 struct ColumnOfRows {
@@ -58,6 +56,6 @@ struct RunsOfRows {
 };
 
 /// Finds the cells of rows that touch all half-spaces and the sphere.
-void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs, Lanes lanes = widest_lanes());
+void find_cells(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs);
 
 }  // namespace pingvox::detail

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "map/kernels/lanes.hpp"
-
 /// The cells where many rays of the same length end, several at a time.
 namespace pingvox::detail {
 
@@ -30,6 +28,6 @@ struct RayEnds {
 /// way_y, up[i]). REQUIRES room for kEndsAtOnce rays more than there are, in all three
 inline constexpr std::size_t kEndsAtOnce = 8;
 void find_ends(const RayEnds& ends, double way_x, double way_y, std::span<const double> across, const double* up,
-               std::uint64_t* places, Lanes lanes = widest_lanes());
+               std::uint64_t* places);
 
 }  // namespace pingvox::detail

@@ -1,3 +1,5 @@
+#include "map/brick_loops.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,10 +9,7 @@
 #include <random>
 
 #include "map/bits.hpp"
-#include "map/kernels/brick.hpp"
-#include "map/kernels/words.hpp"
 #include "pingvox/map/brick_tree.hpp"
-#include "support/lanes.hpp"
 
 namespace pingvox::detail {
 namespace {
@@ -30,7 +29,7 @@ Brick random_brick(std::mt19937_64& random) {
   return brick;
 }
 
-TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
+TEST(BrickLoops, GiveWhatThePlainLoopsGive) {
   std::size_t uniform = 0, unchanged = 0;
   for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
     SCOPED_TRACE(seed);
@@ -44,10 +43,8 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
       if ((brick.known >> i) & 1) highest = std::max(highest, brick.value[i]);
       equal &= brick.value[i] == brick.value[0];
     }
-    for (const Lanes lanes : lanes_here()) {
-      EXPECT_EQ(highest_of(brick, lanes), highest);
-      EXPECT_EQ(are_equal(brick, lanes), equal);
-    }
+    EXPECT_EQ(highest_of(brick), highest);
+    EXPECT_EQ(are_equal(brick), equal);
     uniform += equal;
 
     const std::uint64_t missed = seed % 7 == 0 ? 0 : random() & random();
@@ -60,18 +57,16 @@ TEST(BrickKernels, GiveWhatThePlainLoopsGive) {
       changed |= after != plain.value[i];
       plain.value[i] = after;
     }
-    for (const Lanes lanes : lanes_here()) {
-      Brick voted = brick;
-      EXPECT_EQ(add_alike(voted, missed, evidence.value(), kClamp, lanes), changed);
-      EXPECT_EQ(voted.value, plain.value);
-    }
+    Brick updated = brick;
+    EXPECT_EQ(add_alike(updated, missed, evidence.value(), kClamp), changed);
+    EXPECT_EQ(updated.value, plain.value);
     unchanged += !changed;
   }
   EXPECT_GT(uniform, 100U);
   EXPECT_GT(unchanged, 1'000U);
 }
 
-TEST(BrickKernels, MasksAreWhatThePlainLoopsGive) {
+TEST(BrickLoops, MasksAreWhatThePlainLoopsGive) {
   std::size_t octants = 0, uniform = 0, from = 0;
   for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
     SCOPED_TRACE(seed);
@@ -103,7 +98,7 @@ TEST(BrickKernels, MasksAreWhatThePlainLoopsGive) {
     for (const float threshold : {-2.0F, -0.0F, 0.85F}) {
       std::uint64_t cells = 0;
       for (std::size_t i = 0; i < 64; ++i) cells |= std::uint64_t{brick.value[i] >= threshold} << i;
-      for (const Lanes lanes : lanes_here()) EXPECT_EQ(cells_from(brick, threshold, lanes), cells);
+      EXPECT_EQ(cells_from(brick, threshold), cells);
       from += static_cast<std::size_t>(std::popcount(cells));
     }
 
@@ -118,16 +113,11 @@ TEST(BrickKernels, MasksAreWhatThePlainLoopsGive) {
   EXPECT_GT(from, 100'000U);
 }
 
-TEST(BrickKernels, WordsInUseAreThoseWithABit) {
+TEST(BrickLoops, BitsAreCountedAndVisited) {
   for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const std::uint64_t used = seed % 10 == 0 ? 0 : random() & random();
-    std::array<std::uint64_t, 64> words{};
-    for (std::size_t word = 0; word < 64; ++word) {
-      if ((used >> word & 1) != 0) words[word] = std::uint64_t{1} << (random() % 64);
-    }
-    for (const Lanes lanes : lanes_here()) EXPECT_EQ(words_in_use(words.data(), lanes), used);
     EXPECT_EQ(count_bits(used), static_cast<std::uint64_t>(std::popcount(used)));
     std::uint64_t visited = 0;
     for_each_bit(used, [&](std::size_t bit) { visited |= std::uint64_t{1} << bit; });
@@ -135,29 +125,7 @@ TEST(BrickKernels, WordsInUseAreThoseWithABit) {
   }
 }
 
-// Kills words that stay where they were, that take the place of those they come to, or that are not told as used.
-TEST(BrickKernels, WordsAreMovedToOthers) {
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    SCOPED_TRACE(seed);
-    std::mt19937_64 random(seed);
-    std::array<std::uint64_t, 64> from{}, to{}, together{};
-    std::uint64_t used = 0;
-    for (std::size_t word = 0; word < 64; ++word) {
-      from[word] = random() % 3 == 0 ? random() & random() : 0;
-      to[word] = random() % 2 == 0 ? random() & random() : 0;
-      together[word] = from[word] | to[word];
-      used |= std::uint64_t{from[word] != 0} << word;
-    }
-    for (const Lanes lanes : lanes_here()) {
-      std::array<std::uint64_t, 64> emptied = from, filled = to;
-      EXPECT_EQ(move_words(emptied.data(), filled.data(), lanes), used);
-      EXPECT_EQ(filled, together);
-      EXPECT_EQ(emptied, (std::array<std::uint64_t, 64>{}));
-    }
-  }
-}
-
-TEST(BrickKernels, CellsAreCountedInAllWords) {
+TEST(BrickLoops, CellsAreCountedInAllWords) {
   for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
@@ -168,11 +136,11 @@ TEST(BrickKernels, CellsAreCountedInAllWords) {
       word = seed % 10 == 0 ? 0 : (seed % 10 == 1 ? ~std::uint64_t{0} : random() & random());
       count += static_cast<std::uint64_t>(std::popcount(word));
     }
-    for (const Lanes lanes : lanes_here()) EXPECT_EQ(count_cells(words.data(), lanes), count);
+    EXPECT_EQ(count_bits(words), count);
   }
 }
 
-TEST(BrickKernels, MasksOfOctantsAreTheirBytes) {
+TEST(BrickLoops, MasksOfOctantsAreTheirBytes) {
   for (unsigned octants = 0; octants < 256; ++octants) {
     std::uint64_t cells = 0;
     for (std::size_t o = 0; o < 8; ++o) cells |= (octants >> o & 1) != 0 ? std::uint64_t{0xFF} << (o * 8) : 0;

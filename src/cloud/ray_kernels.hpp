@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cloud/scan_window.hpp"
+
+/// Rays from one place into a ScanWindow, as many side by side as the machine's vectors have lanes. Their cells are
+/// those of FaceCrossings (map/ray_dda.hpp), to the last one: the same sums of the same whole numbers
+/// (tests/cloud/ray_kernels_test.cpp).
+namespace pingvox::detail {
+
+/// Where the window lies and where rays begin, in cells as the lattice counts them: cell 0 has its lowest corner at the
+/// origin of the map.
+struct RayGrid {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< metres times cells per metre
+  double cells_per_m = 1.0;
+  std::array<std::int64_t, 3> lowest{};  ///< lowest cell of the window
+  /// Coordinates that are in the window and in the lattice: inside_from <= coordinate < inside_to.
+  std::array<double, 3> inside_from{}, inside_to{};
+};
+
+inline constexpr std::uint64_t kNoPlace = ~std::uint64_t{0};
+
+/// Rays ready to be walked, an array for each number. Faces lie where FaceCrossings has them, in units of 2^-62 of the
+/// ray's length.
+struct PreparedRays {
+  std::array<std::vector<std::int64_t>, 3> next;   ///< the first face along each axis; kNever: none
+  std::array<std::vector<std::int64_t>, 3> apart;  ///< from face to face
+  std::vector<std::int64_t> left;                  ///< faces to cross; 0 where the ray is not ready, too
+  std::vector<std::int64_t> ahead;                 ///< bit a is set when the key grows along axis a
+  std::vector<std::uint64_t> end;                  ///< place of the last cell; kNoPlace: the ray is not ready
+  std::size_t count = 0;
+};
+
+/// Prepares a ray to each of `ends_m` [m, map frame]. Not ready are those that end outside of the window or in no
+/// number, that cross too many faces, or that end so close to a corner that only exact counting tells which face comes
+/// last.
+void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays);
+void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays);
+
+/// Finds the places of the cells that hold points [m, map frame]; kNoPlace outside of the window.
+void find_places(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m, std::vector<std::uint64_t>& places);
+void find_places(const RayGrid& grid, std::span<const Eigen::Vector3f> points_m, std::vector<std::uint64_t>& places);
+
+/// Marks the cells of each ray that is ready as missed, its first one included, its last one not.
+/// @param start  place of the cell where all of them begin
+void mark_rays(const PreparedRays& rays, std::uint64_t start, ScanWindow& window);
+
+}  // namespace pingvox::detail
