@@ -29,6 +29,16 @@ TEST(Pose, InterpolationTakesTheShortWayAround) {
   EXPECT_TRUE(middle.isApprox(yawed(1.0, kPi), 1e-12));
 }
 
+// Kills another order of the turns: only two angles at once tell.
+TEST(Pose, TurnsByRollThenPitchThenYaw) {
+  constexpr double kQuarter = kPi / 2;
+  const Pose pose = pose_from_rpy({1.0, 2.0, 3.0}, kQuarter, kQuarter, kQuarter);
+  // About the axes of the map: roll puts ahead, left, up to x, z, -y; pitch these to -z, x, -y; yaw to -z, y, x.
+  EXPECT_TRUE((pose * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1.0, 2.0, 2.0), 1e-12));
+  EXPECT_TRUE((pose * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d(1.0, 3.0, 3.0), 1e-12));
+  EXPECT_TRUE((pose * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(2.0, 2.0, 3.0), 1e-12));
+}
+
 TEST(Trajectory, IsReadBetweenItsPosesAndNowhereElse) {
   const auto made = Trajectory::make({{10.0, yawed(0.0, 0.0)}, {20.0, yawed(1.0, 1.0)}, {21.0, yawed(5.0, 1.0)}});
   ASSERT_TRUE(made);

@@ -46,6 +46,15 @@ TEST(ValidateBeam, RefusesWhatItsCommentsRuleOut) {
   }
 }
 
+// Kills a longest range that is compared with the length of a bin.
+TEST(ValidateBeam, RefusesMoreBinsThanTheLongestRangeHolds) {
+  Beam beam{.time_s = 1.0, .bearing_rad = 1.0, .bin_length_m = 1.0, .intensities = {}};
+  beam.intensities.resize(static_cast<std::size_t>(kMaxBeamRange_m));
+  EXPECT_TRUE(validate(beam));
+  beam.intensities.push_back(0);
+  EXPECT_FALSE(validate(beam));
+}
+
 /// Three beams, then the end or an error.
 class ThreeBeams : public BeamSource {
  public:

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "pingvox/sonar/detect_echo.hpp"
@@ -39,6 +41,35 @@ TEST(BlankingRange, IsFoundAtTheEndOfWhatIsInEveryBeam) {
     EXPECT_GE(found_m, end_m - 1e-9);
     EXPECT_LE(found_m, end_m + 0.25) << "a few bins of noise may go on falling";
   }
+}
+
+// Kills ringing that is taken for none because it is not loud.
+TEST(BlankingRange, IsFoundOfFaintRinging) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Sweep sweep = ringing_turn(random, 20, 14);
+    const double found_m = blanking_range_m(PolarImage(sweep), sweep);
+    EXPECT_GE(found_m, 1.0 - 1e-9);
+    EXPECT_LE(found_m, 1.25);
+  }
+}
+
+// Kills a range that ends where ringing begins to fade.
+TEST(BlankingRange, EndsWhereTheRingingHasFaded) {
+  std::mt19937_64 random(7);
+  Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(60)};
+  for (Beam& beam : sweep.beams) {
+    beam.bin_length_m = kBin_m;
+    for (std::size_t i = 0; i < 200; ++i) {
+      const double ringing = 100.0 * std::exp(-std::max(0.0, static_cast<double>(i) - 20.0) / 6.0);
+      beam.intensities.push_back(static_cast<std::uint8_t>(ringing + static_cast<double>(random() % 4)));
+    }
+  }
+  // 28 bins on it is a quarter of what it was, 35 bins on a twelfth.
+  const double found_m = blanking_range_m(PolarImage(sweep), sweep);
+  EXPECT_GE(found_m, 35.0 * kBin_m);
+  EXPECT_LE(found_m, 50.0 * kBin_m);
 }
 
 TEST(BlankingRange, IsNoneWithoutRingingAndUsualInAFewBeams) {

@@ -95,6 +95,28 @@ TEST(CartesianImage, ShowsAheadUpAndLeftLeft) {
   }
 }
 
+// Kills a border between the last bearing and the first one.
+TEST(CartesianImage, OfATurnedSweepIsTheTurnedImage) {
+  std::mt19937_64 random(3);
+  std::vector<std::uint8_t> loudness(36);
+  for (std::uint8_t& value : loudness) value = static_cast<std::uint8_t>(random());
+  Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = {}};
+  for (std::size_t n = 0; n < loudness.size(); ++n) {
+    sweep.beams.push_back({.bearing_rad = static_cast<double>(n) * kPi / 18.0 + 0.01,
+                           .bin_length_m = 0.1,
+                           .intensities = std::vector<std::uint8_t>(40, loudness[n])});
+  }
+  const CartesianOptions options{.size_px = 100, .beam_width_rad = 0.5};
+  const CartesianImage image = cartesian_image(PolarImage(sweep), sweep, options);
+  for (Beam& beam : sweep.beams) beam.bearing_rad = wrapped_bearing(beam.bearing_rad + kPi / 2.0);
+  const CartesianImage turned = cartesian_image(PolarImage(sweep), sweep, options);
+  for (std::size_t row = 0; row < 100; ++row) {
+    for (std::size_t column = 0; column < 100; ++column) {
+      ASSERT_NEAR(turned.at(99 - column, row), image.at(row, column), 1) << row << ", " << column;
+    }
+  }
+}
+
 TEST(CartesianImage, KnowsNothingBetweenBeamsThatAreFartherApartThanTheyReach) {
   const Sweep sweep = turn_of(8, 40, [](double, std::size_t) { return std::uint8_t{100}; });
   const CartesianImage image = cartesian_image(PolarImage(sweep), sweep, {.size_px = 200, .beam_width_rad = 0.1});
