@@ -14,8 +14,8 @@ namespace pingvox::bench {
 inline void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const RayCloud> scans,
                    const PointScanOptions& options = {}) {
   PointTracer tracer(map.lattice(), options);
-  for (const RayCloud& ends_m : scans) {
-    tracer.trace(Eigen::Vector3d::Zero(), ends_m, scan);
+  for (const RayCloud& cloud : scans) {
+    tracer.trace(cloud.origin_m.cast<double>(), cloud.ends_m, scan);
     (void)map.apply(scan);
     scan.clear();
   }

@@ -14,7 +14,6 @@ namespace pingvox::bench {
 namespace {
 
 constexpr double kCell_m = 0.05;
-constexpr double kTolerated = 1e-4;  ///< as in tank-3d
 constexpr int kRuns = 3;
 
 }  // namespace
@@ -22,7 +21,7 @@ constexpr int kRuns = 3;
 Result<std::vector<Row>> memory(const BenchOptions&) {
   const Result<TankBundles> bundles = tank_bundles(3);
   if (!bundles) return tl::unexpected(bundles.error());
-  const std::vector<octomap::Pointcloud> clouds = clouds_of(bundles->scans);
+  const std::vector<PeerScan> peer_clouds = peer_scans(bundles->scans);
   const auto ours = [&] {
     auto map = std::make_shared<OccupancyMap>(MapOptions{.resolution_m = kCell_m});
     ScanUpdate scan;
@@ -31,10 +30,10 @@ Result<std::vector<Row>> memory(const BenchOptions&) {
   };
   const auto peer = [&] {
     auto tree = std::make_shared<octomap::OcTree>(kCell_m);
-    insert(*tree, clouds, PeerEnds::kExact, PeerMode::kEager);
+    insert(*tree, peer_clouds, PeerEnds::kExact, PeerMode::kEager);
     return tree;
   };
-  const Result<MapDifference> found = alike(*ours(), *peer(), kTolerated);
+  const Result<MapDifference> found = alike(*ours(), *peer(), bundles->scans);
   if (!found) return tl::unexpected(found.error());
   std::vector<double> ours_bytes, peer_bytes, ratios;
   for (int run = 0; run < kRuns; ++run) {

@@ -4,19 +4,20 @@
 
 namespace pingvox::bench {
 
-std::vector<octomap::Pointcloud> clouds_of(std::span<const RayCloud> scans) {
-  std::vector<octomap::Pointcloud> clouds(scans.size());
+std::vector<PeerScan> peer_scans(std::span<const RayCloud> scans) {
+  std::vector<PeerScan> all(scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    clouds[i].reserve(scans[i].size());
-    for (const Eigen::Vector3f& end_m : scans[i]) clouds[i].push_back(end_m.x(), end_m.y(), end_m.z());
+    all[i].origin_m = {scans[i].origin_m.x(), scans[i].origin_m.y(), scans[i].origin_m.z()};
+    all[i].cloud.reserve(scans[i].ends_m.size());
+    for (const Eigen::Vector3f& end_m : scans[i].ends_m) all[i].cloud.push_back(end_m.x(), end_m.y(), end_m.z());
   }
-  return clouds;
+  return all;
 }
 
-void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, PeerEnds ends, PeerMode mode) {
+void insert(octomap::OcTree& tree, std::span<const PeerScan> scans, PeerEnds ends, PeerMode mode) {
   const bool lazy = mode == PeerMode::kLazy;
-  for (const octomap::Pointcloud& cloud : clouds) {
-    tree.insertPointCloud(cloud, octomap::point3d(0.0F, 0.0F, 0.0F), -1.0, lazy, ends == PeerEnds::kCells);
+  for (const PeerScan& scan : scans) {
+    tree.insertPointCloud(scan.cloud, scan.origin_m, -1.0, lazy, ends == PeerEnds::kCells);
   }
   settle(tree, mode);
 }

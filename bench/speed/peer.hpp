@@ -20,9 +20,14 @@ enum class PeerEnds {
   kCells,  ///< a ray to the middle of each cell with a point: `discretize`
 };
 
-std::vector<octomap::Pointcloud> clouds_of(std::span<const RayCloud> scans);
+/// A scan as the library takes it.
+struct PeerScan {
+  octomap::point3d origin_m;
+  octomap::Pointcloud cloud;
+};
+std::vector<PeerScan> peer_scans(std::span<const RayCloud> scans);
 
-void insert(octomap::OcTree& tree, std::span<const octomap::Pointcloud> clouds, PeerEnds ends, PeerMode mode);
+void insert(octomap::OcTree& tree, std::span<const PeerScan> scans, PeerEnds ends, PeerMode mode);
 
 /// What is left to do when all updates of a map are done.
 void settle(octomap::OcTree& tree, PeerMode mode);

@@ -2,10 +2,14 @@
 
 #include <octomap/OcTree.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
+#include "tank_echoes.hpp"
 
 namespace pingvox::bench {
 
@@ -15,14 +19,16 @@ struct MapDifference {
   std::uint64_t differs = 0;                   ///< known in one only, or with another value
   std::uint64_t only_ours = 0, only_peer = 0;  ///< of these: known in one only
   std::uint64_t classes = 0;  ///< of these: occupied in one and free in the other, or known in one only
-  double share() const { return cells == 0 ? 0.0 : static_cast<double>(differs) / static_cast<double>(cells); }
+  std::vector<Key> keys;      ///< cells that differ, the first kMaxKeys of them
+  static constexpr std::size_t kMaxKeys = 100'000;
 };
 
 /// Compares leaf by leaf: values to the last bit.
 MapDifference difference(const OccupancyMap& ours, const octomap::OcTree& peer);
 
-/// The same, or an error when a larger share than `tolerated` differs.
-Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& peer, double tolerated);
+/// The same, or an error when a cell differs that these scans settle: see `cells_settled`. liboctomap walks rays in
+/// single precision with sums that drift, and each library is right about a cell that a ray only touches.
+Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& peer, std::span<const RayCloud> scans);
 
 /// An error that says how they differ, unless both hold the same cells and values and have the same nodes.
 Result<void> same_to_the_bit(const OccupancyMap& ours, const octomap::OcTree& peer);

@@ -38,16 +38,16 @@ Result<TankEchoes> tank_echoes() {
 }
 
 RayCloud rays_of(const std::vector<BeamEcho>& sweep) {
-  RayCloud ends_m;
+  RayCloud cloud;
   for (const BeamEcho& echo : sweep) {
     const Eigen::Vector3d direction(std::cos(echo.bearing_rad), std::sin(echo.bearing_rad), 0.0);
-    ends_m.emplace_back((echo.range_m * direction).cast<float>());
+    cloud.ends_m.emplace_back((echo.range_m * direction).cast<float>());
   }
-  return ends_m;
+  return cloud;
 }
 
 RayCloud bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
-  RayCloud ends_m;
+  RayCloud cloud;
   for (const BeamEcho& echo : sweep) {
     for (int u = 0; u < up; ++u) {
       const double elevation = 35.0 * kDegree * ((u + 0.5) / up - 0.5);
@@ -55,11 +55,11 @@ RayCloud bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
         const double bearing = echo.bearing_rad + 3.0 * kDegree * ((a + 0.5) / across - 0.5);
         const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing),
                                         std::cos(elevation) * std::sin(bearing), std::sin(elevation));
-        ends_m.emplace_back((echo.range_m * direction).cast<float>());
+        cloud.ends_m.emplace_back((echo.range_m * direction).cast<float>());
       }
     }
   }
-  return ends_m;
+  return cloud;
 }
 
 Result<TankBundles> tank_bundles(std::size_t sweeps) {

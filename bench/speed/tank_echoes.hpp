@@ -24,13 +24,17 @@ struct TankEchoes {
 };
 Result<TankEchoes> tank_echoes();
 
-/// Where rays from the origin end [m], in single precision: what liboctomap's clouds hold.
-using RayCloud = std::vector<Eigen::Vector3f>;
+/// Rays of one scan [m], in single precision: what liboctomap's clouds hold.
+struct RayCloud {
+  Eigen::Vector3f origin_m = Eigen::Vector3f::Zero();
+  std::vector<Eigen::Vector3f> ends_m;
+};
 
-/// One ray for each echo, in the plane of the head.
+/// One ray from the origin for each echo, in the plane of the head.
 RayCloud rays_of(const std::vector<BeamEcho>& sweep);
 
-/// Each echo as a bundle of `across` x `up` rays, evenly over 3 x 35 degrees on the sphere, all with the echo's range.
+/// The same with each echo as a bundle of `across` x `up` rays, evenly over 3 x 35 degrees on the sphere, all with the
+/// echo's range.
 RayCloud bundles_of(const std::vector<BeamEcho>& sweep, int across, int up);
 
 /// The first sweeps of tank_echoes(), each echo as a bundle of 32 x 64 rays.

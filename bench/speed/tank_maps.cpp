@@ -14,9 +14,9 @@ Result<TankMaps> tank_maps() {
   TankMaps maps{bundles->input, OccupancyMap({.resolution_m = kCell_m}), std::make_unique<octomap::OcTree>(kCell_m)};
   const LogOdds hit(maps.peer->getProbHitLog());
   ScanUpdate scan(LogOdds(maps.peer->getProbMissLog()));
-  for (const octomap::Pointcloud& cloud : clouds_of(bundles->scans)) {
+  for (const PeerScan& peer : peer_scans(bundles->scans)) {
     octomap::KeySet missed_cells, hit_cells;
-    maps.peer->computeUpdate(cloud, octomap::point3d(0.0F, 0.0F, 0.0F), missed_cells, hit_cells, -1.0);
+    maps.peer->computeUpdate(peer.cloud, peer.origin_m, missed_cells, hit_cells, -1.0);
     for (const octomap::OcTreeKey& key : missed_cells) {
       maps.peer->updateNode(key, false);
       scan.add_miss(Key{key[0], key[1], key[2]});

@@ -36,7 +36,7 @@ Result<std::vector<Row>> threads(const BenchOptions&) {
   const Result<TankBundles> bundles = tank_bundles(1);
   if (!bundles) return tl::unexpected(bundles.error());
   PointScan scan;
-  for (const Eigen::Vector3f& end_m : bundles->scans.front()) scan.points_m.push_back(end_m.cast<double>());
+  for (const Eigen::Vector3f& end_m : bundles->scans.front().ends_m) scan.points_m.push_back(end_m.cast<double>());
   const auto side = [&](std::size_t count, std::unique_ptr<OccupancyMap>& map) {
     return Side{[&map] { map = std::make_unique<OccupancyMap>(MapOptions{.resolution_m = kCell_m}); },
                 [&map, &scan, count] {
