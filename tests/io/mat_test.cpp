@@ -70,6 +70,17 @@ TEST(Mat, TurnsClockwiseAnglesAround) {
   EXPECT_NEAR(all.items[0].bearing_rad, 1.5 * std::numbers::pi, 1e-12);  // to the right
 }
 
+// Kills fractions that are cut off: averaged recordings would be half a step too dark.
+TEST(Mat, RoundsFractionsOfIntensities) {
+  const Bytes one = mat5_writer::numbers<float>(7, 7, {1.0F}, kLittle);
+  const Bytes averaged = mat5_writer::numbers<double>(6, 9, {0.4, 0.6, 16.5, 254.6}, kLittle);
+  const Bytes array = mat5_writer::struct_array("parsedData", {"time", "angle", "step_dist", "intensities"}, 1,
+                                                {one, one, one, averaged}, kLittle);
+  const auto all = all_beams({"a.mat", mat5_writer::file({array}, kLittle)}, Damage::kFail);
+  ASSERT_EQ(all.items.size(), 1U) << all.error;
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(0, 1, 17, 255));
+}
+
 TEST(Mat, ReadsBothByteOrdersCompressedAndNot) {
   const std::vector<Record> records = some_records(1);
   for (const std::endian order : {std::endian::little, std::endian::big}) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <utility>
@@ -60,6 +61,32 @@ TEST(BeamEvidence, FreesAllBeforeTheFirstBinOfTheEchoAndNothingInIt) {
         EXPECT_NE(at(begin_m + 0.12), Occupancy::kFree);
       }
     }
+  }
+}
+
+/// The widest step between neighbours.
+double widest_step(std::vector<double> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  double widest = 0.0;
+  for (std::size_t i = 1; i < numbers.size(); ++i) widest = std::max(widest, numbers[i] - numbers[i - 1]);
+  return widest;
+}
+
+// Kills a ray too few, which leaves cells between its neighbours.
+TEST(BeamBundle, HasNoGapsAtItsRange) {
+  constexpr double kResolution_m = 0.05;
+  BeamModelOptions options;
+  options.shape = BeamShape::kCone;
+  for (double range_m = 0.5; range_m < 8.0; range_m += 0.37) {
+    SCOPED_TRACE(range_m);
+    std::vector<double> azimuths, elevations;
+    for (const BundleRay& ray : beam_bundle(options, 0.0, range_m, kResolution_m)) {
+      azimuths.push_back(std::atan2(ray.direction.y(), ray.direction.x()));
+      elevations.push_back(std::asin(ray.direction.z()));
+    }
+    const double apart_rad = kResolution_m / std::numbers::sqrt2 / range_m * (1.0 + 1e-9);
+    EXPECT_LE(widest_step(azimuths), apart_rad);
+    EXPECT_LE(widest_step(elevations), apart_rad);
   }
 }
 

@@ -59,6 +59,9 @@ void expect_crossings_of(const World& world, const Depth& depth, std::mt19937_64
     // The normal is that of the surface: the way along it is the way out or in.
     const Vector3d on = ray.at(crossing.range_m);
     EXPECT_GT(std::abs(depth(on + 1e-6 * crossing.normal) - depth(on - 1e-6 * crossing.normal)), 1e-7);
+    const auto slope = [&](const Vector3d& way) { return depth(on + 1e-6 * way) - depth(on - 1e-6 * way); };
+    const Vector3d steepest = Vector3d(slope(Vector3d::UnitX()), slope(Vector3d::UnitY()), slope(Vector3d::UnitZ()));
+    EXPECT_NEAR(std::abs(steepest.normalized().dot(crossing.normal)), 1.0, 1e-3);
     from = crossing.range_m;
     is_inside = !is_inside;
     ++crossings;
