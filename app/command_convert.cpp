@@ -32,8 +32,8 @@ tl::unexpected<Error> does_not_become(const std::string& name, Format from, Form
 }
 
 /// What is written from a log, and how much of it there was.
-Result<std::string> convert_log(FileBytes file, const ConvertCommand& command) {
-  const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), command.damage);
+Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command) {
+  const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage);
   if (!source) return tl::unexpected(source.error());
   std::size_t beams = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
@@ -100,16 +100,20 @@ Result<std::string> convert_map(const MapFile& read, const ConvertCommand& comma
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);
 }
 
-Result<std::string> convert(FileBytes file, Format format, const ConvertCommand& command) {
+Result<std::string> convert(ByteStream stream, Format format, const ConvertCommand& command) {
   const FormatKind from = kind_of(format), to = kind_of(command.format);
   if (command.resolution_m && from != FormatKind::kMesh) {
     return fail(Error::Code::kBadOption,
-                fmt::format("convert: --resolution: only for meshes, and {} is {}", file.name, described(format)));
+                fmt::format("convert: --resolution: only for meshes, and {} is {}", stream.name(), described(format)));
   }
-  if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(file), command);
+  if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
-  if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return does_not_become(file.name, format, command.format);
-  const Result<MapFile> map = is_map ? read_map(file) : map_of_mesh(file, command);
+  if (!is_made_of_maps(to) || (!is_map && !is_mesh)) {
+    return does_not_become(stream.name(), format, command.format);
+  }
+  const Result<FileBytes> file = ByteStream::whole(std::move(stream));
+  if (!file) return tl::unexpected(file.error());
+  const Result<MapFile> map = is_map ? read_map(*file) : map_of_mesh(*file, command);
   if (!map) return tl::unexpected(map.error());
   return convert_map(*map, command);
 }
@@ -117,12 +121,12 @@ Result<std::string> convert(FileBytes file, Format format, const ConvertCommand&
 }  // namespace
 
 Result<int> run(const ConvertCommand& command, Console& console) {
-  Result<FileBytes> file = read_file(command.input);
-  if (!file) return tl::unexpected(file.error());
-  const Result<Format> format = recognised(*file);
+  Result<ByteStream> stream = ByteStream::open(command.input);
+  if (!stream) return tl::unexpected(stream.error());
+  const Result<Format> format = recognised(*stream);
   if (!format) return tl::unexpected(format.error());
 
-  const Result<std::string> what = convert(*std::move(file), *format, command);
+  const Result<std::string> what = convert(std::move(*stream), *format, command);
   if (!what) return tl::unexpected(what.error());
   const auto told = console.summarise(fmt::format("{}: {}\n", on_one_line(command.output), *what), command.output);
   if (!told) return tl::unexpected(told.error());

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,31 @@ double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
 }
 
+void add_device(Told& told, const DeviceProfile& device) {
+  const auto degrees = [](double angle_rad) { return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6; };
+  const double width_deg = degrees(device.beam_width_rad), height_deg = degrees(device.beam_height_rad);
+  JsonObject json;
+  json.add("name", device.name)
+      .add("beam_width_deg", width_deg)
+      .add("beam_height_deg", height_deg)
+      .add("blanking_m", device.blanking_m)
+      .add("full_scale", device.full_scale);
+  told.json.add("device", json);
+  told.text += report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, hears from {:.6g} m (--device)",
+                                                 device.title, width_deg, height_deg, device.blanking_m)) +
+               report_line("intensities", std::string(device.intensity));
+}
+
+void add_damage(Told& told, const std::vector<DamageKind>& kinds) {
+  if (kinds.empty()) return;
+  std::vector<JsonObject> list;
+  for (const DamageKind& kind : kinds) {
+    list.emplace_back().add("what", kind.what).add("count", kind.count).add("first_byte", kind.first_byte);
+    told.text += report_line("", fmt::format("{} x {}, first at byte {}", kind.count, kind.what, kind.first_byte));
+  }
+  told.json.add("damage", std::span<const JsonObject>(list));
+}
+
 class BeamSurvey {
  public:
   void add(const Beam& beam) {
@@ -55,17 +81,18 @@ class BeamSurvey {
     most_bins_ = std::max(most_bins_, beam.intensities.size());
     longest_m_ = std::max(longest_m_, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
     ++bin_lengths_[beam.bin_length_m];
-    bearings_rad_.push_back(beam.bearing_rad);
+    bearings_rad_.insert(beam.bearing_rad);
     count(assembler_.add(beam));
   }
 
-  Told finish(const std::string& name, Format format, std::size_t skipped) {
+  Told finish(const std::string& name, Format format, const BeamSource& source) {
+    const std::size_t skipped = source.skipped();
     count(assembler_.finish());
     // Of a log whose settings changed, the bin length of most beams.
     const auto usual = std::max_element(bin_lengths_.begin(), bin_lengths_.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });
     const std::size_t fewest = beams_ > 0 ? fewest_bins_ : 0;
-    const double sector = sector_deg(std::move(bearings_rad_), has_turn_);
+    const double sector = sector_deg({bearings_rad_.begin(), bearings_rad_.end()}, has_turn_);
     Told told;
     JsonObject bins;
     bins.add("min", fewest).add("max", most_bins_);
@@ -89,7 +116,9 @@ class BeamSurvey {
                    report_line("sector", fmt::format("{:.6g} degrees", sector)) +
                    report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", last_s_ - first_s_, first_s_));
     }
+    if (const DeviceProfile* device = source.device()) add_device(told, *device);
     if (skipped > 0) told.text += report_line("left out", fmt::format("{} damaged", skipped));
+    add_damage(told, source.damage());
     return told;
   }
 
@@ -105,7 +134,7 @@ class BeamSurvey {
   double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
   bool has_turn_ = false;
   std::map<double, std::size_t> bin_lengths_;
-  std::vector<double> bearings_rad_;
+  std::set<double> bearings_rad_;  ///< a head has so many and no more, however long the log is
   SweepAssembler assembler_;
 };
 
@@ -114,7 +143,7 @@ Result<Told> told_of(BeamSource& source, const std::string& name, Format format)
   for (;;) {
     const Result<std::optional<Beam>> beam = source.next();
     if (!beam) return tl::unexpected(beam.error());
-    if (!*beam) return survey.finish(name, format, source.skipped());
+    if (!*beam) return survey.finish(name, format, source);
     survey.add(**beam);
   }
 }
@@ -152,9 +181,9 @@ Result<Told> told_of(ScanSource& source, const std::string& name, Format format)
   return told;
 }
 
-Result<Told> told_of_log(FileBytes file, Format format, Damage damage) {
-  const std::string name = file.name;
-  const Result<Log> log = open_log(std::move(file), damage);
+Result<Told> told_of_log(ByteStream stream, Format format, Damage damage) {
+  const std::string name = stream.name();
+  const Result<Log> log = open_log(std::move(stream), damage);
   if (!log) return tl::unexpected(log.error());
   return std::visit([&](const auto& source) { return told_of(*source, name, format); }, *log);
 }
@@ -225,9 +254,10 @@ Result<Told> told_of_trajectory(const FileBytes& file, Format format) {
   return told;
 }
 
-Result<Told> told_of_file(FileBytes file, Damage damage) {
-  const Result<Format> format = recognised(file);
+Result<Told> told_of_file(ByteStream stream, Damage damage) {
+  const Result<Format> format = recognised(stream);
   if (!format) return tl::unexpected(format.error());
+  const FileBytes& file = stream.held();
   switch (kind_of(*format)) {
     case FormatKind::kMap:
       return told_of_map(file);
@@ -236,16 +266,16 @@ Result<Told> told_of_file(FileBytes file, Damage damage) {
     case FormatKind::kTrajectory:
       return told_of_trajectory(file, *format);
     default:
-      return told_of_log(std::move(file), *format, damage);
+      return told_of_log(std::move(stream), *format, damage);
   }
 }
 
 }  // namespace
 
 Result<int> run(const InfoCommand& command, Console& console) {
-  Result<FileBytes> file = read_file(command.file);
-  if (!file) return tl::unexpected(file.error());
-  const Result<Told> told = told_of_file(std::move(*file), command.damage);
+  Result<ByteStream> stream = ByteStream::open(command.file);
+  if (!stream) return tl::unexpected(stream.error());
+  const Result<Told> told = told_of_file(std::move(*stream), command.damage);
   if (!told) return tl::unexpected(told.error());
   const bool json = command.manner.report == Report::kJson;
   if (const auto printed = console.print(json ? told->json.text() + "\n" : told->text); !printed) {

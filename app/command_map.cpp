@@ -141,10 +141,10 @@ Result<int> run(const MapCommand& command, Console& console) {
     ProgressBar bar(command.manner);
     for (std::size_t i = 0; i < command.logs.size(); ++i) {
       const Stopwatch read;
-      Result<FileBytes> file = read_file(command.logs[i]);
-      if (!file) return tl::unexpected(file.error());
-      const std::string name = file->name;
-      const Result<Log> log = open_log(std::move(*file), command.damage, command.cloud_origin_m);
+      Result<ByteStream> stream = ByteStream::open(command.logs[i]);
+      if (!stream) return tl::unexpected(stream.error());
+      const std::string name = stream->name();
+      const Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m);
       if (!log) return tl::unexpected(log.error());
       totals.report.seconds.read += read.seconds();
 
@@ -156,7 +156,7 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
                                     bytes_text(map->memory_bytes())));
       };
-      const Result<BuildReport> report = map_log(*log, name, *trajectory, command.build, *map, progress);
+      const Result<BuildReport> report = map_log(*log, name, *trajectory, command.build, command.head, *map, progress);
       if (!report) return tl::unexpected(report.error());
       totals.add(*report, *log);
     }

@@ -112,7 +112,9 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage dama
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
   const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
   if (!source) return tl::unexpected(source.error());
-  Gatherer gatherer(panel);
+  PanelCommand of_head = panel;
+  of_head.build = panel.head.applied_to(panel.build, (*source)->device());
+  Gatherer gatherer(of_head);
   SweepAssembler assembler;
   std::size_t sweeps = 0;
   const auto take = [&](std::optional<Sweep> sweep) {
@@ -143,7 +145,7 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, Damag
   const std::string name = file.name;
   const Result<Log> log = open_log(std::move(file), damage);
   if (!log) return tl::unexpected(log.error());
-  const Result<BuildReport> report = map_log(*log, name, *trajectory, panel.build, *map);
+  const Result<BuildReport> report = map_log(*log, name, *trajectory, panel.build, panel.head, *map);
   if (!report) return tl::unexpected(report.error());
   return map;
 }

@@ -17,6 +17,7 @@
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
@@ -31,6 +32,23 @@ struct ShowText {
   std::string text;
 };
 
+/// What a call says of the sonar's head. What it leaves open follows from the log's device.
+struct HeadWords {
+  const DeviceProfile* device = nullptr;  ///< nullptr: the log's
+  std::optional<double> beam_width_rad, beam_height_rad;
+
+  /// The options with the beam's width and height: as the call says, else as the device's maker does, else as they are.
+  BuildOptions applied_to(BuildOptions options, const DeviceProfile* of_log) const {
+    if (const DeviceProfile* head = device != nullptr ? device : of_log; head != nullptr) {
+      options.model.width_rad = head->beam_width_rad;
+      options.model.height_rad = head->beam_height_rad;
+    }
+    options.model.width_rad = beam_width_rad.value_or(options.model.width_rad);
+    options.model.height_rad = beam_height_rad.value_or(options.model.height_rad);
+    return options;
+  }
+};
+
 struct MapCommand {
   Manner manner;
   std::vector<std::string> logs;  ///< at least one; "-" is standard input
@@ -41,6 +59,7 @@ struct MapCommand {
   Damage damage = Damage::kSkip;
   MapOptions map;
   BuildOptions build;
+  HeadWords head;
   std::string made_by;  ///< the words of the call, for the file
 };
 
@@ -83,6 +102,7 @@ struct PanelCommand {
   MapPictureOptions map_picture;
   MapOptions map;  ///< for logs that are mapped
   BuildOptions build;
+  HeadWords head;
   std::optional<std::string> poses;
 };
 

@@ -12,12 +12,12 @@
 namespace pingvox::app {
 namespace {
 
-Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const BuildOptions& options, OccupancyMap& map,
-                          const Progress& progress) {
+Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const BuildOptions& options,
+                          const HeadWords& head, OccupancyMap& map, const Progress& progress) {
   if (const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) {
     // Scans of points have no blanking range.
     if (const auto ranges = check_ranges(options); !ranges) return tl::unexpected(ranges.error());
-    return build_map(**beams, trajectory, options, map, progress);
+    return build_map(**beams, trajectory, head.applied_to(options, (*beams)->device()), map, progress);
   }
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
 }
@@ -46,8 +46,9 @@ Result<void> check_ranges(const BuildOptions& options) {
 }
 
 Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
-                            const BuildOptions& options, OccupancyMap& map, const Progress& progress) {
-  Result<BuildReport> report = build(log, trajectory, options, map, progress);
+                            const BuildOptions& options, const HeadWords& head, OccupancyMap& map,
+                            const Progress& progress) {
+  Result<BuildReport> report = build(log, trajectory, options, head, map, progress);
   if (!report) {
     // Errors of the map itself name no file; those of options need none.
     const Error::Code code = report.error().code;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "commands.hpp"
 #include "open_log.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -18,7 +19,9 @@ Result<void> check_ranges(const BuildOptions& options);
 
 /// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
 /// @param name  of the log, for messages
+/// @param head  what the call says of it
 Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
-                            const BuildOptions& options, OccupancyMap& map, const Progress& progress = {});
+                            const BuildOptions& options, const HeadWords& head, OccupancyMap& map,
+                            const Progress& progress = {});
 
 }  // namespace pingvox::app

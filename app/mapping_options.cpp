@@ -1,6 +1,6 @@
 #include "mapping_options.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,10 @@
 
 #include "option_values.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox::app {
 namespace {
-
-/// What sonar heads assume when they turn times into bin lengths.
-constexpr double kAssumedSoundSpeed_m_s = 1500.0;
 
 constexpr std::array kFilters = {Word<Filter>{"none", Filter::kNone}, Word<Filter>{"mean", Filter::kMean},
                                  Word<Filter>{"median", Filter::kMedian}, Word<Filter>{"gaussian", Filter::kGaussian}};
@@ -46,6 +44,34 @@ Take into_min_range(std::optional<double>& target) {
   return [&target](const std::string& text) -> Result<void> {
     if (text != "auto") return into_optional(target)(text);
     target.reset();
+    return {};
+  };
+}
+
+Take into_degrees(std::optional<double>& target_rad) {
+  return [&target_rad](const std::string& text) -> Result<void> {
+    const Result<double> degrees = number_from<double>(text);
+    if (!degrees) return tl::unexpected(degrees.error());
+    target_rad = *degrees * kDegree_rad;
+    return {};
+  };
+}
+
+/// A default that a log's device may change.
+std::string of_device(double angle_rad) {
+  return fmt::format("that of the device, else {}", shown(angle_rad / kDegree_rad));
+}
+
+std::string device_names(std::string_view between) {
+  Words names;
+  for (const DeviceProfile& profile : device_profiles()) names.emplace_back(profile.name);
+  return fmt::format("{}", fmt::join(names, between));
+}
+
+Take into_device(const DeviceProfile*& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    target = device_named(text);
+    if (target == nullptr) return off(fmt::format("must be {}, not '{}'", device_names(" or "), text));
     return {};
   };
 }
@@ -142,10 +168,12 @@ OptionTable::Group sensor_group(BuildWords& words) {
            {"--mount", 0, "X,Y,Z,R,P,Y", "the head on the vehicle: metres, then roll, pitch, yaw in degrees",
             "0,0,0,0,0,0", into_mount(words.build.body_from_sensor)},
            choice("--beam", kShapes, "what a beam fills: its axis, its width, or its width and height", model.shape),
-           {"--beam-width", 0, "DEG", "horizontally, full angle", shown(model.width_rad / kDegree_rad),
-            within({0.0, 180.0, Limits::Ends::kLowOut}, into_number(model.width_rad, kDegree_rad))},
-           {"--beam-height", 0, "DEG", "vertically, full angle", shown(model.height_rad / kDegree_rad),
-            within({0.0, 180.0, Limits::Ends::kBothOut}, into_number(model.height_rad, kDegree_rad))},
+           {"--beam-width", 0, "DEG", "horizontally, full angle", of_device(model.width_rad),
+            within({0.0, 180.0, Limits::Ends::kLowOut}, into_degrees(words.head.beam_width_rad))},
+           {"--beam-height", 0, "DEG", "vertically, full angle", of_device(model.height_rad),
+            within({0.0, 180.0, Limits::Ends::kBothOut}, into_degrees(words.head.beam_height_rad))},
+           {"--device", 0, device_names("|"), "the sonar's head, which says how wide and high its beam is",
+            "as the log says", into_device(words.head.device)},
            {"--free-share", 0, "S", "of width and height, about the axis: so much of a beam frees what it passed",
             shown(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
            choice("--ray", kRays, "how rays go from cell to cell", model.ray),

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "commands.hpp"
 #include "option_table.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -27,11 +28,12 @@ struct EchoWords {
 struct BuildWords {
   MapOptions map;
   BuildOptions build;  ///< filter and echo: see `echoes`
+  HeadWords head;
   EchoWords echoes;
   std::string poses;
 
   BuildOptions build_options() const {
-    BuildOptions all = build;
+    BuildOptions all = head.applied_to(build, nullptr);
     all.filter = echoes.filter_options();
     all.echo = echoes.echo;
     return all;

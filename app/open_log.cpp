@@ -14,6 +14,12 @@ Result<Format> recognised(const FileBytes& file) {
   return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, stranger_text(file.view())));
 }
 
+Result<Format> recognised(ByteStream& stream) {
+  if (const auto streamed = streamed_format_of(stream.beginning())) return *streamed;
+  if (const Result<void> held = stream.hold_all(); !held) return tl::unexpected(held.error());
+  return recognised(stream.held());
+}
+
 std::string described(Format format) {
   const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
   switch (kind_of(format)) {
@@ -37,18 +43,20 @@ std::string described(Format format) {
   return with("a picture");
 }
 
-Result<Log> open_log(FileBytes file, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m) {
-  const Result<Format> format = recognised(file);
+Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m) {
+  const Result<Format> format = recognised(stream);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind == FormatKind::kBeams) {
-    return open_beams(std::move(file), damage).map([](auto source) { return Log(std::move(source)); });
+    return open_beams(std::move(stream), damage).map([](auto source) { return Log(std::move(source)); });
   }
   if (kind == FormatKind::kScans || kind == FormatKind::kCloud) {
-    return open_scans(std::move(file), damage, cloud_origin_m).map([](auto source) { return Log(std::move(source)); });
+    return ByteStream::whole(std::move(stream))
+        .and_then([&](FileBytes file) { return open_scans(std::move(file), damage, cloud_origin_m); })
+        .map([](auto source) { return Log(std::move(source)); });
   }
   return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a log{}", file.name, described(*format),
+              fmt::format("{}: is {}, not a log{}", stream.name(), described(*format),
                           kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
 }
 

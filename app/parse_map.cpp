@@ -97,6 +97,7 @@ Result<Command> map_command(const Words& words) {
     command.format = *output_as;
     command.map = map;
     command.build = build.build_options();
+    command.head = build.head;
     if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.build.validate(); !valid) return tl::unexpected(valid.error());
     if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {

@@ -122,6 +122,7 @@ Result<PanelCommand> panel_command(const PanelWords& words, std::size_t usual_si
   PanelCommand panel = words.panel;
   panel.map = words.build.map;
   panel.build = words.build.build_options();
+  panel.head = words.build.head;
   if (!words.build.poses.empty()) panel.poses = words.build.poses;
   panel.map_picture.target_px = panel.echo_picture.target_px = words.size_px.value_or(usual_size_px);
   if (panel.view == PictureView::kSide) panel.map_picture.view = words.from;

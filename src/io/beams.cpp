@@ -17,6 +17,14 @@ std::string_view described(Format format) {
       return "a MATLAB file of beams";
     case Format::kCsv:
       return "a CSV file of beams";
+    case Format::kPingViewer:
+      return "a log of Ping Viewer";
+    case Format::kSeanetCapture:
+    case Format::kUdpCapture:
+      return "a capture of a SeaNet sonar";
+    case Format::kV4log:
+    case Format::kDumplog:
+      return "a SeaNet log";
     case Format::kScanGraph:
       return "an OctoMap scan graph";
     case Format::kScanLog:
@@ -53,12 +61,25 @@ tl::unexpected<Error> not_this(const std::string& name, std::string_view wanted,
 
 }  // namespace
 
-Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage) {
+Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage) {
+  const std::optional<Format> streamed = streamed_format_of(stream.beginning());
+  if (streamed == Format::kPingViewer) return open_ping_viewer(std::move(stream), damage);
+  if (streamed == Format::kSeanetCapture) return open_seanet_capture(std::move(stream), damage);
+  if (streamed == Format::kUdpCapture) return open_udp_capture(std::move(stream), damage);
+  if (streamed == Format::kV4log) return open_v4log(std::move(stream), damage);
+  if (streamed == Format::kDumplog) return open_dumplog(std::move(stream), damage);
+  Result<FileBytes> whole = ByteStream::whole(std::move(stream));
+  if (!whole) return tl::unexpected(whole.error());
+  FileBytes& file = *whole;
   const std::optional<Format> format = format_of(file.view());
   if (format == Format::kMat) return open_mat(std::move(file), damage);
   if (format == Format::kCsv) return open_csv(std::move(file), damage);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   return not_this(file.name, "a log of beams", format);
+}
+
+Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage) {
+  return open_beams(ByteStream(std::move(file)), damage);
 }
 
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,

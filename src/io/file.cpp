@@ -9,42 +9,19 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <new>
 #include <optional>
-#include <stdexcept>
 #include <streambuf>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "io/descriptor.hpp"
+#include "pingvox/io/byte_stream.hpp"
+
 namespace pingvox {
 namespace {
 
 namespace fs = std::filesystem;
-
-tl::unexpected<Error> refused(std::string_view name, int error) {
-  return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::system_category().message(error)));
-}
-
-/// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  int get() const { return fd_; }
-  bool valid() const { return fd_ >= 0; }
-  /// 0, or why what was written may be lost (network file systems say so only here).
-  int close() {
-    const int fd = std::exchange(fd_, -1);
-    return fd >= 0 && ::close(fd) != 0 && errno != EINTR ? errno : 0;
-  }
-
- private:
-  int fd_;
-};
 
 /// A stream's buffer on a file descriptor: std::ofstream gives neither the descriptor, which must be synced, nor the
 /// reason why a write failed.
@@ -213,39 +190,9 @@ Result<void> replace(const fs::path& target, std::optional<mode_t> mode, const s
 }  // namespace
 
 Result<FileBytes> read_file(const std::string& path) {
-  const bool standard_input = path == "-";
-  FileBytes file{standard_input ? "standard input" : path, {}};
-
-  Descriptor opened(standard_input ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!standard_input && !opened.valid()) return refused(file.name, errno);
-  const int fd = standard_input ? STDIN_FILENO : opened.get();
-
-  struct stat status = {};
-  if (::fstat(fd, &status) != 0) return refused(file.name, errno);
-  if (S_ISDIR(status.st_mode)) return refused(file.name, EISDIR);
-
-  const auto too_large = [&] { return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", file.name)); };
-  constexpr std::size_t kChunk = std::size_t{1} << 20;
-  try {
-    // One byte more than the file has, so that its end is seen without growing.
-    if (S_ISREG(status.st_mode)) file.bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
-    for (std::size_t size = 0;;) {
-      const std::size_t room = file.bytes.capacity() - size;
-      file.bytes.resize(size + (room > 0 ? std::min(room, kChunk) : kChunk));
-      const ssize_t got = ::read(fd, file.bytes.data() + size, file.bytes.size() - size);
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) return refused(file.name, errno);
-      size += static_cast<std::size_t>(got);
-      if (got == 0) {
-        file.bytes.resize(size);
-        return file;
-      }
-    }
-  } catch (const std::bad_alloc&) {
-    return too_large();
-  } catch (const std::length_error&) {
-    return too_large();
-  }
+  Result<ByteStream> stream = ByteStream::open(path);
+  if (!stream) return tl::unexpected(stream.error());
+  return ByteStream::whole(std::move(*stream));
 }
 
 Result<void> write_file(const std::string& path, const Writer& write) {

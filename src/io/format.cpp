@@ -10,6 +10,7 @@
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
+#include "pingvox/io/byte_stream.hpp"
 
 namespace pingvox {
 namespace {
@@ -32,6 +33,11 @@ FormatKind kind_of(Format format) {
   switch (format) {
     case Format::kMat:
     case Format::kCsv:
+    case Format::kPingViewer:
+    case Format::kSeanetCapture:
+    case Format::kUdpCapture:
+    case Format::kV4log:
+    case Format::kDumplog:
       return FormatKind::kBeams;
     case Format::kScanGraph:
     case Format::kScanLog:
@@ -65,6 +71,16 @@ std::string_view name_of(Format format) {
       return "mat";
     case Format::kCsv:
       return "csv";
+    case Format::kPingViewer:
+      return "pingviewer";
+    case Format::kSeanetCapture:
+      return "seanet";
+    case Format::kUdpCapture:
+      return "seanet-udp";
+    case Format::kV4log:
+      return "v4log";
+    case Format::kDumplog:
+      return "dumplog";
     case Format::kScanGraph:
       return "graph";
     case Format::kScanLog:
@@ -103,6 +119,9 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (text.starts_with("# Octomap OcTree binary file")) return Format::kBt;
   if (text.starts_with("# Octomap OcTree file")) return Format::kOt;
   if (text.starts_with("PINGVOXM")) return Format::kPvx;
+  if (const auto streamed = streamed_format_of(bytes.first(std::min(bytes.size(), ByteStream::kBeginning)))) {
+    return streamed;
+  }
   if (looks_like_ply(bytes)) return is_ply_with_faces(bytes) ? Format::kPlyMesh : Format::kPly;
   if (looks_like_pcd(bytes)) return Format::kPcd;
   if (looks_like_mat(bytes)) return Format::kMat;
@@ -114,6 +133,16 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (looks_like_binary_stl(bytes) || looks_like_stl_text(bytes)) return Format::kStl;
   if (looks_like_tum(bytes)) return Format::kTum;
   if (looks_like_xyz(bytes)) return Format::kXyz;
+  return std::nullopt;
+}
+
+std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning) {
+  if (looks_like_ping_viewer(beginning)) return Format::kPingViewer;
+  if (looks_like_v4log(beginning)) return Format::kV4log;
+  if (looks_like_dumplog(beginning)) return Format::kDumplog;
+  if (looks_like_udp_capture(beginning)) return Format::kUdpCapture;
+  // It has no mark of its own: other files may have such bytes in them, but not at their beginning.
+  if (looks_like_seanet_capture(beginning)) return Format::kSeanetCapture;
   return std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pingvox/io/beams.hpp"
+#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/bytes.hpp"
 
 // The readers behind open_beams, open_scans and read_mesh, and how format_of knows their formats.
@@ -18,6 +19,22 @@ Result<std::unique_ptr<BeamSource>> open_mat(FileBytes file, Damage damage);
 
 bool looks_like_csv(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage);
+
+// Logs that are read as a stream: their beginning tells what they are.
+bool looks_like_ping_viewer(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage);
+
+bool looks_like_seanet_capture(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_seanet_capture(ByteStream stream, Damage damage);
+
+bool looks_like_udp_capture(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_udp_capture(ByteStream stream, Damage damage);
+
+bool looks_like_v4log(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage);
+
+bool looks_like_dumplog(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_dumplog(ByteStream stream, Damage damage);
 
 bool looks_like_scan_graph(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damage);

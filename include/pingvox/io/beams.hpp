@@ -5,6 +5,7 @@
 #include <optional>
 #include <ostream>
 
+#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/map/point_scan.hpp"
 #include "pingvox/result.hpp"
@@ -18,7 +19,10 @@ enum class Damage {
   kFail,  ///< the first one is an error (--strict)
 };
 
-/// Any log that holds beams, told by content. kUnsupported when it holds none, kCorrupt when its frame is broken.
+/// Any log that holds beams, told by content. kUnsupported when it holds none, kCorrupt when its frame is broken. Logs
+/// of devices are read as the beams are asked for, in memory that does not grow with them; the others as a whole.
+Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage = Damage::kSkip);
+/// The same of bytes in memory.
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = Damage::kSkip);
 
 /// Any log that holds point scans, told by content, or a cloud of points (PLY, PCD, XYZ), which is one scan.

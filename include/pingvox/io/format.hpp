@@ -10,23 +10,28 @@ namespace pingvox {
 
 /// The kinds of files that we know.
 enum class Format {
-  kMat,        ///< MATLAB 5: beams
-  kCsv,        ///< beams as text (docs/formats.md)
-  kScanGraph,  ///< OctoMap's binary scan graph: point scans
-  kScanLog,    ///< OctoMap's text form of it, NODE x y z roll pitch yaw: point scans
-  kBt,         ///< OctoMap's binary tree: occupied or free
-  kOt,         ///< OctoMap's tree with log-odds
-  kPvx,        ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
-  kTum,        ///< a trajectory
-  kPly,        ///< a cloud of points
-  kPcd,        ///< a cloud of points, PCL's
-  kXyz,        ///< a cloud of points as text, read only
-  kPlyMesh,    ///< PLY with faces: a mesh
-  kOff,        ///< a mesh, read only
-  kStl,        ///< a mesh, read only
-  kGrid,       ///< a slice of a map for ROS's map_server, written only: a picture (PGM) and a YAML file beside it
-  kAsc,        ///< heights over a grid, ESRI's ASCII form, written only
-  kPng,        ///< pictures, written only
+  kMat,            ///< MATLAB 5: beams
+  kCsv,            ///< beams as text (docs/formats.md)
+  kPingViewer,     ///< Ping Viewer's log of a Ping360: beams
+  kSeanetCapture,  ///< what a SeaNet head sent over its serial line: beams
+  kUdpCapture,     ///< the same in UDP packets as hexadecimal text: beams
+  kV4log,          ///< the log of Tritech's own program: beams
+  kDumplog,        ///< the text that SeanetDumpLog makes of it: beams
+  kScanGraph,      ///< OctoMap's binary scan graph: point scans
+  kScanLog,        ///< OctoMap's text form of it, NODE x y z roll pitch yaw: point scans
+  kBt,             ///< OctoMap's binary tree: occupied or free
+  kOt,             ///< OctoMap's tree with log-odds
+  kPvx,            ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
+  kTum,            ///< a trajectory
+  kPly,            ///< a cloud of points
+  kPcd,            ///< a cloud of points, PCL's
+  kXyz,            ///< a cloud of points as text, read only
+  kPlyMesh,        ///< PLY with faces: a mesh
+  kOff,            ///< a mesh, read only
+  kStl,            ///< a mesh, read only
+  kGrid,           ///< a slice of a map for ROS's map_server, written only: a picture (PGM) and a YAML file beside it
+  kAsc,            ///< heights over a grid, ESRI's ASCII form, written only
+  kPng,            ///< pictures, written only
 };
 
 enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kCloud, kMesh, kGrid, kPicture };
@@ -37,6 +42,10 @@ std::string_view name_of(Format format);
 
 /// Told by content, not by name (in which order, says docs/formats.md). nullopt: none of those that we read.
 std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
+
+/// The same for logs that are read as a stream, by their beginning (ByteStream::beginning) alone. nullopt: another
+/// format, or none.
+std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning);
 
 /// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .csv .pgm .yaml .asc .png); nullopt: none
 /// that we write.

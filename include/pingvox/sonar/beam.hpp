@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "pingvox/result.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {
 
@@ -28,6 +30,13 @@ Result<void> validate(const Beam& beam);
 /// Any angle [rad] in [0, 2 pi). REQUIRES a finite angle.
 double wrapped_bearing(double angle_rad);
 
+/// One kind of damage that a source stepped over.
+struct DamageKind {
+  std::string_view what;         ///< in a few words, as in "wrong checksum"; lives as long as the program
+  std::size_t count = 0;         ///< how often it was met
+  std::uint64_t first_byte = 0;  ///< where in the log for the first time, from 0
+};
+
 /// Beams in the order in which they were heard: a log, a simulator, later a live device.
 class BeamSource {
  public:
@@ -37,6 +46,10 @@ class BeamSource {
   virtual Result<std::optional<Beam>> next() = 0;
   /// Beams (or records that should have been one) left out so far because they were damaged.
   virtual std::size_t skipped() const { return 0; }
+  /// The same by kind, in the order in which they were met; empty where the source does not tell them apart.
+  virtual std::vector<DamageKind> damage() const { return {}; }
+  /// The head that was heard, as far as the log says or its format tells; nullptr: nobody knows.
+  virtual const DeviceProfile* device() const { return nullptr; }
   /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: nobody knows.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };

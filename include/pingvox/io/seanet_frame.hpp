@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "pingvox/io/frame_finder.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+// The SeaNet protocol of Tritech's scanning heads, as far as imaging sonars need it (docs/formats.md).
+namespace pingvox {
+
+/// For a FrameFinder: one frame of the protocol, its two lengths, its end and the length that its message prescribes.
+/// There is no checksum: a changed sample is not seen.
+FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes);
+
+/// One line of an imaging head (mtHeadData), in its own units.
+struct SeanetLine {
+  std::uint8_t head_type = 0;          ///< 2 or 0x11 (DST)
+  std::uint8_t status = 0;             ///< bits: 0 no power, 1 motor lost its step, 4 8-bit samples, 7 message behind
+  std::uint16_t control = 0;           ///< HdCtrl; bit 0: 8-bit samples
+  std::uint16_t range_scale = 0;       ///< low 14 bits tenths of a unit; high 2 bits: 0 m, 1 ft, 2 fathom, 3 yard
+  std::uint32_t transmit = 0;          ///< frequency * 2^32 / 32 MHz
+  std::uint8_t gain = 0;               ///< 0..210
+  std::uint16_t interval_640ns = 0;    ///< from sample to sample; 0: by the range scale
+  std::uint16_t bearing = 0;           ///< 1/16 gradian clockwise, 3200 is ahead
+  std::span<const std::uint8_t> data;  ///< a sample a byte, or two with the nearer one in the high bits
+};
+
+/// nullopt: the frame is another message, or a part of one. REQUIRES a frame that is right.
+std::optional<SeanetLine> seanet_line(std::span<const std::uint8_t> frame);
+
+/// What follows mtHeadData's own length, from its device type on, as V4LOG files hold it too. nullopt: too short.
+std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_block);
+
+/// The line as a beam of the sensor's frame, heard at kAssumedSoundSpeed_m_s; the error says what is wrong with it.
+/// Samples of 4 bits are spread over 0..255.
+tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s);
+
+/// The head that sends such lines, as far as its type and frequency tell.
+const DeviceProfile* device_of(const SeanetLine& line);
+
+}  // namespace pingvox

@@ -1,0 +1,143 @@
+#include "pingvox/io/byte_stream.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "io/descriptor.hpp"
+
+namespace pingvox {
+
+/// What is behind the beginning of a file, a pipe or a device.
+class ByteStream::Source {
+ public:
+  /// @param size  of a regular file; nullopt: nobody knows
+  Source(Descriptor owned, int fd, std::optional<std::uint64_t> size)
+      : owned_(std::move(owned)), fd_(fd), size_(size) {}
+
+  /// How many bytes were read, 0 at the end, or the reason why there are none.
+  tl::expected<std::size_t, int> read(std::span<std::uint8_t> to) {
+    for (;;) {
+      const ssize_t got = ::read(fd_, to.data(), to.size());
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) return tl::unexpected(errno);
+      read_ += static_cast<std::uint64_t>(got);
+      return static_cast<std::size_t>(got);
+    }
+  }
+
+  std::uint64_t bytes_read() const { return read_; }
+  std::optional<std::uint64_t> size() const { return size_; }
+
+ private:
+  Descriptor owned_;  ///< standard input is not ours to close
+  int fd_;
+  std::optional<std::uint64_t> size_;
+  std::uint64_t read_ = 0;
+};
+
+ByteStream::ByteStream(FileBytes file) : held_(std::move(file)) {}
+ByteStream::ByteStream(FileBytes beginning, std::unique_ptr<Source> rest)
+    : held_(std::move(beginning)), rest_(std::move(rest)) {}
+ByteStream::ByteStream(ByteStream&&) noexcept = default;
+ByteStream& ByteStream::operator=(ByteStream&&) noexcept = default;
+ByteStream::~ByteStream() = default;
+
+Result<ByteStream> ByteStream::open(const std::string& path) {
+  const bool standard_input = path == "-";
+  FileBytes beginning{standard_input ? "standard input" : path, {}};
+
+  Descriptor opened(standard_input ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!standard_input && !opened.valid()) return refused(beginning.name, errno);
+  const int fd = standard_input ? STDIN_FILENO : opened.get();
+
+  struct stat status = {};
+  if (::fstat(fd, &status) != 0) return refused(beginning.name, errno);
+  if (S_ISDIR(status.st_mode)) return refused(beginning.name, EISDIR);
+  std::optional<std::uint64_t> size;
+  if (S_ISREG(status.st_mode)) size = static_cast<std::uint64_t>(status.st_size);
+
+  auto rest = std::make_unique<Source>(std::move(opened), fd, size);
+  beginning.bytes.resize(kBeginning);
+  std::size_t filled = 0;
+  while (filled < kBeginning) {
+    const auto got = rest->read(std::span(beginning.bytes).subspan(filled));
+    if (!got) return refused(beginning.name, got.error());
+    if (*got == 0) break;
+    filled += *got;
+  }
+  beginning.bytes.resize(filled);
+  return ByteStream(std::move(beginning), std::move(rest));
+}
+
+std::span<const std::uint8_t> ByteStream::beginning() const {
+  return held_.view().first(std::min(held_.bytes.size(), kBeginning));
+}
+
+Result<std::size_t> ByteStream::read(std::span<std::uint8_t> to) {
+  assert(!to.empty());
+  const std::size_t held = std::min(to.size(), held_.bytes.size() - taken_);
+  if (held > 0) {
+    std::copy_n(held_.bytes.begin() + static_cast<std::ptrdiff_t>(taken_), held, to.begin());
+    taken_ += held;
+    return held;
+  }
+  if (!rest_) return std::size_t{0};
+  const auto got = rest_->read(to);
+  if (!got) return refused(name(), got.error());
+  return *got;
+}
+
+std::optional<double> ByteStream::share_read() const {
+  std::uint64_t all = held_.bytes.size(), read = taken_;
+  if (rest_) {
+    if (!rest_->size() || *rest_->size() == 0) return std::nullopt;
+    // Of a file that grows while it is read more was read than there was.
+    all = std::max(*rest_->size(), rest_->bytes_read());
+    read += rest_->bytes_read() - held_.bytes.size();
+  }
+  return all > 0 ? static_cast<double>(read) / static_cast<double>(all) : 1.0;
+}
+
+Result<void> ByteStream::hold_all() {
+  assert(taken_ == 0);
+  if (!rest_) return {};
+  const auto too_large = [&] { return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", name())); };
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  std::vector<std::uint8_t>& bytes = held_.bytes;
+  try {
+    // One byte more than the file has, so that its end is seen without growing.
+    bytes.reserve(static_cast<std::size_t>(rest_->size().value_or(0)) + 1);
+    for (std::size_t size = bytes.size();;) {
+      const std::size_t room = bytes.capacity() - size;
+      bytes.resize(size + (room > 0 ? std::min(room, kChunk) : kChunk));
+      const auto got = rest_->read(std::span(bytes).subspan(size));
+      if (!got) return refused(name(), got.error());
+      size += *got;
+      if (*got == 0) {
+        bytes.resize(size);
+        rest_.reset();
+        return {};
+      }
+    }
+  } catch (const std::bad_alloc&) {
+    return too_large();
+  } catch (const std::length_error&) {
+    return too_large();
+  }
+}
+
+Result<FileBytes> ByteStream::whole(ByteStream stream) {
+  if (const Result<void> held = stream.hold_all(); !held) return tl::unexpected(held.error());
+  return std::move(stream.held_);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,56 @@
+#include "io/date.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace pingvox {
+namespace {
+
+/// The numbers of a text of the form "0000.00": each 0 is a digit, all else stands as it is. nullopt: it has another
+/// form.
+template <std::size_t N>
+std::optional<std::array<int, N>> numbers_in(std::string_view text, std::string_view form) {
+  if (text.size() != form.size()) return std::nullopt;
+  std::array<int, N> numbers = {};
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    if (form[i] == '0') {
+      if (text[i] < '0' || text[i] > '9') return std::nullopt;
+      numbers[number] = numbers[number] * 10 + (text[i] - '0');
+    } else {
+      if (text[i] != form[i]) return std::nullopt;
+      ++number;
+    }
+  }
+  return numbers;
+}
+
+std::optional<double> seconds_of(int hour, int minute, int second, int millisecond) {
+  // A leap second is a second.
+  if (hour > 23 || minute > 59 || second > 60) return std::nullopt;
+  return (hour * 60 + minute) * 60 + second + millisecond / 1000.0;
+}
+
+}  // namespace
+
+std::optional<double> date_time_s(std::string_view text) {
+  const auto numbers = numbers_in<7>(text, "0000.00.00 00.00.00.000");
+  if (!numbers) return std::nullopt;
+  const auto& [year, month, day, hour, minute, second, millisecond] = *numbers;
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  const std::optional<double> time_s = seconds_of(hour, minute, second, millisecond);
+  if (!date.ok() || !time_s) return std::nullopt;
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) * 86400.0 + *time_s;
+}
+
+std::optional<double> time_of_day_s(std::string_view text) {
+  const auto numbers = numbers_in<4>(text, "00:00:00.000");
+  if (!numbers) return std::nullopt;
+  const auto& [hour, minute, second, millisecond] = *numbers;
+  return seconds_of(hour, minute, second, millisecond);
+}
+
+}  // namespace pingvox

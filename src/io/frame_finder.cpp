@@ -1,0 +1,59 @@
+#include "pingvox/io/frame_finder.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace pingvox {
+
+void FrameFinder::push(std::span<const std::uint8_t> bytes) {
+  bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(start_));
+  start_ = 0;
+  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+}
+
+std::optional<FrameFinder::Frame> FrameFinder::next() {
+  while (start_ < bytes_.size()) {
+    const auto rest = std::span<const std::uint8_t>(bytes_).subspan(start_);
+    FrameCheck check = check_(rest);
+    if (check.verdict == FrameCheck::Verdict::kIncomplete) {
+      if (!ended_) return std::nullopt;
+      check = {FrameCheck::Verdict::kBroken, rest.size(), kCutOff};
+    }
+    assert(check.size > 0 && check.size <= rest.size());
+    if (check.verdict == FrameCheck::Verdict::kFrame) {
+      const Frame frame{position_, rest.first(check.size)};
+      start_ += check.size;
+      position_ += check.size;
+      in_damage_ = false;
+      broken_until_ = 0;
+      return frame;
+    }
+    pass(check);
+  }
+  return std::nullopt;
+}
+
+void FrameFinder::pass(const FrameCheck& check) {
+  if (check.verdict == FrameCheck::Verdict::kBroken) {
+    // What looks like a frame within a broken one is part of its damage.
+    if (position_ >= broken_until_) add_damage(damage_, check.why, position_);
+    broken_until_ = std::max(broken_until_, position_ + check.size);
+  } else if (!in_damage_) {
+    add_damage(damage_, kBetween, position_);
+  }
+  in_damage_ = true;
+  const std::size_t passed = check.verdict == FrameCheck::Verdict::kBroken ? 1 : check.size;
+  start_ += passed;
+  position_ += passed;
+}
+
+void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::uint64_t at_byte) {
+  const auto known = std::ranges::find(kinds, what, &DamageKind::what);
+  if (known != kinds.end()) {
+    ++known->count;
+  } else {
+    kinds.push_back({what, 1, at_byte});
+  }
+}
+
+}  // namespace pingvox

@@ -1,0 +1,195 @@
+#include "io/frame_log.hpp"
+
+#include <fmt/core.h>
+
+#include <deque>
+#include <utility>
+
+#include "pingvox/io/ping_frame.hpp"
+#include "pingvox/io/seanet_frame.hpp"
+
+namespace pingvox {
+namespace {
+
+tl::expected<std::optional<Beam>, std::string> ping_beam_in(std::span<const std::uint8_t> frame, double time_s) {
+  const std::optional<Ping360Ping> ping = ping360_ping(frame);
+  if (!ping) return std::nullopt;
+  return beam_of(*ping, time_s);
+}
+
+tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s) {
+  const std::optional<SeanetLine> line = seanet_line(frame);
+  if (!line) return std::nullopt;
+  return beam_of(*line, time_s);
+}
+
+const DeviceProfile* ping_device_of(std::span<const std::uint8_t>) {
+  return device_named("ping360");
+}
+
+const DeviceProfile* seanet_device_of(std::span<const std::uint8_t> frame) {
+  const std::optional<SeanetLine> line = seanet_line(frame);
+  return line ? device_of(*line) : nullptr;
+}
+
+/// Where the bytes of a stream stand in the file, and when they came.
+class PlacesInFile {
+ public:
+  void add(const FrameContainer::Piece& piece) {
+    if (piece.bytes.empty()) return;
+    pieces_.push_back({end_, piece});
+    end_ += piece.bytes.size();
+  }
+  /// Nothing before will be asked for.
+  void forget_before(std::uint64_t place) {
+    while (pieces_.size() > 1 && pieces_[1].from <= place) pieces_.pop_front();
+  }
+  std::uint64_t file_byte(std::uint64_t place) const {
+    const Known* known = piece_at(place);
+    return known == nullptr ? 0 : known->piece.file_byte + (place - known->from) * known->piece.file_step;
+  }
+  double time_s(std::uint64_t place) const {
+    const Known* known = piece_at(place);
+    if (known == nullptr) return 0.0;
+    return known->piece.time_s + static_cast<double>(place - known->from) * known->piece.time_step_s;
+  }
+
+ private:
+  struct Known {
+    std::uint64_t from;
+    FrameContainer::Piece piece;
+  };
+  const Known* piece_at(std::uint64_t place) const {
+    const Known* last = nullptr;
+    for (const Known& known : pieces_) {
+      if (known.from > place) break;
+      last = &known;
+    }
+    return last;
+  }
+
+  std::deque<Known> pieces_;
+  std::uint64_t end_ = 0;
+};
+
+class FrameLog : public BeamSource {
+ public:
+  FrameLog(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol, Damage damage)
+      : container_(std::move(container)), protocol_(protocol), damage_(damage), finder_(protocol.check) {
+    // The first beam says which head it was, and that is asked for before any beam is.
+    first_ = read();
+  }
+
+  Result<std::optional<Beam>> next() override {
+    if (first_) return *std::exchange(first_, std::nullopt);
+    return read();
+  }
+
+  std::size_t skipped() const override {
+    std::size_t count = 0;
+    for (const DamageKind& kind : damage()) count += kind.count;
+    return count;
+  }
+
+  std::vector<DamageKind> damage() const override {
+    std::vector<DamageKind> kinds = container_->damage();
+    for (std::size_t i = 0; i < finder_.damage().size(); ++i) {
+      DamageKind kind = finder_.damage()[i];
+      kind.first_byte = first_bytes_[i];
+      kinds.push_back(kind);
+    }
+    kinds.insert(kinds.end(), unusable_.begin(), unusable_.end());
+    return kinds;
+  }
+
+  const DeviceProfile* device() const override { return device_; }
+  std::optional<double> share_read() const override { return container_->share_read(); }
+
+ private:
+  Result<std::optional<Beam>> read() {
+    for (;;) {
+      const std::optional<FrameFinder::Frame> frame = finder_.next();
+      note_places();
+      if (const auto whole = check_damage(); !whole) return tl::unexpected(whole.error());
+      if (!frame) {
+        if (at_end_) return std::nullopt;
+        if (const auto more = push_more(); !more) return tl::unexpected(more.error());
+        continue;
+      }
+      auto beam = protocol_.beam_in(frame->bytes, places_.time_s(frame->end() - 1));
+      if (!beam) {
+        add_damage(unusable_, "impossible values", places_.file_byte(frame->at));
+        if (damage_ == Damage::kFail) return damaged(unusable_.front().first_byte, beam.error());
+      } else if (*beam) {
+        if (device_ == nullptr) device_ = protocol_.device_of(frame->bytes);
+        places_.forget_before(frame->end());
+        return std::move(*beam);
+      }
+      places_.forget_before(frame->end());
+    }
+  }
+
+  Result<void> push_more() {
+    const Result<std::optional<FrameContainer::Piece>> piece = container_->next();
+    if (!piece) return tl::unexpected(piece.error());
+    if (*piece) {
+      places_.forget_before(finder_.position());
+      places_.add(**piece);
+      finder_.push((*piece)->bytes);
+    } else {
+      at_end_ = true;
+      finder_.end();
+    }
+    return {};
+  }
+
+  /// Before the pieces are forgotten.
+  void note_places() {
+    for (std::size_t i = first_bytes_.size(); i < finder_.damage().size(); ++i) {
+      first_bytes_.push_back(places_.file_byte(finder_.damage()[i].first_byte));
+    }
+  }
+
+  Result<void> check_damage() const {
+    if (damage_ == Damage::kSkip) return {};
+    if (!container_->damage().empty()) {
+      return damaged(container_->damage().front().first_byte, std::string(container_->damage().front().what));
+    }
+    if (!first_bytes_.empty()) return damaged(first_bytes_.front(), std::string(finder_.damage().front().what));
+    return {};
+  }
+
+  tl::unexpected<Error> damaged(std::uint64_t byte, const std::string& what) const {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", container_->name(), byte, what));
+  }
+
+  std::unique_ptr<FrameContainer> container_;
+  const FrameProtocol& protocol_;
+  Damage damage_;
+  FrameFinder finder_;
+  PlacesInFile places_;
+  bool at_end_ = false;
+  std::vector<std::uint64_t> first_bytes_;  ///< in the file, of the finder's kinds of damage
+  std::vector<DamageKind> unusable_;        ///< right frames with values that make no beam
+  const DeviceProfile* device_ = nullptr;
+  std::optional<Result<std::optional<Beam>>> first_;
+};
+
+}  // namespace
+
+const FrameProtocol& ping_protocol() {
+  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of};
+  return kPing;
+}
+
+const FrameProtocol& seanet_protocol() {
+  static constexpr FrameProtocol kSeanet = {check_seanet_frame, seanet_beam_in, seanet_device_of};
+  return kSeanet;
+}
+
+std::unique_ptr<BeamSource> beams_of(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol,
+                                     Damage damage) {
+  return std::make_unique<FrameLog>(std::move(container), protocol, damage);
+}
+
+}  // namespace pingvox

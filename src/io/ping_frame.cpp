@@ -1,0 +1,87 @@
+#include "pingvox/io/ping_frame.hpp"
+
+#include <fmt/core.h>
+
+#include <cstring>
+#include <numbers>
+
+#include "io/byte_reader.hpp"
+#include "pingvox/sonar/device_profile.hpp"
+
+namespace pingvox {
+namespace {
+
+using Verdict = FrameCheck::Verdict;
+
+constexpr std::size_t kHeader = 8, kChecksum = 2;
+/// More than any message has; without it a damaged length would hold back several frames.
+constexpr std::size_t kLongestPayload = 4096;
+
+constexpr std::uint16_t kDeviceData = 2300, kAutoDeviceData = 2301;
+
+std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
+  return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
+}
+
+/// Bytes of a payload before its samples; the last two of them count the samples. 0: another message.
+std::size_t fixed_part(std::uint16_t id) {
+  if (id == kDeviceData) return 14;
+  return id == kAutoDeviceData ? 20 : 0;
+}
+
+std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
+  std::uint32_t sum = 0;
+  for (const std::uint8_t byte : bytes) sum += byte;
+  return static_cast<std::uint16_t>(sum);
+}
+
+}  // namespace
+
+FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
+  const auto* b = static_cast<const std::uint8_t*>(std::memchr(bytes.data(), 'B', bytes.size()));
+  const std::size_t before = b != nullptr ? static_cast<std::size_t>(b - bytes.data()) : bytes.size();
+  if (before > 0) return {Verdict::kNothing, before};
+  if (bytes.size() < 2) return {Verdict::kIncomplete};
+  if (bytes[1] != 'R') return {Verdict::kNothing, 1};
+  if (bytes.size() < 4) return {Verdict::kIncomplete};
+
+  const std::size_t payload = u16_at(bytes, 2);
+  if (payload > kLongestPayload) return {Verdict::kBroken, 4, "impossible length"};
+  const std::size_t size = kHeader + payload + kChecksum;
+  if (bytes.size() < size) return {Verdict::kIncomplete};
+  const std::span<const std::uint8_t> summed = bytes.first(size - kChecksum);
+  if (sum_of(summed) != u16_at(bytes, size - kChecksum)) return {Verdict::kBroken, size, "wrong checksum"};
+  if (const std::size_t fixed = fixed_part(u16_at(bytes, 4)); fixed > 0) {
+    const bool fits = payload >= fixed && payload - fixed == u16_at(bytes, kHeader + fixed - 2);
+    if (!fits) return {Verdict::kBroken, size, "impossible length"};
+  }
+  return {Verdict::kFrame, size};
+}
+
+std::optional<Ping360Ping> ping360_ping(std::span<const std::uint8_t> frame) {
+  const std::size_t fixed = fixed_part(u16_at(frame, 4));
+  if (fixed == 0) return std::nullopt;
+  Ping360Ping ping;
+  ping.gain = frame[9];
+  ping.angle_grad = u16_at(frame, 10);
+  ping.transmit_us = u16_at(frame, 12);
+  ping.period_25ns = u16_at(frame, 14);
+  ping.frequency_khz = u16_at(frame, 16);
+  ping.samples = u16_at(frame, kHeader + fixed - 4);
+  ping.data = frame.subspan(kHeader + fixed, frame.size() - kHeader - fixed - kChecksum);
+  return ping;
+}
+
+tl::expected<Beam, std::string> beam_of(const Ping360Ping& ping, double time_s) {
+  constexpr double kTurn_grad = 400.0, kAhead_grad = 200.0, kTick_s = 25e-9;
+  if (ping.angle_grad > kTurn_grad) return tl::unexpected(fmt::format("angle {} of 400 a turn", ping.angle_grad));
+  Beam beam;
+  beam.time_s = time_s;
+  beam.bearing_rad = wrapped_bearing((kAhead_grad - ping.angle_grad) * (2.0 * std::numbers::pi / kTurn_grad));
+  beam.bin_length_m = kAssumedSoundSpeed_m_s * (ping.period_25ns * kTick_s) / 2.0;
+  beam.intensities.assign(ping.data.begin(), ping.data.end());
+  if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
+  return beam;
+}
+
+}  // namespace pingvox

@@ -1,0 +1,216 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "io/byte_reader.hpp"
+#include "io/frame_log.hpp"
+#include "io/readers.hpp"
+#include "io/stream_reader.hpp"
+
+// Logs of Ping Viewer: a header, then records of a time and what was read from the serial line (docs/formats.md).
+namespace pingvox {
+namespace {
+
+constexpr std::string_view kMagic = "PingViewer sensor log file";
+
+/// How the strings of a log are stored: as Qt does it, or as scripts that write such logs do.
+enum class Encoding { kUtf16, kUtf8 };
+
+using Bytes = std::span<const std::uint8_t>;
+
+std::uint32_t u32_at(Bytes bytes, std::size_t place) {
+  return value_from<std::uint32_t>(bytes.subspan(place, 4), std::endian::big);
+}
+
+/// The next character, cut off the front; nullopt: what stands there is none that a time could have.
+std::optional<std::uint32_t> cut_character(Bytes& text, Encoding encoding) {
+  if (text.empty()) return std::nullopt;
+  std::size_t size = 2;
+  std::uint32_t character = 0;
+  if (encoding == Encoding::kUtf16) {
+    if (text.size() < 2) return std::nullopt;
+    character = text[0] * 256U + text[1];
+  } else {
+    const std::uint8_t lead = text[0];
+    size = lead < 0x80 ? 1 : lead < 0xe0 ? 2 : 3;
+    if (text.size() < size || (lead >= 0x80 && lead < 0xc0) || lead >= 0xf0) return std::nullopt;
+    character = size == 1 ? lead : lead & (size == 2 ? 0x1fU : 0x0fU);
+    for (std::size_t i = 1; i < size; ++i) character = character * 64 + (text[i] & 0x3fU);
+  }
+  text = text.subspan(size);
+  return character;
+}
+
+/// The value of a decimal digit of any script with a place in the first 2^16 characters; -1: it is none. Times are
+/// written with the digits of the writer's locale.
+int digit_value(std::uint32_t character) {
+  constexpr std::array<std::uint32_t, 22> kZeros = {0x30,   0x660,  0x6f0,  0x7c0,  0x966,  0x9e6, 0xa66, 0xae6,
+                                                    0xb66,  0xbe6,  0xc66,  0xce6,  0xd66,  0xe50, 0xed0, 0xf20,
+                                                    0x1040, 0x17e0, 0x1810, 0x1946, 0xa9d0, 0xff10};
+  for (const std::uint32_t zero : kZeros) {
+    if (character >= zero && character < zero + 10) return static_cast<int>(character - zero);
+  }
+  return -1;
+}
+
+/// Seconds of "hh:mm:ss.zzz".
+std::optional<double> time_in(Bytes text, Encoding encoding) {
+  constexpr std::string_view kForm = "00:00:00.000";
+  std::array<int, 4> fields = {};
+  std::size_t field = 0;
+  for (const char form : kForm) {
+    const std::optional<std::uint32_t> character = cut_character(text, encoding);
+    if (!character) return std::nullopt;
+    if (form == '0') {
+      const int digit = digit_value(*character);
+      if (digit < 0) return std::nullopt;
+      fields[field] = fields[field] * 10 + digit;
+    } else {
+      if (*character != static_cast<unsigned char>(form)) return std::nullopt;
+      ++field;
+    }
+  }
+  if (!text.empty()) return std::nullopt;
+  const auto& [hours, minutes, seconds, milliseconds] = fields;
+  return (hours * 60 + minutes) * 60 + seconds + milliseconds / 1000.0;
+}
+
+/// What stands before a record's data.
+struct RecordHeader {
+  double time_s;
+  std::size_t size;  ///< of the header itself
+  std::uint32_t data;
+};
+
+constexpr std::uint32_t kMostData = 1U << 16;
+/// The times of 12 characters, of at most three bytes each, and two counts.
+constexpr std::size_t kLongestHeader = 4 + 36 + 4;
+
+/// nullopt: no header that one could believe stands here.
+std::optional<RecordHeader> record_header_in(Bytes bytes, Encoding encoding) {
+  if (bytes.size() < 4) return std::nullopt;
+  const std::uint32_t text = u32_at(bytes, 0);
+  const bool is_time = encoding == Encoding::kUtf16 ? text == 24 : text >= 12 && text <= 36;
+  if (!is_time || bytes.size() < 4 + text + 4) return std::nullopt;
+  const std::optional<double> time_s = time_in(bytes.subspan(4, text), encoding);
+  const std::uint32_t data = u32_at(bytes, 4 + text);
+  if (!time_s || data > kMostData) return std::nullopt;
+  return RecordHeader{*time_s, 4 + text + 4, data};
+}
+
+class PingViewerRecords : public FrameContainer {
+ public:
+  PingViewerRecords(StreamReader reader, Encoding encoding) : reader_(std::move(reader)), encoding_(encoding) {}
+
+  const std::string& name() const override { return reader_.name(); }
+  std::optional<double> share_read() const override { return reader_.share_read(); }
+
+  Result<std::optional<Piece>> next() override {
+    const Result<Bytes> start = reader_.peek(kLongestHeader);
+    if (!start) return tl::unexpected(start.error());
+    if (start->empty()) return std::nullopt;
+    const std::optional<RecordHeader> header = record_header_in(*start, encoding_);
+    if (!header) return next_behind_damage();
+    in_damage_ = false;
+
+    const Result<Bytes> record = reader_.peek(header->size + header->data);
+    if (!record) return tl::unexpected(record.error());
+    if (record->size() < header->size + header->data) {
+      add_damage(damage_, FrameFinder::kCutOff, reader_.position());
+    }
+    set_time(header->time_s);
+    const Piece piece{record->subspan(header->size), reader_.position() + header->size, 1, time_s_, 0.0};
+    reader_.skip(record->size());
+    return piece;
+  }
+
+ private:
+  /// The bytes up to the next record that one could believe: they may hold frames too.
+  Result<std::optional<Piece>> next_behind_damage() {
+    constexpr std::size_t kAtOnce = 4096;
+    const Result<Bytes> bytes = reader_.peek(kAtOnce + kLongestHeader);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (!in_damage_) add_damage(damage_, "damaged record", reader_.position());
+    in_damage_ = true;
+    std::size_t passed = 1;
+    const std::size_t most = bytes->size() < kAtOnce + kLongestHeader ? bytes->size() : kAtOnce;
+    while (passed < most && !record_header_in(bytes->subspan(passed), encoding_)) ++passed;
+    const Piece piece{bytes->first(passed), reader_.position(), 1, time_s_, 0.0};
+    reader_.skip(passed);
+    return piece;
+  }
+
+  /// Times count from the log's start and begin again after a day.
+  void set_time(double time_s) {
+    constexpr double kDay_s = 86400.0;
+    if (time_s + days_s_ < time_s_ - kDay_s / 2) days_s_ += kDay_s;
+    time_s_ = time_s + days_s_;
+  }
+
+  StreamReader reader_;
+  Encoding encoding_;
+  double time_s_ = 0.0, days_s_ = 0.0;
+  bool in_damage_ = false;
+};
+
+std::optional<Encoding> encoding_of(Bytes bytes) {
+  if (bytes.size() < 4) return std::nullopt;
+  const bool is_wide = u32_at(bytes, 0) == 2 * kMagic.size();
+  if (!is_wide && u32_at(bytes, 0) != kMagic.size()) return std::nullopt;
+  const Encoding encoding = is_wide ? Encoding::kUtf16 : Encoding::kUtf8;
+  Bytes text = bytes.subspan(4);
+  for (const char wanted : kMagic) {
+    if (cut_character(text, encoding) != static_cast<unsigned char>(wanted)) return std::nullopt;
+  }
+  return encoding;
+}
+
+}  // namespace
+
+bool looks_like_ping_viewer(Bytes beginning) {
+  return encoding_of(beginning).has_value();
+}
+
+Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage) {
+  constexpr std::int32_t kPingFamily = 1, kPing1d = 1, kPing360 = 2;
+  constexpr int kStrings = 5;
+  constexpr std::uint32_t kNullString = 0xffffffff;
+  StreamReader reader(std::move(stream));
+  const std::string name = reader.name();
+  const Result<Bytes> beginning = reader.peek(ByteStream::kBeginning);
+  if (!beginning) return tl::unexpected(beginning.error());
+  const std::optional<Encoding> encoding = encoding_of(*beginning);
+  ByteReader header(*beginning, std::endian::big);
+  const auto cut_string = [&header] {
+    const auto size = header.read<std::uint32_t>();
+    return size && (*size == kNullString || header.take(*size));
+  };
+  bool is_whole = encoding && cut_string() && header.read<std::uint32_t>();
+  for (int i = 0; i < kStrings; ++i) is_whole = is_whole && cut_string();
+  const auto family = header.read<std::int32_t>(), type = header.read<std::int32_t>();
+  if (!is_whole || !family || !type) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", name));
+  }
+  if (family == kPingFamily && type == kPing1d) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: is a Ping Viewer log of a Ping1D, an echosounder that looks one way: only those of a "
+                            "Ping360 hold beams",
+                            name));
+  }
+  if (family != kPingFamily || type != kPing360) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: is a Ping Viewer log of an unknown sensor (family {}, type {}): only those of a "
+                            "Ping360 hold beams",
+                            name, *family, *type));
+  }
+  reader.skip(header.position());
+  return beams_of(std::make_unique<PingViewerRecords>(std::move(reader), *encoding), ping_protocol(), damage);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,132 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "io/date.hpp"
+#include "io/readers.hpp"
+#include "io/seanet_bearing.hpp"
+#include "io/stream_reader.hpp"
+#include "io/text.hpp"
+#include "pingvox/io/frame_finder.hpp"
+
+// What Tritech's SeanetDumpLog makes of its logs: a line for each ping (docs/formats.md).
+namespace pingvox {
+namespace {
+
+/// Columns of a line of an imaging sonar.
+enum Column : std::size_t {
+  kKind,
+  kTime,
+  kNode,
+  kStatus,
+  kControl,
+  kRangeScale,
+  kBearing = 13,
+  kSamples,
+  kFirstSample
+};
+
+tl::expected<Beam, std::string> beam_in(std::string_view line) {
+  std::array<std::string_view, kFirstSample> fields;
+  for (std::string_view& field : fields) {
+    const auto cut = cut_field(line, ',');
+    if (!cut) return tl::unexpected(std::string("has too few columns"));
+    field = *cut;
+  }
+  const std::optional<double> time_s = time_of_day_s(fields[kTime]);
+  if (!time_s) return tl::unexpected(fmt::format("\"{}\" is no time of day", printable(fields[kTime])));
+  const auto bearing = count_in(fields[kBearing]), range_scale = count_in(fields[kRangeScale]);
+  const auto samples = count_in(fields[kSamples]);
+  const std::optional<double> bearing_rad = bearing ? seanet_bearing_rad(*bearing) : std::nullopt;
+  if (!bearing_rad) {
+    return tl::unexpected(fmt::format("\"{}\" is no bearing of 0..6400", printable(fields[kBearing])));
+  }
+  if (!range_scale || *range_scale > 0xffff) {
+    return tl::unexpected(fmt::format("\"{}\" is no range scale", printable(fields[kRangeScale])));
+  }
+
+  Beam beam;
+  beam.time_s = *time_s;
+  beam.bearing_rad = *bearing_rad;
+  while (const auto field = cut_field(line, ',')) {
+    // Lines may end with a comma.
+    if (field->empty() && line.data() == nullptr) break;
+    const std::optional<std::uint64_t> sample = count_in(*field);
+    if (!sample || *sample > 255) return tl::unexpected(fmt::format("\"{}\" is no sample", printable(*field)));
+    beam.intensities.push_back(static_cast<std::uint8_t>(*sample));
+  }
+  if (samples != beam.intensities.size()) {
+    return tl::unexpected(fmt::format("has {} samples, not {}", beam.intensities.size(), printable(fields[kSamples])));
+  }
+  beam.bin_length_m = seanet_bin_length_m(static_cast<std::uint16_t>(*range_scale), beam.intensities.size());
+  if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
+  return beam;
+}
+
+class DumpLog : public BeamSource {
+ public:
+  DumpLog(StreamReader reader, Damage damage) : reader_(std::move(reader)), damage_(damage) {}
+
+  Result<std::optional<Beam>> next() override {
+    for (;;) {
+      const std::uint64_t at = reader_.position();
+      const Result<std::optional<std::string_view>> line = reader_.next_line();
+      if (!line) return tl::unexpected(line.error());
+      if (!*line) return std::nullopt;
+      // Other devices of the same log have other words in front.
+      if (!(*line)->starts_with("SON,")) continue;
+      tl::expected<Beam, std::string> beam = beam_in(**line);
+      if (beam) {
+        set_time(*beam);
+        return std::move(*beam);
+      }
+      add_damage(kinds_, reader_.line_has_end() ? "damaged line" : FrameFinder::kCutOff, at);
+      if (damage_ == Damage::kFail) {
+        return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", reader_.name(), at, beam.error()));
+      }
+    }
+  }
+  std::size_t skipped() const override {
+    std::size_t count = 0;
+    for (const DamageKind& kind : kinds_) count += kind.count;
+    return count;
+  }
+  std::vector<DamageKind> damage() const override { return kinds_; }
+  const DeviceProfile* device() const override { return device_named("micron"); }
+  std::optional<double> share_read() const override { return reader_.share_read(); }
+
+ private:
+  /// Times have no date and begin again at midnight.
+  void set_time(Beam& beam) {
+    constexpr double kDay_s = 86400.0;
+    if (beam.time_s + days_s_ < last_s_ - kDay_s / 2) days_s_ += kDay_s;
+    last_s_ = beam.time_s += days_s_;
+  }
+
+  StreamReader reader_;
+  Damage damage_;
+  double days_s_ = 0.0, last_s_ = 0.0;
+  std::vector<DamageKind> kinds_;
+};
+
+}  // namespace
+
+bool looks_like_dumplog(std::span<const std::uint8_t> beginning) {
+  const std::string_view text = text_of(beginning);
+  if (text.starts_with("SON,")) return true;
+  Lines lines(text);
+  const auto header = lines.next();
+  return header && header->starts_with("SOf") && header->find("Bearing") != std::string_view::npos;
+}
+
+Result<std::unique_ptr<BeamSource>> open_dumplog(ByteStream stream, Damage damage) {
+  return std::make_unique<DumpLog>(StreamReader(std::move(stream)), damage);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,135 @@
+#include "pingvox/io/seanet_frame.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cstring>
+#include <numbers>
+#include <utility>
+
+#include "io/byte_reader.hpp"
+#include "io/seanet_bearing.hpp"
+#include "pingvox/sonar/device_profile.hpp"
+
+namespace pingvox {
+namespace {
+
+using Verdict = FrameCheck::Verdict;
+
+/// Of a frame: what its length does not count, the device block of mtHeadData, and what stands around its samples.
+constexpr std::size_t kUncounted = 6, kDeviceBlock = 15, kAroundSamples = 45;
+constexpr std::size_t kShortestLength = 8, kLongestLength = 4090;
+constexpr std::size_t kBlockHeader = 29;  ///< bytes of the device block before its samples
+
+constexpr std::uint8_t kHeadData = 2, kSinglePacket = 0x80;
+constexpr std::uint8_t kMessageBehind = 0x80;  ///< of the head's status
+
+/// Messages of one length.
+constexpr std::array kFrameSizes = {std::pair{1, 25},  std::pair{4, 22},  std::pair{16, 14},
+                                    std::pair{23, 14}, std::pair{24, 14}, std::pair{25, 18}};
+
+std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
+  return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
+}
+
+/// -1: no digit of those that heads write.
+int hex_digit(std::uint8_t c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+/// Whether the frame has the length that its message prescribes, as far as we know.
+bool fits_message(std::span<const std::uint8_t> frame) {
+  const std::uint8_t id = frame[10];
+  for (const auto& [known, size] : kFrameSizes) {
+    if (id == known) return frame.size() == static_cast<std::size_t>(size);
+  }
+  // A part of a message that was cut into several has no length of its own.
+  if (id != kHeadData || frame[11] != kSinglePacket) return true;
+  if (frame.size() < kAroundSamples) return false;
+  const std::size_t around = u16_at(frame, 42) + kAroundSamples;
+  const bool has_message = (frame[16] & kMessageBehind) != 0;
+  return has_message ? frame.size() >= around : frame.size() == around && frame.size() == u16_at(frame, 13) + 14U;
+}
+
+}  // namespace
+
+FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes) {
+  const auto* at = static_cast<const std::uint8_t*>(std::memchr(bytes.data(), '@', bytes.size()));
+  const std::size_t before = at != nullptr ? static_cast<std::size_t>(at - bytes.data()) : bytes.size();
+  if (before > 0) return {Verdict::kNothing, before};
+  std::size_t length = 0;
+  for (std::size_t i = 1; i <= 4; ++i) {
+    if (i >= bytes.size()) return {Verdict::kIncomplete};
+    const int digit = hex_digit(bytes[i]);
+    if (digit < 0) return {Verdict::kNothing, 1};
+    length = length * 16 + static_cast<std::size_t>(digit);
+  }
+  if (bytes.size() < 7) return {Verdict::kIncomplete};
+  const std::size_t again = u16_at(bytes, 5);
+  if (length < kShortestLength || length > kLongestLength) return {Verdict::kNothing, 1};
+  if (length != again) return {Verdict::kBroken, 7, "two lengths that differ"};
+  const std::size_t size = length + kUncounted;
+  if (bytes.size() < size) return {Verdict::kIncomplete};
+  if (bytes[size - 1] != '\n') return {Verdict::kBroken, size, "no end of the frame where it should be"};
+  if (!fits_message(bytes.first(size))) return {Verdict::kBroken, size, "impossible length"};
+  return {Verdict::kFrame, size};
+}
+
+std::optional<SeanetLine> seanet_line(std::span<const std::uint8_t> frame) {
+  if (frame[10] != kHeadData || frame[11] != kSinglePacket) return std::nullopt;
+  return seanet_line_in(frame.subspan(kDeviceBlock, frame.size() - kDeviceBlock - 1));
+}
+
+std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_block) {
+  if (device_block.size() < kBlockHeader) return std::nullopt;
+  SeanetLine line;
+  line.head_type = device_block[0];
+  line.status = device_block[1];
+  line.control = u16_at(device_block, 3);
+  line.range_scale = u16_at(device_block, 5);
+  line.transmit = value_from<std::uint32_t>(device_block.subspan(7, 4), std::endian::little);
+  line.gain = device_block[11];
+  line.interval_640ns = u16_at(device_block, 18);
+  line.bearing = u16_at(device_block, 25);
+  const std::size_t samples = u16_at(device_block, 27);
+  if (device_block.size() - kBlockHeader < samples) return std::nullopt;
+  line.data = device_block.subspan(kBlockHeader, samples);
+  return line;
+}
+
+tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s) {
+  constexpr double kTick_s = 640e-9;
+  constexpr std::uint8_t kNoPower = 1, kLostStep = 2;
+  if ((line.status & kNoPower) != 0) return tl::unexpected(std::string("the head had lost its power"));
+  if ((line.status & kLostStep) != 0) return tl::unexpected(std::string("the head's motor had lost its step"));
+  const std::optional<double> bearing_rad = seanet_bearing_rad(line.bearing);
+  if (!bearing_rad) return tl::unexpected(fmt::format("bearing {} of 6400 a turn", line.bearing));
+
+  Beam beam;
+  beam.time_s = time_s;
+  beam.bearing_rad = *bearing_rad;
+  if ((line.control & 1) != 0) {
+    beam.intensities.assign(line.data.begin(), line.data.end());
+  } else {
+    beam.intensities.reserve(2 * line.data.size());
+    for (const std::uint8_t pair : line.data) {
+      beam.intensities.push_back(static_cast<std::uint8_t>((pair >> 4) * 17));
+      beam.intensities.push_back(static_cast<std::uint8_t>((pair & 15) * 17));
+    }
+  }
+  beam.bin_length_m = line.interval_640ns > 0 ? kAssumedSoundSpeed_m_s * (line.interval_640ns * kTick_s) / 2.0
+                                              : seanet_bin_length_m(line.range_scale, beam.intensities.size());
+  if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
+  return beam;
+}
+
+const DeviceProfile* device_of(const SeanetLine& line) {
+  constexpr std::uint8_t kDst = 0x11;
+  constexpr double kHz = 32e6 / 4294967296.0;
+  // A DST head chirps: what it reports is no frequency. The Micron is by far the most common one.
+  if (line.head_type == kDst) return device_named("micron");
+  return device_named(line.transmit * kHz < 500e3 && line.transmit != 0 ? "seaking-325" : "miniking");
+}
+
+}  // namespace pingvox

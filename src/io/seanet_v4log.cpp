@@ -1,0 +1,167 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "io/byte_reader.hpp"
+#include "io/readers.hpp"
+#include "io/stream_reader.hpp"
+#include "io/text.hpp"
+#include "pingvox/io/frame_finder.hpp"
+#include "pingvox/io/seanet_frame.hpp"
+
+// Logs of Tritech's own program (docs/formats.md): a header, settings, then records with the messages of the heads.
+namespace pingvox {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::string_view kMagic = "SeaNetV4 Log File V";
+
+/// Of a record: where its time, its message and mtHeadData's device block stand, and its least and greatest size.
+constexpr std::size_t kTime = 2, kMessage = 12, kDeviceBlock = 17, kShortest = 17, kLongest = 4096;
+constexpr std::uint8_t kHeadData = 2;
+
+template <class T>
+T value_at(Bytes bytes, std::size_t place) {
+  return value_from<T>(bytes.subspan(place, sizeof(T)), std::endian::little);
+}
+
+/// Seconds since 1970 of days since the end of 1899; nullopt: not of our times.
+std::optional<double> time_s_of(double days) {
+  constexpr double kDaysTo1970 = 25569.0, kDaysTo2100 = 73051.0;
+  if (!(days > kDaysTo1970 && days < kDaysTo2100)) return std::nullopt;
+  return (days - kDaysTo1970) * 86400.0;
+}
+
+/// The size of a record that one could believe.
+std::optional<std::size_t> record_size(Bytes bytes) {
+  if (bytes.size() < kShortest) return std::nullopt;
+  const std::size_t size = value_at<std::uint16_t>(bytes, 0);
+  if (size < kShortest || size > kLongest || !time_s_of(value_at<double>(bytes, kTime))) return std::nullopt;
+  // What a head says of its own length.
+  const bool is_line = bytes[kMessage] == kHeadData;
+  if (is_line && value_at<std::uint16_t>(bytes, kDeviceBlock - 2) + kDeviceBlock - 2U != size) return std::nullopt;
+  return size;
+}
+
+class V4Log : public BeamSource {
+ public:
+  V4Log(StreamReader reader, std::optional<std::uint64_t> end, Damage damage)
+      : reader_(std::move(reader)), end_(end), damage_(damage) {
+    // The first beam says which head it was, and that is asked for before any beam is.
+    first_ = read();
+  }
+
+  Result<std::optional<Beam>> next() override {
+    if (first_) return *std::exchange(first_, std::nullopt);
+    return read();
+  }
+  std::size_t skipped() const override {
+    std::size_t count = 0;
+    for (const DamageKind& kind : kinds_) count += kind.count;
+    return count;
+  }
+  std::vector<DamageKind> damage() const override { return kinds_; }
+  const DeviceProfile* device() const override { return device_; }
+  std::optional<double> share_read() const override { return reader_.share_read(); }
+
+ private:
+  Result<std::optional<Beam>> read() {
+    while (!end_ || reader_.position() < *end_) {
+      const Result<Bytes> bytes = reader_.peek(kLongest);
+      if (!bytes) return tl::unexpected(bytes.error());
+      if (bytes->empty()) {
+        if (end_) {
+          if (const auto counted = damaged(FrameFinder::kCutOff, "records are missing"); !counted) {
+            return tl::unexpected(counted.error());
+          }
+        }
+        return std::nullopt;
+      }
+      const std::optional<std::size_t> size = record_size(*bytes);
+      if (!size || *size > bytes->size()) {
+        if (!in_damage_) {
+          const bool is_cut = bytes->size() < kLongest && (size || bytes->size() < kShortest);
+          const auto counted = is_cut ? damaged(FrameFinder::kCutOff, "a record is cut off")
+                                      : damaged("damaged record", "its length or its time is damaged");
+          if (!counted) return tl::unexpected(counted.error());
+        }
+        in_damage_ = true;
+        reader_.skip(1);
+        continue;
+      }
+      in_damage_ = false;
+      const Bytes record = bytes->first(*size);
+      if (record[kMessage] == kHeadData) {
+        tl::expected<Beam, std::string> beam = beam_in(record);
+        if (!beam) {
+          if (const auto counted = damaged("impossible values", beam.error()); !counted) {
+            return tl::unexpected(counted.error());
+          }
+        }
+        reader_.skip(*size);
+        if (beam) return std::move(*beam);
+      } else {
+        reader_.skip(*size);
+      }
+    }
+    return std::nullopt;
+  }
+
+  tl::expected<Beam, std::string> beam_in(Bytes record) {
+    const std::optional<SeanetLine> line = seanet_line_in(record.subspan(kDeviceBlock));
+    if (!line) return tl::unexpected(std::string("more samples than it has room for"));
+    if (device_ == nullptr) device_ = device_of(*line);
+    return beam_of(*line, *time_s_of(value_at<double>(record, kTime)));
+  }
+
+  /// Of what stands at the reader's place.
+  Result<void> damaged(std::string_view kind, std::string_view reason) {
+    add_damage(kinds_, kind, reader_.position());
+    if (damage_ == Damage::kSkip) return {};
+    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", reader_.name(), reader_.position(), reason));
+  }
+
+  StreamReader reader_;
+  std::optional<std::uint64_t> end_;  ///< of the records; nullopt: they go on to the end of the file
+  Damage damage_;
+  bool in_damage_ = false;
+  std::vector<DamageKind> kinds_;
+  const DeviceProfile* device_ = nullptr;
+  std::optional<Result<std::optional<Beam>>> first_;
+};
+
+}  // namespace
+
+bool looks_like_v4log(Bytes beginning) {
+  return text_of(beginning).starts_with(kMagic);
+}
+
+Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage) {
+  constexpr std::size_t kHeader = 0x50, kFirstRecord = 0x28, kEndOfRecords = 0x30;
+  StreamReader reader(std::move(stream));
+  const Result<Bytes> header = reader.peek(kHeader);
+  if (!header) return tl::unexpected(header.error());
+  const auto damaged = [&] {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", reader.name()));
+  };
+  if (header->size() < kHeader) return damaged();
+  const auto first = value_at<std::uint32_t>(*header, kFirstRecord);
+  const auto end = value_at<std::uint32_t>(*header, kEndOfRecords);
+  if (first < kHeader) return damaged();
+  while (reader.position() < first) {
+    const Result<Bytes> settings = reader.peek(std::min<std::size_t>(first - reader.position(), 4096));
+    if (!settings) return tl::unexpected(settings.error());
+    if (settings->empty()) return damaged();
+    reader.skip(settings->size());
+  }
+  // A log that was not closed has no end written in it.
+  return std::make_unique<V4Log>(std::move(reader), end > first ? std::optional<std::uint64_t>(end) : std::nullopt,
+                                 damage);
+}
+
+}  // namespace pingvox
