@@ -39,7 +39,6 @@ constexpr std::array kStrangers = {
     Stranger{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
     Stranger{"#ROSBAG "sv, "is a ROS bag", kAsCsv},
     Stranger{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
-    Stranger{"\0\0\0\x34\0P\0i\0n\0g\0V\0i\0e\0w\0e\0r"sv, "is a log of Ping Viewer", kAsCsv},
 };
 
 /// Whether the beginning has only bytes that text has.

@@ -17,7 +17,7 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
-      options+=(--poses --mount --origin --beam --beam-width --beam-height --free-share --ray --hit-from --silent)
+      options+=(--poses --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
@@ -26,7 +26,7 @@ _pingvox_options() {
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
-      options+=(--poses --mount --beam --beam-width --beam-height --free-share --ray --hit-from --silent)
+      options+=(--poses --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
@@ -46,6 +46,7 @@ _pingvox_words() {
     --detect) printf '%s\n' rise level max canny cfar ;;
     --cfar) printf '%s\n' ca so os ;;
     --beam) printf '%s\n' ray fan cone ;;
+    --device) printf '%s\n' ping360 micron miniking seaking-325 seaking-675 ;;
     --ray) printf '%s\n' dda bresenham ;;
     --vote) printf '%s\n' sweep beam ;;
     --hit-from) printf '%s\n' fixed intensity ;;
