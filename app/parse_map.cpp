@@ -69,7 +69,8 @@ Result<Command> map_command(const Words& words) {
       "Turns sonar logs into a 3D occupancy map: reads the LOGs one after another, finds the echoes of each beam, and\n"
       "frees and hits the cells that its sound went through and came back from.",
       {{"LOG", Positional::Count::kMany,
-        "beams (MATLAB 5, CSV), point scans (OctoMap's .graph and its text form) or clouds of points, each a scan "
+        "beams (Ping Viewer's .bin, SeaNet, MATLAB 5, CSV), point scans (OctoMap's .graph and its text form) or clouds "
+        "of points, each a scan "
         "(PLY, "
         "PCD, XYZ), told by content; - is standard input",
         log}},

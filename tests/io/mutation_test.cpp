@@ -57,6 +57,8 @@ TEST_P(Mutation, KeepsItsPromises) {
 
 INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
                          testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
+                                         Reader{"pingviewer", fuzz::beams}, Reader{"seanet", fuzz::beams},
+                                         Reader{"v4log", fuzz::beams}, Reader{"dumplog", fuzz::beams},
                                          Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
                                          Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
                                          Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},

@@ -1,0 +1,320 @@
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/io/seanet_frame.hpp"
+#include "support/frames.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kAlive = "40303031301000 02ff0b048002 00 60ea0000 800c 8a 0a";
+constexpr const char* kLine =
+    "40303032442d0002ff00028002 2500 11 10 00 0723 3c00 00000000 54 0000 51 08 0000"
+    "2308 6009 a00f 10 900c 0600 000a0d40ff09 0a";
+constexpr const char* kNibbles =
+    "40303032412a0002ff00028002 2200 11 00 00 0623 3c00 00000000 54 0000 51 08 0000"
+    "2308 6009 a00f 10 900c 0300 3a0f40 0a";
+
+/// The golden line with another bearing.
+std::vector<std::uint8_t> line_at(std::uint16_t bearing) {
+  auto line = from_hex(kLine);
+  line[40] = static_cast<std::uint8_t>(bearing);
+  line[41] = static_cast<std::uint8_t>(bearing >> 8);
+  return line;
+}
+
+std::string hex_of(std::span<const std::uint8_t> bytes) {
+  std::string hex;
+  for (const std::uint8_t byte : bytes) hex += fmt::format("{}{:02X}", hex.empty() ? "" : " ", byte);
+  return hex;
+}
+
+TEST(SeanetFrames, AreFoundHoweverTheStreamIsCutIntoPieces) {
+  const Frames frames = {from_hex("40303030380800ff020317 80020a"), from_hex(kAlive), from_hex(kLine),
+                         from_hex(kNibbles), from_hex("40303030390900 ff0204138002 0f 0a")};
+  const auto stream = joined(frames);
+  for (std::size_t piece = 1; piece <= stream.size(); ++piece) {
+    EXPECT_EQ(frames_in(check_seanet_frame, stream, piece), frames) << "pieces of " << piece;
+  }
+}
+
+TEST(SeanetFrames, ALostADoubledAndADamagedByteCostOneFrameAndNoOther) {
+  const auto before = from_hex(kAlive), hit = from_hex(kLine), behind = line_at(3300);
+  std::size_t cases = 0;
+  for (std::size_t i = 0; i < hit.size(); ++i) {
+    for (const bool doubled : {false, true}) {
+      // A byte more or less among equal ones in front of or behind the frame leaves the frame as it is.
+      auto damaged = hit;
+      const auto place = damaged.begin() + static_cast<std::ptrdiff_t>(i);
+      if (doubled) {
+        damaged.insert(place, hit[i]);
+      } else {
+        damaged.erase(place);
+      }
+      const bool is_edge = i == 0 || i + 1 == hit.size();
+      if (doubled && is_edge) continue;
+      const Frames found = frames_in(check_seanet_frame, joined({before, damaged, behind}), 5);
+      EXPECT_EQ(found, (Frames{before, behind})) << "byte " << i << (doubled ? " twice" : " lost");
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 2 * hit.size() - 2);
+  // Without a checksum, what is not length, end, message or counts may change.
+  for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 13, 14, 42, 43, 50}) {
+    for (int bit = 0; bit < 8; ++bit) {
+      auto damaged = hit;
+      damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ (1U << bit));
+      EXPECT_EQ(frames_in(check_seanet_frame, joined({before, damaged, behind}), 5), (Frames{before, behind}))
+          << "byte " << i << " bit " << bit;
+    }
+  }
+}
+
+TEST(SeanetFrames, WhatFollowsAFrameThatBreaksOffIsNotLost) {
+  const auto line = from_hex(kLine);
+  const auto stream = joined({from_hex("134030"), from_hex(kAlive), {line.begin(), line.begin() + 20}, line, {0x0a}});
+  ASSERT_EQ(stream.size(), 97U);
+  FrameFinder finder(check_seanet_frame);
+  finder.push(stream);
+  finder.end();
+  const auto alive = finder.next();
+  ASSERT_TRUE(alive);
+  EXPECT_EQ(alive->at, 3U);
+  const auto whole = finder.next();
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->at, 45U);
+  EXPECT_FALSE(finder.next());
+  EXPECT_EQ(finder.position(), 97U);
+}
+
+TEST(SeanetFrames, BearingsAreClockwiseFrom3200Ahead) {
+  const auto bearing_deg = [](std::uint16_t bearing) {
+    const auto frame = line_at(bearing);
+    const auto beam = beam_of(*seanet_line(frame), 0.0);
+    return beam ? beam->bearing_rad * 180.0 / std::numbers::pi : -1.0;
+  };
+  EXPECT_NEAR(bearing_deg(3200), 0.0, 1e-12);
+  EXPECT_NEAR(bearing_deg(3216), 359.1, 1e-12);
+  EXPECT_NEAR(bearing_deg(4800), 270.0, 1e-12) << "to the right";
+  EXPECT_NEAR(bearing_deg(1600), 90.0, 1e-12) << "to the left";
+  EXPECT_NEAR(bearing_deg(0), 180.0, 1e-12);
+  EXPECT_EQ(bearing_deg(6401), -1.0);
+}
+
+TEST(SeanetFrames, SamplesOfFourBitsFillTheSameScaleNearerOneFirst) {
+  const auto frame = from_hex(kNibbles);
+  const auto beam = beam_of(*seanet_line(frame), 0.0);
+  ASSERT_TRUE(beam);
+  EXPECT_THAT(beam->intensities, ElementsAre(3 * 17, 10 * 17, 0, 15 * 17, 4 * 17, 0));
+  EXPECT_NEAR(beam->bin_length_m, 0.99984, 1e-9);
+}
+
+TEST(SeanetFrames, AHeadThatLostItsStepGivesNoBeam) {
+  auto frame = from_hex(kLine);
+  frame[16] |= 2;
+  EXPECT_THAT(beam_of(*seanet_line(frame), 0.0).error(), HasSubstr("step"));
+}
+
+TEST(SeanetFrames, WithoutAnIntervalTheRangeScaleTellsTheBins) {
+  auto frame = from_hex(kLine);
+  frame[33] = frame[34] = 0;
+  EXPECT_NEAR(beam_of(*seanet_line(frame), 0.0)->bin_length_m, 1.0, 1e-12) << "6 m in 6 bins";
+  frame[21] = 0x40;
+  EXPECT_NEAR(beam_of(*seanet_line(frame), 0.0)->bin_length_m, 0.3048, 1e-12) << "6 feet";
+}
+
+TEST(Seanet, ASerialCaptureThatBeginsWithinAFrameIsKnown) {
+  const auto line = from_hex(kLine);
+  const auto capture = joined({{line.begin() + 21, line.end()}, from_hex(kAlive), line, line_at(3300)});
+  EXPECT_EQ(format_of(capture), Format::kSeanetCapture);
+  const auto source = open_beams({"serial.bin", capture});
+  ASSERT_TRUE(source);
+  EXPECT_EQ((*source)->device(), device_named("micron"));
+  const auto all = read_all(**source);
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->size(), 2U);
+  EXPECT_THAT((*all)[0].intensities, ElementsAre(0, 10, 13, 64, 255, 9));
+  // A line without a clock: ten bits a byte, at 115,200 bits a second.
+  EXPECT_NEAR((*all)[1].time_s - (*all)[0].time_s, static_cast<double>(line.size()) * 10.0 / 115200.0, 1e-12);
+  ASSERT_EQ((*source)->damage().size(), 1U);
+  EXPECT_EQ((*source)->damage()[0].what, FrameFinder::kBetween);
+  EXPECT_EQ(all_beams({"serial.bin", capture}, Damage::kFail).error, "serial.bin: byte 0: bytes between frames");
+}
+
+TEST(Seanet, PacketsOfOtherPortsAreNotTheSonars) {
+  const auto line = from_hex(kLine), next = line_at(3300);
+  const auto rest = std::span(line).subspan(9);
+  const std::string log =
+      "2017.11.02 08.58.46.723;10.3.0.40;13102;24 52 4F 56\n"
+      "2017.11.02 08.58.46.800;10.3.0.40;4002;" +
+      hex_of(std::span(line).first(9)) + "\n" + "2017.11.02 08.58.47.000;10.3.0.40;13102;" + hex_of(next) + "\r\n" +
+      "2017.11.02 08.58.47.250;10.3.0.40;4002;" + hex_of(rest) + "\r\n" +
+      "2017.11.02 08.58.47.300;10.3.0.40;4002;0G 01\n" + "2017.11.03 00.00.00.500;10.3.0.40;4002;" + hex_of(next);
+  EXPECT_EQ(format_of(bytes_of(log)), Format::kUdpCapture);
+  const auto source = open_beams({"hub.csv", bytes_of(log)});
+  ASSERT_TRUE(source);
+  const auto all = read_all(**source);
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->size(), 2U);
+  EXPECT_DOUBLE_EQ((*all)[0].time_s, 1509613127.25) << "2017-11-02 08:58:47.250";
+  EXPECT_DOUBLE_EQ((*all)[1].time_s, 1509667200.5);
+  ASSERT_EQ((*source)->damage().size(), 1U);
+  EXPECT_EQ((*source)->damage()[0].what, "line that is no packet");
+  EXPECT_EQ((*source)->damage()[0].first_byte, log.find("2017.11.02 08.58.47.300"));
+}
+
+TEST(Seanet, DumpLogLinesHaveNoDateAndGoOnBehindMidnight) {
+  const std::string line = "SON,23:59:59.178,2,16,8967,60,84,0,8,81,2400,4000,16,3216,6,0,10,13,64,255,9\r\n";
+  const std::string log =
+      "SOf,DateTime,Node,Status,Hdctrl,Rangescale,Gain,Slope,AdLow,AdSpan,LeftLim,RightLim,Steps,Bearing,Dbytes\r\n" +
+      line + "AUX,23:59:59.200,1\r\n" + "SON,00:00:00.500,2,16,8967,60,84,0,8,81,2400,4000,16,3232,3,1,2,3\n" +
+      "SON,00:00:00.600,2,16,8967,60,84,0,8,81,2400,4000,16,3248,4,1,2,3\n" +
+      "SON,00:00:00.700,2,16,8967,60,84,0,8,81,2400,4000,16,3264,0";
+  EXPECT_EQ(format_of(bytes_of(log)), Format::kDumplog);
+  EXPECT_EQ(format_of(bytes_of(line)), Format::kDumplog) << "without the line of names";
+  const auto all = all_beams({"dump.csv", bytes_of(log)});
+  ASSERT_EQ(all.items.size(), 3U);
+  EXPECT_EQ(all.skipped, 1U);
+  EXPECT_NEAR(all.items[0].time_s, 86399.178, 1e-9);
+  EXPECT_NEAR(all.items[1].time_s, 86400.5, 1e-9);
+  EXPECT_DOUBLE_EQ(all.items[0].bin_length_m, 1.0);
+  EXPECT_DOUBLE_EQ(all.items[1].bin_length_m, 2.0);
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(0, 10, 13, 64, 255, 9));
+  EXPECT_TRUE(all.items[2].intensities.empty());
+  EXPECT_EQ(all_beams({"dump.csv", bytes_of(log)}, Damage::kFail).error,
+            "dump.csv: byte " + std::to_string(log.find("SON,00:00:00.600")) + ": has 3 samples, not 4");
+}
+
+/// A V4LOG with the golden line at some bearings, one second apart.
+std::vector<std::uint8_t> v4log(const std::vector<std::uint16_t>& bearings) {
+  std::vector<std::uint8_t> log = bytes_of("SeaNetV4 Log File V1           \x1a");
+  const auto put = [&log](auto value) {
+    std::uint8_t bytes[sizeof(value)];
+    std::memcpy(bytes, &value, sizeof(value));
+    log.insert(log.end(), bytes, bytes + sizeof(value));
+  };
+  const auto line = from_hex(kLine);
+  const std::size_t record = line.size() + 1;  // 17 bytes in front of the device block instead of 15, and no LF
+  const auto end = static_cast<std::uint32_t>(100 + bearings.size() * record);
+  for (const std::uint32_t number : {16U, 80U, 100U, static_cast<std::uint32_t>(bearings.size()), end, end, end, end}) {
+    put(number);
+  }
+  log.resize(100);
+  for (std::size_t i = 0; i < bearings.size(); ++i) {
+    put(static_cast<std::uint16_t>(record));
+    put(25569.0 + 100.0 + static_cast<double>(i) / 86400.0);
+    for (const int byte : {2, 255, 2, 0x80, 2}) log.push_back(static_cast<std::uint8_t>(byte));
+    const auto at = line_at(bearings[i]);
+    log.insert(log.end(), at.begin() + 13, at.end() - 1);
+  }
+  return log;
+}
+
+TEST(Seanet, AV4logIsReadUpToItsIndexAndOnBehindDamage) {
+  auto log = v4log({3200, 3216, 3232, 3248});
+  log.insert(log.end(), 64, 0xee);  // the index
+  EXPECT_EQ(format_of(log), Format::kV4log);
+  const auto all = all_beams({"a.V4LOG", log}, Damage::kFail);
+  EXPECT_EQ(all.error, "");
+  ASSERT_EQ(all.items.size(), 4U);
+  EXPECT_NEAR(all.items[1].time_s - all.items[0].time_s, 1.0, 1e-5);
+  EXPECT_NEAR(all.items[0].time_s, 8640000.0, 1e-5);
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(0, 10, 13, 64, 255, 9));
+
+  const std::size_t second = 100 + 52;
+  log[second] = 200;
+  const auto damaged = all_beams({"a.V4LOG", log});
+  EXPECT_EQ(damaged.items.size(), 3U);
+  EXPECT_EQ(damaged.skipped, 1U);
+  EXPECT_EQ(all_beams({"a.V4LOG", log}, Damage::kFail).error, "a.V4LOG: byte 152: its length or its time is damaged");
+
+  log = v4log({3200, 3216});
+  log.pop_back();
+  const auto cut = all_beams({"a.V4LOG", log});
+  EXPECT_EQ(cut.items.size(), 1U);
+  EXPECT_GE(cut.skipped, 1U);
+}
+
+const std::string kRaw = PINGVOX_SHARED_DATA "/seanet-rov-raw/";
+
+TEST(Seanet, TheRealCaptureGivesEachOfIts765Lines) {
+  auto stream = ByteStream::open(kRaw + "UdpHubLog_4001_2017_11_02_09_00_03.csv");
+  if (!stream) GTEST_SKIP() << kRaw << " is missing: skipped";
+  const auto source = open_beams(std::move(*stream));
+  ASSERT_TRUE(source);
+  const auto all = read_all(**source);
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->size(), 765U);
+  std::set<double> bearings;
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    EXPECT_EQ((*all)[i].intensities.size(), 794U);
+    EXPECT_NEAR((*all)[i].bin_length_m, 0.06384, 1e-12);
+    bearings.insert((*all)[i].bearing_rad);
+    EXPECT_GE((*all)[i].time_s, (*all)[i > 0 ? i - 1 : 0].time_s);
+  }
+  EXPECT_EQ(bearings.size(), 90U);
+  // The bytes in front of the first line, and the last one, which is cut off.
+  EXPECT_EQ((*source)->skipped(), 2U);
+
+  // The same bytes as they came over the serial line.
+  std::ifstream hub(kRaw + "UdpHubLog_4001_2017_11_02_09_00_03.csv");
+  std::vector<std::uint8_t> serial;
+  for (std::string line; std::getline(hub, line);) {
+    if (line.find(";4002;") == std::string::npos) continue;
+    for (std::size_t i = line.rfind(';') + 1; i + 1 < line.size(); i += 3) {
+      serial.push_back(static_cast<std::uint8_t>(std::stoi(line.substr(i, 2), nullptr, 16)));
+    }
+  }
+  EXPECT_EQ(serial.size(), 641'888U);
+  const auto raw = all_beams({"serial", serial});
+  ASSERT_EQ(raw.items.size(), all->size());
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    ASSERT_EQ(raw.items[i].intensities, (*all)[i].intensities);
+    ASSERT_EQ(raw.items[i].bearing_rad, (*all)[i].bearing_rad);
+  }
+}
+
+TEST(Seanet, TheRealV4logGivesEachOfIts468Records) {
+  auto stream = ByteStream::open(kRaw + "90degree_scan_target_moving_in.V4LOG");
+  if (!stream) GTEST_SKIP() << kRaw << " is missing: skipped";
+  const auto source = open_beams(std::move(*stream), Damage::kFail);
+  ASSERT_TRUE(source);
+  EXPECT_EQ((*source)->device(), device_named("seaking-325"));
+  const auto all = read_all(**source);
+  ASSERT_TRUE(all) << all.error().message;
+  ASSERT_EQ(all->size(), 468U);
+  int right = 0, left = 0, same = 0;
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    EXPECT_EQ((*all)[i].intensities.size(), 642U);
+    if (i == 0) continue;
+    EXPECT_GT((*all)[i].time_s, (*all)[i - 1].time_s);
+    const double turned_deg =
+        std::remainder((*all)[i].bearing_rad - (*all)[i - 1].bearing_rad, 2.0 * std::numbers::pi) * 180.0 /
+        std::numbers::pi;
+    right += std::abs(turned_deg + 3.6) < 1e-9 ? 1 : 0;
+    left += std::abs(turned_deg - 3.6) < 1e-9 ? 1 : 0;
+    same += turned_deg == 0.0 ? 1 : 0;
+  }
+  EXPECT_EQ(left, 225);
+  EXPECT_EQ(right, 224);
+  EXPECT_EQ(same, 18);
+  EXPECT_NEAR(all->back().time_s - all->front().time_s, 45.2, 0.1);
+}
+
+}  // namespace
+}  // namespace pingvox
