@@ -22,6 +22,11 @@ Result<Format> recognised(ByteStream& stream) {
 
 std::string described(Format format) {
   const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
+  // What users call logs that have no suffix of their own.
+  if (format == Format::kPingViewer) return "a log of beams (Ping Viewer)";
+  if (format == Format::kSeanetCapture) return "a log of beams (SeaNet, serial line)";
+  if (format == Format::kUdpCapture) return "a log of beams (SeaNet, UDP packets)";
+  if (format == Format::kDumplog) return "a log of beams (SeanetDumpLog)";
   switch (kind_of(format)) {
     case FormatKind::kBeams:
       return with("a log of beams");

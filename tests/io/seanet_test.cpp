@@ -162,8 +162,8 @@ TEST(Seanet, PacketsOfOtherPortsAreNotTheSonars) {
   const std::string log =
       "2017.11.02 08.58.46.723;10.3.0.40;13102;24 52 4F 56\n"
       "2017.11.02 08.58.46.800;10.3.0.40;4002;" +
-      hex_of(std::span(line).first(9)) + "\n" + "2017.11.02 08.58.47.000;10.3.0.40;13102;" + hex_of(next) + "\r\n" +
-      "2017.11.02 08.58.47.250;10.3.0.40;4002;" + hex_of(rest) + "\r\n" +
+      hex_of(std::span(line).first(9)) + "\n" + "2017.11.02 08.58.47.000;10.3.0.40;13102;" +
+      hex_of(std::span(next).first(40)) + "\r\n" + "2017.11.02 08.58.47.250;10.3.0.40;4002;" + hex_of(rest) + "\r\n" +
       "2017.11.02 08.58.47.300;10.3.0.40;4002;0G 01\n" + "2017.11.03 00.00.00.500;10.3.0.40;4002;" + hex_of(next);
   EXPECT_EQ(format_of(bytes_of(log)), Format::kUdpCapture);
   const auto source = open_beams({"hub.csv", bytes_of(log)});
