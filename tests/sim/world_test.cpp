@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace pingvox {
@@ -217,6 +218,21 @@ TEST(TriangleTree, FindsWhatLookingAtEachTriangleFinds) {
     }
   }
   EXPECT_GT(crossings, 300U);
+}
+
+// Kills triangles that end a little before their edges: rays slip through between two of them.
+TEST(Heightfield, HasNoGapsAlongItsEdges) {
+  World world;
+  world.add(heightfield(std::vector<double>(16, 0.0), 4, Vector3d::Zero(), 1.0));
+  std::mt19937_64 random(4);
+  for (int n = 0; n < 3000; ++n) {
+    const double along = 0.01 + 0.98 * share(random), beside = 2e-5 * (share(random) - 0.5);
+    // The diagonal of a square, and its sides.
+    for (const auto& [x, y] :
+         {std::pair{1.0 + along + beside, 2.0 - along}, {1.0 + beside, 1.0 + along}, {1.0 + along, 1.0 + beside}}) {
+      ASSERT_TRUE(world.first({Vector3d(x, y, 5.0), -Vector3d::UnitZ()}, 10.0)) << x << ", " << y;
+    }
+  }
 }
 
 TEST(Heightfield, IsCrossedAtItsHeights) {
