@@ -49,6 +49,13 @@ constexpr States states_of(unsigned word) {
   return {bits & 0xFFU, bits >> 16};
 }
 
+/// All eight cells of each octant that has its bit set: bit i goes to all bits of byte i.
+constexpr std::uint64_t whole_octants(unsigned octants) {
+  // Copies of the bits, one in each byte, of which byte i keeps bit i; what is not 0 then carries into its highest bit.
+  const std::uint64_t kept = octants * 0x0101010101010101U & 0x8040201008040201U;
+  return ((kept + 0x7F7F7F7F7F7F7F7FU) >> 7U & 0x0101010101010101U) * 0xFFU;
+}
+
 // The same for the eight octants of a brick at once.
 
 using EightWords = std::uint16_t __attribute__((vector_size(16)));

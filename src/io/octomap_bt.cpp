@@ -50,23 +50,27 @@ class TreeReader {
  private:
   std::size_t position() const { return tree_at_ + reader_.position(); }
 
-  /// The word of an inner node.
-  Result<unsigned> read_word() {
+  /// The word of an inner node; 0, which none has, where it is damaged: see `bad_word`.
+  unsigned read_word() {
     const auto word = reader_.read<std::uint16_t>();
-    if (!word) return damaged(file_, position(), "the file ends inside of the tree");
-    if (*word == 0) return damaged(file_, position() - sizeof *word, "an inner node without children");
-    nodes_ += children_of(*word);
-    return *word;
+    is_at_end_ = !word;
+    nodes_ += children_of(word.value_or(0));
+    return word.value_or(0);
+  }
+  /// Why the last word is none. Apart from reading it: an error for each word takes as long as the rest of its work.
+  tl::unexpected<Error> bad_word() const {
+    if (is_at_end_) return damaged(file_, position(), "the file ends inside of the tree");
+    return damaged(file_, position() - sizeof(std::uint16_t), "an inner node without children");
   }
 
   /// The node at `depth` whose word is next, with all below it.
   Result<detail::Entry> read_group(int depth) {
     const std::size_t at = position();
-    const auto word = read_word();
-    if (!word) return tl::unexpected(word.error());
+    const unsigned word = read_word();
+    if (word == 0) return bad_word();
     detail::Group group;
     for (std::size_t octant = 0; octant < 8; ++octant) {
-      const unsigned state = state_of(*word, octant);
+      const unsigned state = state_of(word, octant);
       if (state == kUnknown) continue;
       if (state != kInner) {
         group.child[octant] = detail::Entry::leaf(belief_of(state));
@@ -82,22 +86,21 @@ class TreeReader {
   /// The node of a brick, whose word is next, and its cells.
   Result<detail::Entry> read_brick() {
     const std::size_t at = position();
-    const auto word = read_word();
-    if (!word) return tl::unexpected(word.error());
-    detail::CellStates cells;
-    for (std::size_t octant = 0; octant < 8; ++octant) {
-      const unsigned state = state_of(*word, octant);
-      States below{state == kFree ? 0xFFU : 0U, state == kOccupied ? 0xFFU : 0U};
-      if (state == kInner) {
-        const auto octant_word = read_word();
-        if (!octant_word) return tl::unexpected(octant_word.error());
-        below = states_of(*octant_word);
-        if ((below.free & below.occupied) != 0) {
-          return damaged(file_, position(), "an inner node below the 16th level");
-        }
+    const unsigned word = read_word();
+    if (word == 0) return bad_word();
+    const States octants = states_of(word);
+    const unsigned inner = octants.free & octants.occupied;
+    detail::CellStates cells{whole_octants(octants.free & ~inner), whole_octants(octants.occupied & ~inner)};
+    for (unsigned rest = inner; rest != 0; rest &= rest - 1) {
+      const unsigned octant_word = read_word();
+      if (octant_word == 0) return bad_word();
+      const States below = states_of(octant_word);
+      if ((below.free & below.occupied) != 0) {
+        return damaged(file_, position(), "an inner node below the 16th level");
       }
-      cells.free |= std::uint64_t{below.free} << (octant * 8);
-      cells.occupied |= std::uint64_t{below.occupied} << (octant * 8);
+      const int shift = std::countr_zero(rest) * 8;
+      cells.free |= std::uint64_t{below.free} << shift;
+      cells.occupied |= std::uint64_t{below.occupied} << shift;
     }
     return within_limit(detail::built(tree_, cells, options_.clamp, options_.parents), at);
   }
@@ -119,6 +122,7 @@ class TreeReader {
   MapOptions options_;
   detail::BrickTree tree_;
   std::uint64_t nodes_ = 0;
+  bool is_at_end_ = false;  ///< there was no word to read
 };
 
 /// Makes the words of a tree as they would be if each leaf were as sure as it can be and equal ones were joined.

@@ -55,6 +55,14 @@ TEST(BtWords, OfABrickAreThoseOfItsOctants) {
   EXPECT_GT(all_mixed, 5U);
 }
 
+TEST(BtWords, FillWholeOctants) {
+  for (unsigned octants = 0; octants <= 0xFF; ++octants) {
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      ASSERT_EQ(byte_of(whole_octants(octants), octant), (octants >> octant & 1U) != 0 ? 0xFFU : 0U) << octants;
+    }
+  }
+}
+
 TEST(BtWords, NameTheirChildren) {
   for (unsigned word = 0; word <= 0xFFFF; ++word) {
     unsigned children = 0;
