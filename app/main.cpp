@@ -11,6 +11,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "vectors.hpp"
 
 namespace {
 
@@ -33,6 +34,7 @@ Result<int> run_any(const app::Command& command) {
 }
 
 Result<int> called_with(const std::vector<std::string>& words) {
+  if (const auto limited = app::limit_vectors(); !limited) return tl::unexpected(limited.error());
   const Result<app::Command> command = app::parse_command_line(words);
   if (!command) return tl::unexpected(command.error());
   return run_any(*command);

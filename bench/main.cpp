@@ -4,9 +4,11 @@
 #include <exception>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/suggest.hpp"
+#include "app/vectors.hpp"
 #include "bench.hpp"
 #include "speed/draw_ratios.hpp"
 
@@ -15,7 +17,7 @@ namespace {
 using namespace pingvox;
 using namespace pingvox::bench;
 
-constexpr int kDone = 0, kCouldNotBeDone = 1, kWordsAreOff = 2;
+constexpr int kDone = 0, kCouldNotBeDone = 1, kInvalidUsage = 2;
 
 constexpr std::string_view kUsage =
     "Usage: pingvox bench NAME... | all | list [--json] [--markdown] [--pictures DIR]\n"
@@ -28,6 +30,9 @@ constexpr std::string_view kUsage =
     "  --markdown      tables in Markdown\n"
     "  --pictures DIR  draw charts (and the paper's figures) into a folder\n"
     "  --quiet         say nothing on standard error while it runs\n"
+    "\n"
+    "PINGVOX_VECTORS=avx2 in the environment leaves out wider vector instructions, in the programs that it starts, "
+    "too.\n"
     "\n"
     "Examples:\n"
     "  pingvox bench tank-3d tank-cone\n"
@@ -60,7 +65,7 @@ std::vector<std::string> known_words() {
   return words;
 }
 
-/// kBadOption when the words are off.
+/// kBadOption when the usage is invalid.
 Result<Call> parsed(const std::vector<std::string>& words) {
   Call call;
   call.options.say = &say;
@@ -121,7 +126,10 @@ int run(const Call& call) {
       status = kCouldNotBeDone;
       continue;
     }
-    rows.insert(rows.end(), result->begin(), result->end());
+    for (Row row : *result) {
+      if (is_in_all(*bench)) row.add("vectors", app::vectors_in_use());
+      rows.push_back(std::move(row));
+    }
   }
   if (call.options.pictures) {
     if (const auto drawn = draw_ratios(rows, *call.options.pictures); !drawn) {
@@ -140,10 +148,14 @@ int run(const Call& call) {
 }
 
 int called_with(const std::vector<std::string>& words) {
+  if (const auto limited = app::limit_vectors(); !limited) {
+    complain(limited.error().message);
+    return kInvalidUsage;
+  }
   const Result<Call> call = parsed(words);
   if (!call) {
     complain(call.error().message);
-    return kWordsAreOff;
+    return kInvalidUsage;
   }
   if (call->shows_usage || call->shows_list) {
     fmt::print("{}", call->shows_usage ? std::string(kUsage) : list());

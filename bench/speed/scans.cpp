@@ -132,12 +132,12 @@ Result<std::vector<Row>> multibeam(const BenchOptions&) {
 
 Result<std::vector<Row>> lidar_16(const BenchOptions&) {
   return run_lidar({.name = "lidar-16", .input = {}, .resolution_m = 0.1, .scans = {}, .ours = {}},
-                   {.rings = 16, .steps = 1800, .height_deg = 30.0, .scans = 10});
+                   {.rings = 16, .steps = 1800, .height_deg = 30.0, .scans = 4});
 }
 
 Result<std::vector<Row>> lidar_128(const BenchOptions&) {
   return run_lidar({.name = "lidar-128", .input = {}, .resolution_m = 0.1, .scans = {}, .ours = {}},
-                   {.rings = 128, .steps = 1024, .height_deg = 45.0, .scans = 3});
+                   {.rings = 128, .steps = 1024, .height_deg = 45.0, .scans = 1});
 }
 
 }  // namespace pingvox::bench

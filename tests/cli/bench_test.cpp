@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -82,6 +84,24 @@ TEST(Bench, PrintsOneObjectOfWhatWasCheckedAndMeasured) {
   EXPECT_EQ(json->at("name"), "\"cube-each\"");
   EXPECT_EQ(json->at("checked"), "true");
   EXPECT_TRUE(json->contains("ours_bytes") && json->contains("octomap_bytes"));
+}
+
+// Kills: a limit that the programs which a benchmark starts do not know of, and one that is taken without a word.
+TEST(Bench, LeavesOutWiderVectorsWhenAsked) {
+  if (!is_built()) GTEST_SKIP() << "pingvox-bench is not there";
+  const Workplace here;
+  ASSERT_EQ(::setenv("PINGVOX_VECTORS", "nonsense", 1), 0);
+  const Outcome refused = here.call({"info", "none"});
+  expect_complaint(refused, 2, {"PINGVOX_VECTORS: must be one of ", "'nonsense'"});
+  const std::size_t end = refused.err.find(", is '");
+  const std::size_t begin = std::max(refused.err.rfind(", ", end - 1), refused.err.rfind("of ", end - 1));
+  ASSERT_NE(end, std::string::npos);
+  const std::string narrowest = refused.err.substr(begin, end - begin).substr(refused.err[begin] == ',' ? 2 : 3);
+  ASSERT_EQ(::setenv("PINGVOX_VECTORS", narrowest.c_str(), 1), 0);
+  const Outcome outcome = here.call({"bench", "startup", "--json", "--quiet"});
+  ASSERT_EQ(::unsetenv("PINGVOX_VECTORS"), 0);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("\"vectors\": \"" + narrowest + "\""));
 }
 
 TEST(Bench, GathersSeveralRowsInOneObject) {
