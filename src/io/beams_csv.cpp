@@ -33,9 +33,15 @@ bool is_bearing(Column c) {
   return c == Column::kBearingRad || c == Column::kBearingDeg || c == Column::kBearingClockwiseDeg;
 }
 
+/// Between the columns of a file: spreadsheets of many countries write semicolons.
+char separator_of(std::string_view header) {
+  return header.find(';') == std::string_view::npos ? ',' : ';';
+}
+
 std::vector<Column> columns_in(std::string_view header) {
   std::vector<Column> columns;
-  while (const auto name = cut_field(header, ',')) {
+  const char separator = separator_of(header);
+  while (const auto name = cut_field(header, separator)) {
     // No file of ours has more; a line of nothing but commas is no header.
     if (columns.size() == 64) break;
     columns.push_back(column_named(*name));
@@ -74,11 +80,11 @@ std::optional<std::uint8_t> intensity_in(std::string_view field) {
 }
 
 /// One line as a beam, or what is wrong with it.
-tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector<Column>& columns) {
+tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector<Column>& columns, char separator) {
   Beam beam;
   for (const Column column : columns) {
     if (column == Column::kIntensities) break;
-    const auto field = cut_field(line, ',');
+    const auto field = cut_field(line, separator);
     if (!field) return tl::unexpected(std::string("has too few columns"));
     if (column == Column::kOther) continue;
     const std::optional<double> number = number_in(*field);
@@ -87,7 +93,7 @@ tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector
     if (column == Column::kBinLength) beam.bin_length_m = *number;
     if (is_bearing(column)) beam.bearing_rad = bearing_of(column, *number);
   }
-  while (const auto field = cut_field(line, ',')) {
+  while (const auto field = cut_field(line, separator)) {
     const std::optional<std::uint8_t> intensity = intensity_in(*field);
     if (!intensity) {
       return tl::unexpected(fmt::format("intensity {}, \"{}\", is not a whole number in 0..255",
@@ -101,12 +107,12 @@ tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector
 
 class CsvSource : public BeamSource {
  public:
-  CsvSource(FileBytes file, Damage damage, Lines lines, std::vector<Column> columns)
-      : file_(std::move(file)), damage_(damage), lines_(lines), columns_(std::move(columns)) {}
+  CsvSource(FileBytes file, Damage damage, Lines lines, std::vector<Column> columns, char separator)
+      : file_(std::move(file)), damage_(damage), lines_(lines), columns_(std::move(columns)), separator_(separator) {}
 
   Result<std::optional<Beam>> next() override {
     while (const auto line = lines_.next_with_content()) {
-      tl::expected<Beam, std::string> beam = beam_in(*line, columns_);
+      tl::expected<Beam, std::string> beam = beam_in(*line, columns_, separator_);
       if (beam && !lines_.has_end() && beam->intensities.size() < bins_before_) {
         beam =
             tl::unexpected(fmt::format("ends after {} intensities, without an end of the line (the beam before has {})",
@@ -131,6 +137,7 @@ class CsvSource : public BeamSource {
   Damage damage_;
   Lines lines_;  ///< of file_, whose bytes stay where they are when it is moved
   std::vector<Column> columns_;
+  char separator_;
   std::size_t skipped_ = 0;
   std::size_t bins_before_ = 0;  ///< of the last beam
 };
@@ -156,7 +163,7 @@ Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage) {
   if (const std::string_view problem = problem_of(columns); !problem.empty()) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), problem));
   }
-  return std::make_unique<CsvSource>(std::move(file), damage, lines, std::move(columns));
+  return std::make_unique<CsvSource>(std::move(file), damage, lines, std::move(columns), separator_of(*header));
 }
 
 Result<std::size_t> write_csv(BeamSource& beams, std::ostream& out) {

@@ -11,6 +11,8 @@
 #include "io/pcd.hpp"
 #include "io/ply.hpp"
 #include "io/pvx.hpp"
+#include "io/xyz.hpp"
+#include "pingvox/io/file.hpp"
 
 namespace pingvox {
 namespace {
@@ -49,12 +51,31 @@ Result<void> write_map(const OccupancyMap& map, Format format, std::string_view 
       return write_ply(map, out);
     case Format::kPcd:
       return write_pcd(map, out);
+    case Format::kXyz:
+      return write_xyz(map, out);
     default:
       break;
   }
   return fail(
       Error::Code::kUnsupported,
-      fmt::format("a map cannot be written as .{}: .bt, .ot, .pvx, .ply and .pcd can hold it", name_of(format)));
+      fmt::format("a map cannot be written as .{}: .bt, .ot, .pvx, .ply, .pcd and .xyz can hold it", name_of(format)));
+}
+
+Result<void> write_map(const OccupancyMap& map, const std::string& path, std::string_view made_by) {
+  const std::optional<Format> format = format_for_writing(path);
+  if (!format) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: its suffix must be .bt, .ot, .pvx, .ply, .pcd or .xyz", path));
+  }
+  return write_map(map, *format, made_by, path);
+}
+
+Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, const std::string& path) {
+  return write_file(path, [&](std::ostream& out) -> Result<void> {
+    const Result<void> written = write_map(map, format, made_by, out);
+    if (written) return {};
+    return fail(written.error().code, fmt::format("{}: {}", path, written.error().message));
+  });
 }
 
 }  // namespace pingvox

@@ -107,6 +107,22 @@ void for_each_column(Raster<T>& raster, const Frame& frame, const KeyBox& cells,
   }
 }
 
+/// Sets the cells of a node that lie in the layers `first` to `last`, as few nodes as possible.
+void set_layers(Editor& editor, const Leaf<WideWord>& node, WideWord first, WideWord last, int levels) {
+  const KeyBox cells = cells_of(node, levels);
+  if (cells.first.z > last || cells.last.z < first) return;
+  if (cells.first.z >= first && cells.last.z <= last) {
+    editor.set(node.key, node.depth, node.belief);
+    return;
+  }
+  const WideWord half = WideWord{1} << (levels - node.depth - 1);
+  for (int octant = 0; octant < 8; ++octant) {
+    const auto child = [&](WideWord word, int axis) { return word + ((octant >> axis & 1) != 0 ? half : 0); };
+    const WideKey key{child(node.key.x, 0), child(node.key.y, 1), child(node.key.z, 2)};
+    set_layers(editor, {key, node.depth + 1, node.belief}, first, last, levels);
+  }
+}
+
 }  // namespace
 
 Result<void> SliceOptions::validate() const {
@@ -130,6 +146,19 @@ Result<Raster<Occupancy>> slice_of(const OccupancyMap& map, const SliceOptions& 
     for_each_column(raster, *frame, cells, [occupancy](Occupancy& value) { value = std::max(value, occupancy); });
   });
   return raster;
+}
+
+Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& options) {
+  if (const auto frame = frame_of(map, options, kMostRasterCells); !frame) return tl::unexpected(frame.error());
+  const int levels = map.lattice().depth();
+  const auto [first, last] = layers_of(map.lattice(), options);
+  OccupancyMap out(map.options());
+  Editor editor = out.edit();
+  for_each_leaf<WideWord>(map, {}, [&, low = first, high = last](const Leaf<WideWord>& leaf) {
+    set_layers(editor, leaf, low, high, levels);
+  });
+  editor.synchronize();
+  return out;
 }
 
 Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& options, Surface surface) {

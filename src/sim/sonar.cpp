@@ -252,9 +252,9 @@ TrueRange true_range(const World& world, const Pose& map_from_sensor, double bea
   return range;
 }
 
-SonarSimulator::SonarSimulator(World world, Trajectory map_from_sensor, const SonarOptions& options, std::size_t turns)
+SonarSimulator::SonarSimulator(World world, Trajectory map_from_body, const SonarOptions& options, std::size_t turns)
     : world_(std::move(world)),
-      map_from_sensor_(std::move(map_from_sensor)),
+      map_from_body_(std::move(map_from_body)),
       options_(options),
       beams_(turns * options.beams_per_turn),
       clean_(options.beams_per_turn),
@@ -278,16 +278,17 @@ SonarSimulator::SonarSimulator(World world, Trajectory map_from_sensor, const So
 
 Result<std::optional<Beam>> SonarSimulator::next() {
   for (; sent_ < beams_; ++sent_) {
-    const double time = map_from_sensor_.poses().front().time_s + static_cast<double>(sent_) / options_.beams_per_s;
-    const std::optional<Pose> pose = map_from_sensor_.at(time);
-    if (!pose) break;
+    const double time = map_from_body_.poses().front().time_s + static_cast<double>(sent_) / options_.beams_per_s;
+    const std::optional<Pose> body = map_from_body_.at(time);
+    if (!body) break;
+    const Pose pose = *body * options_.body_from_sensor;
     const bool is_lost = dropouts_.uniform() < options_.lost;
     const bool is_silent = dropouts_.uniform() < options_.silent;
     if (is_lost) continue;
 
     const std::size_t direction = sent_ % options_.beams_per_turn;
     const double turned = 2.0 * kPi * static_cast<double>(direction) / static_cast<double>(options_.beams_per_turn);
-    ping_ = {time, *pose, wrapped_bearing(-turned)};
+    ping_ = {time, pose, wrapped_bearing(-turned)};
     const double step = options_.bearing_step_rad;
     Beam beam{
         .time_s = time,
@@ -295,8 +296,8 @@ Result<std::optional<Beam>> SonarSimulator::next() {
         .bin_length_m = options_.bin_length_m,
         .intensities = {}};
     Clean& clean = clean_[direction];
-    if (clean.intensities.empty() || clean.map_from_sensor.matrix() != pose->matrix()) {
-      clean = {*pose, clean_beam(world_, *pose, ping_.bearing_rad, options_)};
+    if (clean.intensities.empty() || clean.map_from_sensor.matrix() != pose.matrix()) {
+      clean = {pose, clean_beam(world_, pose, ping_.bearing_rad, options_)};
     }
     beam.intensities.reserve(options_.bins);
     for (std::size_t bin = 0; bin < options_.bins; ++bin) {

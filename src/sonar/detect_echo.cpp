@@ -124,8 +124,17 @@ class FirstBins {
     if (options.detector != Detector::kCanny) return;
     std::vector<int> strong;
     strong.reserve(contrasts.size());
-    for (const int contrast : contrasts) strong.push_back(options.threshold.value_or((8 * contrast + 2) / 5));
+    for (const int contrast : contrasts) strong.push_back(options.threshold.value_or(usual_gradient(contrast)));
     edges_ = first_edges(image, windows, strong, options.canny);
+  }
+
+  /// The threshold of one beam. REQUIRES a window that is not empty.
+  int threshold_of(std::size_t n, Bins bins) const {
+    if (options_.threshold) return *options_.threshold;
+    const Detector detector = options_.detector;
+    if (detector == Detector::kCanny) return usual_gradient(contrasts_[n]);
+    if (detector == Detector::kLevel || detector == Detector::kMax) return level_of(n, bins, contrasts_[n]);
+    return contrasts_[n];
   }
 
   /// REQUIRES a window that is not empty.
@@ -154,6 +163,8 @@ class FirstBins {
   }
 
  private:
+  static int usual_gradient(int contrast) { return (8 * contrast + 2) / 5; }
+
   int level_of(std::size_t n, Bins bins, int contrast) const {
     return options_.threshold ? *options_.threshold : usual_level(bins, heard_[n], contrast);
   }
@@ -225,6 +236,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
     if (!first) continue;
     Echo echo = echo_from(bins, windows[n], *first, contrasts[n]);
     echo.intensity = bins[echo.peak];
+    echo.threshold = first_bins.threshold_of(n, bins);
     echo.range_m = wall_of(sweep.beams[n].intensities, echo, contrasts[n]) * sweep.beams[n].bin_length_m;
     echoes[n] = echo;
   }

@@ -96,7 +96,12 @@ void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
     const double long_m = (1.0 + 8.0 / disc.radius_px) * disc.range_m;
     draw_line(picture, disc.spot_at(disc.range_m, bearing_rad), disc.spot_at(long_m, bearing_rad), 2.0, kInk,
               {area.x - kRim, area.y - kRim, area.width + 2 * kRim, area.height + 2 * kRim});
-    const std::string text = fmt::format("{}", n * 360 / kSpokes);
+    const int degrees = n * 360 / kSpokes;
+    const std::string text = degrees == 0     ? "ahead"
+                             : degrees == 90  ? "port"
+                             : degrees == 180 ? "astern"
+                             : degrees == 270 ? "stbd"
+                                              : fmt::format("{}", std::min(degrees, 360 - degrees));
     const double text_m = (1.0 + 27.0 / disc.radius_px) * disc.range_m;
     const Spot at = disc.spot_at(text_m, bearing_rad);
     draw_centred(picture, std::lround(at.x), std::lround(at.y) - 7, text, kInk);

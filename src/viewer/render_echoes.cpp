@@ -17,7 +17,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kLeft = 110, kRight = 96, kTop = 24, kBottom = 96;
+constexpr std::ptrdiff_t kLeft = 110, kRight = 126, kTop = 24, kBottom = 96;
 constexpr std::size_t kMostRows = 2000, kHighEnough = 800;
 constexpr std::size_t kLeastWidth = static_cast<std::size_t>(kEchoLegendWidth);
 constexpr std::ptrdiff_t kMarkWidth = 3;
@@ -111,6 +111,13 @@ void draw_axes(Picture& picture, const Scale& scale) {
   draw_label(picture, kGap, below + kTick + kGap, "beam", kTextScale, kInk);
 }
 
+/// A bearing [degrees, counter-clockwise, 0..359] by its side, so that nobody has to know which way it is counted.
+std::string side_text(long degrees) {
+  if (degrees == 0) return "ahead";
+  if (degrees == 180) return "astern";
+  return degrees < 180 ? fmt::format("{} port", degrees) : fmt::format("{} stbd", 360 - degrees);
+}
+
 double turned_by(const Beam& from, const Beam& to) {
   return std::remainder(to.bearing_rad - from.bearing_rad, 2.0 * std::numbers::pi);
 }
@@ -135,8 +142,7 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
     if (y < free_from) return;
     const auto degrees = static_cast<long>(std::lround(passed * step_rad / kDegree_rad)) % 360;
     picture.fill(x, y, kTick, 2, kInk);
-    draw_label(picture, x + kTick + kGap, y - 6, std::to_string(degrees < 0 ? degrees + 360 : degrees), kTextScale,
-               kInk);
+    draw_label(picture, x + kTick + kGap, y - 6, side_text(degrees < 0 ? degrees + 360 : degrees), kTextScale, kInk);
     free_from = y + kRoom;
   };
   // The bearing goes on counting beyond a turn, so that passing 0 is like passing any other.

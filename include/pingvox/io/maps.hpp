@@ -26,4 +26,11 @@ Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes =
 /// (.bt and .ot: depth 16 only), with the name of one that can.
 Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out);
 
+/// Writes a map to a file, or to standard output for "-"; every message names the file.
+Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, const std::string& path);
+
+/// The same in the format that the suffix names: `write_map(map, "harbour.bt")`.
+/// @return kUnsupported when the suffix is none of a map or cloud
+Result<void> write_map(const OccupancyMap& map, const std::string& path, std::string_view made_by = {});
+
 }  // namespace pingvox

@@ -48,4 +48,8 @@ enum class Surface {
 /// @return kUnsupported when nothing is occupied there; kLimit beyond a quarter of kMostRasterCells
 Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& options, Surface surface);
 
+/// The cells of a slice as a map with the same options; cells of other layers are unknown.
+/// @return kUnsupported when nothing is known there; kLimit when the slice is beyond kMostRasterCells
+Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& options);
+
 }  // namespace pingvox

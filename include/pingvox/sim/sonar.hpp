@@ -42,6 +42,8 @@ struct SonarOptions {
   double silent = 0.002;   ///< share of beams in which nothing but ringing and noise is heard (bubbles); 0..1
   double lost = 0.0;       ///< share of beams that never arrive in the log; less than 1
 
+  Pose body_from_sensor = Pose::Identity();  ///< the mount: pose of the head on the vehicle
+
   double range_m() const { return static_cast<double>(bins) * bin_length_m; }
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
@@ -68,10 +70,10 @@ class SonarSimulator final : public BeamSource {
     double bearing_rad = 0.0;  ///< not rounded, in [0, 2 pi)
   };
 
-  /// @param map_from_sensor  the head's way; the first beam is sent at its first pose
+  /// @param map_from_body    the vehicle's path; the first beam is sent at its first pose
   /// @param turns            of the head; it stops before when the trajectory ends
   /// REQUIRES valid options.
-  SonarSimulator(World world, Trajectory map_from_sensor, const SonarOptions& options, std::size_t turns);
+  SonarSimulator(World world, Trajectory map_from_body, const SonarOptions& options, std::size_t turns);
 
   Result<std::optional<Beam>> next() override;
 
@@ -87,7 +89,7 @@ class SonarSimulator final : public BeamSource {
   };
 
   World world_;
-  Trajectory map_from_sensor_;
+  Trajectory map_from_body_;
   SonarOptions options_;
   std::size_t beams_;                      ///< to be sent in all
   std::vector<Clean> clean_;               ///< by direction

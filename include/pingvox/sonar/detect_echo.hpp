@@ -19,6 +19,7 @@ struct Echo {
   std::size_t last = 0;        ///< its last bin
   double range_m = 0.0;        ///< where we take the wall to be, from the transducer: a bin before the crest's middle
   std::uint8_t intensity = 0;  ///< of the peak, 0..255, as it was detected (after filtering)
+  int threshold = 0;           ///< it was detected with: EchoOptions::threshold, or what that is by default
 };
 
 /// How an echo is found. Whatever finds its first bin, it runs from there to the last bin before the beam has fallen by
