@@ -39,6 +39,15 @@ TEST(Csv, ReadsColumnsInAnyOrderByTheirNames) {
   EXPECT_TRUE(all.items[2].intensities.empty());  // a ping without bins is a ping
 }
 
+// Spreadsheets of many countries write them.
+TEST(Csv, ReadsSemicolonsBetweenColumns) {
+  const auto all = read_csv("time_s;bearing_rad;bin_length_m;intensities\n10;1.25;0.5;0;43;255\n", Damage::kFail);
+  EXPECT_EQ(all.error, "");
+  ASSERT_EQ(all.items.size(), 1U);
+  EXPECT_EQ(all.items[0].bearing_rad, 1.25);
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(0, 43, 255));
+}
+
 TEST(Csv, ReadsBearingsOfEachSenseAndUnit) {
   const auto bearing = [](std::string_view column, std::string_view value) {
     const auto all = read_csv("time_s," + std::string(column) + ",bin_length_m,intensities...\n0," +
