@@ -53,7 +53,7 @@ std::string overview() {
          "  pingvox simulate tank -o tank.csv\n"
          "  pingvox map tank.csv -o tank.bt --beam cone\n"
          "  pingvox render tank.bt -o tank.png\n"
-         "\nExit status: 0 done, 1 could not be done, 2 the words of the call are off.\n"
+         "\nExit status: 0 done, 1 failed, 2 invalid usage.\n"
          "Of compare: 0 the same, 1 different, 2 trouble of any kind.\n";
 }
 

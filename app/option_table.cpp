@@ -177,7 +177,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& w
       const std::string name = word.substr(0, word.find('='));
       return wrong_words(table, fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(table))));
     }
-    return wrong_words(table, fmt::format("one word too many: '{}'", word));
+    return wrong_words(table, fmt::format("unexpected argument '{}'", word));
   }
   for (const Found& entry : found) {
     if (entry.positional && entry.parsed->count() == 0) {

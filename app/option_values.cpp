@@ -17,7 +17,7 @@ Result<std::size_t> bytes_from(std::string_view text) {
     }
   }
   const Result<std::size_t> count = number_from<std::size_t>(digits);
-  if (!count) return off(fmt::format("'{}' is no number of bytes, as in 512M or 2G", text));
+  if (!count) return off(fmt::format("'{}' is not a number of bytes, as in 512M or 2G", text));
   if (*count > std::numeric_limits<std::size_t>::max() >> shift) return off(fmt::format("'{}' is out of range", text));
   return *count << shift;
 }
@@ -55,7 +55,7 @@ Take into_probability(LogOdds& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<double> value = number_from<double>(text);
     if (!value) return tl::unexpected(value.error());
-    if (!(*value > 0.0 && *value < 1.0)) return off(fmt::format("{} is no probability between 0 and 1", text));
+    if (!(*value > 0.0 && *value < 1.0)) return off(fmt::format("{} is not a probability between 0 and 1", text));
     target = LogOdds::from_probability(*value);
     return {};
   };

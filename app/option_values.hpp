@@ -42,10 +42,10 @@ Result<Number> number_from(std::string_view text) {
   constexpr bool kReal = std::is_floating_point_v<Number>;
   if (error == std::errc::result_out_of_range) return off(fmt::format("'{}' is out of range", text));
   if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty()) {
-    return off(fmt::format("'{}' is no {}", text, kReal ? "number" : "whole number"));
+    return off(fmt::format("'{}' is not a {}", text, kReal ? "number" : "whole number"));
   }
   if constexpr (kReal) {
-    if (std::isnan(value)) return off(fmt::format("'{}' is no number", text));
+    if (std::isnan(value)) return off(fmt::format("'{}' is not a number", text));
   }
   return value;
 }
@@ -109,7 +109,7 @@ struct Limits {
 
 inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
 
-/// The same, and a number outside of the limits is refused. What is no number is for `take` to judge.
+/// The same, and a number outside of the limits is refused. What is not a number is for `take` to judge.
 Take within(const Limits& limits, Take take);
 
 Take into_probability(LogOdds& target);

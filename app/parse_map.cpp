@@ -91,7 +91,7 @@ Result<Command> map_command(const Words& words) {
        "pingvox map scans.graph -o scans.bt --resolution 0.1 --vote sweep",
        "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
       "Point scans and clouds use the options of the map, --ray and --max-range.\n"
-      "Exit status: 0 done, 1 could not be done, 2 the words of the call are off."};
+      "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parsed(table, words, [&]() -> Result<Command> {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());

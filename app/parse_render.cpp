@@ -178,7 +178,7 @@ Result<Command> render_command(const Words& words) {
        "pingvox render before.bt after.bt -o both.png --view side --from behind",
        "pingvox render tank.mat -o thresholds.png --view above --threshold 20 --beside '--threshold 70'"},
       "Beams, echoes and cells differ in lightness, not only in colour.\n"
-      "Exit status: 0 done, 1 could not be done, 2 the words of the call are off."};
+      "Exit status: 0 done, 1 failed, 2 invalid usage."};
   auto& options = table.groups.front().options;
   options.insert(options.begin(), output_option(command.output, "the picture, .png; - is standard output"));
   options.push_back({"--beside", 0, "OPTIONS",
