@@ -120,7 +120,7 @@ OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, doubl
       {{"--min-range", 0, "M|auto", "nearer bins are the head's own ringing, and no evidence; auto: as it is found",
         shown(EchoOptions::kUsualBlanking_m),
         within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_min_range(echo.min_range_m))},
-       {"--min-bin", 0, "N", "nor are those before this one, counted from 0", fmt::format("{}", echo.min_bin),
+       {"--min-bin", 0, "N", "ignore bins before bin N (the first is 0)", fmt::format("{}", echo.min_bin),
         into_number(echo.min_bin)},
        {"--max-range", 0, "M",
         "farther echoes and cells do not count; a beam that heard only such echoes frees up to there", "none",
@@ -136,8 +136,8 @@ OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, doubl
        {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
         within({0.0, 1000.0, Limits::Ends::kLowOut}, into_optional(words.sigma))},
        choice("--detect", kDetectors, "how echoes are found", echo.detector),
-       {"--threshold", 0, "T", "the rise, level or gradient (canny) that makes an echo", "by the gain",
-        into_optional(echo.threshold)},
+       {"--threshold", 0, "T", "the rise, level or gradient (canny) that makes an echo",
+        "automatic, from the contrast of nearby beams", into_optional(echo.threshold)},
        choice("--cfar", kCfars, "noise of cfar: cell-averaging, smallest-of or ordered-statistic", echo.cfar.noise)}};
 }
 
@@ -146,17 +146,17 @@ OptionTable::Group map_group(BuildWords& words) {
   BeamModelOptions& model = words.build.model;
   return {
       "Map",
-      {{"--resolution", 0, "M", "edge of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
+      {{"--resolution", 0, "M", "edge length of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot hold 16", fmt::format("{}", map.depth),
         into_number(map.depth)},
-       {"--hit", 0, "P", "probability that an echo gives a cell", shown(model.hit.probability()),
+       {"--hit", 0, "P", "probability that a cell is occupied after one echo in it", shown(model.hit.probability()),
         within({0.5, 1.0, Limits::Ends::kBothOut}, into_probability(model.hit))},
-       {"--miss", 0, "P", "probability that sound passing gives a cell", shown(model.miss.probability()),
-        within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(model.miss))},
-       {"--clamp", 0, "P,P", "probabilities beyond which a cell does not go",
+       {"--miss", 0, "P", "probability that a cell is occupied after one beam passed through it",
+        shown(model.miss.probability()), within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(model.miss))},
+       {"--clamp", 0, "P,P", "lowest and highest probability a cell can reach",
         shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), into_clamp(map.clamp)},
        choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", words.build.vote),
-       {"--memory-limit", 0, "BYTES", "stop when the map would grow past it; also 512M, 2G", "none",
+       {"--memory-limit", 0, "BYTES", "stop before the map grows larger; also 512M, 2G", "none",
         into_bytes(map.memory_limit_bytes)}}};
 }
 
@@ -174,11 +174,11 @@ OptionTable::Group sensor_group(BuildWords& words) {
             within({0.0, 180.0, Limits::Ends::kBothOut}, into_degrees(words.head.beam_height_rad))},
            {"--device", 0, device_names("|"), "the sonar's head, which says how wide and high its beam is",
             "as the log says", into_device(words.head.device)},
-           {"--free-share", 0, "S", "of width and height, about the axis: so much of a beam frees what it passed",
+           {"--free-share", 0, "S", "central fraction of the beam (0..1) that marks cells free",
             shown(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
-           choice("--ray", kRays, "how rays go from cell to cell", model.ray),
+           choice("--ray", kRays, "traversal of cells along a ray", model.ray),
            choice("--hit-from", kHitsFrom, "every echo counts the same, or by its intensity", model.hit_from),
-           choice("--silent", kSilents, "what a beam without an echo says", model.silent)}};
+           choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};
 }
 
 }  // namespace pingvox::app

@@ -57,7 +57,8 @@ Result<Command> map_command(const Words& words) {
   };
 
   OptionTable::Group map_options = map_group(build);
-  map_options.options.push_back(choice("--parents", kParents, "what inner nodes say of their children", map.parents));
+  map_options.options.push_back(
+      choice("--parents", kParents, "value of a parent: maximum or mean of its children", map.parents));
   map_options.options.push_back({"--threads", 0, "N",
                                  "threads that trace a sweep or scan together, 1..256; the map is the same", "1",
                                  thread_count});
