@@ -43,7 +43,7 @@ struct Totals {
     report.sweeps += log.sweeps;
     report.echoes += log.echoes;
     report.skipped += log.skipped;
-    report.outside += log.outside;
+    report.outside.count += log.outside.count;
     report.cells_freed += log.cells_freed;
     report.cells_hit += log.cells_hit;
     report.seconds.read += log.seconds.read;
@@ -107,7 +107,7 @@ std::string text_of(const Totals& totals, const OccupancyMap& map, const std::st
                         totals.scans == 1 ? "" : "s");
   }
   if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
-  if (report.outside > 0) read += fmt::format(", {} of them outside of the map", report.outside);
+  if (report.outside.count > 0) read += fmt::format(", {} of them outside of the map", report.outside.count);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
   return name + "\n" + report_line("read", read) + map_text(map, map.counts()) +
          report_line("seconds",
@@ -118,11 +118,11 @@ std::string text_of(const Totals& totals, const OccupancyMap& map, const std::st
 
 /// Why a map knows nothing, as far as that can be told.
 std::string why_empty(const BuildReport& report, const Lattice& lattice) {
-  if (report.outside > 0) {
+  if (report.outside.count > 0) {
     return fmt::format(
         "{} beams or points lie outside of the map, which with cells of {} m reaches {:.3g} m from its origin: larger "
         "cells (--resolution) reach farther",
-        report.outside, lattice.resolution_m(), std::ldexp(lattice.resolution_m(), lattice.depth() - 1));
+        report.outside.count, lattice.resolution_m(), std::ldexp(lattice.resolution_m(), lattice.depth() - 1));
   }
   return "no echoes and no free space in range (--min-range, --max-range, --threshold, --silent)";
 }

@@ -36,7 +36,7 @@ SeenSweep seen(std::size_t number, Sweep sweep, const PanelCommand& panel) {
   PolarImage smooth = filtered(raw, panel.build.filter);
   std::vector<std::optional<Echo>> echoes;
   if (panel.marks == EchoMarks::kOn) {
-    echoes = detect_echoes(smooth, sweep, *panel.build.echo_within_range());
+    echoes = detect_echoes(smooth, sweep, panel.build.echo);
   }
   PolarImage& image = panel.image == ShownImage::kRaw ? raw : smooth;
   return {number, std::move(sweep), std::move(image), std::move(echoes)};

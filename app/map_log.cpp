@@ -37,12 +37,12 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
 }
 
 Result<void> check_ranges(const BuildOptions& options) {
-  if (options.echo_within_range()) return {};
   const double nearest_m = options.echo.min_range_m.value_or(0.0);
-  return fail(Error::Code::kBadOption,
-              fmt::format("--max-range: must be above --min-range, which is {:.6g} m{}, is {:.6g} m", nearest_m,
-                          nearest_m == EchoOptions::kUsualBlanking_m ? " when it is not given" : "",
-                          options.model.max_range_m));
+  if (options.echo.max_range_m > nearest_m) return {};
+  return fail(
+      Error::Code::kBadOption,
+      fmt::format("--max-range: must be above --min-range, which is {:.6g} m{}, is {:.6g} m", nearest_m,
+                  nearest_m == EchoOptions::kUsualBlanking_m ? " when it is not given" : "", options.echo.max_range_m));
 }
 
 Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
@@ -52,7 +52,7 @@ Result<BuildReport> map_log(const Log& log, const std::string& name, const Traje
   if (!report) {
     // Errors of the map itself name no file; those of options need none.
     const Error::Code code = report.error().code;
-    if (code != Error::Code::kLimit) return report;
+    if (code != Error::Code::kLimit && code != Error::Code::kNoMemory) return report;
     return fail(code, fmt::format("{}: {}", name, report.error().message));
   }
   if (report->beams == 0) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "option_values.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -113,7 +114,12 @@ Take into_mount(Pose& target) {
 
 }  // namespace
 
-OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, double& max_range_m) {
+Result<void> check_options(BuildOptions options) {
+  options.echo.max_range_m = std::numeric_limits<double>::infinity();
+  return options.validate();
+}
+
+OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio) {
   EchoOptions& echo = words.echo;
   return {
       "Echoes",
@@ -124,7 +130,7 @@ OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, doubl
         into_number(echo.min_bin)},
        {"--max-range", 0, "M",
         "farther echoes and cells do not count; a beam that heard only such echoes frees up to there", "none",
-        within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(max_range_m))},
+        within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(echo.max_range_m))},
        {"--sound-speed", 0, "M/S", "in this water; devices assume 1500 m/s", shown(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                into_sound_speed_ratio(sound_speed_ratio))},
@@ -152,7 +158,8 @@ OptionTable::Group map_group(BuildWords& words) {
        {"--hit", 0, "P", "probability that a cell is occupied after one echo in it", shown(model.hit.probability()),
         within({0.5, 1.0, Limits::Ends::kBothOut}, into_probability(model.hit))},
        {"--miss", 0, "P", "probability that a cell is occupied after one beam passed through it",
-        shown(model.miss.probability()), within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(model.miss))},
+        shown(words.build.miss.probability()),
+        within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(words.build.miss))},
        {"--clamp", 0, "P,P", "lowest and highest probability a cell can reach",
         shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), into_clamp(map.clamp)},
        choice("--vote", kVotes, "one vote a cell and sweep (a hit beats a miss), or one a beam", words.build.vote),

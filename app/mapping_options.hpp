@@ -40,8 +40,11 @@ struct BuildWords {
   }
 };
 
+/// All but whether the maximum range is beyond the minimum one, which scans of points need not have: `check_ranges`.
+Result<void> check_options(BuildOptions options);
+
 /// Groups of options that write into what they are given, which must outlive them.
-OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio, double& max_range_m);
+OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio);
 OptionTable::Group map_group(BuildWords& words);
 OptionTable::Group sensor_group(BuildWords& words);
 

@@ -85,7 +85,7 @@ Result<Command> map_command(const Words& words) {
                 command.manner.progress)}},
        map_options,
        sensor_options,
-       echo_group(build.echoes, build.build.sound_speed_ratio, build.build.model.max_range_m),
+       echo_group(build.echoes, build.build.sound_speed_ratio),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt --beam cone",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
@@ -101,7 +101,7 @@ Result<Command> map_command(const Words& words) {
     command.build = build.build_options();
     command.head = build.head;
     if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = command.build.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
     if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {
       return off(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", output, name_of(*output_as),
                              Lattice::kDefaultDepth, map.depth));

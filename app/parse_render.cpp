@@ -92,7 +92,7 @@ std::vector<OptionTable::Group> panel_groups(PanelWords& words) {
          "width of a polar picture (its height goes by the beams), both sides of a Cartesian one",
          "1000; of several 640", within({16.0, 3072.0}, into_optional(words.size_px))},
         {"--caption", 0, "TEXT", "below the picture", "what differs from those beside it", into(panel.caption)}}},
-      echo_group(words.build.echoes, words.build.build.sound_speed_ratio, words.build.build.model.max_range_m),
+      echo_group(words.build.echoes, words.build.build.sound_speed_ratio),
       map_group(words.build),
       sensor_group(words.build)};
   note_in(words.given, groups);
@@ -140,7 +140,7 @@ Result<PanelCommand> panel_command(const PanelWords& words, std::size_t usual_si
   }
   if (const auto valid = panel.map_picture.validate(); !valid) return tl::unexpected(valid.error());
   if (const auto valid = panel.map.validate(); !valid) return tl::unexpected(valid.error());
-  if (const auto valid = panel.build.validate(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = check_options(panel.build); !valid) return tl::unexpected(valid.error());
   const CartesianPictureOptions cartesian{panel.echo_picture, panel.between, panel.build.model.width_rad};
   if (const auto valid = cartesian.validate(); !valid) return tl::unexpected(valid.error());
   return panel;

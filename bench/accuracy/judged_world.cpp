@@ -87,11 +87,11 @@ Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& t
 Result<OccupancyMap> mapped(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,
                             double resolution_m) {
   OccupancyMap map(MapOptions{.resolution_m = resolution_m});
-  ScanUpdate scan(model.miss);
+  ScanUpdate scan(map.lattice());
   std::size_t n = 0;
   for (const Sweep& sweep : recording.sweeps) {
     for (const Beam& beam : sweep.beams) {
-      trace_beam(map.lattice(), recording.pings[n].map_from_sensor, beam, echoes[n], model, scan);
+      trace_beam(recording.pings[n].map_from_sensor, beam, echoes[n], model, scan);
       ++n;
     }
     if (const auto applied = map.apply(scan); !applied) return tl::unexpected(applied.error());

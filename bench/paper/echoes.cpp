@@ -97,7 +97,7 @@ std::uint64_t occupied_beyond(const OccupancyMap& map, double range_m) {
 enum class SilentBeam { kWall, kNothing };
 OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, int threshold, SilentBeam silent_beam) {
   OccupancyMap map;
-  ScanUpdate scan;
+  ScanUpdate scan(map.lattice());
   const BeamModelOptions model{.hit_from = HitFrom::kFixed};
   for (const Sweep& sweep : log.sweeps) {
     const PolarImage image = filtered(PolarImage(sweep), filter);
@@ -109,7 +109,7 @@ OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, in
       const std::size_t bin = edge ? edge->bin : beam.intensities.size() - 1;
       Echo echo{.first = bin, .peak = bin, .last = bin, .range_m = 0.0, .intensity = 255};
       echo.range_m = (static_cast<double>(bin) + 0.5) * beam.bin_length_m;
-      trace_beam(map.lattice(), Pose::Identity(), beam, echo, model, scan);
+      trace_beam(Pose::Identity(), beam, echo, model, scan);
     }
     if (!map.apply(scan)) break;  // there is no limit to pass
   }

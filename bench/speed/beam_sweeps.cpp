@@ -23,7 +23,7 @@ std::vector<BeamSweep> beam_sweeps(const TankEchoes& tank, std::size_t most) {
 }
 
 void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const BeamSweep> sweeps, const BeamModelOptions& model) {
-  BeamTracer tracer(map.lattice(), model);
+  BeamTracer tracer(model);
   for (const BeamSweep& sweep : sweeps) {
     for (const HeardBeam& heard : sweep) tracer.trace(Pose::Identity(), heard.beam, heard.echo, scan);
     (void)map.apply(scan);

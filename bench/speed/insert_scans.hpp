@@ -13,7 +13,7 @@ namespace pingvox::bench {
 /// Each scan traced and applied. `scan` is room that is used for all of them, empty before and after.
 inline void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const RayCloud> scans,
                    const PointScanOptions& options = {}) {
-  PointTracer tracer(map.lattice(), options);
+  PointTracer tracer(options);
   for (const RayCloud& cloud : scans) {
     tracer.trace(cloud.origin_m.cast<double>(), cloud.ends_m, scan);
     (void)map.apply(scan);

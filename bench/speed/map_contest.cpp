@@ -11,7 +11,7 @@ namespace {
 MemoryOfBoth memory_of(const MapContest& contest) {
   return {peak_memory_bytes([&] {
             OccupancyMap map({.resolution_m = contest.resolution_m});
-            ScanUpdate scan;
+            ScanUpdate scan(map.lattice());
             contest.ours(map, scan);
           }),
           peak_memory_bytes([&] {
@@ -25,7 +25,7 @@ MemoryOfBoth memory_of(const MapContest& contest) {
 Result<Row> measured(const MapContest& contest) {
   std::optional<OccupancyMap> map;
   std::unique_ptr<octomap::OcTree> tree;
-  ScanUpdate scan;
+  ScanUpdate scan(Lattice(contest.resolution_m));
   const Side ours{[&] { map.emplace(MapOptions{.resolution_m = contest.resolution_m}); },
                   [&] { contest.ours(*map, scan); }};
   const Side peer{[&] { tree = std::make_unique<octomap::OcTree>(contest.resolution_m); },

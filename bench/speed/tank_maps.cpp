@@ -13,7 +13,7 @@ Result<TankMaps> tank_maps() {
   constexpr double kCell_m = 0.05;
   TankMaps maps{bundles->input, OccupancyMap({.resolution_m = kCell_m}), std::make_unique<octomap::OcTree>(kCell_m)};
   const LogOdds hit(maps.peer->getProbHitLog());
-  ScanUpdate scan(LogOdds(maps.peer->getProbMissLog()));
+  ScanUpdate scan(maps.ours.lattice(), LogOdds(maps.peer->getProbMissLog()));
   for (const PeerScan& peer : peer_scans(bundles->scans)) {
     octomap::KeySet missed_cells, hit_cells;
     maps.peer->computeUpdate(peer.cloud, peer.origin_m, missed_cells, hit_cells, -1.0);

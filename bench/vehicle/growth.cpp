@@ -69,7 +69,7 @@ class Basin {
   }
 
   OccupancyMap& map_;
-  ScanUpdate scan_;
+  ScanUpdate scan_{map_.lattice()};
   Random random_{15};
   std::uint64_t next_ = 0, filled_ = 0;
 };
@@ -86,15 +86,15 @@ InsonifiedVolume beam_at(std::size_t n) {
 
 /// A small scan: the water before an echo at 2 m, in a beam of 3 x 35 degrees: some 1500 cells.
 ScanUpdate probe(const Lattice& lattice, std::size_t n) {
-  ScanUpdate scan;
-  trace_volume(lattice, beam_at(n), scan);
+  ScanUpdate scan(lattice);
+  trace_volume(beam_at(n), scan);
   return scan;
 }
 
 /// Takes back what a probe said of the water, so that it can be said again.
 ScanUpdate unsaid(const Lattice& lattice, std::size_t n) {
-  ScanUpdate scan(LogOdds(-ScanUpdate().miss().value()));
-  trace_volume(lattice, beam_at(n), scan);
+  ScanUpdate scan(lattice, LogOdds(-ScanUpdate(lattice).miss().value()));
+  trace_volume(beam_at(n), scan);
   return scan;
 }
 

@@ -9,9 +9,8 @@
 #include "bench/paired_timing.hpp"
 #include "bench/tank_beams.hpp"
 #include "pingvox/map/compare.hpp"
-#include "pingvox/mapping/beam_tracer.hpp"
+#include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/build_map.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
 
 namespace pingvox::bench {
 namespace {
@@ -26,6 +25,7 @@ BuildOptions vehicle_options() {
   options.filter = usual_filter(Detector::kRise);
   options.model.shape = BeamShape::kCone;
   options.vote = Vote::kPerBeam;
+  options.timing = Timing::kByBeam;
   return options;
 }
 
@@ -44,57 +44,30 @@ double cpu_of_asking_s() {
   return median(times);
 }
 
-/// Takes beams one by one, back to back: what a vehicle does between two beams, without the waiting.
-class LiveMap {
- public:
-  explicit LiveMap(const BuildOptions& options)
-      : options_(options), stream_(options.filter, options.echo), scan_(options.model.miss) {}
-
-  void add(Beam beam) { apply(stream_.add(std::move(beam))); }
-  void finish() { apply(stream_.finish()); }
-  const OccupancyMap& map() const { return map_; }
-  std::size_t applied() const { return applied_; }
-
- private:
-  void apply(const std::vector<EchoStream::Heard>& heard) {
-    for (const EchoStream::Heard& h : heard) {
-      tracer_.trace(Pose::Identity(), h.beam, h.echo, scan_);
-      applied_ += map_.apply(scan_).has_value();
-      scan_.clear();
-    }
-  }
-
-  BuildOptions options_;
-  EchoStream stream_;
-  ScanUpdate scan_;
-  OccupancyMap map_{{.resolution_m = kCell_m}};
-  BeamTracer tracer_{map_.lattice(), options_.model};
-  std::size_t applied_ = 0;
-};
-
-/// By the wall clock.
-Replay replayed(const std::vector<Beam>& beams, LiveMap& live) {
+/// Beams one by one, back to back: what a vehicle does between two beams, without the waiting. By the wall clock.
+Replay replayed(const std::vector<Beam>& beams, BeamMapper& live) {
   Replay replay;
   std::vector<Beam> fresh = beams;
   const double cpu_before_s = cpu_time_s();
   for (Beam& beam : fresh) {
     const auto before = std::chrono::steady_clock::now();
-    live.add(std::move(beam));
+    (void)live.add(std::move(beam), Pose::Identity());
     replay.wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
   }
-  live.finish();
+  (void)live.finish();
   replay.whole_cpu_s = cpu_time_s() - cpu_before_s;
   return replay;
 }
 
 /// By the CPU clock: a replay of its own, which the other need not wait for.
 void add_cpu_times(const std::vector<Beam>& beams, Replay& replay) {
-  LiveMap live(vehicle_options());
+  OccupancyMap map({.resolution_m = kCell_m});
+  BeamMapper live = *BeamMapper::make(vehicle_options(), map);
   std::vector<Beam> fresh = beams;
   const double asking_s = cpu_of_asking_s();
   for (Beam& beam : fresh) {
     const double before = cpu_time_s();
-    live.add(std::move(beam));
+    (void)live.add(std::move(beam), Pose::Identity());
     replay.cpu_s.push_back(std::max(0.0, cpu_time_s() - before - asking_s));
   }
 }
@@ -115,15 +88,14 @@ class Recorded final : public BeamSource {
 
 /// The same cells must be known as by build_map, which hears each sweep to its end first: it takes the beams in another
 /// order, and where a belief was clamped in between it may be another.
-Result<double> share_of_other_classes(const std::vector<Beam>& beams, const LiveMap& live) {
-  if (live.applied() != beams.size()) {
-    return fail(Error::Code::kCorrupt, fmt::format("{} of {} beams came out", live.applied(), beams.size()));
-  }
+Result<double> share_of_other_classes(const std::vector<Beam>& beams, const OccupancyMap& live_map) {
   OccupancyMap map({.resolution_m = kCell_m});
   Recorded source(beams);
-  const auto built = build_map(source, Trajectory::still(Pose::Identity()), vehicle_options(), map);
+  BuildOptions options = vehicle_options();
+  options.timing = Timing::kBySweep;
+  const auto built = build_map(source, Trajectory::still(Pose::Identity()), options, map);
   if (!built) return tl::unexpected(built.error());
-  const auto found = compare_maps(live.map(), map, Sameness::kOccupancy);
+  const auto found = compare_maps(live_map, map, Sameness::kOccupancy);
   if (!found) return tl::unexpected(found.error());
   if (found->cells() == 0 || found->only_a + found->only_b > 0) {
     return fail(Error::Code::kCorrupt,
@@ -157,11 +129,15 @@ Result<std::vector<Row>> realtime(const BenchOptions&) {
   std::vector<Replay> replays;
   std::optional<double> other;
   for (int i = 0; i < kReplays; ++i) {
-    LiveMap live(vehicle_options());
+    OccupancyMap map({.resolution_m = kCell_m});
+    BeamMapper live = *BeamMapper::make(vehicle_options(), map);
     replays.push_back(replayed(tank->beams, live));
+    if (const std::size_t mapped = live.report().beams; mapped != tank->beams.size()) {
+      return fail(Error::Code::kCorrupt, fmt::format("{} of {} beams came out", mapped, tank->beams.size()));
+    }
     add_cpu_times(tank->beams, replays.back());
     if (other) continue;
-    const auto share = share_of_other_classes(tank->beams, live);
+    const auto share = share_of_other_classes(tank->beams, map);
     if (!share) return tl::unexpected(share.error());
     other = *share;
   }

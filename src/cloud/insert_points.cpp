@@ -9,13 +9,13 @@ template <class Point>
 Result<InsertReport> insert(OccupancyMap& map, const Eigen::Vector3d& origin_m, std::span<const Point> points_m,
                             const InsertOptions& options) {
   try {
-    ScanUpdate scan(options.miss);
-    const std::size_t outside = PointTracer(map.lattice(), options.scan).trace(origin_m, points_m, scan);
+    ScanUpdate scan(map.lattice(), options.miss);
+    const std::size_t outside = PointTracer(options.scan).trace(origin_m, points_m, scan);
     const Result<ApplyReport> applied = map.apply(scan);
     if (!applied) return tl::unexpected(applied.error());
     return InsertReport{*applied, outside};
   } catch (const std::bad_alloc&) {
-    return fail(Error::Code::kLimit, "out of memory: the points were not inserted");
+    return fail(Error::Code::kNoMemory, "out of memory");
   }
 }
 

@@ -43,12 +43,13 @@ WideWord gather_bits(std::uint64_t word) {
 /// Rays that fit into a window are walked side by side, the others one by one.
 class PointTracer::Tracer {
  public:
-  Tracer(const Lattice& lattice, const PointScanOptions& options) : lattice_(lattice), options_(options) {}
+  explicit Tracer(const PointScanOptions& options) : options_(options) {}
 
   template <class Point>
   std::size_t trace(const Eigen::Vector3d& origin_m, std::span<const Point> points_m, ScanUpdate& scan) {
     origin_m_ = origin_m;
     scan_ = &scan;
+    lattice_ = scan.lattice();
     try {
       open_window(points_m);
       const std::size_t outside =
@@ -151,7 +152,7 @@ class PointTracer::Tracer {
     if (ends == RayEnds::kHit) {
       if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_->add_hit(*end, options_.hit);
     }
-    return trace_ray(lattice_, origin_m_, end_m, options_.ray, *scan_) ? 0 : 1;
+    return trace_ray(origin_m_, end_m, options_.ray, *scan_) ? 0 : 1;
   }
 
   /// How far rays go along any axis [cells]: a guess from some of them.
@@ -223,7 +224,7 @@ class PointTracer::Tracer {
     });
   }
 
-  Lattice lattice_;
+  Lattice lattice_{1.0};
   PointScanOptions options_;
   ScanWindow window_;
   // Of the scan that is traced.
@@ -238,8 +239,7 @@ class PointTracer::Tracer {
   std::vector<Eigen::Vector3d> middles_m_, near_m_, cut_m_;
 };
 
-PointTracer::PointTracer(const Lattice& lattice, const PointScanOptions& options)
-    : tracer_(std::make_unique<Tracer>(lattice, options)) {}
+PointTracer::PointTracer(const PointScanOptions& options) : tracer_(std::make_unique<Tracer>(options)) {}
 PointTracer::PointTracer(PointTracer&& other) noexcept = default;
 PointTracer& PointTracer::operator=(PointTracer&& other) noexcept = default;
 PointTracer::~PointTracer() = default;
@@ -253,9 +253,8 @@ std::size_t PointTracer::trace(const Eigen::Vector3d& origin_m, std::span<const 
   return tracer_->trace(origin_m, points_m, scan);
 }
 
-std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
-                         ScanUpdate& scan) {
-  return PointTracer(lattice, options).trace(points.origin_m, points.points_m, scan);
+std::size_t trace_points(const PointScan& points, const PointScanOptions& options, ScanUpdate& scan) {
+  return PointTracer(options).trace(points.origin_m, points.points_m, scan);
 }
 
 }  // namespace pingvox

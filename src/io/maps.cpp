@@ -31,7 +31,7 @@ Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes) 
     if (format == Format::kOt) return map_file(*format, read_ot(file, memory_limit_bytes));
     if (format == Format::kPvx) return read_pvx(file, memory_limit_bytes);
   } catch (const std::bad_alloc&) {
-    return fail(Error::Code::kLimit, fmt::format("{}: out of memory: the map was not read", file.name));
+    return fail(Error::Code::kNoMemory, fmt::format("{}: out of memory: the map was not read", file.name));
   }
   const std::string what = format               ? fmt::format("a file of the kind '{}'", name_of(*format))
                            : file.bytes.empty() ? "empty"

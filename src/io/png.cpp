@@ -46,7 +46,7 @@ Result<void> write_png(std::size_t width, std::size_t height, std::span<const st
   assert(width > 0 && width < (std::size_t{1} << 31) && height > 0 && height < (std::size_t{1} << 31));
   assert(rgb.size() == width * height * 3);
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, jump_out, keep_quiet);
-  if (png == nullptr) return fail(Error::Code::kLimit, "out of memory: the picture was not written");
+  if (png == nullptr) return fail(Error::Code::kNoMemory, "out of memory: the picture was not written");
   png_infop info = png_create_info_struct(png);
   const bool done = info != nullptr && encode(png, info, width, height, rgb.data(), out);
   png_destroy_write_struct(&png, &info);

@@ -19,6 +19,9 @@
 namespace pingvox {
 namespace {
 
+/// So short that the message needs no memory of its own.
+constexpr const char* kOutOfMemory = "out of memory";
+
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
 
 std::uint64_t saturated_sum(std::uint64_t a, std::uint64_t b) {
@@ -340,6 +343,12 @@ std::size_t OccupancyMap::memory_bytes() const {
 }
 
 Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
+  if (!(scan.lattice() == lattice_)) {
+    return fail(
+        Error::Code::kBadOption,
+        fmt::format("the scan is of cells of {} m and {} levels, the map of {} m and {}", scan.lattice().resolution_m(),
+                    scan.lattice().depth(), lattice_.resolution_m(), lattice_.depth()));
+  }
   try {
     if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
@@ -351,7 +360,7 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
     return with_cursor_word(tree_.levels, [&]<KeyWord W>() { return applied<W>(tree_, rules, scan); });
   } catch (const std::bad_alloc&) {
     detail::prune_all(tree_, options_.parents);
-    return fail(Error::Code::kLimit, "out of memory: the scan was taken in only in part");
+    return fail(Error::Code::kNoMemory, kOutOfMemory);
   }
 }
 
@@ -375,7 +384,7 @@ Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evi
     return {};
   } catch (const std::bad_alloc&) {
     detail::prune_all(tree_, options_.parents);
-    return fail(Error::Code::kLimit, "out of memory: the batch was taken in only in part");
+    return fail(Error::Code::kNoMemory, kOutOfMemory);
   }
 }
 
@@ -399,7 +408,7 @@ Result<void> OccupancyMap::merge(const OccupancyMap& other) {
     tree_ = std::move(merged);
     return {};
   } catch (const std::bad_alloc&) {
-    return fail(Error::Code::kLimit, "out of memory: the maps were not merged");
+    return fail(Error::Code::kNoMemory, kOutOfMemory);
   }
 }
 

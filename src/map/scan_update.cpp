@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -71,6 +72,7 @@ void ScanUpdate::spread_evidence(Page& page, std::size_t brick) {
 }
 
 void ScanUpdate::add(const ScanUpdate& other) {
+  assert(other.lattice_ == lattice_ && other.miss_ == miss_);
   for (std::size_t i = 0; i < other.used_; ++i) {
     const Page& from = other.pages_[i];
     const std::uint32_t index = page_of(from.lowest);

@@ -49,8 +49,8 @@ bool trace(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::V
 
 }  // namespace
 
-bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
-               RayAlgorithm algorithm, ScanUpdate& scan) {
+bool trace_ray(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, RayAlgorithm algorithm, ScanUpdate& scan) {
+  const Lattice& lattice = scan.lattice();
   return with_key_word(lattice.depth(), [&]<KeyWord W>() { return trace<W>(lattice, from_m, to_m, algorithm, scan); });
 }
 

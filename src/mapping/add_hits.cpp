@@ -52,8 +52,9 @@ WideKey page_key(const Lattice& lattice, const RayEnds& ends, std::uint64_t page
 
 }  // namespace
 
-std::size_t add_hits(const Lattice& lattice, const Pose& map_from_sensor, const BundleGrid& rays, double range_m,
-                     LogOdds evidence, ScanUpdate& scan) {
+std::size_t add_hits(const Pose& map_from_sensor, const BundleGrid& rays, double range_m, LogOdds evidence,
+                     ScanUpdate& scan) {
+  const Lattice& lattice = scan.lattice();
   const RayEnds ends = ends_of(lattice, map_from_sensor, range_m);
   const Elevations& elevations = rays.elevations;
   std::vector<float> shares(elevations.count);

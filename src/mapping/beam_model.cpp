@@ -21,10 +21,6 @@ Result<void> BeamModelOptions::validate() const {
   if (!(hit > LogOdds(0.0F)) || !std::isfinite(hit.value())) {
     bad += fmt::format(" hit must be a probability in (0.5, 1), is {:.6g};", hit.probability());
   }
-  if (!(miss < LogOdds(0.0F)) || !std::isfinite(miss.value())) {
-    bad += fmt::format(" miss must be a probability in (0, 0.5), is {:.6g};", miss.probability());
-  }
-  if (!(max_range_m > 0.0)) bad += fmt::format(" max range must be > 0 m, is {};", max_range_m);
   if (bad.empty()) return {};
   bad.pop_back();
   return fail(Error::Code::kBadOption, "beam model:" + bad);
@@ -35,15 +31,15 @@ LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
 }
 
 double cells_in_beam(const BeamModelOptions& options, double range_m, double resolution_m) {
-  const double range = std::min(range_m, options.max_range_m) / resolution_m;
+  const double range = range_m / resolution_m;
   const double width = std::max(1.0, detail::width_of(options) * range),
                height = std::max(1.0, detail::height_of(options) * range);
   return range * width * height / 3.0;
 }
 
-std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, const Beam& beam,
-                       const std::optional<Echo>& echo, const BeamModelOptions& options, ScanUpdate& scan) {
-  return BeamTracer(lattice, options).trace(map_from_sensor, beam, echo, scan);
+std::size_t trace_beam(const Pose& map_from_sensor, const Beam& beam, const std::optional<Echo>& echo,
+                       const BeamModelOptions& options, ScanUpdate& scan) {
+  return BeamTracer(options).trace(map_from_sensor, beam, echo, scan);
 }
 
 }  // namespace pingvox

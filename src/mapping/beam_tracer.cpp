@@ -18,30 +18,30 @@ BeamModelOptions passed_part(BeamModelOptions options) {
 }
 
 /// @return how many rays were left out because an end of them lies outside of the lattice
-std::size_t add_misses(const Lattice& lattice, const Pose& map_from_sensor, double bearing_rad, double range_m,
-                       const BeamModelOptions& options, ScanUpdate& scan) {
+std::size_t add_misses(const Pose& map_from_sensor, double bearing_rad, double range_m, const BeamModelOptions& options,
+                       ScanUpdate& scan) {
   if (options.shape != BeamShape::kRay && options.tracing == Tracing::kGeometry) {
     const InsonifiedVolume volume{map_from_sensor, bearing_rad, detail::width_of(options), detail::height_of(options),
                                   range_m};
-    if (trace_volume(lattice, volume, scan)) return 0;
+    if (trace_volume(volume, scan)) return 0;
     // Near the border of the lattice single rays can still be told from those that leave it.
   }
   std::size_t outside = 0;
   const Eigen::Vector3d origin_m = map_from_sensor.translation();
-  for (const BundleRay& ray : beam_bundle(options, bearing_rad, range_m, lattice.resolution_m())) {
+  for (const BundleRay& ray : beam_bundle(options, bearing_rad, range_m, scan.lattice().resolution_m())) {
     const Eigen::Vector3d end_m = map_from_sensor * (ray.direction * range_m);
-    outside += !trace_ray(lattice, origin_m, end_m, options.ray, scan);
+    outside += !trace_ray(origin_m, end_m, options.ray, scan);
   }
   return outside;
 }
 
 }  // namespace
 
-BeamTracer::BeamTracer(const Lattice& lattice, const BeamModelOptions& options)
-    : lattice_(lattice),
-      options_(options),
+BeamTracer::BeamTracer(const BeamModelOptions& options, double max_range_m)
+    : options_(options),
+      max_range_m_(max_range_m),
       elevations_(std::make_unique<detail::ElevationTables>(detail::height_of(options))) {
-  assert(options.validate());
+  assert(options.validate() && max_range_m > 0.0);
 }
 BeamTracer::BeamTracer(BeamTracer&&) noexcept = default;
 BeamTracer& BeamTracer::operator=(BeamTracer&&) noexcept = default;
@@ -51,20 +51,19 @@ std::size_t BeamTracer::trace(const Pose& map_from_sensor, const Beam& beam, con
                               ScanUpdate& scan) {
   if (!echo && options_.silent == Silent::kNothing) return 0;
   const double heard_m = echo ? echo->range_m : static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
-  const bool is_hit = echo && heard_m <= options_.max_range_m;
+  const bool is_hit = echo && heard_m <= max_range_m_;
   // Sound came back from the echo's first bin on: only what lies before is sure to have been passed.
   const double passed_m = echo ? std::min(heard_m, static_cast<double>(echo->first) * beam.bin_length_m) : heard_m;
-  const double free_m = std::min(passed_m, options_.max_range_m);
+  const double free_m = std::min(passed_m, max_range_m_);
   std::size_t outside = 0;
-  if (free_m > 0.0)
-    outside = add_misses(lattice_, map_from_sensor, beam.bearing_rad, free_m, passed_part(options_), scan);
+  if (free_m > 0.0) outside = add_misses(map_from_sensor, beam.bearing_rad, free_m, passed_part(options_), scan);
   if (!is_hit || !(heard_m > 0.0)) return outside;
 
   const LogOdds evidence =
       options_.hit_from == HitFrom::kIntensity ? evidence_of_intensity(echo->intensity, options_.hit) : options_.hit;
   const detail::BundleGrid rays =
-      detail::bundle_grid(options_, beam.bearing_rad, heard_m, lattice_.resolution_m(), *elevations_);
-  return std::max(outside, detail::add_hits(lattice_, map_from_sensor, rays, heard_m, evidence, scan));
+      detail::bundle_grid(options_, beam.bearing_rad, heard_m, scan.lattice().resolution_m(), *elevations_);
+  return std::max(outside, detail::add_hits(map_from_sensor, rays, heard_m, evidence, scan));
 }
 
 }  // namespace pingvox

@@ -191,7 +191,8 @@ class Piece {
 
 }  // namespace
 
-bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume, ScanUpdate& scan) {
+bool trace_volume(const InsonifiedVolume& volume, ScanUpdate& scan) {
+  const Lattice& lattice = scan.lattice();
   assert(volume.range_m > 0.0 && volume.width_rad >= 0.0 && volume.height_rad >= 0.0);
   const Vector origin_m = volume.map_from_sensor.translation();
   const auto origin_key = lattice.key_of<WideWord>(origin_m);

@@ -27,15 +27,15 @@ std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, c
     const double bin_length_m = sweep.beams[n].bin_length_m;
     const double begin = std::ceil(min_range_m / bin_length_m - kRounding_bins);
     windows.push_back({.begin = std::max(static_cast<std::size_t>(std::clamp(begin, 0.0, bins)), options.min_bin),
-                       .end = bins_within(options.max_range_m, bin_length_m, bins)});
+                       .end = image.bins_in(n)});
   }
   return windows;
 }
 
-std::vector<BinWindow> windows_up_to(double farthest_m, std::vector<BinWindow> windows, const Sweep& sweep) {
+std::vector<BinWindow> windows_up_to(double max_range_m, std::vector<BinWindow> windows, const Sweep& sweep) {
   for (std::size_t n = 0; n < windows.size(); ++n) {
     std::size_t& end = windows[n].end;
-    end = bins_within(farthest_m, sweep.beams[n].bin_length_m, static_cast<double>(end));
+    end = bins_within(max_range_m, sweep.beams[n].bin_length_m, static_cast<double>(end));
   }
   return windows;
 }

@@ -7,7 +7,7 @@
 
 namespace pingvox {
 
-/// The bins of a beam that may be evidence: those that lie inside the minimum and the maximum range as a whole. Empty
+/// The bins of a beam that may be evidence: those that lie beyond the minimum range as a whole. Empty
 /// when begin >= end.
 struct BinWindow {
   std::size_t begin = 0;
@@ -18,6 +18,6 @@ struct BinWindow {
 std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& options);
 
 /// The same windows without the bins that end farther away.
-std::vector<BinWindow> windows_up_to(double farthest_m, std::vector<BinWindow> windows, const Sweep& sweep);
+std::vector<BinWindow> windows_up_to(double max_range_m, std::vector<BinWindow> windows, const Sweep& sweep);
 
 }  // namespace pingvox

@@ -202,7 +202,6 @@ Result<void> EchoOptions::validate() const {
   const double nearest = min_range_m.value_or(0.0);
   check(nearest >= 0.0 && std::isfinite(nearest), "min_range_m", ">= 0", nearest);
   check(max_range_m > nearest, "max_range_m", fmt::format("greater than min_range_m ({})", nearest), max_range_m);
-  check(farthest_m > nearest, "farthest_m", fmt::format("greater than min_range_m ({})", nearest), farthest_m);
   const int most = detector == Detector::kCanny ? 2040 : 255;
   check(!threshold || (*threshold >= 1 && *threshold <= most), "threshold", fmt::format("in 1..{}", most),
         threshold.value_or(0));
@@ -225,7 +224,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
   assert(image.rows() == sweep.beams.size());
   const std::vector<BinWindow> heard = windows_of(image, sweep, options);
   const std::vector<int> contrasts = contrasts_of(image, heard, options);
-  const std::vector<BinWindow> windows = windows_up_to(options.farthest_m, heard, sweep);
+  const std::vector<BinWindow> windows = windows_up_to(options.max_range_m, heard, sweep);
   const FirstBins first_bins(image, heard, windows, contrasts, options);
 
   std::vector<std::optional<Echo>> echoes(image.rows());

@@ -2,14 +2,30 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 namespace pingvox {
 namespace {
 
-std::vector<std::optional<Echo>> echoes_of(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& echo) {
-  return detect_echoes(filtered(PolarImage(sweep), filter), sweep, echo);
+struct Found {
+  std::vector<std::optional<Echo>> echoes, beyond;
+};
+
+/// @return of each beam its echo, or what was heard beyond max_range_m
+Found echoes_of(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& options) {
+  const PolarImage image = filtered(PolarImage(sweep), filter);
+  Found found{detect_echoes(image, sweep, options), std::vector<std::optional<Echo>>(sweep.beams.size())};
+  if (!std::isfinite(options.max_range_m)) return found;
+  EchoOptions anywhere = options;
+  anywhere.max_range_m = std::numeric_limits<double>::infinity();
+  std::vector<std::optional<Echo>> all = detect_echoes(image, sweep, anywhere);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (!found.echoes[n] && all[n] && all[n]->range_m > options.max_range_m) found.beyond[n] = all[n];
+  }
+  return found;
 }
 
 std::optional<std::size_t> delay_of(const FilterOptions& filter, const EchoOptions& echo) {
@@ -20,37 +36,41 @@ std::optional<std::size_t> delay_of(const FilterOptions& filter, const EchoOptio
 
 }  // namespace
 
-EchoStream::EchoStream(const FilterOptions& filter, const EchoOptions& echo)
-    : filter_(filter), echo_(echo), delay_(delay_of(filter, echo)) {
+EchoStream::EchoStream(const FilterOptions& filter, const EchoOptions& echo, Wait wait)
+    : filter_(filter), echo_(echo), delay_(wait == Wait::kForSweep ? std::nullopt : delay_of(filter, echo)) {
   assert(filter.validate());
   assert(echo.validate());
 }
 
 std::vector<EchoStream::Heard> EchoStream::add(Beam beam) {
   std::vector<Heard> heard;
-  if (const std::optional<Sweep> finished = assembler_.add(std::move(beam))) heard = rest_of(*finished);
+  if (std::optional<Sweep> finished = assembler_.add(std::move(beam))) heard = rest_of(std::move(*finished));
   const std::span<const Beam> gathered = assembler_.gathered();
   if (!delay_ || gathered.size() <= 2 * *delay_) return heard;
   // Nothing beyond these beams decides about the one in their middle, so they may as well be all there are.
   const std::span<const Beam> around = gathered.last(2 * *delay_ + 1);
   const Sweep window{.extent = Sweep::Extent::kCut, .beams = {around.begin(), around.end()}};
-  heard.push_back({around[*delay_], echoes_of(window, filter_, echo_)[*delay_]});
+  const Found found = echoes_of(window, filter_, echo_);
+  const std::uint64_t number = first_ + gathered.size() - 1 - *delay_;
+  heard.push_back({number, around[*delay_], found.echoes[*delay_], found.beyond[*delay_]});
   ++settled_;
   return heard;
 }
 
 std::vector<EchoStream::Heard> EchoStream::finish() {
-  const std::optional<Sweep> last = assembler_.finish();
-  return last ? rest_of(*last) : std::vector<Heard>{};
+  std::optional<Sweep> last = assembler_.finish();
+  return last ? rest_of(std::move(*last)) : std::vector<Heard>{};
 }
 
-std::vector<EchoStream::Heard> EchoStream::rest_of(const Sweep& sweep) {
-  const std::vector<std::optional<Echo>> echoes = echoes_of(sweep, filter_, echo_);
+std::vector<EchoStream::Heard> EchoStream::rest_of(Sweep sweep) {
+  const Found found = echoes_of(sweep, filter_, echo_);
   std::vector<Heard> rest;
   for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
     const bool settled = settled_ > 0 && n >= *delay_ && n < *delay_ + settled_;
-    if (!settled) rest.push_back({sweep.beams[n], echoes[n]});
+    if (!settled) rest.push_back({first_ + n, std::move(sweep.beams[n]), found.echoes[n], found.beyond[n]});
   }
+  first_ += sweep.beams.size();
+  complete_sweeps_ += sweep.extent == Sweep::Extent::kCut ? 0 : 1;
   settled_ = 0;
   return rest;
 }

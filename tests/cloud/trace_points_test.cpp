@@ -62,9 +62,8 @@ Traced applied(const Case& one, const ScanUpdate& scan, std::size_t outside) {
 
 template <class Point>
 Traced traced(const Case& one, const std::vector<Point>& points_m) {
-  ScanUpdate scan;
-  const std::size_t outside =
-      PointTracer(one.lattice, one.options).trace(one.origin_m, std::span<const Point>(points_m), scan);
+  ScanUpdate scan(one.lattice);
+  const std::size_t outside = PointTracer(one.options).trace(one.origin_m, std::span<const Point>(points_m), scan);
   return applied(one, scan, outside);
 }
 
@@ -96,13 +95,14 @@ TEST(TracePoints, SinglePrecisionMakesTheSameMap) {
 // Kills rays of a scan in one layer of cells that are marked beside their place in the map, left out where others leave
 // it or are cut, or still there in the next scan.
 TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
-  ScanUpdate together;
+  ScanUpdate coarse(Lattice(0.1)), fine(Lattice(0.01));
   std::size_t nodes = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     // Windows of 8 bits, and of 11.
-    Case one{.lattice = Lattice(seed % 30 == 15 ? 0.01 : 0.1), .points_m = {}, .options = {}};
+    ScanUpdate& together = seed % 30 == 15 ? fine : coarse;
+    Case one{.lattice = together.lattice(), .points_m = {}, .options = {}};
     one.origin_m = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0)};
     if (seed % 2 == 0) one.options.max_range_m = 3.0;
     const int rays = seed % 5 == 0 ? 2500 : 200;  // in one block and in several
@@ -112,15 +112,15 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
       if (seed % 3 == 0 && ray >= rays - 10) end_m.z() += uniform(random, -3.0, 3.0);
       one.points_m.emplace_back(end_m.cast<float>());
     }
-    ScanUpdate singly;
+    ScanUpdate singly(one.lattice);
     for (const Eigen::Vector3f& point_m : one.points_m) {
       const Eigen::Vector3d end_m = point_m.cast<double>(), way_m = end_m - one.origin_m;
       const double part = std::min(1.0, one.options.max_range_m / way_m.norm());
       if (part == 1.0) singly.add_hit(*one.lattice.key_of<WideWord>(end_m), one.options.hit);
       const Eigen::Vector3d cut_m = part == 1.0 ? end_m : Eigen::Vector3d(one.origin_m + way_m * part);
-      ASSERT_TRUE(trace_ray(one.lattice, one.origin_m, cut_m, one.options.ray, singly));
+      ASSERT_TRUE(trace_ray(one.origin_m, cut_m, one.options.ray, singly));
     }
-    PointTracer tracer(one.lattice, one.options);
+    PointTracer tracer(one.options);
     ASSERT_EQ(tracer.trace(one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), together), 0U);
     const Traced expected = applied(one, singly, 0), found = applied(one, together, 0);
     ASSERT_EQ(found.nodes, expected.nodes);
@@ -149,17 +149,17 @@ TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
       }
     }
     for (const auto& [cell, middle_m] : middles_m) ends_m.push_back(middle_m);
-    ScanUpdate scan;
+    ScanUpdate scan(one.lattice);
     std::size_t outside = 0;
     for (const Eigen::Vector3d& end_m : ends_m) {
       const double range_m = (end_m - one.origin_m).norm();
       if (range_m > one.options.max_range_m) {
         const Eigen::Vector3d cut_m = one.origin_m + (end_m - one.origin_m) * (one.options.max_range_m / range_m);
-        outside += trace_ray(one.lattice, one.origin_m, cut_m, one.options.ray, scan) ? 0 : 1;
+        outside += trace_ray(one.origin_m, cut_m, one.options.ray, scan) ? 0 : 1;
         continue;
       }
       if (const auto key = one.lattice.key_of(end_m)) scan.add_hit(*key, one.options.hit);
-      outside += trace_ray(one.lattice, one.origin_m, end_m, one.options.ray, scan) ? 0 : 1;
+      outside += trace_ray(one.origin_m, end_m, one.options.ray, scan) ? 0 : 1;
     }
     one.options.ends = EndPoints::kCells;
     const Traced found = traced(one, one.points_m), expected = applied(one, scan, outside);

@@ -41,8 +41,8 @@ TEST(Cloud, BecomesTheMapThatOctomapMakesOfIt) {
     const auto scan = (*source)->next();
     ASSERT_TRUE(scan && *scan);
     OccupancyMap map({.resolution_m = kResolution_m});
-    ScanUpdate update(LogOdds::from_probability(0.4));
-    EXPECT_EQ(trace_points(map.lattice(), **scan, {}, update), 0U);
+    ScanUpdate update(map.lattice(), LogOdds::from_probability(0.4));
+    EXPECT_EQ(trace_points(**scan, {}, update), 0U);
     ASSERT_TRUE(map.apply(update));
 
     std::ostringstream bytes;

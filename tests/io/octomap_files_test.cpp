@@ -112,7 +112,7 @@ TEST(Bt, WritesTheBytesOfLiboctomapAfterScans) {
     OccupancyMap map({.resolution_m = 0.1});
     octomap::OcTree tree(0.1);
     for (int n = 0; n < 10; ++n) {
-      ScanUpdate scan{LogOdds(tree.getProbMissLog())};
+      ScanUpdate scan{map.lattice(), LogOdds(tree.getProbMissLog())};
       octomap::KeySet hits, misses;
       for (const Update& update : random_updates(random, 16, 500)) {
         if (update.log_odds > 0.0F) {

@@ -38,7 +38,7 @@ TEST(Editor, ThatNeverPrunesKeepsEachCellALeaf) {
       }
       leaves += map.counts().leaves;
       // The next scan, even an empty one, joins them again.
-      ASSERT_TRUE(map.apply(ScanUpdate()));
+      ASSERT_TRUE(map.apply(ScanUpdate(map.lattice())));
       ASSERT_EQ(first_difference(nodes_of(map), oracle.nodes(parents, OracleMap::Join::kEqualLeaves)), "");
     }
   }
@@ -130,7 +130,7 @@ TEST(Editor, AnUpdateThatCannotChangeACellMakesNothing) {
       editor.update(Key{60000, 2, 3}, LogOdds(0.0F));
       editor.update(Key{60000, 2, 3}, LogOdds(-0.0F));
     }
-    ScanUpdate scan(LogOdds(0.0F));
+    ScanUpdate scan(map.lattice(), LogOdds(0.0F));
     scan.add_miss(Key{50000, 0, 0});
     scan.add_hit(Key{50001, 0, 0}, LogOdds(0.0F));
     scan.add_hit(Key{1, 1, 1}, LogOdds(2.0F));
@@ -197,7 +197,7 @@ TEST(OccupancyMap, NamesEveryBrokenOption) {
 }
 
 TEST(ScanUpdate, AHitBeatsAMissAndTheSurestHitCounts) {
-  ScanUpdate scan;
+  ScanUpdate scan(Lattice(MapOptions{}.resolution_m));
   const Key cell{100, 200, 300};
   for (int round = 0; round < 2; ++round) {
     scan.add_hit(cell, LogOdds(0.3F));

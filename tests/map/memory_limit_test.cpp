@@ -17,7 +17,7 @@ namespace {
 
 /// A random box, freed as a whole or in part, and some hits.
 ScanUpdate random_scan(std::mt19937_64& random, int depth) {
-  ScanUpdate scan(LogOdds(-3.0F));
+  ScanUpdate scan(Lattice(MapOptions{}.resolution_m, depth), LogOdds(-3.0F));
   const WideWord reach = std::min<WideWord>(test::highest_word(depth), 255);
   const auto word = [&] { return static_cast<WideWord>(random()) & reach; };
   const WideKey corner{word(), word(), word()};
@@ -65,17 +65,17 @@ TEST(MemoryLimit, IsNeverPassedAndARefusedScanChangesNothing) {
 }
 
 TEST(MemoryLimit, LetsAFullMapTakeInWhatItKnowsAlready) {
-  ScanUpdate scan(LogOdds(-5.0F));
+  OccupancyMap map({.memory_limit_bytes = 200'000});
+  ScanUpdate scan(map.lattice(), LogOdds(-5.0F));
   for (std::uint16_t x = 0; x < 64; ++x) {
     for (std::uint16_t y = 0; y < 64; ++y) {
       for (std::uint16_t z = 0; z < 33; ++z) scan.add_miss(Key{x, y, z});
     }
   }
-  OccupancyMap map({.memory_limit_bytes = 200'000});
   ASSERT_TRUE(map.apply(scan));  // becomes a few joined cells
   bool is_full = false;
   for (std::uint16_t i = 0; i < 10'000 && !is_full; ++i) {
-    ScanUpdate more;
+    ScanUpdate more(map.lattice());
     more.add_hit(Key{static_cast<std::uint16_t>(i * 4), 40'000, 0}, LogOdds(1.0F));
     is_full = !map.apply(more);
   }
@@ -119,7 +119,7 @@ TEST(MemoryLimit, StorageOfJoinedCellsIsUsedAgain) {
   OccupancyMap map;
   std::size_t most = 0;
   for (int round = 0; round < 50; ++round) {
-    ScanUpdate some(LogOdds(-5.0F)), all(LogOdds(round % 2 == 0 ? -9.0F : -8.0F));
+    ScanUpdate some(map.lattice(), LogOdds(-5.0F)), all(map.lattice(), LogOdds(round % 2 == 0 ? -9.0F : -8.0F));
     for (std::uint16_t x = 0; x < 32; ++x) {
       for (std::uint16_t y = 0; y < 32; ++y) {
         for (std::uint16_t z = 0; z < 32; ++z) {

@@ -120,7 +120,7 @@ TEST(Octomap, TheSameFreedAndHitCellsGiveTheSameTree) {
       octomap::KeySet free_cells, occupied_cells;
       tree.computeUpdate(cloud, origin, free_cells, occupied_cells, -1.0);
       tree.insertPointCloud(cloud, origin, -1.0, i % 2 == 0);
-      ScanUpdate scan;
+      ScanUpdate scan(map.lattice());
       for (const auto& key : free_cells) scan.add_miss(narrow(key));
       for (const auto& key : occupied_cells) scan.add_hit(narrow(key), LogOdds::from_probability(0.7));
       const auto report = map.apply(scan);
@@ -157,8 +157,8 @@ TEST(Octomap, TracedPointsFreeAndHitTheCellsOfInsertPointCloud) {
     for (const auto& point : cloud) points.points_m.emplace_back(point.x(), point.y(), point.z());
     PointScanOptions options;
     if (max_range_m > 0.0) options.max_range_m = max_range_m;
-    ScanUpdate scan;
-    EXPECT_EQ(trace_points(map.lattice(), points, options, scan), 0U);
+    ScanUpdate scan(map.lattice());
+    EXPECT_EQ(trace_points(points, options, scan), 0U);
     ASSERT_TRUE(map.apply(scan));
     std::size_t alike = 0;
     for (const auto& key : free_cells) alike += map.classify(narrow(key)) == Occupancy::kFree ? 1 : 0;

@@ -10,7 +10,7 @@ const CursorRules kRules{.clamp = {LogOdds(-2.0F), LogOdds(3.5F)}};
 
 /// Misses in `missed` of a brick of the page at 0, hits that say `hit` in the others.
 ScanUpdate scan_of_brick(std::size_t brick, std::uint64_t missed, LogOdds hit) {
-  ScanUpdate scan(kMiss);
+  ScanUpdate scan(Lattice(1.0), kMiss);
   const std::uint32_t page = scan.page_of({0, 0, 0});
   scan.mark_missed_in(page, brick, missed);
   if (~missed != 0) scan.mark_hit_in(page, brick, ~missed, hit);
@@ -39,7 +39,7 @@ TEST(PageVotes, WhatChangesNothingMakesNothing) {
     EXPECT_EQ(voted_once(tree, scan_of_brick(13, 0xF0F0, kMiss), leaf), leaf);
     EXPECT_EQ(voted_once(tree, scan_of_brick(63, ~std::uint64_t{0}, kMiss), leaf), leaf);
   }
-  ScanUpdate nothing(LogOdds(0.0F));
+  ScanUpdate nothing(Lattice(1.0), LogOdds(0.0F));
   nothing.mark_missed_in(nothing.page_of({0, 0, 0}), 5, 0xFF);
   EXPECT_EQ(voted_once(tree, nothing, {}), Entry{});
   EXPECT_EQ(tree.groups.bytes() + tree.bricks.bytes(), 0U);

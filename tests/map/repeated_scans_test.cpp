@@ -55,7 +55,7 @@ class RepeatedScans {
     for (int round = 0; round < 12; ++round) {
       SCOPED_TRACE(round);
       // A miss as evidence for something: what was free is occupied in the end.
-      if (turns_round_ && round == 4) scan_ = ScanUpdate(LogOdds::from_probability(0.7));
+      if (turns_round_ && round == 4) scan_ = ScanUpdate(map_.lattice(), LogOdds::from_probability(0.7));
       OracleScan expected{scan_.miss(), {usual_.begin(), usual_.end()}, {}};
       if (round % 3 == 2) expected.missed.insert(any_key());
       if (round % 4 == 3) expected.add_hit(any_key(), LogOdds(0.85F));
@@ -103,7 +103,7 @@ class RepeatedScans {
   OccupancyMap map_;
   OracleMap oracle_;
   bool turns_round_;
-  ScanUpdate scan_{LogOdds::from_probability(0.2)};
+  ScanUpdate scan_{map_.lattice(), LogOdds::from_probability(0.2)};
   std::vector<WideKey> usual_;
 };
 
@@ -156,7 +156,7 @@ Marks marks_of(const ScanUpdate& scan) {
 // Kills a page that is made twice, words of a page that are told at another place, marks that stay in a page for the
 // next scan.
 TEST(ScanUpdate, WholePagesAndSingleMarksShareTheirPages) {
-  ScanUpdate scan;
+  ScanUpdate scan(Lattice(1.0));
   std::size_t marks = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
@@ -192,7 +192,7 @@ TEST(ScanUpdate, WholePagesAndSingleMarksShareTheirPages) {
         }
       }
       if (part == 2) {
-        ScanUpdate sum;
+        ScanUpdate sum(scan.lattice());
         sum.add(scan);
         sum.add(scan);
         ASSERT_EQ(marks_of(sum), expected);

@@ -172,7 +172,7 @@ class LookUps {
   }
 
   void scan() {
-    ScanUpdate scan(LogOdds(-4.0F));
+    ScanUpdate scan(map_.lattice(), LogOdds(-4.0F));
     for (std::uint64_t i = random_() % 200; i > 0; --i) {
       scan.add_miss(region_.key());
       scan.add_hit(region_.key(), LogOdds(0.8F));
@@ -184,7 +184,7 @@ class LookUps {
   void scan_cube() {
     const WideKey some = region_.key();
     for (const LogOdds miss : {LogOdds(-0.5F), LogOdds(-0.25F)}) {
-      ScanUpdate scan(miss);
+      ScanUpdate scan(map_.lattice(), miss);
       for_each_in_cube(some, 31, [&](const WideKey& key) { scan.add_miss(key); });
       refused_ += map_.apply(scan) ? 0 : 1;
       ASSERT_NO_FATAL_FAILURE(check());
@@ -231,7 +231,7 @@ class LookUps {
 
   // As readers do, who know nothing of shortcuts.
   void reload() {
-    refused_ += map_.apply(ScanUpdate()) ? 0 : 1;  // either way it is pruned
+    refused_ += map_.apply(ScanUpdate(map_.lattice())) ? 0 : 1;  // either way it is pruned
     BrickTree tree = map_.tree();
     tree.shortcut.reset();
     map_ = OccupancyMap(map_.options(), std::move(tree));

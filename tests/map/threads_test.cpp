@@ -21,8 +21,8 @@ TEST(Threads, ManyReadersOfOneMapAgree) {
   for (int i = 0; i < 4; ++i) {
     PointScan points;
     for (int k = 0; k < 300; ++k) points.points_m.emplace_back(metre(random), metre(random), metre(random));
-    ScanUpdate scan;
-    ASSERT_EQ(trace_points(map.lattice(), points, {}, scan), 0U);
+    ScanUpdate scan(map.lattice());
+    ASSERT_EQ(trace_points(points, {}, scan), 0U);
     ASSERT_TRUE(map.apply(scan));
   }
   const OccupancyMap& shared = map;

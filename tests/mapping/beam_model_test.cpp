@@ -7,6 +7,7 @@
 #include <random>
 
 #include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/mapping/beam_tracer.hpp"
 
 namespace pingvox {
 namespace {
@@ -86,8 +87,8 @@ TEST_P(Cone, TakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
     options.free_share = 1.0;
     options.width_rad = uniform(random, 1, 12) * kDegree;
     options.height_rad = uniform(random, 10, 50) * kDegree;
-    ScanUpdate scan;
-    ASSERT_EQ(trace_beam(lattice, map_from_sensor, beam_of(bearing, 400), echo_at(range), options, scan), 0U);
+    ScanUpdate scan(lattice);
+    ASSERT_EQ(trace_beam(map_from_sensor, beam_of(bearing, 400), echo_at(range), options, scan), 0U);
 
     const double half_diagonal = 0.5 * std::sqrt(3.0) * lattice.resolution_m();
     for_each_cell_near(lattice, map_from_sensor, bearing, range, [&](const Key& key, const Polar& cell) {
@@ -136,10 +137,10 @@ TEST(BeamModel, GeometryMarksEachCellThatTheBundleMarks) {
     options.width_rad = uniform(random, 1, 30) * kDegree;
     options.height_rad = uniform(random, 5, 60) * kDegree;
     const double bearing = uniform(random, 0, 6), range = uniform(random, 0.1, 1.5);
-    ScanUpdate by_geometry, by_bundle;
-    trace_beam(lattice, map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_geometry);
+    ScanUpdate by_geometry(lattice), by_bundle(lattice);
+    trace_beam(map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_geometry);
     options.tracing = Tracing::kBundle;
-    trace_beam(lattice, map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_bundle);
+    trace_beam(map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_bundle);
     for_each_cell_near(lattice, map_from_sensor, bearing, range, [&](const Key& key, const Polar&) {
       const Mark geometry = mark_of(by_geometry, key), bundle = mark_of(by_bundle, key);
       if (geometry == Mark::kNone && bundle == Mark::kNone) return;
@@ -166,8 +167,8 @@ TEST(BeamModel, FanStaysInThePlaneOfTheHeadWithoutGaps) {
   options.width_rad = 20.0 * kDegree;
   options.free_share = 1.0;
   const Pose sensor = pose_from_rpy({0.025, 0.025, 0.025}, 0, 0, 0);
-  ScanUpdate scan;
-  trace_beam(lattice, sensor, beam_of(1.0, 400), echo_at(3.0), options, scan);
+  ScanUpdate scan(lattice);
+  trace_beam(sensor, beam_of(1.0, 400), echo_at(3.0), options, scan);
   std::size_t inside = 0;
   for_each_cell_near(lattice, sensor, 1.0, 3.0, [&](const Key& key, const Polar& cell) {
     const Mark mark = mark_of(scan, key);
@@ -189,8 +190,8 @@ TEST(BeamModel, NothingIsFreedBetweenTheEchosFirstBinAndItsRange) {
   for (const BeamShape shape : {BeamShape::kRay, BeamShape::kFan, BeamShape::kCone}) {
     BeamModelOptions options;
     options.shape = shape;
-    ScanUpdate scan;
-    trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo, options, scan);
+    ScanUpdate scan(lattice);
+    trace_beam(Pose::Identity(), beam_of(0.0, 400), echo, options, scan);
     const auto mark_at = [&](double x) { return mark_of(scan, *lattice.key_of(Eigen::Vector3d(x, 0.01, 0.01))); };
     EXPECT_EQ(mark_at(1.72), Mark::kMissed);
     EXPECT_EQ(mark_at(1.87), Mark::kNone);
@@ -199,13 +200,45 @@ TEST(BeamModel, NothingIsFreedBetweenTheEchosFirstBinAndItsRange) {
   }
 }
 
+// Kills a beam that frees a bin too far, or one too little: bins as long as cells, so that each is seen.
+TEST(BeamModel, FreesUpToWhereTheEchosFirstBinBegins) {
+  const Lattice lattice(0.1);
+  Beam beam = beam_of(0.0, 40);
+  beam.bin_length_m = 0.1;
+  Echo echo;
+  echo.first = 20;
+  echo.range_m = 2.45;
+  for (const BeamShape shape : {BeamShape::kRay, BeamShape::kFan, BeamShape::kCone}) {
+    BeamModelOptions options;
+    options.shape = shape;
+    ScanUpdate scan(lattice);
+    const Pose sensor = pose_from_rpy({0.02, 0.05, 0.05}, 0, 0, 0);  // bin 20 begins at 2.02 m
+    trace_beam(sensor, beam, echo, options, scan);
+    const auto mark_at = [&](double x) { return mark_of(scan, *lattice.key_of(Eigen::Vector3d(x, 0.05, 0.05))); };
+    EXPECT_EQ(mark_at(1.95), Mark::kMissed);
+    EXPECT_EQ(mark_at(2.15), Mark::kNone);
+    EXPECT_EQ(mark_at(2.45), Mark::kHit);
+  }
+}
+
+// Kills `<` for `<=`: an echo at the range limit itself is within it.
+TEST(BeamModel, AnEchoAtTheMaximumRangeIsHitAndOneBeyondIsNot) {
+  const Lattice lattice(0.1);
+  for (const double max_range_m : {2.0, std::nextafter(2.0, 0.0)}) {
+    ScanUpdate scan(lattice);
+    BeamTracer(BeamModelOptions{}, max_range_m).trace(Pose::Identity(), beam_of(0.0, 400), echo_at(2.0), scan);
+    const Mark mark = mark_of(scan, *lattice.key_of(Eigen::Vector3d(2.0, 0.0, 0.0)));
+    EXPECT_EQ(mark == Mark::kHit, max_range_m == 2.0);
+  }
+}
+
 // Kills a cone that frees its edges, where an echo is too weak to be missed, or hits without them.
 TEST(BeamModel, TheConesEdgeIsHitAndNotFreed) {
   const Lattice lattice(0.05);
   BeamModelOptions options;
   options.shape = BeamShape::kCone;
-  ScanUpdate scan;
-  trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo_at(3.02), options, scan);
+  ScanUpdate scan(lattice);
+  trace_beam(Pose::Identity(), beam_of(0.0, 400), echo_at(3.02), options, scan);
   const auto mark_at = [&](double range_m, double elevation_deg) {
     const double elevation = elevation_deg * kDegree;
     const Eigen::Vector3d at(range_m * std::cos(elevation), 0.01, range_m * std::sin(elevation));
@@ -219,17 +252,17 @@ TEST(BeamModel, TheConesEdgeIsHitAndNotFreed) {
 // Kills a ray that frees its end cell, or hits another than the echo's.
 TEST(BeamModel, RayFreesUpToItsEchoAndHitsThere) {
   const Lattice lattice(0.1);
-  ScanUpdate scan;
+  ScanUpdate scan(lattice);
   BeamModelOptions options;
   options.hit_from = HitFrom::kFixed;
   const Pose sensor = pose_from_rpy({0.05, 0.05, 0.05}, 0, 0, 90.0 * kDegree);
-  trace_beam(lattice, sensor, beam_of(0.0, 400), echo_at(1.0), options, scan);
+  trace_beam(sensor, beam_of(0.0, 400), echo_at(1.0), options, scan);
   OccupancyMap map({.resolution_m = 0.1});
   const auto report = map.apply(scan);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->cells_freed, 10U);
   EXPECT_EQ(report->cells_hit, 1U);
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(map.at(Eigen::Vector3d(0.05, 0.05 + 0.1 * i, 0.05)), options.miss);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(map.at(Eigen::Vector3d(0.05, 0.05 + 0.1 * i, 0.05)), scan.miss());
   EXPECT_EQ(map.at(Eigen::Vector3d(0.05, 1.05, 0.05)), options.hit);
   EXPECT_EQ(map.counts().occupied_cells, 1U);
 }
@@ -241,11 +274,11 @@ TEST(BeamModel, SilentBeamSaysNothingUnlessAsked) {
   for (const BeamShape shape : {BeamShape::kRay, BeamShape::kFan, BeamShape::kCone}) {
     options.shape = shape;
     options.silent = Silent::kNothing;
-    ScanUpdate scan;
-    trace_beam(lattice, Pose::Identity(), beam_of(0.0, 200), std::nullopt, options, scan);
+    ScanUpdate scan(lattice);
+    trace_beam(Pose::Identity(), beam_of(0.0, 200), std::nullopt, options, scan);
     EXPECT_TRUE(scan.empty());
     options.silent = Silent::kFree;
-    trace_beam(lattice, Pose::Identity(), beam_of(0.0, 200), std::nullopt, options, scan);
+    trace_beam(Pose::Identity(), beam_of(0.0, 200), std::nullopt, options, scan);
     OccupancyMap map({.resolution_m = 0.1});
     ASSERT_TRUE(map.apply(scan));
     EXPECT_EQ(map.counts().occupied_cells, 0U);
@@ -256,10 +289,8 @@ TEST(BeamModel, SilentBeamSaysNothingUnlessAsked) {
 
 TEST(BeamModel, NothingIsTouchedBeyondTheMaximumRange) {
   const Lattice lattice(0.1);
-  BeamModelOptions options;
-  options.max_range_m = 1.0;
-  ScanUpdate scan;
-  trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), options, scan);
+  ScanUpdate scan(lattice);
+  BeamTracer(BeamModelOptions{}, 1.0).trace(Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), scan);
   OccupancyMap map({.resolution_m = 0.1});
   ASSERT_TRUE(map.apply(scan));
   EXPECT_EQ(map.counts().occupied_cells, 0U);
@@ -271,8 +302,8 @@ TEST(BeamModel, OnePingNeverMakesAnArcCertain) {
   const Lattice lattice(0.05);
   BeamModelOptions options;
   options.shape = BeamShape::kCone;
-  ScanUpdate scan;
-  trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo_at(2.0, 255), options, scan);
+  ScanUpdate scan(lattice);
+  trace_beam(Pose::Identity(), beam_of(0.0, 400), echo_at(2.0, 255), options, scan);
   OccupancyMap map({.resolution_m = 0.05});
   ASSERT_TRUE(map.apply(scan));
   const MapCounts counts = map.counts();
@@ -296,8 +327,8 @@ TEST(BeamModel, EvidenceGrowsWithTheEchoAndFallsOffTheAxis) {
 
 TEST(BeamModel, BeamThatLeavesTheLatticeIsLeftOutAndCounted) {
   const Lattice lattice(0.1, 5);  // 3.2 m across
-  ScanUpdate scan;
-  EXPECT_EQ(trace_beam(lattice, Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), {}, scan), 1U);
+  ScanUpdate scan(lattice);
+  EXPECT_EQ(trace_beam(Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), {}, scan), 1U);
   EXPECT_TRUE(scan.empty());
 }
 
@@ -305,11 +336,11 @@ TEST(BeamModel, OptionsNameEachBrokenField) {
   BeamModelOptions options;
   EXPECT_TRUE(options.validate());
   options.width_rad = -1.0;
-  options.miss = LogOdds(0.1F);
+  options.hit = LogOdds(-0.1F);
   const auto valid = options.validate();
   ASSERT_FALSE(valid);
   EXPECT_NE(valid.error().message.find("width"), std::string::npos);
-  EXPECT_NE(valid.error().message.find("miss"), std::string::npos);
+  EXPECT_NE(valid.error().message.find("hit"), std::string::npos);
 }
 
 }  // namespace

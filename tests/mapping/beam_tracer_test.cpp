@@ -51,7 +51,7 @@ TEST(BeamTracer, HitsAreTheSurestOfTheRaysThatEndInACell) {
     options.shape = seed % 5 == 0 ? BeamShape::kFan : (seed % 6 == 0 ? BeamShape::kRay : BeamShape::kCone);
     options.width_rad = uniform(random, 0.1, 10) * kDegree;
     options.height_rad = uniform(random, 1, 60) * kDegree;
-    BeamTracer tracer(lattice, options);
+    BeamTracer tracer(options);
     for (int n = 0; n < 8; ++n) {
       // The second half takes the same numbers of rays again; one has more than are kept.
       const double range = n == 3 ? 12.0 : 0.2 + 0.5 * (n % 4);
@@ -60,7 +60,7 @@ TEST(BeamTracer, HitsAreTheSurestOfTheRaysThatEndInACell) {
       Echo echo;
       echo.range_m = range;
       echo.intensity = static_cast<std::uint8_t>(random());
-      ScanUpdate scan;
+      ScanUpdate scan(lattice);
       const std::size_t left_out = tracer.trace(map_from_sensor, beam, echo, scan);
 
       HitCells expected;

@@ -164,7 +164,7 @@ TEST(BuildMap, WhatIsLouderBeyondTheMaximumRangeHidesNoEcho) {
   EchoesBeforeLouderOnes source(1.51, 4.0);
   BuildOptions options = clean_options();
   options.echo.detector = Detector::kMax;
-  options.model.max_range_m = 2.0;
+  options.echo.max_range_m = 2.0;
   OccupancyMap map;
   const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
   ASSERT_TRUE(report) << report.error().message;
@@ -177,7 +177,7 @@ TEST(BuildMap, WhatIsLouderBeyondTheMaximumRangeHidesNoEcho) {
 TEST(BuildMap, WhatIsHeardBeyondTheMaximumRangeFreesUpToIt) {
   Echoes source(kBeamsPerTurn, [](double, double) { return 4.0; });
   BuildOptions options = clean_options();
-  options.model.max_range_m = 2.0;
+  options.echo.max_range_m = 2.0;
   OccupancyMap map;
   const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
   ASSERT_TRUE(report) << report.error().message;
@@ -190,7 +190,7 @@ TEST(BuildMap, WhatIsHeardBeyondTheMaximumRangeFreesUpToIt) {
 TEST(BuildMap, BeamsWantAMaximumRangeBeyondTheBlankingRange) {
   Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
   BuildOptions options = clean_options();
-  options.model.max_range_m = 0.5;
+  options.echo.max_range_m = 0.5;
   OccupancyMap map;
   const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
   ASSERT_FALSE(report);
@@ -258,7 +258,7 @@ TEST(BuildMap, PointScansFreeAndHitAndCountWhatLiesOutside) {
 TEST(BuildMap, PointScansTakeAnyMaximumRange) {
   ThreePoints source;
   BuildOptions options = clean_options();
-  options.model.max_range_m = 0.5;
+  options.echo.max_range_m = 0.5;
   OccupancyMap map({.resolution_m = 0.1});
   const auto report = build_map(source, options, map);
   ASSERT_TRUE(report) << report.error().message;

@@ -134,8 +134,8 @@ TEST(InsonifiedVolume, MarksTheCellsThatAllHalfSpacesAndTheSphereTouch) {
     volume.width_rad = seed % 7 == 0 ? 0.0 : uniform(random, 0, seed % 11 == 0 ? 60 : 8) * kDegree;
     volume.height_rad = seed % 4 == 0 ? 0.0 : uniform(random, 0, seed % 13 == 0 ? 120 : 50) * kDegree;
     volume.range_m = lattice.resolution_m() * std::exp(uniform(random, std::log(0.2), std::log(50.0)));
-    ScanUpdate scan;
-    ASSERT_TRUE(trace_volume(lattice, volume, scan));
+    ScanUpdate scan(lattice);
+    ASSERT_TRUE(trace_volume(volume, scan));
     const std::set<WideKey> expected = cells_one_by_one(lattice, volume);
     const std::set<WideKey> marked = missed_cells(scan);
     EXPECT_TRUE(marked == expected) << marked.size() << " cells, not " << expected.size();
@@ -150,8 +150,8 @@ TEST(InsonifiedVolume, ReachesAsFarAsItsRange) {
   const Lattice lattice(0.001, 32);
   for (const double bearing : {0.0, 0.3, 0.25 * std::numbers::pi, 2.0}) {
     SCOPED_TRACE(bearing);
-    ScanUpdate scan;
-    ASSERT_TRUE(trace_volume(lattice, {Pose::Identity(), bearing, 0.0, 0.0, 20.0}, scan));
+    ScanUpdate scan(lattice);
+    ASSERT_TRUE(trace_volume({Pose::Identity(), bearing, 0.0, 0.0, 20.0}, scan));
     std::size_t missing = 0;
     for (int i = 0; i < 20'000; ++i) {
       const double range_m = (i + 0.25) * 0.001;

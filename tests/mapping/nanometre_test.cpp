@@ -44,8 +44,8 @@ std::vector<Ping> turn(std::mt19937_64& random, double resolution_m, std::size_t
 
 std::map<WideKey, bool> cells_of(const std::vector<Ping>& pings, const Lattice& lattice, const Pose& map_from_sensor,
                                  const BeamModelOptions& model) {
-  ScanUpdate scan;
-  for (const Ping& ping : pings) trace_beam(lattice, map_from_sensor, ping.beam, ping.echo, model, scan);
+  ScanUpdate scan(lattice);
+  for (const Ping& ping : pings) trace_beam(map_from_sensor, ping.beam, ping.echo, model, scan);
   return test::cells_of(scan);
 }
 

@@ -59,9 +59,8 @@ TEST(PaperDetector, ASilentBeamIsNoWallAtTheEndOfItsRange) {
   ASSERT_FALSE(echoes_of(sweep).front());
   const auto occupied = [&](const std::optional<Echo>& echo, Silent silent) {
     OccupancyMap map;
-    ScanUpdate scan;
-    trace_beam(map.lattice(), Pose::Identity(), sweep.beams.front(), echo,
-               {.hit_from = HitFrom::kFixed, .silent = silent}, scan);
+    ScanUpdate scan(map.lattice());
+    trace_beam(Pose::Identity(), sweep.beams.front(), echo, {.hit_from = HitFrom::kFixed, .silent = silent}, scan);
     EXPECT_TRUE(map.apply(scan));
     return map.counts().occupied_cells;
   };

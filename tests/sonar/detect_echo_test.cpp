@@ -195,7 +195,6 @@ TEST(EchoOptions, NameEveryBrokenField) {
     EXPECT_FALSE((EchoOptions{.min_range_m = range}.validate())) << range;
   }
   for (const double range : {0.75, 0.1, nan}) EXPECT_FALSE((EchoOptions{.max_range_m = range}.validate())) << range;
-  for (const double range : {0.75, 0.1, nan}) EXPECT_FALSE((EchoOptions{.farthest_m = range}.validate())) << range;
   for (const int threshold : {0, -70, 256}) EXPECT_FALSE((EchoOptions{.threshold = threshold}.validate()));
   EXPECT_THAT((EchoOptions{.min_range_m = nan, .threshold = 0}.validate().error().message),
               AllOf(HasSubstr("min_range_m"), HasSubstr("max_range_m"), HasSubstr("threshold")));

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
@@ -45,28 +47,39 @@ bool same(const std::optional<Echo>& a, const std::optional<Echo>& b) {
 struct Count {
   std::size_t beams = 0;
   std::size_t echoes = 0;
+  std::size_t beyond = 0;
   std::size_t early = 0;  ///< returned before their sweep was finished
 };
 
 /// Streams the beams, and holds what comes back against whole sweeps. Beams are told apart by their time, which is
 /// their number.
 Count check(const std::vector<Beam>& beams, const Way& way) {
-  std::map<double, std::optional<Echo>> wanted;
+  std::map<double, std::optional<Echo>> wanted, wanted_beyond;
+  EchoOptions anywhere = way.echo;
+  anywhere.max_range_m = std::numeric_limits<double>::infinity();
   for (const Sweep& sweep : sweeps_of(beams)) {
     const auto echoes = detect_echoes(filtered(PolarImage(sweep), way.filter), sweep, way.echo);
-    for (std::size_t n = 0; n < echoes.size(); ++n) wanted[sweep.beams[n].time_s] = echoes[n];
+    const auto all = detect_echoes(filtered(PolarImage(sweep), way.filter), sweep, anywhere);
+    for (std::size_t n = 0; n < echoes.size(); ++n) {
+      wanted[sweep.beams[n].time_s] = echoes[n];
+      const bool is_beyond = !echoes[n] && all[n] && all[n]->range_m > way.echo.max_range_m;
+      wanted_beyond[sweep.beams[n].time_s] = is_beyond ? all[n] : std::nullopt;
+    }
   }
   Count count;
   EchoStream stream(way.filter, way.echo);
   const auto judge = [&](const std::vector<EchoStream::Heard>& heard) {
-    for (const auto& [beam, echo] : heard) {
+    for (const auto& [number, beam, echo, beyond] : heard) {
+      EXPECT_EQ(static_cast<double>(number), beam.time_s);
       const auto found = wanted.find(beam.time_s);
       if (found == wanted.end()) {
         ADD_FAILURE() << "beam " << beam.time_s << " came twice, or never was";
         continue;
       }
       EXPECT_TRUE(same(echo, found->second)) << "beam " << beam.time_s;
+      EXPECT_TRUE(same(beyond, wanted_beyond[beam.time_s])) << "beam " << beam.time_s;
       count.echoes += echo ? 1U : 0U;
+      count.beyond += beyond ? 1U : 0U;
       ++count.beams;
       wanted.erase(found);
     }
@@ -119,13 +132,23 @@ TEST(EchoStream, GivesTheEchoesOfWholeSweepsWithEachFilterAndDetector) {
     const std::size_t at = seed % ways.size();
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", way " << at);
     std::mt19937_64 random(seed);
-    const Count count = check(random_beams(random), ways[at]);
+    Way way = ways[at];
+    const std::vector<Beam> beams = random_beams(random);
+    // Half way along the beams: what is heard farther away is beyond.
+    if (seed > ways.size()) {
+      const Beam& some = beams[beams.size() / 2];
+      way.echo.max_range_m = std::max(0.5 * static_cast<double>(some.intensities.size()) * some.bin_length_m,
+                                      2.0 * way.echo.min_range_m.value_or(0.1));
+    }
+    const Count count = check(beams, way);
     all.early += count.early;
+    all.beyond += count.beyond;
     all.beams += count.beams;
     all.echoes += count.echoes;
   }
   EXPECT_GT(all.beams, 15'000U);
   EXPECT_GT(all.echoes, 8'000U);
+  EXPECT_GT(all.beyond, 100U);
   EXPECT_GT(all.early, 8'000U) << "all waited for their sweeps";
 }
 

@@ -166,7 +166,7 @@ class Duel {
   }
 
   void scan() {
-    ScanUpdate scan(LogOdds::from_probability(random_() % 2 == 0 ? 0.4 : 0.05));
+    ScanUpdate scan(map_.lattice(), LogOdds::from_probability(random_() % 2 == 0 ? 0.4 : 0.05));
     OracleScan expected{scan.miss(), {}, {}};
     const WideKey cube = places_.cube();
     const bool frees_all = random_() % 3 == 0;
@@ -278,7 +278,7 @@ class Duel {
   }
 
   void reload() {
-    ASSERT_TRUE(map_.apply(ScanUpdate()));  // files hold maps that are pruned
+    ASSERT_TRUE(map_.apply(ScanUpdate(map_.lattice())));  // files hold maps that are pruned
     is_pruned_ = true;
     map_ = reload_(map_);
   }

@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 
-#include "pingvox/geometry/lattice.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/point_scan.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -31,7 +30,7 @@ struct PointScanOptions {
 /// tracing a small one. Not for several threads at once: each needs its own.
 class PointTracer {
  public:
-  explicit PointTracer(const Lattice& lattice, const PointScanOptions& options = {});
+  explicit PointTracer(const PointScanOptions& options = {});
   PointTracer(PointTracer&& other) noexcept;
   PointTracer& operator=(PointTracer&& other) noexcept;
   ~PointTracer();
@@ -50,7 +49,6 @@ class PointTracer {
 };
 
 /// What a PointTracer does, for a single scan.
-std::size_t trace_points(const Lattice& lattice, const PointScan& points, const PointScanOptions& options,
-                         ScanUpdate& scan);
+std::size_t trace_points(const PointScan& points, const PointScanOptions& options, ScanUpdate& scan);
 
 }  // namespace pingvox

@@ -88,18 +88,20 @@ class OccupancyMap {
   std::size_t memory_bytes() const;
 
   /// Takes one scan in: each cell it freed or hit gets its evidence once, clamped; then parents are right and the tree
-  /// is pruned. @return kLimit when memory_limit_bytes would be passed: the map is as before then.
-  /// REQUIRES an update made for this lattice's depth.
+  /// is pruned. @return kLimit when memory_limit_bytes would be passed, kBadOption for a scan made for another lattice:
+  /// the map is as before then. kNoMemory when memory ran out: some of the scan's cells have got their evidence then,
+  /// and the map is as good as any.
   Result<ApplyReport> apply(const ScanUpdate& scan);
 
   /// A batch of updates (paper, section 5.5): each key's cell gets the evidence as often as the key is named, in the
   /// tree's order whatever theirs is; then parents are right and the tree is pruned. The map is the one that an editor
-  /// makes of them one by one. @return kLimit as for `apply` (deeper than 23 levels the limit is not looked at)
+  /// makes of them one by one. @return kLimit and kNoMemory as for
+  /// `apply` (deeper than 23 levels the limit is not looked at)
   template <KeyWord W>
   Result<void> update(std::span<const BasicKey<W>> keys, LogOdds evidence);
 
   /// Adds another map's log-odds to this one's, clamped, cell by cell; a cell that only one knows keeps its belief.
-  /// @return kBadOption when the lattices differ, kLimit as for `apply`
+  /// @return kBadOption when the lattices differ, kLimit as for `apply`, kNoMemory; the map is as before then
   Result<void> merge(const OccupancyMap& other);
 
   /// For many single updates. REQUIRES no other editor of this map alive.

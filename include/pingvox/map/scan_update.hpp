@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pingvox/geometry/key.hpp"
+#include "pingvox/geometry/lattice.hpp"
 #include "pingvox/map/log_odds.hpp"
 
 namespace pingvox {
@@ -34,8 +35,10 @@ class ScanUpdate {
     LogOdds all{};
   };
 
-  /// @param miss  evidence for a cell that sound passed through
-  explicit ScanUpdate(LogOdds miss = LogOdds::from_probability(0.4)) : miss_(miss) {}
+  /// @param lattice  of the map that it is for: other maps refuse it
+  /// @param miss     evidence for a cell that sound passed through
+  explicit ScanUpdate(const Lattice& lattice, LogOdds miss = LogOdds::from_probability(0.4))
+      : lattice_(lattice), miss_(miss) {}
 
   /// Number of a cell in its page: brick * 64 + cell in the brick.
   template <KeyWord W>
@@ -90,12 +93,14 @@ class ScanUpdate {
     }
   }
 
+  const Lattice& lattice() const { return lattice_; }
   LogOdds miss() const { return miss_; }
   bool empty() const { return used_ == 0; }
   /// Forgets all marks and keeps the memory for the next scan.
   void clear();
 
   /// Takes over all marks of another scan, of which several threads may each have traced a part.
+  /// REQUIRES the same lattice and evidence of misses.
   void add(const ScanUpdate& other);
 
   /// The pages in the tree's order.
@@ -122,6 +127,7 @@ class ScanUpdate {
   void hash_pages();
   std::size_t slot_of(const WideKey& lowest) const;
 
+  Lattice lattice_;
   LogOdds miss_;
   std::vector<Page> pages_;  ///< the first used_ are in use, the others have no marks
   std::size_t used_ = 0;

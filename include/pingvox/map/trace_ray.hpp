@@ -12,7 +12,6 @@ enum class RayAlgorithm { kDda, kBresenham };
 /// Marks the cells from `from_m` to `to_m` [m, map frame] as missed, the end cell excluded: what `dda` or `bresenham`
 /// walk over.
 /// @return false, and nothing is marked, when an end lies outside of the lattice
-bool trace_ray(const Lattice& lattice, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m,
-               RayAlgorithm algorithm, ScanUpdate& scan);
+bool trace_ray(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, RayAlgorithm algorithm, ScanUpdate& scan);
 
 }  // namespace pingvox

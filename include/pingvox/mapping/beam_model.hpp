@@ -3,12 +3,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
 
-#include "pingvox/geometry/lattice.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -35,7 +33,7 @@ enum class HitFrom {
 /// What a beam without an echo says.
 enum class Silent {
   kNothing,  ///< nothing: the sound may have been absorbed, or reflected away
-  kFree,     ///< its cells are free up to the end of its bins (or to max_range_m)
+  kFree,     ///< its cells are free up to the end of its bins
 };
 
 /// How fan and cone find the cells that they filled with sound.
@@ -56,9 +54,7 @@ struct BeamModelOptions {
   RayAlgorithm ray = RayAlgorithm::kDda;
   HitFrom hit_from = HitFrom::kIntensity;
   LogOdds hit = LogOdds::from_probability(0.7);  ///< evidence of an echo; with kIntensity of the strongest possible one
-  LogOdds miss = LogOdds::from_probability(0.4);  ///< evidence of sound having passed
   Silent silent = Silent::kNothing;
-  double max_range_m = std::numeric_limits<double>::infinity();  ///< cells farther away are never touched
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
@@ -91,8 +87,8 @@ inline constexpr double kMostCellsInBeam = 3e8;
 /// Adds to `scan` what one beam says: cells freed up to the first bin of the echo (from there on sound came back),
 /// cells hit at its range with their share of the evidence. What lies between the two stays as it was.
 /// @param map_from_sensor  the head's pose when the beam was heard
-/// @return the number of rays left out because an end of them lies outside of the lattice
-std::size_t trace_beam(const Lattice& lattice, const Pose& map_from_sensor, const Beam& beam,
-                       const std::optional<Echo>& echo, const BeamModelOptions& options, ScanUpdate& scan);
+/// @return the number of rays left out because an end of them lies outside of the scan's lattice
+std::size_t trace_beam(const Pose& map_from_sensor, const Beam& beam, const std::optional<Echo>& echo,
+                       const BeamModelOptions& options, ScanUpdate& scan);
 
 }  // namespace pingvox

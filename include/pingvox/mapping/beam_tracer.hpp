@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -16,8 +17,9 @@ class ElevationTables;
 /// beam's rays have up and down are kept from one beam to the next (up to some hundred kilobytes).
 class BeamTracer {
  public:
-  /// REQUIRES what `BeamModelOptions::validate` checks.
-  BeamTracer(const Lattice& lattice, const BeamModelOptions& options);
+  /// @param max_range_m  cells farther away are not touched: a beam that heard only what is beyond frees up to here
+  /// REQUIRES what `BeamModelOptions::validate` checks, and max_range_m > 0
+  explicit BeamTracer(const BeamModelOptions& options, double max_range_m = std::numeric_limits<double>::infinity());
   BeamTracer(BeamTracer&&) noexcept;
   BeamTracer& operator=(BeamTracer&&) noexcept;
   ~BeamTracer();
@@ -26,8 +28,8 @@ class BeamTracer {
   std::size_t trace(const Pose& map_from_sensor, const Beam& beam, const std::optional<Echo>& echo, ScanUpdate& scan);
 
  private:
-  Lattice lattice_;
   BeamModelOptions options_;
+  double max_range_m_;
   std::unique_ptr<detail::ElevationTables> elevations_;
 };
 

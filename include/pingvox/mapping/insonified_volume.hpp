@@ -19,6 +19,6 @@ struct InsonifiedVolume {
 /// each cell that a ray inside of the volume would, and none farther from the volume than half a cell's diagonal.
 /// @return false, and nothing is marked, when the volume's box reaches out of the lattice
 /// REQUIRES 0 <= width_rad <= pi, 0 <= height_rad < pi
-bool trace_volume(const Lattice& lattice, const InsonifiedVolume& volume, ScanUpdate& scan);
+bool trace_volume(const InsonifiedVolume& volume, ScanUpdate& scan);
 
 }  // namespace pingvox

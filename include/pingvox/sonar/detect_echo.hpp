@@ -74,11 +74,10 @@ struct EchoOptions {
   /// The blanking range: nearer bins are the vehicle and the ringing transducer. nullopt: found in each sweep
   /// (blanking_range_m).
   std::optional<double> min_range_m = kUsualBlanking_m;
-  std::size_t min_bin = 0;                                       ///< the same in bins; the farther one of both counts
-  double max_range_m = std::numeric_limits<double>::infinity();  ///< farther bins are no evidence of anything
+  std::size_t min_bin = 0;  ///< the same in bins; the farther one of both counts
   /// Echoes are looked for up to here. What is heard farther away still tells the gain: without it a wall that is cut
   /// off leaves only what is faint, and that would become echoes.
-  double farthest_m = std::numeric_limits<double>::infinity();
+  double max_range_m = std::numeric_limits<double>::infinity();
   /// kRise: the least sum of differences over a rise, 1..255. kLevel, kMax: the least intensity, 1..255. kCanny: the
   /// gradient that a strong edge exceeds, 1..2040. kCfar: how far above the noise around it an echo must stand, 1..255.
   /// nullopt: by the gain that the beam was heard with. kRise: half of the largest rise (within 48 bins) that is usual
@@ -94,8 +93,8 @@ struct EchoOptions {
 };
 
 /// The first echo of each beam (paper, section 8.2): one per row of the image. No echo is none, not an echo at maximum
-/// range; a falling edge is none either (but see kLevel). Only bins that lie between the minimum and the maximum range
-/// as a whole are evidence: what stands in others changes nothing. No echo has bins farther away than farthest_m.
+/// range; a falling edge is none either (but see kLevel). Only bins that lie beyond the minimum range as a whole are
+/// evidence: what stands in others changes nothing. No echo has bins farther away than max_range_m.
 /// @param image  the sweep's image, filtered or not
 /// @param sweep  the sweep it was made of (each beam's own bin length turns its bins into metres)
 /// REQUIRES valid options, image.rows() == sweep.beams.size()

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/map/log_odds.hpp"
+#include "pingvox/mapping/beam_model.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/detect_echo.hpp"
+#include "pingvox/sonar/filters.hpp"
+
+namespace pingvox {
+
+/// How the beams of one sweep vote on a cell.
+enum class Vote {
+  kPerSweep,  ///< one vote a cell and sweep, a hit beats a miss: liboctomap's insertPointCloud
+  kPerBeam,   ///< each beam votes
+};
+
+/// When a beam goes into the map.
+enum class Timing {
+  kBySweep,  ///< with its sweep, when that is finished: the least work, and beams in the order in which they were heard
+  kByBeam,   ///< as soon as the beams around it that decide about its echo are heard; wants Vote::kPerBeam
+};
+
+struct BuildOptions {
+  FilterOptions filter;
+  EchoOptions echo;  ///< its max_range_m: no cell farther away is touched, by rays of points neither
+  BeamModelOptions model;
+  LogOdds miss = LogOdds::from_probability(0.4);  ///< evidence of sound having passed
+  Vote vote = Vote::kPerSweep;
+  Timing timing = Timing::kBySweep;
+  Pose body_from_sensor = Pose::Identity();  ///< the mount
+  std::size_t threads = 1;                   ///< that trace a sweep (or scan) together, 1..256; the map is the same
+  double sound_speed_ratio = 1.0;            ///< true sound speed / the one the device assumed: scales every range
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+  /// The same for scans of points, which are neither filtered nor searched for echoes and have no blanking range.
+  Result<void> validate_for_points() const;
+};
+
+/// Beams (or points) that were left out for one reason.
+struct LeftOut {
+  std::size_t count = 0;
+  std::optional<double> first_s;  ///< when the first of them was heard; of points nobody knows
+
+  void add(double time_s) {
+    if (count++ == 0) first_s = time_s;
+  }
+};
+
+/// What was read and what became of it.
+struct BuildReport {
+  std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
+  std::size_t sweeps = 0;   ///< complete ones (or point scans)
+  std::size_t echoes = 0;   ///< within max_range_m; of point scans all points
+  std::size_t skipped = 0;  ///< damaged, without a pose, or outside
+  LeftOut no_pose;          ///< of those skipped, the ones heard when nobody knows where the vehicle was
+  LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
+  std::uint64_t cells_freed = 0, cells_hit = 0;  ///< votes, summed over scans
+  struct Seconds {
+    double read = 0, detect = 0, trace = 0, apply = 0;
+  } seconds;
+};
+
+}  // namespace pingvox

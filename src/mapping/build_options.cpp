@@ -1,0 +1,55 @@
+#include "pingvox/mapping/build_options.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string>
+
+namespace pingvox {
+namespace {
+
+/// What beams and points have in common.
+std::string broken_in_both(const BuildOptions& options) {
+  std::string bad;
+  const auto say = [&bad](const std::string& what) { bad += (bad.empty() ? "" : "; ") + what; };
+  if (const auto model = options.model.validate(); !model) say(model.error().message);
+  if (!(options.miss < LogOdds(0.0F)) || !std::isfinite(options.miss.value())) {
+    say(fmt::format("miss must be a probability in (0, 0.5), is {:.6g}", options.miss.probability()));
+  }
+  if (options.threads < 1 || options.threads > 256)
+    say(fmt::format("threads must be in 1..256, are {}", options.threads));
+  return bad;
+}
+
+Result<void> valid_unless(const std::string& bad) {
+  if (bad.empty()) return {};
+  return fail(Error::Code::kBadOption, bad);
+}
+
+}  // namespace
+
+Result<void> BuildOptions::validate() const {
+  std::string bad;
+  const auto say = [&bad](const std::string& what) { bad += (bad.empty() || what.empty() ? "" : "; ") + what; };
+  for (const Result<void>& part : {filter.validate(), echo.validate()}) {
+    if (!part) say(part.error().message);
+  }
+  say(broken_in_both(*this));
+  if (!body_from_sensor.matrix().allFinite()) say("mount is not finite");
+  if (!(sound_speed_ratio > 0.1 && sound_speed_ratio < 10.0)) {
+    say(fmt::format("sound speed must be within a tenth and ten times of what the device assumed, is {} times",
+                    sound_speed_ratio));
+  }
+  if (timing == Timing::kByBeam && vote != Vote::kPerBeam) say("beams that are mapped one by one vote one by one");
+  return valid_unless(bad);
+}
+
+Result<void> BuildOptions::validate_for_points() const {
+  std::string bad = broken_in_both(*this);
+  if (!(echo.max_range_m > 0.0)) {
+    bad += fmt::format("{}max_range_m must be > 0, is {}", bad.empty() ? "" : "; ", echo.max_range_m);
+  }
+  return valid_unless(bad);
+}
+
+}  // namespace pingvox

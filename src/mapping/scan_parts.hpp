@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <new>
+#include <thread>
+#include <vector>
+
+#include "pingvox/map/scan_update.hpp"
+
+namespace pingvox::detail {
+
+/// Threads that each trace a part of a scan into a scan update of their own, which then go into one. The result does
+/// not depend on how many there are: a cell is marked or not, and of several hits the surest counts.
+class ScanParts {
+ public:
+  /// Fewer rays or beams than this for each thread are not worth starting it.
+  static constexpr std::size_t kLeast = 16;
+
+  explicit ScanParts(std::size_t threads) : threads_(threads) {}
+
+  /// Calls trace(part, first, last, scan) for each part of 0..count, parts numbered from 0 on; the calling thread takes
+  /// the first part, and those whose thread does not start. Throws std::bad_alloc: the scan then holds some marks.
+  template <class Trace>
+  void run(std::size_t count, ScanUpdate& scan, const Trace& trace) {
+    const std::size_t parts = std::clamp<std::size_t>(count / kLeast, 1, threads_);
+    while (others_.size() + 1 < parts) others_.emplace_back(scan.lattice(), scan.miss());
+    for (ScanUpdate& other : others_) other.clear();
+    const auto begin_of = [&](std::size_t part) { return count * part / parts; };
+    std::atomic<bool> has_failed = false;
+    {
+      std::vector<std::jthread> threads;
+      threads.reserve(parts);
+      const auto trace_part = [&](std::size_t part) {
+        try {
+          trace(part, begin_of(part), begin_of(part + 1), others_[part - 1]);
+        } catch (const std::exception&) {
+          has_failed = true;
+        }
+      };
+      std::size_t started = 1;
+      try {
+        for (; started < parts; ++started) threads.emplace_back(trace_part, started);
+      } catch (const std::exception&) {  // no thread is left, or no memory for one
+      }
+      trace(std::size_t{0}, begin_of(0), begin_of(1), scan);
+      for (std::size_t part = started; part < parts; ++part) trace_part(part);
+    }
+    if (has_failed) throw std::bad_alloc();
+    for (std::size_t part = 1; part < parts; ++part) scan.add(others_[part - 1]);
+  }
+
+ private:
+  std::size_t threads_;
+  std::vector<ScanUpdate> others_;
+};
+
+}  // namespace pingvox::detail
