@@ -54,7 +54,8 @@ class BeamMapper::Stages {
   Stages(const BuildOptions& options, OccupancyMap& map)
       : options_(options),
         map_(map),
-        stream_(stream_of(options)),
+        empty_stream_(stream_of(options)),
+        stream_(empty_stream_),
         tracer_(options.model, options.echo.max_range_m),
         scan_(map.lattice(), options.miss),
         parts_(options.threads) {}
@@ -73,7 +74,7 @@ class BeamMapper::Stages {
 
   /// After an error: what waits is not whole any more.
   void start_anew() {
-    stream_ = stream_of(options_);
+    stream_ = empty_stream_;
     poses_.clear();
     beams_ = 0;
     sweeps_ = 0;
@@ -162,6 +163,7 @@ class BeamMapper::Stages {
 
   BuildOptions options_;
   OccupancyMap& map_;
+  EchoStream empty_stream_;  ///< to start anew without asking for memory
   EchoStream stream_;
   BeamTracer tracer_;
   ScanUpdate scan_;
@@ -174,9 +176,10 @@ class BeamMapper::Stages {
 };
 
 Result<BeamMapper> BeamMapper::make(const BuildOptions& options, OccupancyMap& map) {
-  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-  return detail::without_exceptions(
-      [&]() -> Result<BeamMapper> { return BeamMapper(std::make_unique<Stages>(options, map)); });
+  return detail::without_exceptions([&]() -> Result<BeamMapper> {
+    if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+    return BeamMapper(std::make_unique<Stages>(options, map));
+  });
 }
 
 BeamMapper::BeamMapper(std::unique_ptr<Stages> stages) : stages_(std::move(stages)) {}

@@ -196,6 +196,48 @@ TEST(OccupancyMap, NamesEveryBrokenOption) {
   EXPECT_TRUE(OccupancyMap::make({}));
 }
 
+// Kills a leaf that is told at its corner instead of its middle, or a joined one as small as a cell.
+TEST(ForEachLeaf, GivesCubesInMetresWithoutKeys) {
+  for (const int depth : {8, 16, 40, 100}) {
+    SCOPED_TRACE(depth);
+    OccupancyMap map({.resolution_m = 0.1, .depth = depth});
+    ScanUpdate scan(map.lattice());
+    for (const double x : {0.05, 0.15}) {
+      for (const double y : {0.05, 0.15}) {
+        for (const double z : {0.05, 0.15}) scan.add_miss(*map.lattice().key_of<WideWord>({x, y, z}));
+      }
+    }
+    scan.add_hit(*map.lattice().key_of<WideWord>({-0.25, 0.35, 0.45}), LogOdds(0.85F));
+    ASSERT_TRUE(map.apply(scan));
+    std::size_t free = 0, occupied = 0;
+    for_each_leaf(map, [&](const LeafCube& leaf) {
+      const bool is_free = leaf.belief < LogOdds(0.0F);
+      EXPECT_NEAR(
+          (leaf.centre_m - (is_free ? Eigen::Vector3d(0.1, 0.1, 0.1) : Eigen::Vector3d(-0.25, 0.35, 0.45))).norm(), 0.0,
+          1e-9);
+      EXPECT_NEAR(leaf.edge_m, is_free ? 0.2 : 0.1, 1e-12);
+      (is_free ? free : occupied) += 1;
+    });
+    EXPECT_EQ(free, 1U);
+    EXPECT_EQ(occupied, 1U);
+    std::size_t boxed = 0;
+    for_each_leaf(map, {.max_depth = {}, .box = Box{{-1.0, -1.0, -1.0}, {0.0, 1.0, 1.0}}},
+                  [&](const LeafCube& leaf) { boxed += leaf.belief > LogOdds(0.0F) ? 1 : 2; });
+    EXPECT_EQ(boxed, 1U);
+  }
+}
+
+// Kills a scan that is applied to a map of other cells unseen.
+TEST(ScanUpdate, IsRefusedByMapsOfOtherLattices) {
+  const ScanUpdate scan(Lattice(0.05));
+  for (const MapOptions& options : {MapOptions{.resolution_m = 0.1}, MapOptions{.resolution_m = 0.05, .depth = 20}}) {
+    OccupancyMap map(options);
+    const auto applied = map.apply(scan);
+    ASSERT_FALSE(applied);
+    EXPECT_EQ(applied.error().code, Error::Code::kBadOption);
+  }
+}
+
 TEST(ScanUpdate, AHitBeatsAMissAndTheSurestHitCounts) {
   ScanUpdate scan(Lattice(MapOptions{}.resolution_m));
   const Key cell{100, 200, 300};

@@ -195,7 +195,7 @@ TEST(BuildMap, BeamsWantAMaximumRangeBeyondTheBlankingRange) {
   const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, Error::Code::kBadOption);
-  EXPECT_NE(report.error().message.find("max range"), std::string::npos);
+  EXPECT_NE(report.error().message.find("max_range_m"), std::string::npos);
   EXPECT_TRUE(map.empty());
 }
 

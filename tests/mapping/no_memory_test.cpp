@@ -13,6 +13,7 @@
 #include <limits>
 #include <new>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -162,17 +163,18 @@ TEST_P(NoMemory, AScanIsTakenInInPartAtMostAndTheMapStaysWhole) {
     SCOPED_TRACE(n);
     OccupancyMap map = before;
     const std::int64_t alive = g_alive;
-    const bool is_done = with_shortage(n, GetParam(), [&] {
-                           const auto applied = map.apply(scan);
-                           return applied ? 0 : (applied.error().code == Error::Code::kNoMemory ? 1 : 2);
-                         }) == 0;
+    const auto code = with_shortage(n, GetParam(), [&]() -> std::optional<Error::Code> {
+      const auto applied = map.apply(scan);
+      return applied ? std::nullopt : std::optional(applied.error().code);
+    });
     EXPECT_EQ(g_alive, alive);
-    if (is_done) {
-      EXPECT_TRUE(are_equal(map, after));
-    } else {
+    if (code) {
+      EXPECT_EQ(*code, Error::Code::kNoMemory);
       expect_between(map, before, after);
+    } else {
+      EXPECT_TRUE(are_equal(map, after));
     }
-    return is_done;
+    return !code;
   });
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "pingvox/map/occupancy_map.hpp"
 
@@ -16,6 +17,13 @@ template <KeyWord W>
 struct Leaf {
   BasicKey<W> key;
   int depth = 0;
+  LogOdds belief;
+};
+
+/// The same in metres, for who needs no keys.
+struct LeafCube {
+  Eigen::Vector3d centre_m;  ///< map frame
+  double edge_m = 0.0;
   LogOdds belief;
 };
 
@@ -162,6 +170,21 @@ void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& vi
   } else {
     walk(detail::Everywhere{});
   }
+}
+
+/// Calls `visit(const LeafCube&)` for each leaf, in the same order.
+template <class Visitor>
+void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& visit) {
+  const Lattice& lattice = map.lattice();
+  with_key_word(lattice.depth(), [&]<KeyWord W>() {
+    for_each_leaf<W>(map, query, [&](const Leaf<W>& leaf) {
+      visit(LeafCube{lattice.centre_of(leaf.key, leaf.depth), lattice.cell_size_m(leaf.depth), leaf.belief});
+    });
+  });
+}
+template <class Visitor>
+void for_each_leaf(const OccupancyMap& map, Visitor&& visit) {
+  for_each_leaf(map, LeafQuery{}, std::forward<Visitor>(visit));
 }
 
 }  // namespace pingvox
