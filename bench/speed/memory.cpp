@@ -24,7 +24,7 @@ Result<std::vector<Row>> memory(const BenchOptions&) {
   const std::vector<PeerScan> peer_clouds = peer_scans(bundles->scans);
   const auto ours = [&] {
     auto map = std::make_shared<OccupancyMap>(MapOptions{.resolution_m = kCell_m});
-    ScanUpdate scan(map.lattice());
+    ScanUpdate scan(map->lattice());
     insert(*map, scan, bundles->scans);
     return map;
   };

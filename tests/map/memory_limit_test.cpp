@@ -17,7 +17,7 @@ namespace {
 
 /// A random box, freed as a whole or in part, and some hits.
 ScanUpdate random_scan(std::mt19937_64& random, int depth) {
-  ScanUpdate scan(Lattice(MapOptions{}.resolution_m, depth), LogOdds(-3.0F));
+  ScanUpdate scan(Lattice(1.0, depth), LogOdds(-3.0F));
   const WideWord reach = std::min<WideWord>(test::highest_word(depth), 255);
   const auto word = [&] { return static_cast<WideWord>(random()) & reach; };
   const WideKey corner{word(), word(), word()};
