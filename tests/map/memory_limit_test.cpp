@@ -16,8 +16,9 @@ using test::nodes_of;
 namespace {
 
 /// A random box, freed as a whole or in part, and some hits.
-ScanUpdate random_scan(std::mt19937_64& random, int depth) {
-  ScanUpdate scan(Lattice(1.0, depth), LogOdds(-3.0F));
+ScanUpdate random_scan(std::mt19937_64& random, const Lattice& lattice) {
+  const int depth = lattice.depth();
+  ScanUpdate scan(lattice, LogOdds(-3.0F));
   const WideWord reach = std::min<WideWord>(test::highest_word(depth), 255);
   const auto word = [&] { return static_cast<WideWord>(random()) & reach; };
   const WideKey corner{word(), word(), word()};
@@ -44,7 +45,7 @@ TEST(MemoryLimit, IsNeverPassedAndARefusedScanChangesNothing) {
       const std::size_t limit = 300 + random() % (std::size_t{1} << (9 + seed / 2 % 10));
       OccupancyMap map({.resolution_m = 1.0, .depth = depth, .memory_limit_bytes = limit});
       for (int i = 0; i < 20; ++i) {
-        const ScanUpdate scan = random_scan(random, depth);
+        const ScanUpdate scan = random_scan(random, map.lattice());
         const auto before = nodes_of(map);
         const std::size_t bytes_before = map.memory_bytes();
         const auto report = map.apply(scan);
@@ -98,8 +99,8 @@ TEST(MemoryLimit, HoldsForMergesToo) {
     std::mt19937_64 random(seed);
     const std::size_t limit = 10'000 + random() % 60'000;
     OccupancyMap map({.memory_limit_bytes = limit}), other;
-    (void)map.apply(random_scan(random, 16));
-    ASSERT_TRUE(other.apply(random_scan(random, 16)));
+    (void)map.apply(random_scan(random, map.lattice()));
+    ASSERT_TRUE(other.apply(random_scan(random, map.lattice())));
     const auto before = nodes_of(map);
     const auto merged = map.merge(other);
     ASSERT_LE(map.memory_bytes(), limit);
