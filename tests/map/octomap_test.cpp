@@ -276,9 +276,11 @@ TEST(Octomap, KeysOfPointsAreTheSame) {
     }
     const double inf = std::numeric_limits<double>::infinity();
     for (const double metre : {border, -border, std::nextafter(border, 0.0), std::nextafter(-border, -inf), 0.0, -0.0,
-                               5e-324, -5e-324, 1e300, -1e300, inf, -inf, std::nan("")}) {
+                               5e-324, -5e-324, 1e300, -1e300, inf, -inf}) {
       ASSERT_NO_FATAL_FAILURE(check(metre));
     }
+    // liboctomap's answer depends on the processor: it makes NaN an integer.
+    EXPECT_FALSE(lattice.key_of({0.0, std::nan(""), 0.0}));
   }
   EXPECT_GT(inside, 400'000U);
   EXPECT_GT(outside, 10'000U);

@@ -17,7 +17,6 @@ namespace {
 
 using test::uniform;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNanometre = 1e-9;
 
 /// A beam with an echo.

@@ -60,7 +60,7 @@ void expect_same(const OccupancyMap& a, const OccupancyMap& b) {
 TEST(BuildMapThreads, TheMapDoesNotDependOnTheirNumber) {
   for (const BeamShape shape : {BeamShape::kRay, BeamShape::kCone}) {
     std::unique_ptr<OccupancyMap> first;
-    for (const std::size_t threads : {1, 2, 3, 7}) {
+    for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
       SCOPED_TRACE(threads);
       BuildOptions options;
       options.model.shape = shape;
@@ -76,7 +76,7 @@ TEST(BuildMapThreads, TheMapDoesNotDependOnTheirNumber) {
     }
   }
   std::unique_ptr<OccupancyMap> first;
-  for (const std::size_t threads : {1, 2, 5}) {
+  for (const std::size_t threads : {1U, 2U, 5U}) {
     SCOPED_TRACE(threads);
     BuildOptions options;
     options.threads = threads;
