@@ -6,6 +6,11 @@ set(PINGVOX_PRECOMPILED
     <new> <numbers> <optional> <ostream> <span> <string> <string_view> <utility> <variant> <vector> #
     <Eigen/Core> <Eigen/Geometry> <fmt/core.h> <fmt/format.h> <tl/expected.hpp>)
 
+# clang forgets which lines of a precompiled libstdc++ may call what is deprecated (std::stable_sort does).
+if(PINGVOX_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  add_compile_options(-Wno-deprecated-declarations)
+endif()
+
 # pingvox_precompile(TARGET [HEADER...]): for a target that others may share.
 function(pingvox_precompile target)
   if(PINGVOX_PRECOMPILE)

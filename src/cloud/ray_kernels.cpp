@@ -109,21 +109,21 @@ struct Points {
 
 template <class Real>
 Points load_points(const RayGrid& grid, const Real* points_m) {
-  Points points;
-  load(points_m, points.x, points.y, points.z);
+  Doubles x, y, z;
+  load(points_m, x, y, z);
   const Doubles cells_per_m = hn::Set(kDoubles, grid.cells_per_m);
-  const auto is_inside = [&](Doubles at, std::size_t a) HWY_ATTR {
+  const auto is_inside_along = [&](Doubles at, std::size_t a) HWY_ATTR {
     return hn::And(hn::Ge(at, hn::Set(kDoubles, grid.inside_from[a])),
                    hn::Lt(at, hn::Set(kDoubles, grid.inside_to[a])));
   };
-  points.x = points.x * cells_per_m;
-  points.y = points.y * cells_per_m;
-  points.z = points.z * cells_per_m;
-  points.is_inside = hn::And(is_inside(points.x, 0), hn::And(is_inside(points.y, 1), is_inside(points.z, 2)));
-  points.x = hn::IfThenElse(points.is_inside, points.x, hn::Set(kDoubles, grid.from[0]));
-  points.y = hn::IfThenElse(points.is_inside, points.y, hn::Set(kDoubles, grid.from[1]));
-  points.z = hn::IfThenElse(points.is_inside, points.z, hn::Set(kDoubles, grid.from[2]));
-  return points;
+  x = x * cells_per_m;
+  y = y * cells_per_m;
+  z = z * cells_per_m;
+  const DoubleMask is_inside = hn::And(is_inside_along(x, 0), hn::And(is_inside_along(y, 1), is_inside_along(z, 2)));
+  // As one list: for ARM64, g++ 12 cannot compile Points' default constructor, which no target attribute reaches.
+  return {hn::IfThenElse(is_inside, x, hn::Set(kDoubles, grid.from[0])),
+          hn::IfThenElse(is_inside, y, hn::Set(kDoubles, grid.from[1])),
+          hn::IfThenElse(is_inside, z, hn::Set(kDoubles, grid.from[2])), is_inside};
 }
 
 /// The bits of one axis of the places of cells.
