@@ -75,7 +75,7 @@ TEST(SeanetFrames, ALostADoubledAndADamagedByteCostOneFrameAndNoOther) {
   }
   EXPECT_EQ(cases, 2 * hit.size() - 2);
   // Without a checksum, what is not length, end, message or counts may change.
-  for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 13, 14, 42, 43, 50}) {
+  for (const unsigned i : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 13U, 14U, 42U, 43U, 50U}) {
     for (int bit = 0; bit < 8; ++bit) {
       auto damaged = hit;
       damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ (1U << bit));

@@ -94,7 +94,7 @@ TEST(BeamMapper, MakesTheMapOfTheStagesOneByOneAndOfBuildMap) {
       for (const Vote vote : {Vote::kPerSweep, Vote::kPerBeam}) {
         BuildOptions options = options_of(shape, vote);
         const OccupancyMap expected = by_stages(beams, options);
-        for (const std::size_t threads : {1, 3}) {
+        for (const unsigned threads : {1U, 3U}) {
           SCOPED_TRACE(testing::Message() << beams.size() << " beams, shape " << static_cast<int>(shape) << ", vote "
                                           << static_cast<int>(vote) << ", threads " << threads);
           options.threads = threads;
