@@ -22,10 +22,10 @@ Result<int> run(const BenchCommand& command, Console&) {
         Error::Code::kUnsupported,
         "bench: there is no pingvox-bench beside the program: it is built where OctoMap is installed (liboctomap-dev)");
   }
-  std::vector<std::string> words = {program};
-  words.insert(words.end(), command.words.begin(), command.words.end());
+  std::vector<std::string> args = {program};
+  args.insert(args.end(), command.args.begin(), command.args.end());
   std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& word : args) argv.push_back(word.data());
   argv.push_back(nullptr);
   // Ignored signals would stay ignored in the new program.
   std::signal(SIGPIPE, SIG_DFL);

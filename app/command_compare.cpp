@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -12,18 +13,37 @@
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/compare.hpp"
+#include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/map/slice.hpp"
 
 namespace pingvox::app {
 namespace {
 
-Result<MapFile> map_at(const std::string& path) {
+/// The map in a file, or one layer of it.
+Result<MapFile> map_at(const std::string& path, const std::optional<double>& layer_z_m) {
   const Result<FileBytes> file = read_file(path);
   if (!file) return tl::unexpected(file.error());
   if (const auto format = format_of(file->view()); format && kind_of(*format) != FormatKind::kMap) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("{}: is {}, not a map (.bt, .ot or .pvx)", file->name, described(*format)));
+                fmt::format("{}: is {}, not a map (.bt, .ot or .pvx)", file->name, describe(*format)));
   }
-  return read_map(*file);
+  Result<MapFile> read = read_map(*file);
+  if (!read || !layer_z_m) return read;
+  Result<OccupancyMap> layer = map_of_slice(read->map, {layer_z_m, layer_z_m});
+  if (!layer) return fail(layer.error().code, fmt::format("{}: {}", file->name, layer.error().message));
+  return MapFile{read->format, *std::move(layer), read->made_by};
+}
+
+/// The map with another probability from which on a cell is occupied; those below are free up to 0.5 and unknown above.
+OccupancyMap with_threshold(const OccupancyMap& map, double probability) {
+  MapOptions options = map.options();
+  options.thresholds.upper = LogOdds::from_probability(probability);
+  options.thresholds.lower = std::min(options.thresholds.lower, options.thresholds.upper);
+  OccupancyMap out(options);
+  Editor editor = out.edit();
+  for_each_leaf<WideWord>(map, {}, [&](const Leaf<WideWord>& leaf) { editor.set(leaf.key, leaf.depth, leaf.belief); });
+  editor.synchronize();
+  return out;
 }
 
 /// How two lattices differ.
@@ -99,10 +119,11 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
 }  // namespace
 
 Result<int> run(const CompareCommand& command, Console& console) {
-  const Result<MapFile> a = map_at(command.a);
+  Result<MapFile> a = map_at(command.a, command.layer_z_m);
   if (!a) return tl::unexpected(a.error());
-  const Result<MapFile> b = map_at(command.b);
+  const Result<MapFile> b = map_at(command.b, command.layer_z_m);
   if (!b) return tl::unexpected(b.error());
+  if (command.occupied_probability) a->map = with_threshold(a->map, *command.occupied_probability);
 
   const bool has_bt = a->format == Format::kBt || b->format == Format::kBt;
   const Sameness sameness = has_bt ? Sameness::kOccupancy : Sameness::kLogOdds;
@@ -113,10 +134,10 @@ Result<int> run(const CompareCommand& command, Console& console) {
                             difference_of(command.a, a->map.lattice(), command.b, b->map.lattice())));
   }
   const MapAgreement agreement = agreement_of(a->map, b->map);
-  const Result<void> told = command.manner.report == Report::kJson
-                                ? console.print(json_of(*found, agreement))
-                                : console.summarise(text_of(*found, agreement, sameness), "");
-  if (!told) return tl::unexpected(told.error());
+  const Result<void> summary = command.output_options.report == Report::kJson
+                                   ? console.print(json_of(*found, agreement))
+                                   : console.summarise(text_of(*found, agreement, sameness), "");
+  if (!summary) return tl::unexpected(summary.error());
   return found->equal() ? 0 : 1;
 }
 

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "map_report.hpp"
+#include "mapping_options.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
@@ -13,7 +14,7 @@
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/map/slice.hpp"
 #include "pingvox/map/surface_map.hpp"
-#include "write_map_file.hpp"
+#include "pingvox/sonar/echo_stream.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -22,29 +23,61 @@ bool is_made_of_maps(FormatKind kind) {
   return kind == FormatKind::kMap || kind == FormatKind::kCloud || kind == FormatKind::kGrid;
 }
 
-tl::unexpected<Error> does_not_become(const std::string& name, Format from, Format to) {
+tl::unexpected<Error> conversion_error(const std::string& name, Format from, Format to) {
   const bool to_map = is_made_of_maps(kind_of(to));
   const FormatKind kind = kind_of(from);
   const bool is_log = kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud;
   return fail(Error::Code::kBadOption,
-              fmt::format("convert: {}: is {}, which does not become .{}{}", name, described(from), name_of(to),
+              fmt::format("convert: {}: is {}, which cannot be written as .{}{}", name, describe(from), name_of(to),
                           to_map && is_log ? ": 'pingvox map' does that" : ""));
 }
 
-/// What is written from a log, and how much of it there was.
+Result<std::string> write_beams(BeamSource& source, std::ostream& out) {
+  return write_csv(source, out).map([](std::size_t beams) { return fmt::format("{} beams", beams); });
+}
+
+/// A table with a line for each echo (docs/formats.md).
+Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& command, std::ostream& out) {
+  out << "time_s,bearing_rad,range_m,intensity,first_bin,peak_bin,last_bin,threshold\n";
+  EchoStream stream(command.filter, command.echo, EchoStream::Wait::kForSweep);
+  std::size_t beams = 0, echoes = 0;
+  const auto write = [&](const std::vector<EchoStream::Heard>& heard) {
+    for (const EchoStream::Heard& one : heard) {
+      const std::optional<Echo>& echo = one.echo;
+      if (!echo) continue;
+      ++echoes;
+      out << fmt::format("{},{},{},{},{},{},{},{}\n", one.beam.time_s, one.beam.bearing_rad, echo->range_m,
+                         echo->intensity, echo->first, echo->peak, echo->last, echo->threshold);
+    }
+  };
+  for (;;) {
+    Result<std::optional<Beam>> beam = source.next();
+    if (!beam) return tl::unexpected(beam.error());
+    if (!*beam) break;
+    ++beams;
+    (*beam)->bin_length_m *= command.sound_speed_ratio;
+    write(stream.add(**std::move(beam)));
+    if (!out) break;
+  }
+  write(stream.finish());
+  if (!out.flush()) return fail(Error::Code::kIo, "the echoes could not be written");
+  return fmt::format("{} echoes of {} beams", echoes, beams);
+}
+
+/// Writes the beams of a log, or their echoes. @return what was written
 Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command) {
   const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage);
   if (!source) return tl::unexpected(source.error());
-  std::size_t beams = 0;
+  std::string what;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
-    const Result<std::size_t> count = write_csv(**source, out);
-    if (!count) return tl::unexpected(count.error());
-    beams = *count;
+    Result<std::string> done = command.has_echoes ? write_echoes(**source, command, out) : write_beams(**source, out);
+    if (!done) return tl::unexpected(done.error());
+    what = *std::move(done);
     return {};
   });
   if (!written) return tl::unexpected(written.error());
   const std::size_t skipped = (*source)->skipped();
-  return fmt::format("{} beams{}", beams, skipped > 0 ? fmt::format("; {} damaged ones left out", skipped) : "");
+  return what + (skipped > 0 ? fmt::format("; {} damaged ones skipped", skipped) : "");
 }
 
 Error with_name(Error error, const std::string& name) {
@@ -88,32 +121,36 @@ Result<std::string> write_heights(const OccupancyMap& map, const ConvertCommand&
   return fmt::format("heights of {} x {} columns", heights->columns, heights->rows);
 }
 
-Result<std::string> convert_map(const MapFile& read, const ConvertCommand& command) {
+Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
   if (command.format == Format::kGrid) return write_grid(read.map, command);
   if (command.format == Format::kAsc) return write_heights(read.map, command);
-  const Result<void> written = write_map_file(command.output, read.map, command.format, read.made_by);
+  if (command.slice.min_z_m || command.slice.max_z_m) {
+    Result<OccupancyMap> layers = map_of_slice(read.map, command.slice);
+    if (!layers) return tl::unexpected(with_name(layers.error(), command.input));
+    read.map = *std::move(layers);
+  }
+  const Result<void> written = write_map(read.map, command.format, read.made_by, command.output);
   if (!written) return tl::unexpected(written.error());
   const MapCounts counts = read.map.counts();
   if (kind_of(command.format) == FormatKind::kCloud) {
-    return fmt::format("{} occupied cells as points, joined ones as one", counts.occupied_cells);
+    return fmt::format("{} occupied cells as points, one for each leaf", counts.occupied_cells);
   }
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);
 }
 
 Result<std::string> convert(ByteStream stream, Format format, const ConvertCommand& command) {
   const FormatKind from = kind_of(format), to = kind_of(command.format);
-  if (command.resolution_m && from != FormatKind::kMesh) {
-    return fail(Error::Code::kBadOption,
-                fmt::format("convert: --resolution: only for meshes, and {} is {}", stream.name(), described(format)));
+  std::vector<std::string> kinds = {kind_text(from)};
+  if (command.has_echoes) kinds.emplace_back(kEchoTables);
+  if (const auto used = check_limited(command.limited, kinds); !used) {
+    return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
-  if (!is_made_of_maps(to) || (!is_map && !is_mesh)) {
-    return does_not_become(stream.name(), format, command.format);
-  }
+  if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return conversion_error(stream.name(), format, command.format);
   const Result<FileBytes> file = ByteStream::whole(std::move(stream));
   if (!file) return tl::unexpected(file.error());
-  const Result<MapFile> map = is_map ? read_map(*file) : map_of_mesh(*file, command);
+  Result<MapFile> map = is_map ? read_map(*file) : map_of_mesh(*file, command);
   if (!map) return tl::unexpected(map.error());
   return convert_map(*map, command);
 }
@@ -123,13 +160,13 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
 Result<int> run(const ConvertCommand& command, Console& console) {
   Result<ByteStream> stream = ByteStream::open(command.input);
   if (!stream) return tl::unexpected(stream.error());
-  const Result<Format> format = recognised(*stream);
+  const Result<Format> format = identify_format(*stream);
   if (!format) return tl::unexpected(format.error());
 
   const Result<std::string> what = convert(std::move(*stream), *format, command);
   if (!what) return tl::unexpected(what.error());
-  const auto told = console.summarise(fmt::format("{}: {}\n", on_one_line(command.output), *what), command.output);
-  if (!told) return tl::unexpected(told.error());
+  const auto summary = console.summarise(fmt::format("{}: {}\n", on_one_line(command.output), *what), command.output);
+  if (!summary) return tl::unexpected(summary.error());
   return 0;
 }
 

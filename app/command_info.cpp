@@ -17,19 +17,22 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/sonar/detect_echo.hpp"
+#include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "threshold_range.hpp"
 
 namespace pingvox::app {
 namespace {
 
 /// A report in both forms.
-struct Told {
+struct Summary {
   JsonObject json;
   std::string text;
 };
 
 std::string headline(const std::string& name, Format format) {
-  return fmt::format("{}: {}\n", on_one_line(name), described(format));
+  return fmt::format("{}: {}\n", on_one_line(name), describe(format));
 }
 
 /// Angle that the head covered: a full turn, or all but the widest gap between two bearings.
@@ -46,7 +49,7 @@ double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
 }
 
-void add_device(Told& told, const DeviceProfile& device) {
+void add_device(Summary& summary, const DeviceProfile& device) {
   const auto degrees = [](double angle_rad) { return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6; };
   const double width_deg = degrees(device.beam_width_rad), height_deg = degrees(device.beam_height_rad);
   JsonObject json;
@@ -55,20 +58,54 @@ void add_device(Told& told, const DeviceProfile& device) {
       .add("beam_height_deg", height_deg)
       .add("blanking_m", device.blanking_m)
       .add("full_scale", device.full_scale);
-  told.json.add("device", json);
-  told.text += report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, hears from {:.6g} m (--device)",
-                                                 device.title, width_deg, height_deg, device.blanking_m)) +
-               report_line("intensities", std::string(device.intensity));
+  summary.json.add("device", json);
+  summary.text += report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, hears from {:.6g} m (--device)",
+                                                    device.title, width_deg, height_deg, device.blanking_m)) +
+                  report_line("intensities", std::string(device.intensity));
 }
 
-void add_damage(Told& told, const std::vector<DamageKind>& kinds) {
+void add_damage(Summary& summary, const std::vector<DamageKind>& kinds) {
   if (kinds.empty()) return;
   std::vector<JsonObject> list;
   for (const DamageKind& kind : kinds) {
     list.emplace_back().add("what", kind.what).add("count", kind.count).add("first_byte", kind.first_byte);
-    told.text += report_line("", fmt::format("{} x {}, first at byte {}", kind.count, kind.what, kind.first_byte));
+    summary.text += report_line("", fmt::format("{} x {}, first at byte {}", kind.count, kind.what, kind.first_byte));
   }
-  told.json.add("damage", std::span<const JsonObject>(list));
+  summary.json.add("damage", std::span<const JsonObject>(list));
+}
+
+using BinLengths = std::vector<std::pair<double, std::size_t>>;  ///< [m], with the beams that have it
+constexpr std::size_t kMaxListed = 8;
+
+std::string lengths_text(const BinLengths& lengths) {
+  if (lengths.size() == 1) return fmt::format("{:.6g} m", lengths.front().first);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(lengths.size(), kMaxListed); ++i) {
+    text += fmt::format("{}{:.6g} m ({} beams)", i == 0 ? "" : ", ", lengths[i].first, lengths[i].second);
+  }
+  return lengths.size() > kMaxListed ? text + fmt::format(" and {} more", lengths.size() - kMaxListed) : text;
+}
+
+/// {"0.0125": 400}: beams by bin length.
+JsonObject lengths_json(const BinLengths& lengths) {
+  JsonObject json;
+  for (std::size_t i = 0; i < std::min(lengths.size(), kMaxListed); ++i) {
+    json.add(fmt::format("{:.6g}", lengths[i].first), lengths[i].second);
+  }
+  return json;
+}
+
+/// Rising numbers with runs shortened: "2-5, 8".
+std::string numbers_text(const std::vector<std::size_t>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", numbers[i]);
+    if (last > i) text += fmt::format("-{}", numbers[last]);
+    i = last + 1;
+  }
+  return text;
 }
 
 class BeamSurvey {
@@ -82,54 +119,77 @@ class BeamSurvey {
     longest_m_ = std::max(longest_m_, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
     ++bin_lengths_[beam.bin_length_m];
     bearings_rad_.insert(beam.bearing_rad);
-    count(assembler_.add(beam));
+    take(assembler_.add(beam));
   }
 
-  Told finish(const std::string& name, Format format, const BeamSource& source) {
+  Summary finish(const std::string& name, Format format, const BeamSource& source) {
     const std::size_t skipped = source.skipped();
-    count(assembler_.finish());
-    // Of a log whose settings changed, the bin length of most beams.
-    const auto usual = std::max_element(bin_lengths_.begin(), bin_lengths_.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    take(assembler_.finish());
+    // Those of most beams first.
+    std::vector<std::pair<double, std::size_t>> lengths(bin_lengths_.begin(), bin_lengths_.end());
+    std::ranges::stable_sort(lengths, [](const auto& a, const auto& b) { return a.second > b.second; });
     const std::size_t fewest = beams_ > 0 ? fewest_bins_ : 0;
     const double sector = sector_deg({bearings_rad_.begin(), bearings_rad_.end()}, has_turn_);
-    Told told;
-    JsonObject bins;
+    Summary summary;
+    JsonObject bins, threshold;
+    if (thresholds_.min) {
+      threshold.add("min", *thresholds_.min).add("max", *thresholds_.max);
+    } else {
+      threshold.add_null("min").add_null("max");
+    }
     bins.add("min", fewest).add("max", most_bins_);
-    told.json.add("kind", "log")
+    summary.json.add("kind", "log")
         .add("format", name_of(format))
         .add("beams", beams_)
-        .add("sweeps", sweeps_)
+        .add("sweeps", complete_.size())
+        .add("all_sweeps", sweeps_)
         .add("bins", bins)
-        .add("bin_length_m", beams_ > 0 ? usual->first : std::numeric_limits<double>::quiet_NaN())
+        .add("bin_length_m", beams_ > 0 ? lengths.front().first : std::numeric_limits<double>::quiet_NaN())
+        .add("bin_lengths", lengths_json(lengths))
         .add("duration_s", last_s_ - first_s_)
         .add("sector_deg", sector)
+        .add("echoes", echoes_)
+        .add("threshold", threshold)
         .add("skipped", skipped);
-    told.text = headline(name, format) + report_line("beams", fmt::format("{}, {} complete sweeps", beams_, sweeps_));
+    summary.text =
+        headline(name, format) + report_line("beams", fmt::format("{}", beams_)) + report_line("sweeps", sweeps_text());
     if (beams_ > 0) {
-      const std::string lengths =
-          bin_lengths_.size() > 1 ? fmt::format(" in most beams ({} lengths)", bin_lengths_.size()) : "";
-      told.text += report_line("bins", fewest == most_bins_ ? fmt::format("{} a beam", fewest)
-                                                            : fmt::format("{} to {} a beam", fewest, most_bins_)) +
-                   report_line("bin length", fmt::format("{:.6g} m{}", usual->first, lengths)) +
-                   report_line("range", fmt::format("{:.6g} m", longest_m_)) +
-                   report_line("sector", fmt::format("{:.6g} degrees", sector)) +
-                   report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", last_s_ - first_s_, first_s_));
+      summary.text += report_line("bins", fewest == most_bins_ ? fmt::format("{} a beam", fewest)
+                                                               : fmt::format("{} to {} a beam", fewest, most_bins_)) +
+                      report_line("bin length", lengths_text(lengths)) +
+                      report_line("range", fmt::format("{:.6g} m", longest_m_)) +
+                      report_line("sector", fmt::format("{:.6g} degrees", sector)) +
+                      report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", last_s_ - first_s_, first_s_)) +
+                      report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
-    if (const DeviceProfile* device = source.device()) add_device(told, *device);
-    if (skipped > 0) told.text += report_line("left out", fmt::format("{} damaged", skipped));
-    add_damage(told, source.damage());
-    return told;
+    if (const DeviceProfile* device = source.device()) add_device(summary, *device);
+    if (skipped > 0) summary.text += report_line("skipped", fmt::format("{} damaged", skipped));
+    add_damage(summary, source.damage());
+    return summary;
   }
 
  private:
-  void count(const std::optional<Sweep>& sweep) {
-    if (!sweep || sweep->extent == Sweep::Extent::kCut) return;
+  std::string sweeps_text() const {
+    if (complete_.size() == sweeps_) return fmt::format("{}, all complete", sweeps_);
+    if (complete_.empty()) return fmt::format("{}, none complete", sweeps_);
+    return fmt::format("{}, complete: {}", sweeps_, numbers_text(complete_));
+  }
+
+  void take(const std::optional<Sweep>& sweep) {
+    if (!sweep) return;
     ++sweeps_;
+    const auto echoes = detect_echoes(filtered(PolarImage(*sweep), FilterOptions{}), *sweep, EchoOptions{});
+    echoes_ +=
+        static_cast<std::size_t>(std::ranges::count_if(echoes, [](const auto& echo) { return echo.has_value(); }));
+    thresholds_.add(echoes);
+    if (sweep->extent == Sweep::Extent::kCut) return;
+    complete_.push_back(sweeps_);
     has_turn_ = has_turn_ || sweep->extent == Sweep::Extent::kTurn;
   }
 
-  std::size_t beams_ = 0, sweeps_ = 0;
+  std::size_t beams_ = 0, sweeps_ = 0, echoes_ = 0;
+  std::vector<std::size_t> complete_;  ///< numbers of the complete sweeps, from 1
+  ThresholdRange thresholds_;
   std::size_t fewest_bins_ = std::numeric_limits<std::size_t>::max(), most_bins_ = 0;
   double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
   bool has_turn_ = false;
@@ -138,7 +198,7 @@ class BeamSurvey {
   SweepAssembler assembler_;
 };
 
-Result<Told> told_of(BeamSource& source, const std::string& name, Format format) {
+Result<Summary> summarize(BeamSource& source, const std::string& name, Format format) {
   BeamSurvey survey;
   for (;;) {
     const Result<std::optional<Beam>> beam = source.next();
@@ -148,7 +208,7 @@ Result<Told> told_of(BeamSource& source, const std::string& name, Format format)
   }
 }
 
-Result<Told> told_of(ScanSource& source, const std::string& name, Format format) {
+Result<Summary> summarize(ScanSource& source, const std::string& name, Format format) {
   std::size_t scans = 0, points = 0;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::optional<Box> bounds;
@@ -165,36 +225,37 @@ Result<Told> told_of(ScanSource& source, const std::string& name, Format format)
       bounds->max = bounds->max.cwiseMax(point);
     }
   }
-  Told told;
-  told.text = headline(name, format);
+  Summary summary;
+  summary.text = headline(name, format);
   if (kind_of(format) == FormatKind::kCloud) {
-    told.json.add("kind", "cloud").add("format", name_of(format)).add("points", points).add("origin", origin);
-    told.text += report_line("points", fmt::format("{}", points)) +
-                 report_line("seen from", fmt::format("{:.6g}, {:.6g}, {:.6g} m", origin.x(), origin.y(), origin.z()));
+    summary.json.add("kind", "cloud").add("format", name_of(format)).add("points", points).add("origin", origin);
+    summary.text +=
+        report_line("points", fmt::format("{}", points)) +
+        report_line("seen from", fmt::format("{:.6g}, {:.6g}, {:.6g} m", origin.x(), origin.y(), origin.z()));
   } else {
-    told.json.add("kind", "scans").add("format", name_of(format)).add("scans", scans).add("points", points);
-    told.text += report_line("scans", fmt::format("{} with {} points", scans, points));
+    summary.json.add("kind", "scans").add("format", name_of(format)).add("scans", scans).add("points", points);
+    summary.text += report_line("scans", fmt::format("{} with {} points", scans, points));
   }
-  told.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
-  told.text += report_line("bounds", bounds_text(bounds));
-  if (source.skipped() > 0) told.text += report_line("left out", fmt::format("{} damaged", source.skipped()));
-  return told;
+  summary.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
+  summary.text += report_line("bounds", bounds_text(bounds));
+  if (source.skipped() > 0) summary.text += report_line("skipped", fmt::format("{} damaged", source.skipped()));
+  return summary;
 }
 
-Result<Told> told_of_log(ByteStream stream, Format format, Damage damage) {
+Result<Summary> summarize_log(ByteStream stream, Format format, Damage damage) {
   const std::string name = stream.name();
   const Result<Log> log = open_log(std::move(stream), damage);
   if (!log) return tl::unexpected(log.error());
-  return std::visit([&](const auto& source) { return told_of(*source, name, format); }, *log);
+  return std::visit([&](const auto& source) { return summarize(*source, name, format); }, *log);
 }
 
-Result<Told> told_of_map(const FileBytes& file) {
+Result<Summary> summarize_map(const FileBytes& file) {
   const Result<MapFile> read = read_map(file);
   if (!read) return tl::unexpected(read.error());
   const OccupancyMap& map = read->map;
   const MapCounts counts = map.counts();
-  Told told;
-  told.json.add("kind", "map")
+  Summary summary;
+  summary.json.add("kind", "map")
       .add("format", name_of(read->format))
       .add("resolution", map.lattice().resolution_m())
       .add("depth", map.lattice().depth())
@@ -205,31 +266,31 @@ Result<Told> told_of_map(const FileBytes& file) {
       .add("free_cells", counts.free_cells)
       .add("bounds", bounds_json(map.bounds()))
       .add("memory_bytes", map.memory_bytes());
-  told.text = headline(file.name, read->format) + map_text(map, counts);
-  if (!read->made_by.empty()) told.text += report_line("made by", on_one_line(read->made_by));
-  return told;
+  summary.text = headline(file.name, read->format) + map_text(map, counts);
+  if (!read->made_by.empty()) summary.text += report_line("made by", on_one_line(read->made_by));
+  return summary;
 }
 
-Result<Told> told_of_mesh(const FileBytes& file, Format format) {
+Result<Summary> summarize_mesh(const FileBytes& file, Format format) {
   const Result<TriangleMesh> mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
   Box bounds{mesh->vertices_m.front(), mesh->vertices_m.front()};  // a mesh has a triangle
   for (const Eigen::Vector3d& vertex : mesh->vertices_m) {
     bounds = {bounds.min.cwiseMin(vertex), bounds.max.cwiseMax(vertex)};
   }
-  Told told;
-  told.json.add("kind", "mesh")
+  Summary summary;
+  summary.json.add("kind", "mesh")
       .add("format", name_of(format))
       .add("vertices", mesh->vertices_m.size())
       .add("triangles", mesh->triangles.size())
       .add("bounds", bounds_json(bounds));
-  told.text = headline(file.name, format) + report_line("vertices", fmt::format("{}", mesh->vertices_m.size())) +
-              report_line("triangles", fmt::format("{}", mesh->triangles.size())) +
-              report_line("bounds", bounds_text(bounds));
-  return told;
+  summary.text = headline(file.name, format) + report_line("vertices", fmt::format("{}", mesh->vertices_m.size())) +
+                 report_line("triangles", fmt::format("{}", mesh->triangles.size())) +
+                 report_line("bounds", bounds_text(bounds));
+  return summary;
 }
 
-Result<Told> told_of_trajectory(const FileBytes& file, Format format) {
+Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
   const Result<Trajectory> trajectory = read_tum(file);
   if (!trajectory) return tl::unexpected(trajectory.error());
   const std::vector<StampedPose>& poses = trajectory->poses();
@@ -241,32 +302,35 @@ Result<Told> told_of_trajectory(const FileBytes& file, Format format) {
     bounds = {bounds.min.cwiseMin(position), bounds.max.cwiseMax(position)};
   }
   const double duration_s = poses.back().time_s - poses.front().time_s;
-  Told told;
-  told.json.add("kind", "trajectory")
+  Summary summary;
+  summary.json.add("kind", "trajectory")
       .add("format", name_of(format))
       .add("poses", poses.size())
       .add("duration_s", duration_s)
       .add("length_m", length_m)
       .add("bounds", bounds_json(bounds));
-  told.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
-              report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", duration_s, poses.front().time_s)) +
-              report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
-  return told;
+  summary.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
+                 report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", duration_s, poses.front().time_s)) +
+                 report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
+  return summary;
 }
 
-Result<Told> told_of_file(ByteStream stream, Damage damage) {
-  const Result<Format> format = recognised(stream);
+Result<Summary> summarize_file(ByteStream stream, Damage damage, const std::vector<LimitedOption>& limited) {
+  const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
+  if (const auto used = check_limited(limited, {kind_text(kind_of(*format))}); !used) {
+    return fail(used.error().code, "info: " + used.error().message);
+  }
   const FileBytes& file = stream.held();
   switch (kind_of(*format)) {
     case FormatKind::kMap:
-      return told_of_map(file);
+      return summarize_map(file);
     case FormatKind::kMesh:
-      return told_of_mesh(file, *format);
+      return summarize_mesh(file, *format);
     case FormatKind::kTrajectory:
-      return told_of_trajectory(file, *format);
+      return summarize_trajectory(file, *format);
     default:
-      return told_of_log(std::move(stream), *format, damage);
+      return summarize_log(std::move(stream), *format, damage);
   }
 }
 
@@ -275,10 +339,10 @@ Result<Told> told_of_file(ByteStream stream, Damage damage) {
 Result<int> run(const InfoCommand& command, Console& console) {
   Result<ByteStream> stream = ByteStream::open(command.file);
   if (!stream) return tl::unexpected(stream.error());
-  const Result<Told> told = told_of_file(std::move(*stream), command.damage);
-  if (!told) return tl::unexpected(told.error());
-  const bool json = command.manner.report == Report::kJson;
-  if (const auto printed = console.print(json ? told->json.text() + "\n" : told->text); !printed) {
+  const Result<Summary> summary = summarize_file(std::move(*stream), command.damage, command.limited);
+  if (!summary) return tl::unexpected(summary.error());
+  const bool json = command.output_options.report == Report::kJson;
+  if (const auto printed = console.print(json ? summary->json.text() + "\n" : summary->text); !printed) {
     return tl::unexpected(printed.error());
   }
   return 0;

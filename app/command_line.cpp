@@ -12,11 +12,11 @@
 namespace pingvox::app {
 namespace {
 
-Result<Command> bench_command(const Words& words) {
-  return BenchCommand{{}, words};
+Result<Command> bench_command(const Args& args) {
+  return BenchCommand{{}, args};
 }
 
-Result<Command> view_command(const Words&) {
+Result<Command> view_command(const Args&) {
   return fail(
       Error::Code::kUnsupported,
       "view: not in this version: 'pingvox render MAP -o map.png' draws a map, 'pingvox convert MAP -o map.ply' "
@@ -25,10 +25,10 @@ Result<Command> view_command(const Words&) {
 
 struct CommandName {
   std::string_view name, purpose;
-  Result<Command> (*parse)(const Words&);
+  Result<Command> (*parse)(const Args&);
 };
 
-/// `view` is known, so that nobody is told to have misspelt it, but not offered.
+/// `view` is known, so that its name is not taken for a misspelt one, but not offered.
 constexpr std::array kCommands = {
     CommandName{"map", "logs to a map", &map_command},
     CommandName{"info", "what a log, a cloud, a map or a mesh holds", &info_command},
@@ -42,42 +42,42 @@ constexpr std::array kCommands = {
 };
 
 std::string overview() {
-  std::string out = "Usage: pingvox COMMAND [WORD]...\nTurns sonar logs into 3D occupancy maps.\n\nCommands:\n";
+  std::string out = "Usage: pingvox COMMAND [ARGUMENT]...\nTurns sonar logs into 3D occupancy maps.\n\nCommands:\n";
   for (const CommandName& command : kCommands) {
     if (!command.purpose.empty()) out += fmt::format("  {:<10}{}\n", command.name, command.purpose);
   }
   return out +
-         "\n  -h, --help     this text; behind a command, all about it\n"
-         "      --version  the version\n"
+         "\n  -h, --help     show this help; after a command, the help of that command\n"
+         "      --version  show the version\n"
          "\nExamples:\n"
          "  pingvox simulate tank -o tank.csv\n"
          "  pingvox map tank.csv -o tank.bt --beam cone\n"
          "  pingvox render tank.bt -o tank.png\n"
          "\nExit status: 0 done, 1 failed, 2 invalid usage.\n"
-         "Of compare: 0 the same, 1 different, 2 trouble of any kind.\n";
+         "compare: 0 equal, 1 different, 2 failed.\n";
 }
 
 }  // namespace
 
-Result<Command> parse_command_line(const Words& words) {
-  if (words.empty()) return off("a command is missing (see 'pingvox --help')");
-  const std::string& first = words.front();
+Result<Command> parse_command_line(const Args& args) {
+  if (args.empty()) return usage_error("a command is missing (see 'pingvox --help')");
+  const std::string& first = args.front();
   if (first == "--help" || first == "-h") return ShowText{{}, overview()};
   if (first == "--version") return ShowText{{}, "pingvox " PINGVOX_VERSION "\n"};
 
-  Words rest(words.begin() + 1, words.end());
+  Args rest(args.begin() + 1, args.end());
   if (first == "help") {
     if (rest.empty()) return ShowText{{}, overview()};
     return parse_command_line({rest.front(), "--help"});
   }
-  Words known = {"--help", "--version"};
+  Args known = {"--help", "--version"};
   for (const CommandName& command : kCommands) {
     if (command.name == first) return command.parse(rest);
     if (!command.purpose.empty()) known.emplace_back(command.name);
   }
   const std::string kind = first.starts_with("-") ? "option" : "command";
   const std::string hint = did_you_mean(first, known);
-  return off(fmt::format("unknown {} '{}'{}", kind, first, hint.empty() ? " (see 'pingvox --help')" : hint));
+  return usage_error(fmt::format("unknown {} '{}'{}", kind, first, hint.empty() ? " (see 'pingvox --help')" : hint));
 }
 
 }  // namespace pingvox::app

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -11,10 +12,14 @@
 #include "json.hpp"
 #include "map_log.hpp"
 #include "map_report.hpp"
+#include "mapping_options.hpp"
 #include "open_log.hpp"
+#include "option_values.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
 #include "progress.hpp"
-#include "write_map_file.hpp"
+#include "shell_words.hpp"
+#include "threshold_range.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -32,9 +37,20 @@ class Stopwatch {
 struct Totals {
   BuildReport report;
   std::size_t scans = 0, points = 0;  ///< of the report's sweeps and beams those that are no beams
+  std::size_t damaged = 0;
+  bool has_beams = false;
+  BeamModelOptions beam;  ///< of the first log of beams
   double write_s = 0.0, total_s = 0.0;
 
-  void add(const BuildReport& log, const Log& source) {
+  void add(const MappedLog& mapped, const Log& source) {
+    const BuildReport& log = mapped.report;
+    damaged += mapped.damaged;
+    if (log.min_threshold) {
+      report.min_threshold = std::min(report.min_threshold.value_or(*log.min_threshold), *log.min_threshold);
+      report.max_threshold = std::max(report.max_threshold.value_or(*log.max_threshold), *log.max_threshold);
+    }
+    if (!has_beams) beam = mapped.beam;
+    has_beams = has_beams || std::holds_alternative<std::unique_ptr<BeamSource>>(source);
     if (std::holds_alternative<std::unique_ptr<ScanSource>>(source)) {
       scans += log.sweeps;
       points += log.beams;
@@ -43,6 +59,7 @@ struct Totals {
     report.sweeps += log.sweeps;
     report.echoes += log.echoes;
     report.skipped += log.skipped;
+    report.no_pose.count += log.no_pose.count;
     report.outside.count += log.outside.count;
     report.cells_freed += log.cells_freed;
     report.cells_hit += log.cells_hit;
@@ -60,6 +77,38 @@ std::optional<double> share_read(const Log& log) {
 /// Microseconds: what is shorter is noise.
 double rounded(double seconds) {
   return std::round(seconds * 1e6) / 1e6;
+}
+
+std::string_view name_of(BeamShape shape) {
+  return shape == BeamShape::kRay ? "ray" : shape == BeamShape::kFan ? "fan" : "cone";
+}
+
+double degrees(double angle_rad) {
+  return std::round(angle_rad / kDegree_rad * 1e6) / 1e6;
+}
+
+/// "cone, 3 x 35 degrees"
+std::string beam_text(const BeamModelOptions& model) {
+  std::string text(name_of(model.shape));
+  if (model.shape == BeamShape::kFan) text += fmt::format(", {:.6g} degrees wide", degrees(model.width_rad));
+  if (model.shape == BeamShape::kCone) {
+    text += fmt::format(", {:.6g} degrees wide, {:.6g} high", degrees(model.width_rad), degrees(model.height_rad));
+  }
+  return text;
+}
+
+JsonObject beam_json(const BeamModelOptions& model) {
+  JsonObject json;
+  json.add("shape", name_of(model.shape));
+  model.shape == BeamShape::kRay ? json.add_null("width_deg") : json.add("width_deg", degrees(model.width_rad));
+  model.shape == BeamShape::kCone ? json.add("height_deg", degrees(model.height_rad)) : json.add_null("height_deg");
+  return json;
+}
+
+JsonObject threshold_json(const BuildReport& report) {
+  JsonObject json;
+  if (!report.min_threshold) return json.add_null("min").add_null("max");
+  return json.add("min", *report.min_threshold).add("max", *report.max_threshold);
 }
 
 std::string json_of(const Totals& totals, const OccupancyMap& map) {
@@ -82,10 +131,17 @@ std::string json_of(const Totals& totals, const OccupancyMap& map) {
       .add("free_cells", counts.free_cells)
       .add("bounds", bounds_json(map.bounds()));
   JsonObject json;
+  JsonObject skipped_for;
+  skipped_for.add("damage", totals.damaged)
+      .add("no_pose", report.no_pose.count)
+      .add("outside_map", report.outside.count);
   json.add("beams", report.beams)
       .add("sweeps", report.sweeps)
       .add("echoes", report.echoes)
       .add("skipped", report.skipped)
+      .add("skipped_for", skipped_for)
+      .add("beam", beam_json(totals.beam))
+      .add("threshold", threshold_json(report))
       .add("cells_freed", report.cells_freed)
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
@@ -93,38 +149,33 @@ std::string json_of(const Totals& totals, const OccupancyMap& map) {
   return json.text() + "\n";
 }
 
-std::string text_of(const Totals& totals, const OccupancyMap& map, const std::string& output) {
+std::string text_of(const Totals& totals, const OccupancyMap& map, const MapCommand& command) {
+  const std::string& output = command.output;
   const BuildReport& report = totals.report;
   const auto& s = report.seconds;
   std::string read;
   if (const std::size_t beams = report.beams - totals.points; beams > 0) {
     const std::size_t echoes = report.echoes - totals.points;
     read = fmt::format("{} beams, {} complete sweeps, {} echoes", beams, report.sweeps - totals.scans, echoes);
-    if (beams > echoes) read += fmt::format(", {} beams without one", beams - echoes);
+    if (beams > echoes) read += fmt::format(", {} beams without echo", beams - echoes);
   }
   if (totals.scans > 0) {
     read += fmt::format("{}{} points in {} scan{}", read.empty() ? "" : ", ", totals.points, totals.scans,
                         totals.scans == 1 ? "" : "s");
   }
-  if (report.skipped > 0) read += fmt::format("; {} left out", report.skipped);
-  if (report.outside.count > 0) read += fmt::format(", {} of them outside of the map", report.outside.count);
+  if (report.skipped > 0) read += fmt::format("; {} skipped", report.skipped);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
-  return name + "\n" + report_line("read", read) + map_text(map, map.counts()) +
+  std::string beams;
+  if (totals.has_beams) {
+    const ThresholdRange thresholds{report.min_threshold, report.max_threshold};
+    beams = report_line("beam", beam_text(totals.beam)) +
+            report_line("threshold", thresholds.text(command.build.echo.threshold));
+  }
+  return name + "\n" + report_line("read", read) + beams + map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
                                  totals.total_s, s.read, s.detect, s.trace, s.apply, totals.write_s));
-}
-
-/// Why a map knows nothing, as far as that can be told.
-std::string why_empty(const BuildReport& report, const Lattice& lattice) {
-  if (report.outside.count > 0) {
-    return fmt::format(
-        "{} beams or points lie outside of the map, which with cells of {} m reaches {:.3g} m from its origin: larger "
-        "cells (--resolution) reach farther",
-        report.outside.count, lattice.resolution_m(), std::ldexp(lattice.resolution_m(), lattice.depth() - 1));
-  }
-  return "no echoes and no free space in range (--min-range, --max-range, --threshold, --silent)";
 }
 
 }  // namespace
@@ -137,13 +188,25 @@ Result<int> run(const MapCommand& command, Console& console) {
   if (!trajectory) return tl::unexpected(trajectory.error());
 
   Totals totals;
+  std::vector<std::string> kinds;
   {
-    ProgressBar bar(command.manner);
+    ProgressBar bar(command.output_options);
     for (std::size_t i = 0; i < command.logs.size(); ++i) {
       const Stopwatch read;
       Result<ByteStream> stream = ByteStream::open(command.logs[i]);
       if (!stream) return tl::unexpected(stream.error());
       const std::string name = stream->name();
+      const Result<Format> format = identify_format(*stream);
+      if (!format) return tl::unexpected(format.error());
+      if (const std::string kind = kind_text(kind_of(*format)); std::ranges::find(kinds, kind) == kinds.end()) {
+        kinds.push_back(kind);
+      }
+      // Known with the last one, and said before its work.
+      if (i + 1 == command.logs.size()) {
+        if (const auto used = check_limited(command.limited, kinds); !used) {
+          return fail(used.error().code, fmt::format("map: {}", used.error().message));
+        }
+      }
       const Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m);
       if (!log) return tl::unexpected(log.error());
       totals.report.seconds.read += read.seconds();
@@ -156,24 +219,37 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
                                     bytes_text(map->memory_bytes())));
       };
-      const Result<BuildReport> report = map_log(*log, name, *trajectory, command.build, command.head, *map, progress);
-      if (!report) return tl::unexpected(report.error());
-      totals.add(*report, *log);
+      const Result<MappedLog> mapped = map_log(*log, name, *trajectory, command.build, command.head, *map, progress);
+      if (!mapped) return tl::unexpected(mapped.error());
+      totals.add(*mapped, *log);
+      if (!mapped->skipped_text.empty()) {
+        bar.clear();
+        console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));
+      }
+      const bool has_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*log);
+      if (const auto beside = trajectory_beside(name); beside && has_beams && !command.poses) {
+        bar.clear();
+        console.say(fmt::format("{}: mapped as if the vehicle did not move; its trajectory may be --poses {}", name,
+                                quote_for_shell(*beside)));
+      }
     }
   }
 
   const Stopwatch write;
-  const Result<void> written = write_map_file(command.output, *map, command.format, command.made_by);
+  const Result<void> written = write_map(*map, command.format, command.made_by, command.output);
   if (!written) return tl::unexpected(written.error());
   totals.write_s = write.seconds();
   totals.total_s = total.seconds();
 
-  const Result<void> told = command.manner.report == Report::kJson
-                                ? console.print(json_of(totals, *map))
-                                : console.summarise(text_of(totals, *map, command.output), command.output);
-  if (!told) return tl::unexpected(told.error());
-  if (map->empty()) {
-    console.say(fmt::format("{}: nothing was mapped: {}", command.output, why_empty(totals.report, map->lattice())));
+  const Result<void> summary = command.output_options.report == Report::kJson
+                                   ? console.print(json_of(totals, *map))
+                                   : console.summarise(text_of(totals, *map, command), command.output);
+  if (!summary) return tl::unexpected(summary.error());
+  if (map->empty() && totals.report.outside.count == 0) {
+    console.say(
+        fmt::format("{}: the map is empty: no echoes and no free space in range (see --min-range, --max-range, "
+                    "--threshold and --silent)",
+                    command.output));
   }
   return 0;
 }

@@ -1,6 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bitset>
+#include <cmath>
 #include <map>
+#include <numbers>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -8,11 +13,14 @@
 
 #include "commands.hpp"
 #include "map_log.hpp"
+#include "mapping_options.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/map/slice.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
+#include "threshold_range.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -24,31 +32,52 @@ struct Drawn {
 };
 
 /// A sweep with what was found in it.
-struct SeenSweep {
+struct ProcessedSweep {
   std::size_t number = 0;  ///< counted from 1
   Sweep sweep;
   PolarImage image;                           ///< as it is to be shown
   std::vector<std::optional<Echo>> echoes{};  ///< empty when they are not to be marked
 };
 
-SeenSweep seen(std::size_t number, Sweep sweep, const PanelCommand& panel) {
-  PolarImage raw(sweep);
-  PolarImage smooth = filtered(raw, panel.build.filter);
+/// The beam up to a range; all bins that begin nearer.
+void cut_beam(Beam& beam, double range_m) {
+  const double bins = std::ceil(range_m / beam.bin_length_m);
+  if (bins < static_cast<double>(beam.intensities.size())) {
+    beam.intensities.resize(std::max<std::size_t>(static_cast<std::size_t>(bins), 1));
+  }
+}
+
+ProcessedSweep process_sweep(std::size_t number, Sweep sweep, const PanelCommand& panel) {
+  const PolarImage raw(sweep);
+  const PolarImage smooth = filtered(raw, panel.build.filter);
   std::vector<std::optional<Echo>> echoes;
   if (panel.marks == EchoMarks::kOn) {
     echoes = detect_echoes(smooth, sweep, panel.build.echo);
   }
-  PolarImage& image = panel.image == ShownImage::kRaw ? raw : smooth;
+  for (std::size_t i = 0; i < sweep.beams.size(); ++i) {
+    Beam& beam = sweep.beams[i];
+    if (panel.image == ShownImage::kFiltered) {
+      const auto row = smooth.row(i);
+      beam.intensities.assign(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(smooth.bins_in(i)));
+    }
+    cut_beam(beam, panel.build.echo.max_range_m);
+  }
+  PolarImage image(sweep);
   return {number, std::move(sweep), std::move(image), std::move(echoes)};
 }
 
-std::string counted(std::size_t beams, std::span<const std::optional<Echo>> echoes, const PanelCommand& panel,
-                    std::size_t skipped) {
+std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> echoes, const PanelCommand& panel,
+                       std::size_t skipped) {
   std::size_t found = 0;
   for (const auto& echo : echoes) found += echo ? 1 : 0;
   std::string text = fmt::format("{} beams", beams);
-  if (panel.marks == EchoMarks::kOn) text += fmt::format(" with {} echoes", found);
-  if (skipped > 0) text += fmt::format("; {} damaged ones left out", skipped);
+  if (panel.marks == EchoMarks::kOn) {
+    text += fmt::format(" with {} echoes", found);
+    ThresholdRange thresholds;
+    thresholds.add(echoes);
+    if (found > 0) text += fmt::format(", threshold {}", thresholds.text(panel.build.echo.threshold));
+  }
+  if (skipped > 0) text += fmt::format("; {} damaged ones skipped", skipped);
   return text;
 }
 
@@ -59,19 +88,15 @@ class PolarGatherer {
 
   void add(std::size_t number, Sweep sweep) {
     if (panel_.sweep && *panel_.sweep != number) return;
-    SeenSweep next = seen(number, std::move(sweep), panel_);
-    for (std::size_t i = 0; i < next.sweep.beams.size(); ++i) {
-      const auto row = next.image.row(i);
-      next.sweep.beams[i].intensities.assign(row.begin(),
-                                             row.begin() + static_cast<std::ptrdiff_t>(next.image.bins_in(i)));
-    }
+    ProcessedSweep next = process_sweep(number, std::move(sweep), panel_);
     beams_.insert(beams_.end(), next.sweep.beams.begin(), next.sweep.beams.end());
     echoes_.insert(echoes_.end(), next.echoes.begin(), next.echoes.end());
   }
 
   std::optional<Drawn> draw(std::size_t skipped) const {
     if (beams_.empty()) return std::nullopt;
-    return Drawn{render_echoes(beams_, echoes_, panel_.echo_picture), counted(beams_.size(), echoes_, panel_, skipped)};
+    return Drawn{render_echoes(beams_, echoes_, panel_.echo_picture),
+                 count_text(beams_.size(), echoes_, panel_, skipped)};
   }
 
  private:
@@ -80,30 +105,41 @@ class PolarGatherer {
   std::vector<std::optional<Echo>> echoes_;
 };
 
-/// The one sweep that a Cartesian picture shows: that asked for, else the first complete one, else the first one.
+/// The one sweep that a Cartesian picture shows: that asked for, else the one that covers the most directions.
 class CartesianGatherer {
  public:
   explicit CartesianGatherer(const PanelCommand& panel) : panel_(panel) {}
 
   void add(std::size_t number, Sweep sweep) {
-    const bool is_wanted = panel_.sweep ? *panel_.sweep == number : sweep.extent != Sweep::Extent::kCut;
-    if (found_ || !(is_wanted || (!panel_.sweep && !spare_))) return;
-    (is_wanted ? found_ : spare_) = std::pair(number, std::move(sweep));
+    if (panel_.sweep && *panel_.sweep != number) return;
+    const auto fullness = std::pair(directions_in(sweep), sweep.beams.size());
+    if (chosen_ && fullness <= fullness_) return;
+    fullness_ = fullness;
+    chosen_ = std::pair(number, std::move(sweep));
   }
 
   std::optional<Drawn> draw(std::size_t skipped) const {
-    const auto& chosen = found_ ? found_ : spare_;
-    if (!chosen) return std::nullopt;
-    const SeenSweep shown = seen(chosen->first, chosen->second, panel_);
+    if (!chosen_) return std::nullopt;
+    const ProcessedSweep shown = process_sweep(chosen_->first, chosen_->second, panel_);
     const CartesianPictureOptions options{panel_.echo_picture, panel_.between, panel_.build.model.width_rad};
     return Drawn{
         render_cartesian(shown.sweep, shown.image, shown.echoes, options),
-        fmt::format("sweep {}, {}", shown.number, counted(shown.sweep.beams.size(), shown.echoes, panel_, skipped))};
+        fmt::format("sweep {}, {}", shown.number, count_text(shown.sweep.beams.size(), shown.echoes, panel_, skipped))};
   }
 
  private:
+  /// Degrees in which the sweep has a beam.
+  static std::size_t directions_in(const Sweep& sweep) {
+    std::bitset<360> seen;
+    for (const Beam& beam : sweep.beams) {
+      seen.set(static_cast<std::size_t>(beam.bearing_rad / std::numbers::pi * 180.0) % seen.size());
+    }
+    return seen.count();
+  }
+
   const PanelCommand& panel_;
-  std::optional<std::pair<std::size_t, Sweep>> found_, spare_;
+  std::optional<std::pair<std::size_t, Sweep>> chosen_;
+  std::pair<std::size_t, std::size_t> fullness_;  ///< directions and beams of the chosen one
 };
 
 template <class Gatherer>
@@ -131,7 +167,8 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage dama
   std::optional<Drawn> drawn = gatherer.draw((*source)->skipped());
   if (drawn) return std::move(*drawn);
   if (sweeps == 0) {
-    return fail(Error::Code::kCorrupt, fmt::format("{}: holds no beams ({} left out)", name, (*source)->skipped()));
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{}: no beams ({} damaged ones skipped)", name, (*source)->skipped()));
   }
   return fail(Error::Code::kBadOption,
               fmt::format("render: {}: there is no sweep {}, only {}", name, panel.sweep.value_or(0), sweeps));
@@ -145,7 +182,7 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, Damag
   const std::string name = file.name;
   const Result<Log> log = open_log(std::move(file), damage);
   if (!log) return tl::unexpected(log.error());
-  const Result<BuildReport> report = map_log(*log, name, *trajectory, panel.build, panel.head, *map);
+  const Result<MappedLog> report = map_log(*log, name, *trajectory, panel.build, panel.head, *map);
   if (!report) return tl::unexpected(report.error());
   return map;
 }
@@ -163,10 +200,27 @@ Drawn draw_map(const MapToDraw& shown, const MapPictureOptions& options) {
   return {render_map(shown.map, options), what};
 }
 
+PictureView view_of(const PanelCommand& panel, FormatKind kind) {
+  return panel.view.value_or(kind == FormatKind::kBeams ? PictureView::kPolar : PictureView::kAbove);
+}
+
+/// What the options of a picture may be limited to: see PanelCommand.
+void add_kinds(const PanelCommand& panel, FormatKind kind, std::vector<std::string>& kinds) {
+  const PictureView view = view_of(panel, kind);
+  const auto add = [&](bool applies, std::string text) {
+    if (applies && std::find(kinds.begin(), kinds.end(), text) == kinds.end()) kinds.push_back(std::move(text));
+  };
+  const bool is_map = view != PictureView::kPolar && view != PictureView::kCartesian;
+  add(true, view_kind(view));
+  add(kind == FormatKind::kBeams, std::string(kBeamLogs));
+  add(is_map, std::string(kDrawnMaps));
+  add(is_map && kind != FormatKind::kMap, std::string(kMappedLogs));
+}
+
 /// Does a panel's work: a picture is done, a map waits for those that it is compared with.
-Result<std::variant<Drawn, MapToDraw>> prepared(FileBytes file, const PanelCommand& panel, Damage damage) {
+Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const PanelCommand& panel, Damage damage) {
   using Prepared = std::variant<Drawn, MapToDraw>;
-  const Result<Format> format = recognised(file);
+  const Result<Format> format = identify_format(file);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind != FormatKind::kBeams && kind != FormatKind::kScans && kind != FormatKind::kMap) {
@@ -174,15 +228,15 @@ Result<std::variant<Drawn, MapToDraw>> prepared(FileBytes file, const PanelComma
                                   : kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface"
                                                               : "";
     return fail(Error::Code::kUnsupported,
-                fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name, described(*format), hint));
+                fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name, describe(*format), hint));
   }
-  const PictureView view = panel.view.value_or(kind == FormatKind::kBeams ? PictureView::kPolar : PictureView::kAbove);
+  const PictureView view = view_of(panel, kind);
   const auto to_draw = [&](OccupancyMap map) { return Prepared(MapToDraw{std::move(map), view}); };
   if (view == PictureView::kPolar || view == PictureView::kCartesian) {
     if (kind != FormatKind::kBeams) {
       return fail(Error::Code::kBadOption,
                   fmt::format("render: {}: is {}: only logs of beams have polar and Cartesian pictures", file.name,
-                              described(*format)));
+                              describe(*format)));
     }
     auto drawn = view == PictureView::kPolar ? draw_sweeps<PolarGatherer>(std::move(file), panel, damage)
                                              : draw_sweeps<CartesianGatherer>(std::move(file), panel, damage);
@@ -192,6 +246,16 @@ Result<std::variant<Drawn, MapToDraw>> prepared(FileBytes file, const PanelComma
     return read_map(file).map([&](MapFile read) { return to_draw(std::move(read.map)); });
   }
   return map_of_log(std::move(file), panel, damage).map(to_draw);
+}
+
+/// An empty picture says nothing about why it is empty.
+Result<void> check_layer(const MapToDraw& shown, const PanelCommand& panel) {
+  const auto z_m = panel.map_picture.layer_z_m;
+  if (shown.view != PictureView::kSlice || !z_m) return {};
+  if (const auto layer = slice_of(shown.map, {z_m, z_m}); !layer) {
+    return fail(layer.error().code, fmt::format("{}: {}", panel.input, layer.error().message));
+  }
+  return {};
 }
 
 Box around(const std::optional<Box>& a, const Box& b) {
@@ -205,6 +269,7 @@ Result<Drawn> draw(const RenderCommand& command) {
   std::map<std::string, FileBytes> files;
   std::map<std::pair<std::string, MapView>, std::optional<Box>> parts;
   std::vector<std::variant<Drawn, MapToDraw>> works;
+  std::vector<std::string> kinds;
   for (const PanelCommand& panel : command.panels) {
     auto found = files.find(panel.input);
     if (found == files.end()) {
@@ -212,9 +277,18 @@ Result<Drawn> draw(const RenderCommand& command) {
       if (!file) return tl::unexpected(file.error());
       found = files.emplace(panel.input, std::move(*file)).first;
     }
-    auto work = prepared(found->second, panel, command.damage);
+    const Result<Format> format = identify_format(found->second);
+    if (!format) return tl::unexpected(format.error());
+    add_kinds(panel, kind_of(*format), kinds);
+  }
+  if (const auto used = check_limited(command.limited, kinds); !used) {
+    return fail(used.error().code, "render: " + used.error().message);
+  }
+  for (const PanelCommand& panel : command.panels) {
+    auto work = prepare_panel(files.at(panel.input), panel, command.damage);
     if (!work) return tl::unexpected(work.error());
     if (const auto* shown = std::get_if<MapToDraw>(&*work)) {
+      if (const auto layer = check_layer(*shown, panel); !layer) return tl::unexpected(layer.error());
       auto& part = parts[{panel.input, panel.map_picture.view}];
       if (const auto box = shown_part(shown->map, panel.map_picture)) part = around(part, *box);
     }
@@ -253,7 +327,7 @@ Result<int> run(const RenderCommand& command, Console& console) {
   if (!written) return tl::unexpected(written.error());
   const std::string summary = fmt::format("{}: {}, {} x {} pixels\n", on_one_line(command.output), drawn->what,
                                           picture.width(), picture.height());
-  if (const auto told = console.summarise(summary, command.output); !told) return tl::unexpected(told.error());
+  if (const auto printed = console.summarise(summary, command.output); !printed) return tl::unexpected(printed.error());
   return 0;
 }
 

@@ -13,24 +13,24 @@
 #include "map_log.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/tum.hpp"
-#include "stranger.hpp"
+#include "unknown_file.hpp"
 #include "world_map.hpp"
-#include "write_map_file.hpp"
 
 namespace pingvox::app {
 namespace {
 
-/// Hands a simulator's beams on and keeps what is true of each.
-class Witness final : public BeamSource {
+/// Passes the beams of a simulator on and records the ground truth of each.
+class TruthRecorder final : public BeamSource {
  public:
   struct Sent {
     double bearing_rad;  ///< as the log has it
     SonarSimulator::Ping ping;
   };
 
-  explicit Witness(SonarSimulator& simulator) : simulator_(simulator) {}
+  explicit TruthRecorder(SonarSimulator& simulator) : simulator_(simulator) {}
 
   Result<std::optional<Beam>> next() override {
     auto beam = simulator_.next();
@@ -64,10 +64,10 @@ struct Journey {
 };
 
 Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, const SonarOptions& sonar) {
-  constexpr std::size_t kMostTurns = 10'000;
+  constexpr std::size_t kMaxTurns = 10'000;
   const double turn_s = static_cast<double>(sonar.beams_per_turn) / sonar.beams_per_s;
   const auto turns_in = [&](double seconds) {
-    return static_cast<std::size_t>(std::clamp(std::ceil(seconds / turn_s), 1.0, static_cast<double>(kMostTurns)));
+    return static_cast<std::size_t>(std::clamp(std::ceil(seconds / turn_s), 1.0, static_cast<double>(kMaxTurns)));
   };
   if (command.poses) {
     Result<Trajectory> way = trajectory_of(command.poses);
@@ -80,10 +80,10 @@ Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, c
   if (!route) return Journey{Trajectory::still(Pose::Identity()), command.turns.value_or(5)};
   const std::size_t turns = command.turns.value_or(turns_in(length_m(*route) / command.travel.speed_m_s));
   const double duration = static_cast<double>(turns) * turn_s;
-  constexpr double kMostPoses = 1e6;
-  if (duration / command.travel.pose_every_s > kMostPoses) {
+  constexpr double kMaxPoses = 1e6;
+  if (duration / command.travel.pose_every_s > kMaxPoses) {
     return fail(Error::Code::kBadOption,
-                fmt::format("simulate: {} turns take {:.0f} s: too long for a way of ours", turns, duration));
+                fmt::format("simulate: {} turns take {:.0f} s: longer than a built-in path", turns, duration));
   }
   return Journey{travelled(*route, duration, command.travel), turns};
 }
@@ -97,7 +97,7 @@ std::string text_of(const std::optional<double>& value) {
 }
 
 Result<void> write_ranges(const std::string& path, const SonarSimulator& simulator,
-                          const std::vector<Witness::Sent>& sent, const SonarOptions& sonar) {
+                          const std::vector<TruthRecorder::Sent>& sent, const SonarOptions& sonar) {
   return write_file(path, [&](std::ostream& out) -> Result<void> {
     out << kTrueRangesHeader << '\n';
     for (const auto& [bearing_rad, ping] : sent) {
@@ -118,7 +118,7 @@ Result<OccupancyMap> true_map(const Scene& scene, const Trajectory& way, double 
 }
 
 Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map, const Trajectory& way,
-                         const SonarSimulator& simulator, const Witness& witness, const SonarOptions& sonar) {
+                         const SonarSimulator& simulator, const TruthRecorder& recorder, const SonarOptions& sonar) {
   const std::filesystem::path folder = *command.truth;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -126,12 +126,12 @@ Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map
   const auto in_folder = [&folder](const char* name) { return (folder / name).string(); };
 
   if (auto written = write_trajectory(in_folder("poses.tum"), way); !written) return written;
-  if (auto written = write_ranges(in_folder("ranges.csv"), simulator, witness.sent(), sonar); !written) return written;
+  if (auto written = write_ranges(in_folder("ranges.csv"), simulator, recorder.sent(), sonar); !written) return written;
   auto written = write_file(in_folder("world.ply"), [&](std::ostream& out) {
     return write_mesh_ply(simulator.world().mesh(0.1 * command.truth_resolution_m), out);
   });
   if (!written) return written;
-  return write_map_file(in_folder("world.bt"), map, Format::kBt, "");
+  return write_map(map, in_folder("world.bt"));
 }
 
 }  // namespace
@@ -161,8 +161,8 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   }
 
   SonarSimulator simulator(scene->world, journey->way, sonar, journey->turns);
-  Witness witness(simulator);
-  BeamSource& source = command.truth ? static_cast<BeamSource&>(witness) : simulator;
+  TruthRecorder recorder(simulator);
+  BeamSource& source = command.truth ? static_cast<BeamSource&>(recorder) : simulator;
   std::size_t beams = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
     const Result<std::size_t> count = write_csv(source, out);
@@ -172,21 +172,21 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   });
   if (!written) return tl::unexpected(written.error());
 
-  std::string told = fmt::format("{}: {} beams of {}, {:.6g} m of range, seed {}\n", on_one_line(command.output), beams,
-                                 on_one_line(command.world), sonar.range_m(), sonar.seed);
+  std::string summary = fmt::format("{}: {} beams of {}, {:.6g} m of range, seed {}\n", on_one_line(command.output),
+                                    beams, on_one_line(command.world), sonar.range_m(), sonar.seed);
   if (journey->way.poses().size() > 1) {
     const std::string companion = std::filesystem::path(command.output).replace_extension(".tum").string();
     const auto reports = write_trajectory(companion, reported(journey->way, command.drift));
     if (!reports) return tl::unexpected(reports.error());
-    told += fmt::format("{}: {} poses, as reported\n", on_one_line(companion), journey->way.poses().size());
+    summary += fmt::format("{}: {} reported poses\n", on_one_line(companion), journey->way.poses().size());
   }
   if (map) {
-    const auto truth = write_truth(command, *map, journey->way, simulator, witness, sonar);
+    const auto truth = write_truth(command, *map, journey->way, simulator, recorder, sonar);
     if (!truth) return tl::unexpected(truth.error());
-    told += fmt::format("{}: what is true\n", on_one_line(*command.truth));
+    summary += fmt::format("{}: ground truth\n", on_one_line(*command.truth));
   }
-  const auto said = console.summarise(told, command.output);
-  if (!said) return tl::unexpected(said.error());
+  const auto printed = console.summarise(summary, command.output);
+  if (!printed) return tl::unexpected(printed.error());
   return 0;
 }
 

@@ -2,10 +2,12 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "console.hpp"
+#include "option_table.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
@@ -22,18 +24,18 @@
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
 
-/// The commands as plain values: what `parse_command_line` makes of the words, and what `run` does. A `run` returns the
+/// The commands as plain values: what `parse_command_line` returns and `run` executes. A `run` returns the
 /// exit status of a call that could be done; `main` turns errors into the others.
 namespace pingvox::app {
 
 /// Something to read and nothing to do: --help, --version.
 struct ShowText {
-  Manner manner;
+  OutputOptions output_options;
   std::string text;
 };
 
 /// What a call says of the sonar's head. What it leaves open follows from the log's device.
-struct HeadWords {
+struct HeadArgs {
   const DeviceProfile* device = nullptr;  ///< nullptr: the log's
   std::optional<double> beam_width_rad, beam_height_rad;
 
@@ -50,7 +52,7 @@ struct HeadWords {
 };
 
 struct MapCommand {
-  Manner manner;
+  OutputOptions output_options;
   std::vector<std::string> logs;  ///< at least one; "-" is standard input
   std::string output;             ///< "-" is standard output
   Format format = Format::kBt;
@@ -59,33 +61,46 @@ struct MapCommand {
   Damage damage = Damage::kSkip;
   MapOptions map;
   BuildOptions build;
-  HeadWords head;
-  std::string made_by;  ///< the words of the call, for the file
+  HeadArgs head;
+  std::vector<LimitedOption> limited;
+  std::string made_by;  ///< the command line, written into the file
 };
 
 struct InfoCommand {
-  Manner manner;
+  OutputOptions output_options;
   std::string file;
+  std::vector<LimitedOption> limited;
   Damage damage = Damage::kSkip;
 };
 
 struct CompareCommand {
-  Manner manner;
+  OutputOptions output_options;
   std::string a, b;
+  std::optional<double> layer_z_m;             ///< compare only the layer of cells that holds this height
+  std::optional<double> occupied_probability;  ///< a cell of A is occupied from here on
 };
 
 struct ConvertCommand {
-  Manner manner;
+  OutputOptions output_options;
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
   std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the usual one
-  SliceOptions slice;                  ///< of grids and heights
+  SliceOptions slice;                  ///< of a map
+  bool has_echoes = false;             ///< the detected echoes of a log instead of its beams
+  FilterOptions filter;
+  EchoOptions echo;
+  double sound_speed_ratio = 1.0;  ///< of the echoes
+  std::vector<LimitedOption> limited;
   Surface surface = Surface::kHighest;
 };
 
 /// What a picture shows: of a log of beams one of the first two; of a map, or of a log after mapping it, the others.
 enum class PictureView { kPolar, kCartesian, kAbove, kSide, kSlice };
+/// The kinds that options of 'render' may be limited to, beside those of logs (Option::only_for).
+inline constexpr std::string_view kDrawnMaps = "pictures of maps", kMappedLogs = "logs that are mapped";
+/// "--view polar"
+std::string view_kind(PictureView view);
 enum class ShownImage { kRaw, kFiltered };
 enum class EchoMarks { kOn, kOff };
 
@@ -96,25 +111,26 @@ struct PanelCommand {
   std::optional<PictureView> view;  ///< nullopt: polar of a log of beams, else from above
   ShownImage image = ShownImage::kRaw;
   EchoMarks marks = EchoMarks::kOn;
-  std::optional<std::size_t> sweep;  ///< counted from 1; nullopt: polar all, Cartesian the first complete one
+  std::optional<std::size_t> sweep;  ///< counted from 1; nullopt: polar all, Cartesian the fullest one
   BetweenBeams between = BetweenBeams::kInterpolate;
   EchoPictureOptions echo_picture;
   MapPictureOptions map_picture;
   MapOptions map;  ///< for logs that are mapped
   BuildOptions build;
-  HeadWords head;
+  HeadArgs head;
   std::optional<std::string> poses;
 };
 
 struct RenderCommand {
-  Manner manner;
+  OutputOptions output_options;
   std::string output, title;
   Damage damage = Damage::kSkip;
-  std::vector<PanelCommand> panels;  ///< at least one
+  std::vector<PanelCommand> panels;    ///< at least one
+  std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs that are mapped"
 };
 
 struct SimulateCommand {
-  Manner manner;
+  OutputOptions output_options;
   std::string output;
   std::string world;  ///< tank, harbour, seabed, cave, or the file of a mesh
   TankOptions tank;
@@ -130,10 +146,10 @@ struct SimulateCommand {
   double truth_resolution_m = 0.05;
 };
 
-/// Starts `pingvox-bench`, a program of its own, with these words.
+/// Starts `pingvox-bench`, a program of its own, with these arguments.
 struct BenchCommand {
-  Manner manner;
-  std::vector<std::string> words;
+  OutputOptions output_options;
+  std::vector<std::string> args;
 };
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,

@@ -16,7 +16,7 @@ enum class ShowProgress {
 };
 
 /// How a command talks to whoever called it.
-struct Manner {
+struct OutputOptions {
   Report report = Report::kText;
   Talk talk = Talk::kOn;
   ShowProgress progress = ShowProgress::kAuto;
@@ -25,9 +25,9 @@ struct Manner {
 /// The two ways out of the program: standard output for results, standard error for talk.
 class Console {
  public:
-  explicit Console(const Manner& manner) : manner_(manner) {}
+  explicit Console(const OutputOptions& output_options) : manner_(output_options) {}
 
-  const Manner& manner() const { return manner_; }
+  const OutputOptions& output_options() const { return manner_; }
 
   /// Writes a result to standard output. kIo: nobody reads it, or the disk is full.
   Result<void> print(std::string_view text) const;
@@ -38,7 +38,7 @@ class Console {
   void say(std::string_view line) const;
 
  private:
-  Manner manner_;
+  OutputOptions manner_;
 };
 
 /// One line on standard error, "pingvox: message", whatever the message contains.

@@ -22,7 +22,7 @@ constexpr int kDone = 0, kCouldNotBeDone = 1, kWordsAreOff = 2;
 Result<int> run_any(const app::Command& command) {
   return std::visit(
       [](const auto& c) -> Result<int> {
-        app::Console console(c.manner);
+        app::Console console(c.output_options);
         if constexpr (std::is_same_v<std::decay_t<decltype(c)>, app::ShowText>) {
           if (const auto printed = console.print(c.text); !printed) return tl::unexpected(printed.error());
           return kDone;
@@ -33,16 +33,16 @@ Result<int> run_any(const app::Command& command) {
       command);
 }
 
-Result<int> called_with(const std::vector<std::string>& words) {
+Result<int> called_with(const std::vector<std::string>& args) {
   if (const auto limited = app::limit_vectors(); !limited) return tl::unexpected(limited.error());
-  const Result<app::Command> command = app::parse_command_line(words);
+  const Result<app::Command> command = app::parse_command_line(args);
   if (!command) return tl::unexpected(command.error());
   return run_any(*command);
 }
 
-int status_of(const Error& error, const std::vector<std::string>& words) {
+int status_of(const Error& error, const std::vector<std::string>& args) {
   // 1 says "different" there.
-  const bool compares = !words.empty() && words.front() == "compare";
+  const bool compares = !args.empty() && args.front() == "compare";
   return error.code == Error::Code::kBadOption || compares ? kWordsAreOff : kCouldNotBeDone;
 }
 
@@ -62,11 +62,11 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 
-  std::vector<std::string> words;
+  std::vector<std::string> args;
   Error error{Error::Code::kUnsupported, ""};
   try {
-    words.assign(argv + (argc > 0 ? 1 : 0), argv + argc);
-    const Result<int> status = called_with(words);
+    args.assign(argv + (argc > 0 ? 1 : 0), argv + argc);
+    const Result<int> status = called_with(args);
     if (status) return *status;
     error = status.error();
   } catch (const std::bad_alloc&) {
@@ -75,5 +75,5 @@ int main(int argc, char** argv) {
     error.message = exception.what();
   }
   app::complain(error.message);
-  return status_of(error, words);
+  return status_of(error, args);
 }

@@ -107,7 +107,7 @@ std::optional<double> MapAgreement::free_true() const {
 MapAgreement agreement_of(const OccupancyMap& a, const OccupancyMap& b) {
   MapAgreement out;
   Walk(a, b, out).visit(a.root(), b.root(), 0);
-  if (out.occupied_a > MapAgreement::kMostLookedAround || out.occupied_b > MapAgreement::kMostLookedAround) return out;
+  if (out.occupied_a > MapAgreement::kMaxLookedAround || out.occupied_b > MapAgreement::kMaxLookedAround) return out;
   with_key_word(a.lattice().depth(), [&]<KeyWord W>() {
     out.a_near_b = near_cells<W>(a, b);
     out.b_near_a = near_cells<W>(b, a);

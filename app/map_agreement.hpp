@@ -16,7 +16,7 @@ struct MapAgreement {
   /// way round; nullopt where there are too many occupied cells to look around each.
   std::optional<std::uint64_t> a_near_b, b_near_a;
 
-  static constexpr std::uint64_t kMostLookedAround = 20'000'000;
+  static constexpr std::uint64_t kMaxLookedAround = 20'000'000;
 
   /// B taken for the truth: shares, nullopt where nothing is to be shared.
   std::optional<double> precision() const;  ///< of A's occupied cells, those within one cell of one of B's

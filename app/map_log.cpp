@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <limits>
+#include <cmath>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -12,14 +14,35 @@
 namespace pingvox::app {
 namespace {
 
-Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const BuildOptions& options,
-                          const HeadWords& head, OccupancyMap& map, const Progress& progress) {
+Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const BuildOptions& options, OccupancyMap& map,
+                          const Progress& progress) {
   if (const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) {
     // Scans of points have no blanking range.
     if (const auto ranges = check_ranges(options); !ranges) return tl::unexpected(ranges.error());
-    return build_map(**beams, trajectory, head.applied_to(options, (*beams)->device()), map, progress);
+    return build_map(**beams, trajectory, options, map, progress);
   }
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
+}
+
+/// "3036 outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log)"
+std::string text_of_skipped(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice) {
+  std::string text;
+  const auto add = [&text](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
+    if (left_out.count == 0) return;
+    text += fmt::format("{}{} {}", text.empty() ? "" : "; ", left_out.count, reason);
+    if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
+    text += fmt::format(" ({})", advice);
+  };
+  add({mapped.damaged, std::nullopt}, "damaged", "--strict stops at the first one and says where it is");
+  const auto& poses = trajectory.poses();
+  add(mapped.report.no_pose,
+      fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s", poses.front().time_s, poses.back().time_s),
+      "--poses must cover the log");
+  add(mapped.report.outside,
+      fmt::format("outside of the map, which reaches {:.3g} m from its origin",
+                  std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
+      "a larger --resolution reaches farther");
+  return text;
 }
 
 }  // namespace
@@ -33,7 +56,7 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   // A damaged trajectory may be taken for points as text.
   const std::optional<Format> format = format_of(file->view());
   if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
-  return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, described(*format)));
+  return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, describe(*format)));
 }
 
 Result<void> check_ranges(const BuildOptions& options) {
@@ -45,23 +68,36 @@ Result<void> check_ranges(const BuildOptions& options) {
                   nearest_m == EchoOptions::kUsualBlanking_m ? " when it is not given" : "", options.echo.max_range_m));
 }
 
-Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
-                            const BuildOptions& options, const HeadWords& head, OccupancyMap& map,
-                            const Progress& progress) {
-  Result<BuildReport> report = build(log, trajectory, options, head, map, progress);
+Result<MappedLog> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
+                          const BuildOptions& options, const HeadArgs& head, OccupancyMap& map,
+                          const Progress& progress) {
+  const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+  const BuildOptions of_head = head.applied_to(options, beams != nullptr ? (*beams)->device() : nullptr);
+  Result<BuildReport> report = build(log, trajectory, of_head, map, progress);
   if (!report) {
     // Errors of the map itself name no file; those of options need none.
     const Error::Code code = report.error().code;
-    if (code != Error::Code::kLimit && code != Error::Code::kNoMemory) return report;
+    if (code != Error::Code::kLimit && code != Error::Code::kNoMemory) return tl::unexpected(report.error());
     return fail(code, fmt::format("{}: {}", name, report.error().message));
   }
+  MappedLog mapped;
+  mapped.report = *report;
+  mapped.beam = of_head.model;
+  mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
+  mapped.skipped_text = text_of_skipped(mapped, trajectory, map.lattice());
   if (report->beams == 0) {
-    const bool stood_still = trajectory.at(std::numeric_limits<double>::lowest()).has_value();
-    const std::string_view hint = stood_still ? "" : "; do the times of the poses fit?";
-    return fail(Error::Code::kCorrupt,
-                fmt::format("{}: nothing in it could be mapped ({} left out{})", name, report->skipped, hint));
+    const std::string reason = mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text;
+    return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", name, reason));
   }
-  return report;
+  return mapped;
+}
+
+std::optional<std::string> trajectory_beside(const std::string& log) {
+  if (log == "-") return std::nullopt;
+  const std::string path = std::filesystem::path(log).replace_extension(".tum").string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  return path;
 }
 
 }  // namespace pingvox::app

@@ -11,17 +11,28 @@
 
 namespace pingvox::app {
 
-/// The trajectory in a file of TUM lines; without one the vehicle stood still at the origin.
+/// The trajectory in a file of TUM lines; without one the vehicle stays at the origin.
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses);
 
-/// Whether the range in which echoes are looked for is one; kBadOption names the options.
+/// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);
+
+/// What mapping a log came to.
+struct MappedLog {
+  BuildReport report;
+  BeamModelOptions beam;     ///< as it was mapped: the width and height may be those of the log's device
+  std::size_t damaged = 0;   ///< records that could not be read
+  std::string skipped_text;  ///< how many were skipped for which reason, and what to do; empty: none
+};
 
 /// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
 /// @param name  of the log, for messages
-/// @param head  what the call says of it
-Result<BuildReport> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
-                            const BuildOptions& options, const HeadWords& head, OccupancyMap& map,
-                            const Progress& progress = {});
+/// @param head  what the command line says of it
+Result<MappedLog> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
+                          const BuildOptions& options, const HeadArgs& head, OccupancyMap& map,
+                          const Progress& progress = {});
+
+/// A trajectory file beside a log that belongs to it by its name: "dive.tum" of "dive.csv".
+std::optional<std::string> trajectory_beside(const std::string& log);
 
 }  // namespace pingvox::app

@@ -2,17 +2,23 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "option_table.hpp"
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 
-/// How echoes are found and maps made, as a call says it: the options of 'map' that 'render' has too.
+/// Options for detecting echoes and building maps, shared by 'map' and 'render'.
 namespace pingvox::app {
 
-/// How echoes are found, as the call says it: what it does not say follows from the detector.
-struct EchoWords {
+/// The kinds of input that options may be limited to (Option::only_for).
+inline constexpr std::string_view kBeamLogs = "logs of beams", kPointLogs = "point scans", kClouds = "clouds of points",
+                                  kMaps = "maps", kMeshes = "meshes", kEchoTables = "tables of echoes";
+
+/// Echo options of the command line. The filter that is not given follows from the detector.
+struct EchoArgs {
   Filter filter = FilterOptions{}.filter;
   std::optional<int> kernel;
   std::optional<double> sigma;
@@ -24,12 +30,15 @@ struct EchoWords {
   }
 };
 
-/// How a log is mapped, as the call says it.
-struct BuildWords {
+/// Mapping options of the command line.
+struct BuildArgs {
+  /// A map is 3D, and so is a beam.
+  BuildArgs() { build.model.shape = BeamShape::kCone; }
+
   MapOptions map;
   BuildOptions build;  ///< filter and echo: see `echoes`
-  HeadWords head;
-  EchoWords echoes;
+  HeadArgs head;
+  EchoArgs echoes;
   std::string poses;
 
   BuildOptions build_options() const {
@@ -43,9 +52,12 @@ struct BuildWords {
 /// All but whether the maximum range is beyond the minimum one, which scans of points need not have: `check_ranges`.
 Result<void> check_options(BuildOptions options);
 
-/// Groups of options that write into what they are given, which must outlive them.
-OptionTable::Group echo_group(EchoWords& words, double& sound_speed_ratio);
-OptionTable::Group map_group(BuildWords& words);
-OptionTable::Group sensor_group(BuildWords& words);
+/// "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
+Take into_mount(Pose& target);
+
+/// Groups of options that write into their arguments, which must outlive them.
+OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio);
+OptionTable::Group map_group(BuildArgs& args);
+OptionTable::Group sensor_group(BuildArgs& args);
 
 }  // namespace pingvox::app

@@ -4,23 +4,24 @@
 
 #include <utility>
 
-#include "stranger.hpp"
+#include "mapping_options.hpp"
+#include "unknown_file.hpp"
 
 namespace pingvox::app {
 
-Result<Format> recognised(const FileBytes& file) {
+Result<Format> identify_format(const FileBytes& file) {
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   if (const auto format = format_of(file.view()); format && !is_true_ranges(file.view())) return *format;
-  return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, stranger_text(file.view())));
+  return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, describe_unknown_file(file.view())));
 }
 
-Result<Format> recognised(ByteStream& stream) {
+Result<Format> identify_format(ByteStream& stream) {
   if (const auto streamed = streamed_format_of(stream.beginning())) return *streamed;
   if (const Result<void> held = stream.hold_all(); !held) return tl::unexpected(held.error());
-  return recognised(stream.held());
+  return identify_format(stream.held());
 }
 
-std::string described(Format format) {
+std::string describe(Format format) {
   const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
   // What users call logs that have no suffix of their own.
   if (format == Format::kPingViewer) return "a log of beams (Ping Viewer)";
@@ -48,8 +49,27 @@ std::string described(Format format) {
   return with("a picture");
 }
 
+std::string kind_text(FormatKind kind) {
+  switch (kind) {
+    case FormatKind::kBeams:
+      return std::string(kBeamLogs);
+    case FormatKind::kScans:
+      return std::string(kPointLogs);
+    case FormatKind::kCloud:
+      return std::string(kClouds);
+    case FormatKind::kMap:
+      return std::string(kMaps);
+    case FormatKind::kMesh:
+      return std::string(kMeshes);
+    case FormatKind::kTrajectory:
+      return "trajectories";
+    default:
+      return "this file";
+  }
+}
+
 Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m) {
-  const Result<Format> format = recognised(stream);
+  const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind == FormatKind::kBeams) {
@@ -61,7 +81,7 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
         .map([](auto source) { return Log(std::move(source)); });
   }
   return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a log{}", stream.name(), described(*format),
+              fmt::format("{}: is {}, not a log{}", stream.name(), describe(*format),
                           kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
 }
 

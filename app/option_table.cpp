@@ -5,7 +5,7 @@
 // The only place that includes it: it takes five seconds to compile.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <functional>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kConfig = "--config";
 
-tl::unexpected<Error> wrong_words(const OptionTable& table, const std::string& what) {
+tl::unexpected<Error> parse_error(const OptionTable& table, const std::string& what) {
   return fail(Error::Code::kBadOption, fmt::format("{}: {}", table.command, what));
 }
 
@@ -38,22 +38,36 @@ const Option* find_option(const OptionTable& table, std::string_view name) {
   return nullptr;
 }
 
-Result<void> give(const OptionTable& table, const std::string& where, const Take& take, const std::string& text) {
-  const Result<void> taken = take(text);
-  if (!taken) return fail(taken.error().code, fmt::format("{}: {}: {}", table.command, where, taken.error().message));
-  return {};
+/// " of metres", for an option whose value is shown as M in the help.
+std::string_view unit_of(std::string_view value_name) {
+  const std::string_view unit = value_name.substr(0, value_name.find('|'));
+  if (unit == "M") return " of metres";
+  if (unit == "DEG") return " of degrees";
+  if (unit == "M/S") return " of metres per second";
+  return "";
 }
 
-/// The words that CLI11 found for one option or position.
+/// @param value_name  of the option in the help
+Result<void> give(const OptionTable& table, const std::string& where, const Take& take, const std::string& text,
+                  std::string_view value_name) {
+  const Result<void> taken = take(text);
+  if (taken) return {};
+  std::string message = taken.error().message;
+  if (message.ends_with("number")) message += unit_of(value_name);
+  if (message.find(" is not a ") != std::string::npos && value_name.ends_with("|auto")) message += " or 'auto'";
+  return fail(taken.error().code, fmt::format("{}: {}: {}", table.command, where, message));
+}
+
+/// The args that CLI11 found for one option or position.
 struct Found {
   const Option* option = nullptr;
   const Positional* positional = nullptr;
   CLI::Option* parsed = nullptr;
+  std::optional<std::string> configured = std::nullopt;  ///< its value in the configuration file
 };
 
-/// Reads a configuration file and gives its values to the options that `is_given` does not know.
-Result<void> apply_config(const OptionTable& table, const std::string& path,
-                          const std::function<bool(const Option&)>& is_given) {
+/// Reads a configuration file and gives its values to the options that the command line does not have.
+Result<void> apply_config(const OptionTable& table, const std::string& path, std::vector<Found>& found) {
   const Result<FileBytes> file = read_file(path);
   if (!file) return tl::unexpected(file.error());
   std::istringstream text(std::string(file->bytes.begin(), file->bytes.end()));
@@ -61,24 +75,27 @@ Result<void> apply_config(const OptionTable& table, const std::string& path,
   try {
     items = CLI::ConfigTOML().from_config(text);
   } catch (const CLI::Error& error) {
-    return wrong_words(table, fmt::format("{}: {}", path, error.what()));
+    return parse_error(table, fmt::format("{}: {}", path, error.what()));
   }
   for (const CLI::ConfigItem& item : items) {
     if (!item.parents.empty() || item.name == "++" || item.name == "--") {
-      return wrong_words(table,
+      return parse_error(table,
                          fmt::format("{}: has a section: options stand at the top, as in 'resolution = 0.1'", path));
     }
     std::string name = "--" + item.name;
     std::replace(name.begin(), name.end(), '_', '-');
     const Option* option = name == kConfig ? nullptr : find_option(table, name);
     if (!option) {
-      return wrong_words(
+      return parse_error(
           table, fmt::format("{}: unknown option '{}'{}", path, item.name, did_you_mean(name, option_names(table))));
     }
-    if (is_given(*option)) continue;
+    Found& entry =
+        *std::find_if(found.begin(), found.end(), [&](const Found& other) { return other.option == option; });
+    if (entry.parsed->count() > 0) continue;
     if (option->repeats == Repeats::kEachCounts) {
       for (const std::string& input : item.inputs) {
-        const Result<void> given = give(table, fmt::format("{}: {}", path, item.name), option->take, input);
+        const Result<void> given =
+            give(table, fmt::format("{}: {}", path, item.name), option->take, input, option->value);
         if (!given) return given;
       }
       continue;
@@ -86,12 +103,53 @@ Result<void> apply_config(const OptionTable& table, const std::string& path,
     const std::string value = fmt::format("{}", fmt::join(item.inputs, ","));
     if (option->value.empty()) {
       if (value == "false") continue;
-      if (value != "true") return wrong_words(table, fmt::format("{}: {}: must be true or false", path, item.name));
+      if (value != "true") return parse_error(table, fmt::format("{}: {}: must be true or false", path, item.name));
     }
+    entry.configured = value;
     const std::string where = fmt::format("{}: {}", path, item.name);
-    if (const Result<void> given = give(table, where, option->take, value); !given) return given;
+    if (const Result<void> given = give(table, where, option->take, value, option->value); !given) return given;
   }
   return {};
+}
+
+/// The value of an option or a positional argument, given or by default; nullopt when there is none.
+std::optional<std::string> value_of(const std::string& name, const std::vector<Found>& found) {
+  for (const Found& entry : found) {
+    if ((entry.option ? entry.option->name : entry.positional->name) != name) continue;
+    if (entry.parsed->count() > 0) return entry.parsed->results().back();
+    if (entry.configured) return entry.configured;
+    if (entry.option && !entry.option->standard.empty()) return entry.option->standard;
+  }
+  return std::nullopt;
+}
+
+bool holds(const Condition& condition, const std::vector<Found>& found) {
+  if (condition.values.empty()) {
+    return std::any_of(found.begin(), found.end(), [&](const Found& entry) {
+      return entry.option && entry.option->name == condition.name && (entry.parsed->count() > 0 || entry.configured);
+    });
+  }
+  const auto value = value_of(condition.name, found);
+  return value && std::find(condition.values.begin(), condition.values.end(), *value) != condition.values.end();
+}
+
+std::string text_of(const Condition& condition) {
+  const std::string values = fmt::format("{}", fmt::join(condition.values, " or "));
+  return condition.name + (values.empty() ? "" : " ") + values;
+}
+
+/// Refuses an option that has no effect beside the others.
+Result<void> check_conditions(const OptionTable& table, const Option& option, const std::vector<Found>& found) {
+  const auto is_met = [&](const Condition& condition) { return holds(condition, found); };
+  if (option.only_with.empty() || std::any_of(option.only_with.begin(), option.only_with.end(), is_met)) return {};
+  std::vector<std::string> needed;
+  for (const Condition& condition : option.only_with) needed.push_back(text_of(condition));
+  const Condition& first = option.only_with.front();
+  const auto value = first.values.empty() ? std::nullopt : value_of(first.name, found);
+  return parse_error(
+      table, fmt::format("{}: has no effect {}, only with {}", option.name,
+                         value ? fmt::format("with {} {}", first.name, *value) : fmt::format("without {}", first.name),
+                         fmt::join(needed, " or ")));
 }
 
 std::string label_of(const Option& option) {
@@ -113,8 +171,8 @@ std::string help_entry(const std::string& label, const std::string& text) {
   }
   out.append(kHelpColumn - column, ' ');
   column = kHelpColumn;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
+  std::istringstream args(text);
+  for (std::string word; args >> word;) {
     if (column > kHelpColumn && column + 1 + word.size() > kHelpWidth) {
       out += "\n" + std::string(kHelpColumn, ' ');
       column = kHelpColumn;
@@ -131,7 +189,7 @@ std::string help_entry(const std::string& label, const std::string& text) {
 
 }  // namespace
 
-Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& words) {
+Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& args) {
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -146,8 +204,9 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& w
         parsed = app.add_flag(names);
       } else {
         parsed = app.add_option(names, keep)
-                     ->multi_option_policy(option.repeats == Repeats::kEachCounts ? CLI::MultiOptionPolicy::TakeAll
-                                                                                  : CLI::MultiOptionPolicy::TakeLast);
+                     ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                     ->expected(1)
+                     ->allow_extra_args(false);
       }
       found.push_back({&option, nullptr, parsed});
     }
@@ -161,56 +220,73 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& w
   const CLI::Option* help = app.add_flag("-h,--help");
 
   try {
-    // CLI11 takes its words from the back.
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    // CLI11 takes its args from the back.
+    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
   } catch (const CLI::ArgumentMismatch& error) {
-    // "--resolution: 1 required ..." in its own words; the name is all that we need.
+    // "--resolution: 1 required ..." in its own args; the name is all that we need.
     const std::string message = error.what();
-    return wrong_words(table, message.substr(0, message.find(':')) + ": needs a value");
+    return parse_error(table, message.substr(0, message.find(':')) + ": needs a value");
   } catch (const CLI::Error& error) {
-    return wrong_words(table, error.what());
+    return parse_error(table, error.what());
   }
-  if (help->count() > 0) return Parsed::kHelpWanted;
+  if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}};
 
   for (const std::string& word : app.remaining()) {
     if (word.size() > 1 && word.front() == '-') {
       const std::string name = word.substr(0, word.find('='));
-      return wrong_words(table, fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(table))));
+      return parse_error(table, fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(table))));
     }
-    return wrong_words(table, fmt::format("unexpected argument '{}'", word));
+    return parse_error(table, fmt::format("unexpected argument '{}'", word));
   }
   for (const Found& entry : found) {
     if (entry.positional && entry.parsed->count() == 0) {
-      return wrong_words(table,
+      return parse_error(table,
                          fmt::format("{} is missing (see 'pingvox {} --help')", entry.positional->name, table.command));
     }
   }
 
-  const auto is_given = [&](const Option& option) {
-    const auto same = [&](const Found& entry) { return entry.option == &option; };
-    return std::find_if(found.begin(), found.end(), same)->parsed->count() > 0;
-  };
-  for (const Found& entry : found) {
+  for (const Found& entry : std::vector<Found>(found)) {
     if (!entry.option || entry.option->name != kConfig || entry.parsed->count() == 0) continue;
-    const Result<void> applied = apply_config(table, entry.parsed->results().back(), is_given);
+    const Result<void> applied = apply_config(table, entry.parsed->results().back(), found);
     if (!applied) return tl::unexpected(applied.error());
   }
+  Parsed parsed;
   for (const Found& entry : found) {
     if (entry.parsed->count() == 0) continue;
-    const bool all = entry.positional != nullptr || entry.option->repeats == Repeats::kEachCounts;
     const std::vector<std::string>& values = entry.parsed->results();
-    for (std::size_t i = all ? 0 : values.size() - 1; i < values.size(); ++i) {
-      const std::string& where = entry.positional ? entry.positional->name : entry.option->name;
+    const std::string& where = entry.positional ? entry.positional->name : entry.option->name;
+    const bool is_value = entry.option && !entry.option->value.empty();
+    if (is_value && entry.option->repeats == Repeats::kNot && values.size() > 1) {
+      return parse_error(table, fmt::format("{}: given twice: '{}' and '{}'", where, values[0], values[1]));
+    }
+    for (const std::string& value : values) {
+      if (entry.option && !is_value && value != "true") return parse_error(table, where + ": takes no value");
       const Take& take = entry.positional ? entry.positional->take : entry.option->take;
-      if (entry.option && entry.option->value.empty() && values[i] != "true") {
-        return wrong_words(table, where + ": takes no value");
-      }
-      if (const Result<void> given = give(table, where, take, values[i]); !given) {
-        return tl::unexpected(given.error());
-      }
+      const auto given = give(table, where, take, value, entry.option ? entry.option->value : "");
+      if (!given) return tl::unexpected(given.error());
     }
   }
-  return Parsed::kDone;
+  // Only now, because a wrong value of the other option is the better message.
+  for (const Found& entry : found) {
+    if (!entry.option || entry.parsed->count() == 0) continue;
+    if (const auto useful = check_conditions(table, *entry.option, found); !useful) {
+      return tl::unexpected(useful.error());
+    }
+    if (!entry.option->only_for.empty()) parsed.limited.push_back({entry.option->name, entry.option->only_for});
+  }
+  return parsed;
+}
+
+Result<void> check_limited(const std::vector<LimitedOption>& options, const std::vector<std::string>& kinds) {
+  for (const LimitedOption& option : options) {
+    const auto is_met = [&](const std::string& kind) {
+      return std::find(option.only_for.begin(), option.only_for.end(), kind) != option.only_for.end();
+    };
+    if (std::any_of(kinds.begin(), kinds.end(), is_met)) continue;
+    return fail(Error::Code::kBadOption, fmt::format("{}: has no effect on {}, only on {}", option.name,
+                                                     fmt::join(kinds, " and "), fmt::join(option.only_for, " and ")));
+  }
+  return {};
 }
 
 std::string help_of(const OptionTable& table) {
@@ -229,7 +305,7 @@ std::string help_of(const OptionTable& table) {
       out += help_entry(label_of(option), option.help + (option.standard.empty() ? "" : " [" + option.standard + "]"));
     }
   }
-  out += help_entry("-h, --help", "this text");
+  out += help_entry("-h, --help", "show this help");
   if (!table.notes.empty()) out += "\n" + table.notes + "\n";
   if (!table.examples.empty()) out += "\nExamples:\n";
   for (const std::string& example : table.examples) out += "  " + example + "\n";

@@ -17,8 +17,9 @@ Result<std::size_t> bytes_from(std::string_view text) {
     }
   }
   const Result<std::size_t> count = number_from<std::size_t>(digits);
-  if (!count) return off(fmt::format("'{}' is not a number of bytes, as in 512M or 2G", text));
-  if (*count > std::numeric_limits<std::size_t>::max() >> shift) return off(fmt::format("'{}' is out of range", text));
+  if (!count) return usage_error(fmt::format("'{}' is not a number of bytes, as in 512M or 2G", text));
+  if (*count > std::numeric_limits<std::size_t>::max() >> shift)
+    return usage_error(fmt::format("'{}' is out of range", text));
   return *count << shift;
 }
 
@@ -38,14 +39,14 @@ Take within(const Limits& limits, Take take) {
   return [limits, take = std::move(take)](const std::string& text) -> Result<void> {
     if (auto taken = take(text); !taken) return taken;
     const Result<double> value = number_from<double>(text);
-    if (value && !limits.hold(*value)) return off(fmt::format("must be {}, is {}", limits.text(), text));
+    if (value && !limits.hold(*value)) return usage_error(fmt::format("must be {}, is {}", limits.text(), text));
     return {};
   };
 }
 
 Take into(std::string& target) {
   return [&target](const std::string& text) -> Result<void> {
-    if (text.empty()) return off("is empty");
+    if (text.empty()) return usage_error("is empty");
     target = text;
     return {};
   };
@@ -55,7 +56,8 @@ Take into_probability(LogOdds& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<double> value = number_from<double>(text);
     if (!value) return tl::unexpected(value.error());
-    if (!(*value > 0.0 && *value < 1.0)) return off(fmt::format("{} is not a probability between 0 and 1", text));
+    if (!(*value > 0.0 && *value < 1.0))
+      return usage_error(fmt::format("{} is not a probability between 0 and 1", text));
     target = LogOdds::from_probability(*value);
     return {};
   };
@@ -65,7 +67,7 @@ Take into_bytes(std::size_t& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<std::size_t> bytes = bytes_from(text);
     if (!bytes) return tl::unexpected(bytes.error());
-    if (*bytes == 0) return off("must be more than 0");
+    if (*bytes == 0) return usage_error("must be more than 0");
     target = *bytes;
     return {};
   };

@@ -24,12 +24,12 @@
 /// Values from the text of a call (no locale, nothing left over), and options that put them into their place.
 namespace pingvox::app {
 
-using Words = std::vector<std::string>;
+using Args = std::vector<std::string>;
 
 inline constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// The words of the call are off: kBadOption.
-inline tl::unexpected<Error> off(std::string what) {
+inline tl::unexpected<Error> usage_error(std::string what) {
   return fail(Error::Code::kBadOption, std::move(what));
 }
 
@@ -40,12 +40,12 @@ Result<Number> number_from(std::string_view text) {
   Number value{};
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   constexpr bool kReal = std::is_floating_point_v<Number>;
-  if (error == std::errc::result_out_of_range) return off(fmt::format("'{}' is out of range", text));
+  if (error == std::errc::result_out_of_range) return usage_error(fmt::format("'{}' is out of range", text));
   if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty()) {
-    return off(fmt::format("'{}' is not a {}", text, kReal ? "number" : "whole number"));
+    return usage_error(fmt::format("'{}' is not a {}", text, kReal ? "number" : "whole number"));
   }
   if constexpr (kReal) {
-    if (std::isnan(value)) return off(fmt::format("'{}' is not a number", text));
+    if (std::isnan(value)) return usage_error(fmt::format("'{}' is not a number", text));
   }
   return value;
 }
@@ -64,7 +64,7 @@ Result<std::array<double, N>> numbers_from(std::string_view text) {
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
   }
-  if (count + 1 != N) return off(fmt::format("'{}': must be {} numbers with commas between them", text, N));
+  if (count + 1 != N) return usage_error(fmt::format("'{}': must be {} numbers with commas between them", text, N));
   return values;
 }
 
@@ -118,21 +118,21 @@ Take into_bytes(std::size_t& target);
 
 /// One of the words that an option takes, and what it means.
 template <class Enum>
-struct Word {
+struct Choice {
   std::string_view word;
   Enum value;
 };
 
 /// For the help: the words with | between them.
 template <class Enum, std::size_t N>
-std::string words_of(const std::array<Word<Enum>, N>& words) {
+std::string choices_text(const std::array<Choice<Enum>, N>& words) {
   std::string out;
   for (const auto& word : words) out += fmt::format("{}{}", out.empty() ? "" : "|", word.word);
   return out;
 }
 
 template <class Enum, std::size_t N>
-std::string word_of(const std::array<Word<Enum>, N>& words, Enum value) {
+std::string choice_name(const std::array<Choice<Enum>, N>& words, Enum value) {
   for (const auto& word : words) {
     if (word.value == value) return std::string(word.word);
   }
@@ -140,25 +140,25 @@ std::string word_of(const std::array<Word<Enum>, N>& words, Enum value) {
 }
 
 template <class Enum, std::size_t N>
-Result<Enum> value_of(const std::array<Word<Enum>, N>& words, const std::string& text) {
-  Words known;
+Result<Enum> choice_value(const std::array<Choice<Enum>, N>& words, const std::string& text) {
+  Args known;
   for (const auto& word : words) {
     if (word.word == text) return word.value;
     known.emplace_back(word.word);
   }
-  return off(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
+  return usage_error(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
 }
 
 /// An option that takes one of `words`, which must outlive it. What is in `target` is the default.
 template <class Enum, std::size_t N>
-Option choice(std::string name, const std::array<Word<Enum>, N>& words, std::string help, Enum& target) {
+Option choice(std::string name, const std::array<Choice<Enum>, N>& words, std::string help, Enum& target) {
   const Take take = [&target, &words](const std::string& text) -> Result<void> {
-    const Result<Enum> value = value_of(words, text);
+    const Result<Enum> value = choice_value(words, text);
     if (!value) return tl::unexpected(value.error());
     target = *value;
     return {};
   };
-  return {std::move(name), 0, words_of(words), std::move(help), word_of(words, target), take};
+  return {std::move(name), 0, choices_text(words), std::move(help), choice_name(words, target), take};
 }
 
 /// An option without a value: sets `target` to `value`.

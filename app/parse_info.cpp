@@ -5,17 +5,20 @@
 
 namespace pingvox::app {
 
-Result<Command> info_command(const Words& words) {
+Result<Command> info_command(const Args& args) {
   InfoCommand command;
   const OptionTable table{
       "info",
-      "Says what a file holds: a log of beams or of point scans, a cloud, a map, a mesh, or a trajectory. Told by\n"
+      "Says what a file holds: a log of beams or of point scans, a cloud, a map, a mesh, or a trajectory. Summary by\n"
       "content, not by name.",
       {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", into(command.file)}},
-      {{"Options", {json_option(command.manner), strict_option(command.damage)}}},
+      {{"Options", {json_option(command.output_options), strict_option(command.damage)}}},
       {"pingvox info tank.mat", "pingvox info tank.bt --json"},
       ""};
-  return parsed(table, words, [&]() -> Result<Command> { return command; });
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
+    command.limited = parsed.limited;
+    return command;
+  });
 }
 
 }  // namespace pingvox::app

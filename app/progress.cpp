@@ -15,17 +15,17 @@ constexpr std::chrono::milliseconds kInterval{100};
 constexpr std::size_t kWidth = 79;
 constexpr std::size_t kBarWidth = 30;
 
-bool is_wanted(const Manner& manner) {
-  if (manner.talk == Talk::kQuiet || manner.progress == ShowProgress::kNever) return false;
-  return manner.progress == ShowProgress::kAlways || ::isatty(STDERR_FILENO) == 1;
+bool is_wanted(const OutputOptions& output_options) {
+  if (output_options.talk == Talk::kQuiet || output_options.progress == ShowProgress::kNever) return false;
+  return output_options.progress == ShowProgress::kAlways || ::isatty(STDERR_FILENO) == 1;
 }
 
 }  // namespace
 
-// By itself it does not flicker for work that is done at once.
-ProgressBar::ProgressBar(const Manner& manner)
-    : shown_(is_wanted(manner)),
-      next_(manner.progress == ShowProgress::kAlways ? Clock::now() : Clock::now() + kInterval) {}
+// Without --progress it does not flicker for work that is done at once.
+ProgressBar::ProgressBar(const OutputOptions& output_options)
+    : shown_(is_wanted(output_options)),
+      next_(output_options.progress == ShowProgress::kAlways ? Clock::now() : Clock::now() + kInterval) {}
 
 bool ProgressBar::is_due() {
   if (!shown_) return false;

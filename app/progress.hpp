@@ -12,7 +12,7 @@ namespace pingvox::app {
 /// terminal, after a tenth of a second, or from the start when it was asked for; it is gone when the work is done.
 class ProgressBar {
  public:
-  explicit ProgressBar(const Manner& manner);
+  explicit ProgressBar(const OutputOptions& output_options);
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { clear(); }

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "mapping_options.hpp"
 #include "suggest.hpp"
 
 namespace pingvox::app {
@@ -30,27 +31,32 @@ Option output_option(std::string& target, std::string help) {
 Option config_option() {
   // The table reads the file; what is left to take is nothing.
   return {"--config", 0,
-          "FILE",     "read options from a TOML file, named as here without the dashes; those of the call win",
+          "FILE",     "read options from a TOML file, named as here without the dashes; the command line wins",
           "",         [](const std::string&) -> Result<void> { return {}; }};
 }
 
 Option strict_option(Damage& damage) {
-  return flag("--strict", "stop at the first damage in a log instead of leaving it out", damage, Damage::kFail);
+  Option option = flag("--strict", "stop at the first damaged record instead of skipping it", damage, Damage::kFail);
+  option.only_for = {std::string(kBeamLogs), std::string(kPointLogs), std::string(kClouds)};
+  return option;
 }
 
-Option json_option(Manner& manner) {
-  return flag("--json", "report as one JSON object on standard output", manner.report, Report::kJson);
+Option json_option(OutputOptions& output_options) {
+  return flag("--json", "print the report as one JSON object", output_options.report, Report::kJson);
 }
 
-Option quiet_option(Manner& manner) {
-  return flag("--quiet", "say nothing but errors", manner.talk, Talk::kQuiet);
+Option quiet_option(OutputOptions& output_options) {
+  return flag("--quiet", "print nothing but errors", output_options.talk, Talk::kQuiet);
 }
 
 Result<Format> output_format(const std::string& path, const std::optional<Format>& asked,
-                             std::span<const Word<Format>> known) {
-  if (path.empty()) return off("-o FILE is missing: where should the result go?");
-  if (asked) return *asked;
+                             std::span<const Choice<Format>> known) {
+  if (path.empty()) return usage_error("-o FILE is missing");
   const std::optional<Format> by_suffix = format_for_writing(path);
+  if (asked && by_suffix && *asked != *by_suffix) {
+    return usage_error(fmt::format("--format {}: contradicts the suffix of {}", name_of(*asked), path));
+  }
+  if (asked) return *asked;
   for (const auto& word : known) {
     if (word.value == by_suffix) return word.value;
   }
@@ -59,14 +65,14 @@ Result<Format> output_format(const std::string& path, const std::optional<Format
   const bool is_nameless = path == "-" || (std::filesystem::exists(status) && std::filesystem::is_other(status));
   if (is_nameless && !by_suffix) return known.front().value;
 
-  Words suffixes;
+  Args suffixes;
   for (const auto& word : known) suffixes.push_back(fmt::format(".{}", word.word));
   if (path.ends_with('/') || std::filesystem::is_directory(status)) {
-    return off(
+    return usage_error(
         fmt::format("{}: is a folder, not a file: name one in it that ends in {}", path, fmt::join(suffixes, " or ")));
   }
   const std::string ending = std::filesystem::path(path).extension().string();
-  return off(
+  return usage_error(
       fmt::format("{}: its suffix must be {}{}", path, fmt::join(suffixes, " or "), did_you_mean(ending, suffixes)));
 }
 
@@ -76,7 +82,7 @@ Result<void> check_folder_of(const std::string& path) {
   if (folder.empty()) folder = ".";
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) {
-    return fail(Error::Code::kIo, fmt::format("{}: there is no folder '{}'", path, folder.string()));
+    return fail(Error::Code::kIo, fmt::format("{}: no such folder '{}'", path, folder.string()));
   }
   const auto status = std::filesystem::symlink_status(path, error);
   if (std::filesystem::is_directory(path, error)) {
@@ -91,16 +97,17 @@ Result<void> check_folder_of(const std::string& path) {
   return {};
 }
 
-Result<void> check_standard_input(const Words& files) {
+Result<void> check_standard_input(const Args& files) {
   if (std::count(files.begin(), files.end(), "-") < 2) return {};
-  return off("'-' twice: standard input can be read only once");
+  return usage_error("'-' given twice: standard input can be read only once");
 }
 
-Result<Command> parsed(const OptionTable& table, const Words& words, const std::function<Result<Command>()>& done) {
-  const Result<Parsed> result = parse(table, words);
+Result<Command> parse_command(const OptionTable& table, const Args& args,
+                              const std::function<Result<Command>(const Parsed&)>& make) {
+  const Result<Parsed> result = parse(table, args);
   if (!result) return tl::unexpected(result.error());
-  if (*result == Parsed::kHelpWanted) return ShowText{{}, help_of(table)};
-  Result<Command> command = done();
+  if (result->is_help_wanted) return ShowText{{}, help_of(table)};
+  Result<Command> command = make(*result);
   if (!command) return in_command(table, command.error());
   return command;
 }

@@ -16,21 +16,22 @@ namespace pingvox::app {
 Option output_option(std::string& target, std::string help);
 Option config_option();
 Option strict_option(Damage& damage);
-Option json_option(Manner& manner);
-Option quiet_option(Manner& manner);
+Option json_option(OutputOptions& output_options);
+Option quiet_option(OutputOptions& output_options);
 
-/// The format of an output file: as asked for, else by its suffix, which is one of the words. Standard output, devices
-/// and pipes have no suffix: the first one of `known`.
+/// The format of an output file: as asked for, else by its suffix. Standard output, devices and pipes have no suffix:
+/// the first one of `known`. kBadOption when the two contradict each other.
 Result<Format> output_format(const std::string& path, const std::optional<Format>& asked,
-                             std::span<const Word<Format>> known);
+                             std::span<const Choice<Format>> known);
 
 /// What would fail for sure after the work is better said before it.
 Result<void> check_folder_of(const std::string& path);
 
-Result<void> check_standard_input(const Words& files);
+Result<void> check_standard_input(const Args& files);
 
-/// What every command does with its table: the help where it is asked for, else what `done` makes when the words are
-/// right. Its errors get the command's name in front.
-Result<Command> parsed(const OptionTable& table, const Words& words, const std::function<Result<Command>()>& done);
+/// Parses the arguments of a command: its help if asked for, else what `make` returns. Its errors get the command's
+/// name in front.
+Result<Command> parse_command(const OptionTable& table, const Args& args,
+                              const std::function<Result<Command>(const Parsed&)>& make);
 
 }  // namespace pingvox::app

@@ -6,7 +6,7 @@
 
 namespace pingvox::app {
 
-std::string shell_quoted(const std::string& word) {
+std::string quote_for_shell(const std::string& word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,=+:@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
   std::string out = "'";
@@ -14,7 +14,7 @@ std::string shell_quoted(const std::string& word) {
   return out + "'";
 }
 
-Result<std::vector<std::string>> split_words(std::string_view text) {
+Result<std::vector<std::string>> split_shell_words(std::string_view text) {
   std::vector<std::string> words;
   std::string word;
   char quote = 0;

@@ -9,9 +9,9 @@
 namespace pingvox::app {
 
 /// The word as one types it in a shell.
-std::string shell_quoted(const std::string& word);
+std::string quote_for_shell(const std::string& word);
 
 /// The words of a text, split and unquoted as a shell does it; kBadOption when a quotation mark is not closed.
-Result<std::vector<std::string>> split_words(std::string_view text);
+Result<std::vector<std::string>> split_shell_words(std::string_view text);
 
 }  // namespace pingvox::app

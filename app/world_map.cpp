@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::int64_t kMostCells = std::int64_t{1} << 28;
+constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;
 constexpr int kBrick = 4;  ///< edge, in cells, of what the map stores as one when it is uniform
 
 /// The cells of a box of space, each of them empty, water or a surface.
@@ -79,11 +79,11 @@ Result<OccupancyMap> world_map(const World& world, const Eigen::AlignedBox3d& wa
   const Vector3d first = ((water_m.min() / resolution_m).array() - 1.0).floor() / kBrick;
   const Vector3d last = ((water_m.max() / resolution_m).array() + 1.0).floor() / kBrick;
   const double cells = ((last - first).array() * kBrick + 2.0 * kBrick).prod();
-  if (!(cells <= static_cast<double>(kMostCells))) {
+  if (!(cells <= static_cast<double>(kMaxCells))) {
     return fail(Error::Code::kBadOption,
                 fmt::format("the world's map would have {:.3g} cells, more than {}: a coarser --resolution than {} m "
                             "makes fewer",
-                            cells, kMostCells, resolution_m));
+                            cells, kMaxCells, resolution_m));
   }
   const Cell low = first.array().floor().cast<std::int64_t>() * kBrick;
   const Cell size = ((last.array().floor() - first.array().floor()).cast<std::int64_t>() + 1) * kBrick;

@@ -21,8 +21,11 @@ _pingvox_options() {
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
-    compare) options+=(--json --quiet) ;;
-    convert) options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height) ;;
+    compare) options+=(--layer --occupied --json --quiet) ;;
+    convert)
+      options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height --echoes)
+      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
+      ;;
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
@@ -30,7 +33,7 @@ _pingvox_options() {
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
-      options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --speed --turns --drift)
+      options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --mount --speed --turns --drift)
       options+=(--heading-drift --seed --range --bins --bin-length --beams-per-turn --beam-width --beam-height)
       options+=(--side-lobes --gain --compression --absorption --ringing --speckle --noise --multipath --bubbles --lost)
       ;;
@@ -55,13 +58,13 @@ _pingvox_words() {
     --trajectory) printf '%s\n' still line lawn-mower loop ;;
     --format)
       [[ $2 != convert ]] || echo csv
-      printf '%s\n' bt ot pvx ply pcd
+      printf '%s\n' bt ot pvx ply pcd xyz
       [[ $2 != convert ]] || printf '%s\n' pgm yaml asc
       ;;
     --view) printf '%s\n' polar cartesian above side slice ;;
     --from) printf '%s\n' right left front behind ;;
     --show) printf '%s\n' raw filtered ;;
-    --echoes) printf '%s\n' on off ;;
+    --echoes) [[ $2 != render ]] || printf '%s\n' on off ;;
     --between) printf '%s\n' interpolate nothing ;;
     --height) printf '%s\n' highest lowest ;;
     --progress) printf '%s\n' auto always never ;;
@@ -93,7 +96,7 @@ _pingvox() {
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
-        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --z | --min-z | --max-z | --caption | --title | --beside)
+        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)
         return # a number or a text: nothing to offer
         ;;
     esac

@@ -113,9 +113,17 @@ class BeamMapper::Stages {
         return tl::unexpected(fits.error());
       }
     }
-    for (const PlacedBeam& beam : placed) report_.echoes += beam.heard.echo ? 1 : 0;
+    for (const PlacedBeam& beam : placed) {
+      if (beam.heard.echo) count_echo(*beam.heard.echo);
+    }
     report_.beams += placed.size();
     return placed;
+  }
+
+  void count_echo(const Echo& echo) {
+    ++report_.echoes;
+    report_.min_threshold = std::min(report_.min_threshold.value_or(echo.threshold), echo.threshold);
+    report_.max_threshold = std::max(report_.max_threshold.value_or(echo.threshold), echo.threshold);
   }
 
   enum class Fit { kInside, kPartlyOutside };

@@ -174,7 +174,7 @@ TEST(Convert, SaysWhatDoesNotBecomeWhat) {
   expect_complaint(here.call({"convert", "tank.csv", "-o", "a.yaml"}), 2, {"tank.csv", "pingvox map"});
   expect_complaint(here.call({"convert", "hull.off", "-o", "a.csv"}), 2, {"hull.off", "a mesh"});
   expect_complaint(here.call({"map", "hull.off", "-o", "a.bt"}), 1, {"hull.off", "a mesh", "pingvox convert"});
-  expect_complaint(here.call({"convert", "tank.csv", "-o", "b.csv", "--resolution", "1"}), 2, {"only for meshes"});
+  expect_complaint(here.call({"convert", "tank.csv", "-o", "b.csv", "--resolution", "1"}), 2, {"only on meshes"});
   expect_complaint(here.call({"convert", "hull.off", "-o", "a.bt", "--resolution", "1e-6"}), 1, {"hull.off"});
 }
 

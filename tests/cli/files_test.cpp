@@ -178,8 +178,9 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
     std::vector<std::string> options, texts;
   };
   const std::vector<Case> cases = {
-      {{"--min-range", "100"}, {"nothing was mapped: no echoes and no free space", "--min-range"}},
-      {{"--resolution", "1e-5"}, {"nothing was mapped: 400 beams", "0.328 m from its origin", "larger cells"}},
+      {{"--min-range", "100"}, {"the map is empty: no echoes and no free space", "--min-range"}},
+      {{"--resolution", "1e-5", "--beam", "ray"},
+       {"skipped 400 outside of the map", "0.328 m from its origin", "larger"}},
   };
   const Workplace here;
   here.simulate_tank();
@@ -190,7 +191,7 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
     const Outcome outcome = here.call(words);
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, ::testing::HasSubstr("nothing is known"));
-    EXPECT_THAT(outcome.err, ::testing::StartsWith("pingvox: out.bt: "));
+    EXPECT_THAT(outcome.err, ::testing::StartsWith("pingvox: "));
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     for (const std::string& text : c.texts) EXPECT_THAT(outcome.err, ::testing::HasSubstr(text));
     words.push_back("--quiet");
@@ -202,8 +203,10 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
 TEST(Map, BeamsOutsideOfItAreCalledThat) {
   const Workplace here;
   here.write("a.txt", "NODE 0 0 0 0 0 0\n1 0 0\n1e6 0 0\nx\n");
-  EXPECT_THAT(here.call({"map", "a.txt", "-o", "a.bt"}).out,
-              ::testing::HasSubstr("; 2 left out, 1 of them outside of the map\n"));
+  const Outcome outcome = here.call({"map", "a.txt", "-o", "a.bt"});
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("; 2 skipped\n"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("a.txt: skipped 1 damaged (--strict"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("1 outside of the map"));
 }
 
 TEST(Output, AFailedCallKeepsTheOldFile) {
@@ -232,7 +235,7 @@ TEST(Output, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
   const Workplace here;
   fs::create_directory(here.folder() / "folder.bt");
   expect_complaint(here.call({"map", "missing.csv", "-o", "folder.bt"}), 1, {"folder.bt", "is a folder"});
-  expect_complaint(here.call({"map", "missing.csv", "-o", "no/out.bt"}), 1, {"no folder 'no'"});
+  expect_complaint(here.call({"map", "missing.csv", "-o", "no/out.bt"}), 1, {"no such folder 'no'"});
   fs::create_directory(here.folder() / "folder");
   for (const std::string output : {"folder", "folder/", "no/"}) {
     expect_complaint(here.call({"map", "missing.csv", "-o", output}), 2, {output + ": is a folder", ".bt"});

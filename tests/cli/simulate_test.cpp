@@ -21,7 +21,7 @@ TEST(Simulate, WritesTheTruthBesideTheLog) {
   const Outcome made = here.call({"simulate", "harbour", "-o", "harbour.csv", "--trajectory", "line", "--turns", "2",
                                   "--truth", "truth", "--resolution", "0.2", "--drift", "0.5", "--lost", "0.1"});
   ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("truth: what is true"));
+  EXPECT_THAT(made.out, HasSubstr("truth: ground truth"));
   const std::string log = here.read("harbour.csv");
   const std::string ranges = here.read("truth/ranges.csv");
   EXPECT_EQ(lines_of(log), lines_of(ranges)) << "a line for each beam of the log, and the head";

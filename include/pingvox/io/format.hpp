@@ -25,7 +25,7 @@ enum class Format {
   kTum,            ///< a trajectory
   kPly,            ///< a cloud of points
   kPcd,            ///< a cloud of points, PCL's
-  kXyz,            ///< a cloud of points as text, read only
+  kXyz,            ///< a cloud of points as text
   kPlyMesh,        ///< PLY with faces: a mesh
   kOff,            ///< a mesh, read only
   kStl,            ///< a mesh, read only
@@ -47,8 +47,8 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
 /// format, or none.
 std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning);
 
-/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .csv .pgm .yaml .asc .png); nullopt: none
-/// that we write.
+/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .pgm .yaml .asc .png); nullopt:
+/// none that we write.
 std::optional<Format> format_for_writing(std::string_view path);
 
 }  // namespace pingvox

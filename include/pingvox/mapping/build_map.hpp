@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/map/occupancy_map.hpp"

@@ -59,7 +59,8 @@ struct BuildReport {
   std::size_t skipped = 0;  ///< damaged, without a pose, or outside
   LeftOut no_pose;          ///< of those skipped, the ones heard when nobody knows where the vehicle was
   LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
-  std::uint64_t cells_freed = 0, cells_hit = 0;  ///< votes, summed over scans
+  std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
+  std::uint64_t cells_freed = 0, cells_hit = 0;     ///< votes, summed over scans
   struct Seconds {
     double read = 0, detect = 0, trace = 0, apply = 0;
   } seconds;

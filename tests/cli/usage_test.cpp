@@ -1,4 +1,4 @@
-// What the program makes of right and wrong words.
+// Valid and invalid command lines.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,12 +14,12 @@ namespace pingvox::test {
 namespace {
 
 using ::testing::HasSubstr;
-using Words = std::vector<std::string>;
+using Args = std::vector<std::string>;
 
-TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
+TEST(Usage, InvalidArgumentsAreRefusedWithTheNearestValidOneBeforeAnyWork) {
   struct Case {
-    Words words;
-    Words texts;
+    Args words;
+    Args texts;
   };
   const std::vector<Case> cases = {
       {{}, {"a command is missing", "--help"}},
@@ -33,7 +33,7 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"map", "log.csv", "-o", "m.bt", "--resolutoin=0.1"}, {"'--resolutoin'", "did you mean '--resolution'?"}},
       {{"map", "log.csv", "-o", "m.bt", "--res", "0.1"}, {"'--res'", "did you mean '--resolution'?"}},
       {{"map", "log.csv", "-o", "m.bt", "--resolution"}, {"--resolution", "needs a value"}},
-      {{"map", "log.csv", "-o", "m.bt", "--resolution", "abc"}, {"--resolution", "'abc' is not a number"}},
+      {{"map", "log.csv", "-o", "m.bt", "--resolution", "abc"}, {"--resolution", "'abc' is not a number of metres"}},
       {{"map", "log.csv", "-o", "m.bt", "--resolution", "0,1"}, {"--resolution", "'0,1' is not a number"}},
       {{"map", "log.csv", "-o", "m.bt", "--resolution", "-1"}, {"resolution", "-1"}},
       {{"map", "log.csv", "-o", "m.bt", "--resolution", "nan"}, {"resolution", "nan"}},
@@ -83,11 +83,10 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
       {{"convert", "a.csv", "-o", "a.cvs"}, {"did you mean '.csv'?"}},
       {{"convert", "a.bt", "-o", "a.yml"}, {"did you mean '.yaml'?"}},
       {{"convert", "a.bt", "-o", "-", "--format", "pgm"}, {"-o -", "two files"}},
-      {{"convert", "a.bt", "-o", "a.ot", "--z", "0"}, {"only for grids and heights"}},
-      {{"convert", "a.bt", "-o", "a.ot", "--max-z", "0"}, {"only for grids and heights"}},
+      {{"convert", "a.csv", "-o", "a.bt", "--echoes"}, {"--echoes", ".csv only"}},
       {{"convert", "a.bt", "-o", "a.yaml", "--height", "lowest"}, {"--height", ".asc"}},
       {{"convert", "a.bt", "-o", "a.asc", "--height", "low"}, {"did you mean 'lowest'?"}},
-      {{"convert", "a.bt", "-o", "a.yaml", "--z", "0", "--min-z", "0"}, {"--z is both"}},
+      {{"convert", "a.bt", "-o", "a.yaml", "--z", "0", "--min-z", "0"}, {"--z: excludes"}},
       {{"convert", "a.bt", "-o", "a.yaml", "--min-z", "1", "--max-z", "0"}, {"lower end comes first"}},
       {{"convert", "a.bt", "-o", "a.yaml", "--z", "inf"}, {"finite"}},
       {{"convert", "a.stl", "-o", "a.bt", "--resolution", "0"}, {"resolution"}},
@@ -132,7 +131,53 @@ TEST(Words, WrongOnesAreRefusedWithTheNearestRightOneBeforeAnythingIsDone) {
   EXPECT_THAT(here.files(), ::testing::IsEmpty());
 }
 
-TEST(Words, EachCommandExplainsItselfWithExamples) {
+// Each of these was accepted and ignored.
+TEST(Usage, OptionsWithoutEffectAreRefused) {
+  struct Case {
+    Args args;
+    Args texts;
+  };
+  const std::vector<Case> cases = {
+      {{"map", "a.csv", "-o", "m.bt", "--filter", "none", "--kernel", "7"},
+       {"--kernel: has no effect", "--filter none"}},
+      {{"map", "a.csv", "-o", "m.bt", "--filter", "median", "--sigma", "2"}, {"--sigma: has no effect", "gaussian"}},
+      {{"map", "a.csv", "-o", "m.bt", "--cfar", "ca"}, {"--cfar: has no effect with --detect rise", "--detect cfar"}},
+      {{"map", "a.csv", "-o", "m.bt", "--beam", "ray", "--beam-width", "3"}, {"--beam-width: has no effect"}},
+      {{"map", "a.csv", "-o", "m.bt", "--beam", "fan", "--beam-height", "3"}, {"--beam-height: has no effect"}},
+      {{"map", "a.csv", "-o", "m.bt", "-o", "n.bt"}, {"--output: given twice: 'm.bt' and 'n.bt'"}},
+      {{"map", "a.csv", "-o", "m.bt", "--format", "ot"}, {"--format ot: contradicts the suffix of m.bt"}},
+      {{"map", "tank.csv", "-o", "m.bt", "--origin", "1,2,3"}, {"--origin: has no effect on logs of beams", "clouds"}},
+      {{"map", "a.xyz", "-o", "m.bt", "--beam-width", "3"}, {"--beam-width: has no effect on clouds of points"}},
+      {{"info", "a.xyz", "b.xyz"}, {"unexpected argument"}},
+      {{"convert", "tank.csv", "-o", "b.csv", "--z", "0"}, {"--z: has no effect on logs of beams"}},
+      {{"convert", "tank.csv", "-o", "b.csv", "--threshold", "9"}, {"--threshold: has no effect", "tables of echoes"}},
+      {{"render", "tank.csv", "-o", "b.png", "--resolution", "1"},
+       {"--resolution: has no effect", "logs that are mapped"}},
+      {{"render", "tank.csv", "-o", "b.png", "--view", "above", "--sweep", "1"}, {"--sweep: has no effect"}},
+      {{"simulate", "harbour", "-o", "b.csv", "--side", "5"}, {"--side: has no effect with WORLD harbour"}},
+      {{"simulate", "harbour", "-o", "b.csv", "--drift", "1"}, {"--drift: has no effect with --trajectory still"}},
+      {{"simulate", "harbour", "-o", "b.csv", "--resolution", "1"}, {"--resolution: has no effect without --truth"}},
+  };
+  const Workplace here;
+  here.simulate_tank();
+  here.write("a.xyz", "1 2 3\n");
+  for (const Case& c : cases) {
+    SCOPED_TRACE(::testing::PrintToString(c.args));
+    expect_complaint(here.call(c.args), 2, c.texts);
+  }
+  EXPECT_THAT(here.files(), ::testing::UnorderedElementsAre("tank.csv", "a.xyz"));
+}
+
+// A file of defaults may say more than one call needs.
+TEST(Usage, ADefaultOfTheConfigurationFileMayHaveNoEffect) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("c.toml", "kernel = 7\n");
+  const Outcome outcome = here.call({"map", "tank.csv", "-o", "m.bt", "--config", "c.toml", "--filter", "none"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST(Usage, EachCommandExplainsItselfWithExamples) {
   const Workplace here;
   for (const std::string command : {"map", "info", "compare", "convert", "render", "simulate"}) {
     SCOPED_TRACE(command);
@@ -147,10 +192,10 @@ TEST(Words, EachCommandExplainsItselfWithExamples) {
 }
 
 // A name from inside of the program, or of a stage, says nothing to who typed an option.
-TEST(Words, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
+TEST(Usage, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
   struct Case {
     std::string command, option;
-    Words good, bad;  ///< the ends of what is allowed (or near them), and what is just outside
+    Args good, bad;  ///< the ends of what is allowed (or near them), and what is just outside
   };
   const std::vector<Case> cases = {
       {"map", "--min-range", {"0", "100", "auto"}, {"-0.1", "inf"}},
@@ -164,7 +209,7 @@ TEST(Words, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
       {"map", "--beam-height", {"0.01", "179.9"}, {"0", "180"}},
       {"map", "--free-share", {"0.01", "1"}, {"0", "1.01"}},
       {"render", "--size", {"16", "3072"}, {"0", "15", "3073"}},
-      {"simulate", "--side", {"0.91", "1000"}, {"0", "0.9", "1001"}},
+      {"simulate", "--side", {}, {"0", "0.9", "1001"}},
       {"simulate", "--speed", {"0.01", "100"}, {"0", "101"}},
       {"simulate", "--drift", {"0", "1000"}, {"-1", "1001"}},
       {"simulate", "--heading-drift", {"0", "572.95"}, {"-1", "573"}},
@@ -189,7 +234,10 @@ TEST(Words, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
   for (const Case& c : cases) {
     const std::string output = c.command == "map" ? "a.bt" : (c.command == "render" ? "a.png" : "a.csv");
     const auto call = [&](const std::string& value) {
-      return here.call({c.command, "missing.stl", "-o", output, c.option, value});
+      Args args = {c.command, c.option == "--side" ? "tank" : "missing.stl", "-o", output, c.option, value};
+      if (c.option.ends_with("drift")) args.insert(args.end(), {"--poses", "missing.stl"});
+      if (c.option == "--speed") args.insert(args.end(), {"--trajectory", "line"});
+      return here.call(args);
     };
     for (const std::string& value : c.bad) {
       SCOPED_TRACE(c.command + " " + c.option + " " + value);
@@ -205,18 +253,18 @@ TEST(Words, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
 }
 
 // 1 is no failure there.
-TEST(Words, TheOverviewTellsTheStatusOfCompareApart) {
-  EXPECT_THAT(Workplace().call({"--help"}).out, HasSubstr("Of compare: 0 the same, 1 different, 2 trouble"));
+TEST(Usage, TheOverviewTellsTheStatusOfCompareApart) {
+  EXPECT_THAT(Workplace().call({"--help"}).out, HasSubstr("compare: 0 equal, 1 different, 2 failed"));
 }
 
-TEST(Words, VersionIsOneLine) {
+TEST(Usage, VersionIsOneLine) {
   const Outcome outcome = Workplace().call({"--version"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, ::testing::StartsWith("pingvox 0."));
   EXPECT_EQ(outcome.out.find('\n'), outcome.out.size() - 1);
 }
 
-TEST(Words, TheViewerOfLaterVersionsIsNoSpellingMistake) {
+TEST(Usage, TheViewerOfLaterVersionsIsNoSpellingMistake) {
   expect_complaint(Workplace().call({"view", "a.bt"}), 1, {"not in this version", "pingvox render"});
 }
 
@@ -231,7 +279,7 @@ std::set<std::string> options_in(const std::string& text) {
   return options;
 }
 
-TEST(Words, TheManPageKnowsEveryOptionOfTheHelp) {
+TEST(Usage, TheManPageKnowsEveryOptionOfTheHelp) {
   const Workplace here;
   std::filesystem::copy_file(PINGVOX_SOURCE_DIR "/docs/man/pingvox.1", here.folder() / "page");
   std::string page = here.read("page");
@@ -239,7 +287,7 @@ TEST(Words, TheManPageKnowsEveryOptionOfTheHelp) {
   const std::set<std::string> described = options_in(page);
   std::size_t checked = 0;
   for (const std::string command : {"", "map", "info", "compare", "convert", "render", "simulate"}) {
-    const Outcome help = here.call(command.empty() ? Words{"--help"} : Words{command, "--help"});
+    const Outcome help = here.call(command.empty() ? Args{"--help"} : Args{command, "--help"});
     for (const std::string& option : options_in(help.out)) {
       EXPECT_TRUE(described.contains(option)) << command << " " << option;
       ++checked;
@@ -267,7 +315,7 @@ TEST(Config, GivesWhatTheCallDoesNotSay) {
 TEST(Config, WrongWordsInItAreNamedWithTheFile) {
   struct Case {
     std::string content;
-    Words texts;
+    Args texts;
   };
   const std::vector<Case> cases = {
       {"resolutoin = 0.1\n", {"c.toml", "'resolutoin'", "did you mean '--resolution'?"}},
@@ -289,7 +337,7 @@ TEST(Config, WrongWordsInItAreNamedWithTheFile) {
 
 TEST(NearestWord, IsTheOneThatWasMeantOrNone) {
   using app::nearest_word;
-  const Words words = {"--resolution", "--min-range", "--max-range", "--ray", "map", "none"};
+  const Args words = {"--resolution", "--min-range", "--max-range", "--ray", "map", "none"};
   EXPECT_EQ(nearest_word("--resoluton", words), "--resolution");
   EXPECT_EQ(nearest_word("--reslution", words), "--resolution");
   EXPECT_EQ(nearest_word("--min_range", words), "--min-range");

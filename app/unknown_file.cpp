@@ -1,4 +1,4 @@
-#include "stranger.hpp"
+#include "unknown_file.hpp"
 
 #include <fmt/core.h>
 
@@ -20,25 +20,25 @@ constexpr std::string_view kAsCsv =
 constexpr std::string_view kWrittenOnly = "written, not read";
 
 /// Files that people have beside their sonar, by how they begin.
-struct Stranger {
+struct Signature {
   std::string_view begin, what, advice;
 };
-constexpr std::array kStrangers = {
-    Stranger{"\x1f\x8b"sv, kCompressed, kUnpack},
-    Stranger{"BZh"sv, kCompressed, kUnpack},
-    Stranger{"\xfd\x37zXZ"sv, kCompressed, kUnpack},
-    Stranger{"\x28\xb5\x2f\xfd"sv, kCompressed, kUnpack},
-    Stranger{"PK\x03\x04"sv, kCompressed, kUnpack},
-    Stranger{"version https://git-lfs"sv, "is a pointer of Git LFS", "'git lfs pull' fetches the file itself"},
-    Stranger{"\xff\xfe"sv, kUtf16, kSaveAgain},
-    Stranger{"\xfe\xff"sv, kUtf16, kSaveAgain},
-    Stranger{"\x89PNG"sv, "is a picture", "pictures are written, not read"},
-    Stranger{"P5\n# pingvox"sv, "is a grid for map_server", kWrittenOnly},
-    Stranger{"image: "sv, "describes a grid for map_server", kWrittenOnly},
-    Stranger{"ncols "sv, "is a grid of heights", kWrittenOnly},
-    Stranger{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
-    Stranger{"#ROSBAG "sv, "is a ROS bag", kAsCsv},
-    Stranger{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
+constexpr std::array kSignatures = {
+    Signature{"\x1f\x8b"sv, kCompressed, kUnpack},
+    Signature{"BZh"sv, kCompressed, kUnpack},
+    Signature{"\xfd\x37zXZ"sv, kCompressed, kUnpack},
+    Signature{"\x28\xb5\x2f\xfd"sv, kCompressed, kUnpack},
+    Signature{"PK\x03\x04"sv, kCompressed, kUnpack},
+    Signature{"version https://git-lfs"sv, "is a pointer of Git LFS", "'git lfs pull' fetches the file itself"},
+    Signature{"\xff\xfe"sv, kUtf16, kSaveAgain},
+    Signature{"\xfe\xff"sv, kUtf16, kSaveAgain},
+    Signature{"\x89PNG"sv, "is a picture", "pictures are written, not read"},
+    Signature{"P5\n# pingvox"sv, "is a grid for map_server", kWrittenOnly},
+    Signature{"image: "sv, "describes a grid for map_server", kWrittenOnly},
+    Signature{"ncols "sv, "is a grid of heights", kWrittenOnly},
+    Signature{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
+    Signature{"#ROSBAG "sv, "is a ROS bag", kAsCsv},
+    Signature{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
 };
 
 /// Whether the beginning has only bytes that text has.
@@ -52,11 +52,11 @@ bool is_text(std::string_view bytes) {
 
 }  // namespace
 
-std::string stranger_text(std::span<const std::uint8_t> bytes) {
+std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto known =
-      std::ranges::find_if(kStrangers, [&](const Stranger& stranger) { return text.starts_with(stranger.begin); });
-  if (known != kStrangers.end()) return fmt::format("{}: {}", known->what, known->advice);
+      std::ranges::find_if(kSignatures, [&](const Signature& signature) { return text.starts_with(signature.begin); });
+  if (known != kSignatures.end()) return fmt::format("{}: {}", known->what, known->advice);
   const std::string_view what =
       is_text(text) ? "is text, but its first line names no columns of beams, and it is no scan log, cloud or mesh"
                     : "is none of the logs, clouds, maps, meshes and trajectories that pingvox reads";

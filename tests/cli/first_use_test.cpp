@@ -1,0 +1,197 @@
+// What a new user tries first, and what the program must say then.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "call.hpp"
+#include "json_reader.hpp"
+
+namespace pingvox::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+FlatJson json_of(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return flat_json(outcome.out).value_or(FlatJson{});
+}
+
+/// A log of full turns of 40 beams, a wall at bin 40 of 100. `step` turns from beam to beam.
+std::string turns_csv(int beams, int first = 0) {
+  std::ostringstream csv;
+  csv << "time_s,bearing_cw_deg,bin_length_m,intensities\n";
+  for (int i = first; i < first + beams; ++i) {
+    csv << i << "," << (i % 40) * 9 << ",0.1";
+    for (int bin = 0; bin < 100; ++bin) csv << "," << (bin >= 40 && bin < 50 ? 200 : 5);
+    csv << "\n";
+  }
+  return csv.str();
+}
+
+TEST(FirstUse, BeamsThatAreSkippedHaveAReason) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(80) + "80,0,x\n");
+  here.write("poses.txt", "0 0 0 0 0 0 0 1\n20 0 0 0 0 0 0 1\n");
+  const Outcome outcome = here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("a.csv: skipped 1 damaged (--strict"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("59 outside the time of the poses, 0.000 s to 20.000 s, the first at 21.000 s (--poses"));
+  FlatJson json = json_of(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt", "--json"}));
+  EXPECT_EQ(json["skipped_for.damage"], "1");
+  EXPECT_EQ(json["skipped_for.no_pose"], "59");
+  here.write("late.txt", "900 0 0 0 0 0 0 1\n901 0 0 0 0 0 0 1\n");
+  expect_complaint(here.call({"map", "a.csv", "-o", "b.bt", "--poses", "late.txt"}), 1,
+                   {"a.csv: nothing could be mapped: 1 damaged", "80 outside the time of the poses, 900.000 s"});
+}
+
+TEST(FirstUse, ATrajectoryBesideALogIsNamedWhenItIsNotUsed) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  here.write("a.tum", "0 0 0 0 0 0 0 1\n100 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).err, HasSubstr("as if the vehicle did not move"));
+  EXPECT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "a.tum"}).err, "");
+}
+
+TEST(FirstUse, AMapIsMadeOfConesAndSaysSo) {
+  const Workplace here;
+  here.simulate_tank();
+  FlatJson json = json_of(here.call({"map", "tank.csv", "-o", "a.ot", "--json"}));
+  EXPECT_EQ(json["beam.shape"], "\"cone\"");
+  EXPECT_EQ(json["beam.width_deg"], "3");
+  EXPECT_EQ(json["beam.height_deg"], "35");
+  EXPECT_EQ(here.call({"map", "tank.csv", "-o", "b.ot", "--beam", "cone", "--quiet"}).status, 0);
+  EXPECT_EQ(here.read("a.ot"), here.read("b.ot"));
+}
+
+TEST(FirstUse, TheThresholdThatWasUsedIsShown) {
+  const Workplace here;
+  here.simulate_tank();
+  FlatJson automatic = json_of(here.call({"map", "tank.csv", "-o", "a.bt", "--threshold", "auto", "--json"}));
+  EXPECT_NE(automatic["threshold.min"], "null");
+  FlatJson log = json_of(here.call({"info", "tank.csv", "--json"}));
+  EXPECT_EQ(log["threshold.min"], automatic["threshold.min"]);
+  EXPECT_EQ(log["threshold.max"], automatic["threshold.max"]);
+  FlatJson given = json_of(here.call({"map", "tank.csv", "-o", "a.bt", "--threshold", "40", "--json"}));
+  EXPECT_EQ(given["threshold.min"], "40");
+  EXPECT_EQ(given["threshold.max"], "40");
+  EXPECT_THAT(here.call({"render", "tank.csv", "-o", "a.png"}).out, HasSubstr("(automatic)"));
+}
+
+TEST(FirstUse, EchoesAreATable) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(80));
+  ASSERT_EQ(here.call({"convert", "a.csv", "--echoes", "-o", "e.csv"}).status, 0);
+  std::istringstream table(here.read("e.csv"));
+  std::string header, line;
+  std::getline(table, header);
+  EXPECT_EQ(header, "time_s,bearing_rad,range_m,intensity,first_bin,peak_bin,last_bin,threshold");
+  int lines = 0;
+  for (; std::getline(table, line); ++lines) {
+    double time = 0.0, bearing = 0.0, range = 0.0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &time, &bearing, &range), 3) << line;
+    EXPECT_EQ(time, lines);
+    EXPECT_NEAR(range, 4.5, 0.5);
+  }
+  EXPECT_EQ(lines, 80);
+}
+
+// Both counted sweeps, one without those that are not complete.
+TEST(FirstUse, InfoAndRenderNumberSweepsAlike) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(90));
+  EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("3, complete: 1-2\n"));
+  EXPECT_THAT(here.call({"render", "a.csv", "-o", "a.png", "--sweep", "3"}).out, HasSubstr("10 beams"));
+  EXPECT_THAT(here.call({"render", "a.csv", "-o", "a.png", "--view", "cartesian"}).out, HasSubstr("sweep 1, 40 beams"));
+  expect_complaint(here.call({"render", "a.csv", "-o", "b.png", "--sweep", "4"}), 2, {"no sweep 4", "3"});
+}
+
+TEST(FirstUse, BinLengthsAreListedWithTheirBeams) {
+  const Workplace here;
+  std::string csv = turns_csv(3);
+  csv += "3,27,0.2,1,2,3\n";
+  here.write("a.csv", csv);
+  EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("0.1 m (3 beams), 0.2 m (1 beams)"));
+}
+
+TEST(FirstUse, APictureEndsAtTheMaximumRange) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  ASSERT_EQ(here.call({"render", "a.csv", "-o", "all.png"}).status, 0);
+  ASSERT_EQ(here.call({"render", "a.csv", "-o", "near.png", "--max-range", "6"}).status, 0);
+  EXPECT_NE(here.read("all.png"), here.read("near.png"));
+}
+
+TEST(FirstUse, ASliceInWhichNothingIsKnownIsAnError) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--quiet"}).status, 0);
+  expect_complaint(here.call({"render", "a.bt", "-o", "a.png", "--view", "slice", "--z", "50"}), 1,
+                   {"a.bt", "nothing is known"});
+  expect_complaint(here.call({"convert", "a.bt", "-o", "a.ply", "--z", "50"}), 1, {"a.bt", "nothing is known"});
+}
+
+TEST(FirstUse, ALayerOfAMapIsWrittenAsPointsAndAsAMap) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.ot", "--quiet"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "a.ot", "-o", "layer.xyz", "--z", "0.01"}).status, 0);
+  std::istringstream points(here.read("layer.xyz"));
+  double x = 0.0, y = 0.0, z = 0.0, log_odds = 0.0, size = 0.0;
+  int count = 0;
+  while (points >> x >> y >> z >> log_odds >> size) {
+    EXPECT_NEAR(z, 0.025, 1e-6);
+    ++count;
+  }
+  EXPECT_GT(count, 10);
+  ASSERT_EQ(here.call({"convert", "a.ot", "-o", "layer.ot", "--z", "0.01"}).status, 0);
+  FlatJson layer = json_of(here.call({"info", "layer.ot", "--json"}));
+  EXPECT_EQ(layer["occupied_cells"], std::to_string(count));
+  FlatJson same =
+      flat_json(here.call({"compare", "a.ot", "layer.ot", "--layer", "0.01", "--json"}).out).value_or(FlatJson{});
+  EXPECT_EQ(same["different"], "0");
+  EXPECT_EQ(same["only_a"], "0");
+}
+
+TEST(FirstUse, CompareCountsCellsAboveAProbability) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(80));
+  ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.ot", "--quiet"}).status, 0);
+  const auto occupied = [&](const char* p) {
+    FlatJson json =
+        flat_json(here.call({"compare", "a.ot", "a.ot", "--occupied", p, "--json"}).out).value_or(FlatJson{});
+    return std::stol(json["classes.occupied_a"]);
+  };
+  EXPECT_GT(occupied("0.5"), occupied("0.6"));
+}
+
+TEST(FirstUse, ASpreadsheetsSemicolonsAreRead) {
+  const Workplace here;
+  std::string csv = turns_csv(40);
+  here.write("comma.csv", csv);
+  std::ranges::replace(csv, ',', ';');
+  here.write("semicolon.csv", csv);
+  ASSERT_EQ(here.call({"convert", "comma.csv", "-o", "a.csv"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "semicolon.csv", "-o", "b.csv"}).status, 0);
+  EXPECT_EQ(here.read("a.csv"), here.read("b.csv"));
+}
+
+// A head that looks down from half a metre ahead hears other walls; a map with the same mount is where the walls are.
+TEST(FirstUse, ASimulatedHeadIsMountedAsAsked) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--mount", "0.5,0,0,0,0,90"}).status, 0);
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "b.csv", "--turns", "1"}).status, 0);
+  EXPECT_NE(here.read("a.csv"), here.read("b.csv"));
+  const auto bounds = [&](const std::string& log, const std::string& mount) {
+    FlatJson json = json_of(here.call({"map", log, "-o", "m.bt", "--mount", mount, "--beam", "ray", "--json"}));
+    return json["map.bounds.min"];
+  };
+  EXPECT_NE(bounds("a.csv", "0.5,0,0,0,0,90"), bounds("a.csv", "0,0,0,0,0,0"));
+}
+
+}  // namespace
+}  // namespace pingvox::test
