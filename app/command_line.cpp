@@ -51,7 +51,7 @@ std::string overview() {
          "      --version  show the version\n"
          "\nExamples:\n"
          "  pingvox simulate tank -o tank.csv\n"
-         "  pingvox map tank.csv -o tank.bt --beam cone\n"
+         "  pingvox map tank.csv -o tank.bt\n"
          "  pingvox render tank.bt -o tank.png\n"
          "\nExit status: 0 done, 1 failed, 2 invalid usage.\n"
          "compare: 0 equal, 1 different, 2 failed.\n";
