@@ -36,8 +36,7 @@ inline BeamsRead beams_in(std::span<const std::uint8_t> bytes, Damage damage) {
     read.beams.push_back(std::move(**beam));
   }
   require(damage == Damage::kFail || !read.failed, "damage that is not fatal at the start is stepped over");
-  require(damage == Damage::kSkip || ((*source)->skipped() > 0) == read.failed,
-          "the first damage ends a strict read");
+  require(damage == Damage::kSkip || ((*source)->skipped() > 0) == read.failed, "the first damage ends a strict read");
   return read;
 }
 

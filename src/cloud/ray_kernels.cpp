@@ -35,8 +35,7 @@ alignas(32) [[maybe_unused]] constexpr std::array<std::array<std::uint32_t, 8>, 
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace pingvox::detail {
-namespace HWY_NAMESPACE {
+namespace pingvox::detail::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -369,8 +368,7 @@ void mark_prepared(const PreparedRays& rays, std::uint64_t start, ScanWindow& wi
   mark(rays, start, window);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace pingvox::detail
+}  // namespace pingvox::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

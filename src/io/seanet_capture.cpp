@@ -69,13 +69,12 @@ std::optional<Packet> packet_in(std::string_view line) {
   return Packet{*time_s, *port, line};
 }
 
-constexpr std::array<std::int8_t, 256> kHexDigits = [] {
-  std::array<std::int8_t, 256> digits = {};
+constexpr std::array<int, 256> kHexDigits = [] {
+  std::array<int, 256> digits = {};
   digits.fill(-1);
-  for (int i = 0; i < 10; ++i) digits[static_cast<std::size_t>('0' + i)] = static_cast<std::int8_t>(i);
+  for (int i = 0; i < 10; ++i) digits[static_cast<std::size_t>('0' + i)] = i;
   for (int i = 0; i < 6; ++i) {
-    digits[static_cast<std::size_t>('a' + i)] = digits[static_cast<std::size_t>('A' + i)] =
-        static_cast<std::int8_t>(10 + i);
+    digits[static_cast<std::size_t>('a' + i)] = digits[static_cast<std::size_t>('A' + i)] = 10 + i;
   }
   return digits;
 }();

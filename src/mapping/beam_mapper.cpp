@@ -90,7 +90,7 @@ class BeamMapper::Stages {
     watch_.lap(report_.seconds.detect);
     const Result<std::vector<PlacedBeam>> placed = place(std::move(heard));
     if (!placed) return tl::unexpected(placed.error());
-    const Result<void> mapped = options_.vote == Vote::kPerSweep ? map_together(*placed) : map_singly(*placed);
+    Result<void> mapped = options_.vote == Vote::kPerSweep ? map_together(*placed) : map_singly(*placed);
     if (!mapped) return mapped;
     report_.sweeps += stream_.complete_sweeps() - sweeps_;
     sweeps_ = stream_.complete_sweeps();

@@ -43,7 +43,8 @@ class ScanParts {
       std::size_t started = 1;
       try {
         for (; started < parts; ++started) threads.emplace_back(trace_part, started);
-      } catch (const std::exception&) {  // no thread is left, or no memory for one
+        // No thread is left, or no memory for one: the caller traces those parts below.
+      } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
       }
       trace(std::size_t{0}, begin_of(0), begin_of(1), scan);
       for (std::size_t part = started; part < parts; ++part) trace_part(part);

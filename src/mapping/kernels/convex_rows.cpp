@@ -12,8 +12,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pingvox::detail {
-namespace HWY_NAMESPACE {
+namespace pingvox::detail::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -134,8 +133,7 @@ void find_cells_here(const ConvexBody& body, const ColumnOfRows& column, RunsOfR
   cells_of_rows(body, column, runs);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace pingvox::detail
+}  // namespace pingvox::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -8,8 +8,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace pingvox::detail {
-namespace HWY_NAMESPACE {
+namespace pingvox::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -47,8 +46,7 @@ void find_ends_here(const RayEnds& ends, double way_x, double way_y, std::span<c
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace pingvox::detail
+}  // namespace pingvox::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
