@@ -1,0 +1,30 @@
+#include "pingvox/sonar/device_profile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <set>
+
+namespace pingvox {
+namespace {
+
+TEST(DeviceProfile, EachIsFoundByItsOwnNameAndNoneByAnother) {
+  std::set<std::string_view> names;
+  for (const DeviceProfile& profile : device_profiles()) {
+    EXPECT_EQ(device_named(profile.name), &profile);
+    EXPECT_GT(profile.beam_width_rad, 0.0);
+    EXPECT_GT(profile.beam_height_rad, profile.beam_width_rad);
+    EXPECT_FALSE(profile.source.empty());
+    names.insert(profile.name);
+  }
+  EXPECT_EQ(names.size(), device_profiles().size());
+  EXPECT_EQ(device_named("Ping360"), nullptr);
+}
+
+TEST(DeviceProfile, AnglesAreInRadians) {
+  EXPECT_NEAR(device_named("ping360")->beam_width_rad, 2.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_NEAR(device_named("micron")->beam_height_rad, 35.0 * std::numbers::pi / 180.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace pingvox
