@@ -127,7 +127,8 @@ class BeamSurvey {
     take(assembler_.finish());
     // Those of most beams first.
     std::vector<std::pair<double, std::size_t>> lengths(bin_lengths_.begin(), bin_lengths_.end());
-    std::ranges::stable_sort(lengths, [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::sort(lengths.begin(), lengths.end(),
+              [](const auto& a, const auto& b) { return std::pair(b.second, a.first) < std::pair(a.second, b.first); });
     const std::size_t fewest = beams_ > 0 ? fewest_bins_ : 0;
     const double sector = sector_deg({bearings_rad_.begin(), bearings_rad_.end()}, has_turn_);
     Summary summary;

@@ -94,7 +94,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Traject
 
 std::optional<std::string> trajectory_beside(const std::string& log) {
   if (log == "-") return std::nullopt;
-  const std::string path = std::filesystem::path(log).replace_extension(".tum").string();
+  std::string path = std::filesystem::path(log).replace_extension(".tum").string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
   return path;

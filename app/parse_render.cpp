@@ -96,7 +96,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
       echo_group(args.build.echoes, args.build.build.sound_speed_ratio),
       map_group(args.build),
       sensor_group(args.build)};
-  const auto limit = [&](std::string_view name, std::vector<std::string> only_for) {
+  const auto limit = [&](std::string_view name, const std::vector<std::string>& only_for) {
     for (auto& group : groups) {
       for (Option& option : group.options) {
         if (option.name == name) option.only_for = only_for;
