@@ -114,7 +114,11 @@ void until_it_succeeds(Trial&& trial) {
   while (!testing::Test::HasFatalFailure() && !trial(n)) {
     ASSERT_LT(++n, 100'000);
   }
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  if (n <= 5) GTEST_SKIP() << "the sanitizer keeps mmap to itself, so that the pools' room cannot run out";
+#else
   EXPECT_GT(n, 5) << "hardly anything was allocated";
+#endif
 }
 
 ScanUpdate scan_of_box(const Lattice& lattice, std::uint16_t from, std::uint16_t to) {
