@@ -28,7 +28,7 @@ using Args = std::vector<std::string>;
 
 inline constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
-/// The words of the call are off: kBadOption.
+/// Invalid usage: kBadOption.
 inline tl::unexpected<Error> usage_error(std::string what) {
   return fail(Error::Code::kBadOption, std::move(what));
 }
