@@ -15,6 +15,7 @@
 #include "io/byte_reader.hpp"
 #include "io/map_files.hpp"
 #include "io/octomap_header.hpp"
+#include "pingvox/map/tree_view.hpp"
 
 // docs/formats.md: two bytes for each inner node, two bits for each of its children.
 namespace pingvox {
@@ -31,20 +32,21 @@ class TreeReader {
         tree_at_(tree_at),
         reader_(file.view().subspan(tree_at)),
         options_(map.options()),
-        tree_(map.options().depth) {}
+        tree_(map.options()) {}
 
   Result<OccupancyMap> read(std::uint64_t nodes) {
+    detail::Entry root;
     if (nodes > 0) {
       nodes_ = 1;
-      const auto root = read_group(0);
-      if (!root) return tl::unexpected(root.error());
-      tree_.root = *root;
+      const auto read = read_group(0);
+      if (!read) return tl::unexpected(read.error());
+      root = *read;
     }
     if (nodes_ != nodes) {
       return damaged(file_, position(), fmt::format("the tree has {} nodes and the header says {}", nodes_, nodes));
     }
     if (reader_.left() > 0) return damaged(file_, position(), fmt::format("{} bytes after the tree", reader_.left()));
-    return OccupancyMap(options_, std::move(tree_));
+    return tree_.finish(root);
   }
 
  private:
@@ -80,7 +82,7 @@ class TreeReader {
       if (!child) return child;
       group.child[octant] = *child;
     }
-    return within_limit(detail::built(tree_, group, options_.parents), at);
+    return within_limit(tree_.add(group), at);
   }
 
   /// The node of a brick, whose word is next, and its cells.
@@ -102,7 +104,7 @@ class TreeReader {
       cells.free |= std::uint64_t{below.free} << shift;
       cells.occupied |= std::uint64_t{below.occupied} << shift;
     }
-    return within_limit(detail::built(tree_, cells, options_.clamp, options_.parents), at);
+    return within_limit(tree_.add(cells), at);
   }
 
   float belief_of(unsigned state) const {
@@ -112,7 +114,7 @@ class TreeReader {
   /// The entry, when the tree with it is within the limit.
   Result<detail::Entry> within_limit(detail::Entry entry, std::size_t byte) const {
     const std::size_t limit = options_.memory_limit_bytes;
-    if (limit > 0 && tree_.groups.bytes() + tree_.bricks.bytes() > limit) return over_limit(file_, byte, limit);
+    if (limit > 0 && tree_.bytes() > limit) return over_limit(file_, byte, limit);
     return entry;
   }
 
@@ -120,7 +122,7 @@ class TreeReader {
   std::size_t tree_at_;
   ByteReader reader_;
   MapOptions options_;
-  detail::BrickTree tree_;
+  detail::TreeBuilder tree_;
   std::uint64_t nodes_ = 0;
   bool is_at_end_ = false;  ///< there was no word to read
 };
@@ -129,7 +131,7 @@ class TreeReader {
 class TreeWords {
  public:
   explicit TreeWords(const OccupancyMap& map)
-      : tree_(map.tree()),
+      : tree_(detail::view_of(map)),
         thresholds_(map.options().thresholds),
         has_maxima_(map.options().parents == Parents::kMax),
         words_(room_for(tree_)),
@@ -159,11 +161,10 @@ class TreeWords {
 
  private:
   /// More than there may be, so that no word is added with care.
-  static std::unique_ptr<std::uint16_t[]> room_for(const detail::BrickTree& tree) {
+  static std::unique_ptr<std::uint16_t[]> room_for(const detail::TreeView& tree) {
     constexpr std::size_t kMostBrickWords = 9;  // its own and those of its octants
-    const std::size_t groups = tree.groups.bytes() / sizeof(detail::Group);
-    const std::size_t bricks = tree.bricks.bytes() / sizeof(detail::Brick);
-    return std::make_unique_for_overwrite<std::uint16_t[]>(groups + bricks * kMostBrickWords + kMostBrickWords);
+    return std::make_unique_for_overwrite<std::uint16_t[]>(tree.group_count + tree.brick_count * kMostBrickWords +
+                                                           kMostBrickWords);
   }
 
   /// The state of a node, after its words and those below it, if there are any.
@@ -229,7 +230,7 @@ class TreeWords {
     return kUnknown;
   }
 
-  const detail::BrickTree& tree_;
+  detail::TreeView tree_;
   Thresholds thresholds_;
   bool has_maxima_;  ///< nothing below a node is greater than its value
   std::unique_ptr<std::uint16_t[]> words_;

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "pingvox/map/brick.hpp"
+#include "map/brick.hpp"
 #include "pingvox/map/log_odds.hpp"
 
 /// Loops over the 64 values of a brick, four at a time, which each x86-64 and ARM64 machine can. Each gives, to the

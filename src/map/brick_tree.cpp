@@ -1,4 +1,4 @@
-#include "pingvox/map/brick_tree.hpp"
+#include "map/brick_tree.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -551,6 +551,16 @@ template class Cursor<WideWord>;
 }  // namespace detail
 
 // ---------------------------------------------------------------------------------------------------------------------
+
+NodeView::NodeView(const detail::BrickTree& tree, Kind kind, int depth, Parents parents, std::uint32_t index,
+                   float value)
+    : tree_(&tree),
+      index_(index),
+      value_(value),
+      depth_(depth),
+      kind_(kind),
+      parents_(parents),
+      extra_levels_(static_cast<std::uint8_t>(tree.extra_levels)) {}
 
 std::optional<NodeView> NodeView::of(const detail::BrickTree& tree, detail::Entry entry, int depth, Parents parents) {
   if (entry.is_none()) return std::nullopt;

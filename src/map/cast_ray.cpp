@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "map/entry_walk.hpp"
+#include "map/map_access.hpp"
 #include "pingvox/map/ray_dda.hpp"
 
 namespace pingvox {
@@ -73,7 +74,7 @@ template <KeyWord W>
 class NodeWalk {
  public:
   NodeWalk(const OccupancyMap& map, const BasicKey<W>& start, const FaceCrossings& crossings, UnknownCells unknown)
-      : tree_(map.tree()),
+      : tree_(detail::MapAccess::tree(map)),
         thresholds_(map.options().thresholds),
         unknown_(unknown),
         last_(last_cell<W>(map.lattice())),

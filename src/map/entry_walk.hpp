@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "pingvox/map/brick_tree.hpp"
+#include "map/brick_tree.hpp"
 
 namespace pingvox::detail {
 

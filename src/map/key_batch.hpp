@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "map/bits.hpp"
+#include "map/brick_tree.hpp"
+#include "map/pool.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/geometry/key.hpp"
-#include "pingvox/map/brick_tree.hpp"
-#include "pingvox/map/pool.hpp"
 
 namespace pingvox::detail {
 

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <utility>
 #include <variant>
 
 #include "map/bits.hpp"
 #include "map/key_batch.hpp"
+#include "map/map_access.hpp"
 #include "map/page_votes.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
@@ -28,8 +30,8 @@ std::uint64_t saturated_sum(std::uint64_t a, std::uint64_t b) {
   return a > kMost - b ? kMost : a + b;
 }
 
-detail::CursorRules rules_of(const MapOptions& options, Pruning pruning) {
-  return {options.parents, pruning, options.early_drop, options.clamp};
+detail::CursorRules rules_of(const detail::BrickTree& tree, const MapOptions& options, Pruning pruning) {
+  return {options.parents, pruning, tree.early_drop, options.clamp};
 }
 
 void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCounts& counts) {
@@ -252,18 +254,33 @@ Result<OccupancyMap> OccupancyMap::make(const MapOptions& options) {
 }
 
 OccupancyMap::OccupancyMap(const MapOptions& options)
-    : options_(options), lattice_(options.resolution_m, options.depth), tree_(options.depth) {
+    : options_(options),
+      lattice_(options.resolution_m, options.depth),
+      tree_(std::make_unique<detail::BrickTree>(options.depth)) {
   assert(options.validate());
 }
 
-OccupancyMap::OccupancyMap(const MapOptions& options, detail::BrickTree tree)
+OccupancyMap::OccupancyMap(const MapOptions& options, std::unique_ptr<detail::BrickTree> tree)
     : options_(options), lattice_(options.resolution_m, options.depth), tree_(std::move(tree)) {
-  assert(options.validate() && tree_.levels - tree_.extra_levels == options.depth && tree_.pruned);
-  tree_.shortcut = detail::shortcut_of(tree_);
+  assert(options.validate() && tree_->levels - tree_->extra_levels == options.depth && tree_->pruned);
+  tree_->shortcut = detail::shortcut_of(*tree_);
+}
+
+OccupancyMap::OccupancyMap(const OccupancyMap& other)
+    : options_(other.options_), lattice_(other.lattice_), tree_(std::make_unique<detail::BrickTree>(*other.tree_)) {}
+OccupancyMap& OccupancyMap::operator=(const OccupancyMap& other) {
+  return *this = OccupancyMap(other);
+}
+OccupancyMap::OccupancyMap(OccupancyMap&& other) noexcept = default;
+OccupancyMap& OccupancyMap::operator=(OccupancyMap&& other) noexcept = default;
+OccupancyMap::~OccupancyMap() = default;
+
+bool OccupancyMap::empty() const {
+  return tree_->root.is_none();
 }
 
 std::optional<NodeView> OccupancyMap::root() const {
-  return NodeView::of(tree_, tree_.root, 0, options_.parents);
+  return NodeView::of(*tree_, tree_->root, 0, options_.parents);
 }
 
 template <KeyWord W>
@@ -279,10 +296,10 @@ std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>& key, int depth)
 template <KeyWord W>
 std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
   const Octants<W> octants(key);
-  const detail::Entry entry = entry_above(tree_, key, octants);
+  const detail::Entry entry = entry_above(*tree_, key, octants);
   if (entry.is_none()) return std::nullopt;
   if (entry.is_leaf()) return LogOdds(entry.value);
-  const detail::BrickView brick = tree_.bricks[entry.link];
+  const detail::BrickView brick = tree_->bricks[entry.link];
   const std::size_t cell = octants.cell_in_brick();
   if (((brick.known >> cell) & 1) == 0) return std::nullopt;
   return LogOdds(brick.value[cell]);
@@ -298,11 +315,11 @@ std::optional<LogOdds> OccupancyMap::at(const Eigen::Vector3d& point_m) const {
 template <KeyWord W>
 Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
   const Octants<W> octants(key);
-  const detail::Entry entry = entry_above(tree_, key, octants);
+  const detail::Entry entry = entry_above(*tree_, key, octants);
   float value = entry.value;
   unsigned is_known = entry.is_none() ? 0 : 1;
   if (entry.is_inner()) {
-    const detail::BrickView brick = tree_.bricks[entry.link];
+    const detail::BrickView brick = tree_->bricks[entry.link];
     const std::size_t cell = octants.cell_in_brick();
     value = brick.value[cell];
     is_known = static_cast<unsigned>(brick.known >> cell) & 1U;
@@ -339,7 +356,7 @@ std::optional<Box> OccupancyMap::bounds() const {
 }
 
 std::size_t OccupancyMap::memory_bytes() const {
-  return bytes_of(tree_);
+  return bytes_of(*tree_);
 }
 
 Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
@@ -350,16 +367,16 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
                     scan.lattice().depth(), lattice_.resolution_m(), lattice_.depth()));
   }
   try {
-    if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
+    if (!tree_->pruned) detail::prune_all(*tree_, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
       const std::size_t growth =
-          with_cursor_word(tree_.levels, [&]<KeyWord W>() { return growth_of<W>(tree_, scan, options_.clamp); });
-      if (const auto fits = check_limit(bytes_of(tree_) + growth, limit); !fits) return tl::unexpected(fits.error());
+          with_cursor_word(tree_->levels, [&]<KeyWord W>() { return growth_of<W>(*tree_, scan, options_.clamp); });
+      if (const auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return tl::unexpected(fits.error());
     }
-    const detail::CursorRules rules = rules_of(options_, Pruning::kWhenSettled);
-    return with_cursor_word(tree_.levels, [&]<KeyWord W>() { return applied<W>(tree_, rules, scan); });
+    const detail::CursorRules rules = rules_of(*tree_, options_, Pruning::kWhenSettled);
+    return with_cursor_word(tree_->levels, [&]<KeyWord W>() { return applied<W>(*tree_, rules, scan); });
   } catch (const std::bad_alloc&) {
-    detail::prune_all(tree_, options_.parents);
+    detail::prune_all(*tree_, options_.parents);
     return fail(Error::Code::kNoMemory, kOutOfMemory);
   }
 }
@@ -367,8 +384,8 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
 template <KeyWord W>
 Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evidence) {
   try {
-    if (!tree_.pruned) detail::prune_all(tree_, options_.parents);
-    if (tree_.levels > detail::KeyBatch::kMostDepth || keys.size() > std::numeric_limits<std::uint32_t>::max()) {
+    if (!tree_->pruned) detail::prune_all(*tree_, options_.parents);
+    if (tree_->levels > detail::KeyBatch::kMostDepth || keys.size() > std::numeric_limits<std::uint32_t>::max()) {
       Editor editor = edit();
       for (const BasicKey<W>& key : keys) editor.update(key, evidence);
       return {};
@@ -376,14 +393,14 @@ Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evi
     detail::KeyBatch batch;
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
       batch.gather(keys);
-      const std::size_t growth = growth_of(tree_, batch, evidence, options_.clamp);
-      if (auto fits = check_limit(bytes_of(tree_) + growth, limit); !fits) return fits;
+      const std::size_t growth = growth_of(*tree_, batch, evidence, options_.clamp);
+      if (auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return fits;
     }
     batch.gather(keys);
-    apply_batch(tree_, rules_of(options_, Pruning::kWhenSettled), batch, evidence);
+    apply_batch(*tree_, rules_of(*tree_, options_, Pruning::kWhenSettled), batch, evidence);
     return {};
   } catch (const std::bad_alloc&) {
-    detail::prune_all(tree_, options_.parents);
+    detail::prune_all(*tree_, options_.parents);
     return fail(Error::Code::kNoMemory, kOutOfMemory);
   }
 }
@@ -396,16 +413,16 @@ Result<void> OccupancyMap::merge(const OccupancyMap& other) {
                     lattice_.resolution_m(), lattice_.depth(), other.lattice_.resolution_m(), other.lattice_.depth()));
   }
   try {
-    detail::BrickTree merged = tree_;
+    detail::BrickTree merged = *tree_;
     merged.root =
-        detail::merged(merged, merged.root, other.tree_, other.tree_.root, 0, options_.parents, options_.clamp);
+        detail::merged(merged, merged.root, *other.tree_, other.tree_->root, 0, options_.parents, options_.clamp);
     merged.shortcut = detail::shortcut_of(merged);
     if (!merged.pruned) detail::prune_all(merged, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0 && bytes_of(merged) > limit) {
       return fail(Error::Code::kLimit,
                   fmt::format("the merged map needs {} bytes, more than its limit of {}", bytes_of(merged), limit));
     }
-    tree_ = std::move(merged);
+    *tree_ = std::move(merged);
     return {};
   } catch (const std::bad_alloc&) {
     return fail(Error::Code::kNoMemory, kOutOfMemory);
@@ -417,17 +434,24 @@ Editor OccupancyMap::edit(Pruning pruning) {
 }
 
 void OccupancyMap::clear() {
-  tree_ = detail::BrickTree(lattice_.depth());
+  const EarlyDrop early_drop = tree_->early_drop;
+  *tree_ = detail::BrickTree(lattice_.depth());
+  tree_->early_drop = early_drop;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 
+struct Editor::Place {
+  // Keys of 64 bits are quicker; deeper lattices need wide ones.
+  std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor;
+};
+
 Editor::Editor(OccupancyMap& map, Pruning pruning)
-    : map_(map), cursor_(cursor_in(map.tree_, rules_of(map.options_, pruning))) {
+    : map_(map), place_(std::make_unique<Place>(cursor_in(*map.tree_, rules_of(*map.tree_, map.options_, pruning)))) {
   if (pruning == Pruning::kNever) {
-    map_.tree_.pruned = false;
-  } else if (!map_.tree_.pruned) {
-    detail::prune_all(map_.tree_, map_.options_.parents);
+    map_.tree_->pruned = false;
+  } else if (!map_.tree_->pruned) {
+    detail::prune_all(*map_.tree_, map_.options_.parents);
   }
 }
 
@@ -438,26 +462,26 @@ Editor::~Editor() {
 
 template <KeyWord W>
 void Editor::update(const BasicKey<W>& key, LogOdds evidence) {
-  if (auto* const cursor = std::get_if<detail::Cursor<std::uint64_t>>(&cursor_)) {
+  if (auto* const cursor = std::get_if<detail::Cursor<std::uint64_t>>(&place_->cursor)) {
     cursor->update(key.template as<std::uint64_t>(), evidence);
   } else {
-    std::get<detail::Cursor<WideWord>>(cursor_).update(key.template as<WideWord>(), evidence);
+    std::get<detail::Cursor<WideWord>>(place_->cursor).update(key.template as<WideWord>(), evidence);
   }
 }
 
 template <KeyWord W>
 void Editor::set(const BasicKey<W>& key, int depth, LogOdds belief) {
   assert(depth >= 0 && depth <= map_.lattice_.depth());
-  const int tree_depth = depth + map_.tree_.extra_levels;
-  if (auto* const cursor = std::get_if<detail::Cursor<std::uint64_t>>(&cursor_)) {
+  const int tree_depth = depth + map_.tree_->extra_levels;
+  if (auto* const cursor = std::get_if<detail::Cursor<std::uint64_t>>(&place_->cursor)) {
     cursor->set(key.template as<std::uint64_t>(), tree_depth, belief.value());
   } else {
-    std::get<detail::Cursor<WideWord>>(cursor_).set(key.template as<WideWord>(), tree_depth, belief.value());
+    std::get<detail::Cursor<WideWord>>(place_->cursor).set(key.template as<WideWord>(), tree_depth, belief.value());
   }
 }
 
 void Editor::synchronize() {
-  std::visit([](auto& cursor) { cursor.flush(); }, cursor_);
+  std::visit([](auto& cursor) { cursor.flush(); }, place_->cursor);
 }
 
 // The five widths, compiled once here.
@@ -477,4 +501,43 @@ PINGVOX_FOR_KEY_WORD(WideWord)
 #undef PINGVOX_FOR_KEY_WORD
 // NOLINTEND(bugprone-macro-parentheses)
 
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+TreeView view_of(const OccupancyMap& map) {
+  const BrickTree& tree = MapAccess::tree(map);
+  return {.root = tree.root,
+          .groups = tree.groups.data(),
+          .bricks = tree.bricks.view(),
+          .group_count = tree.groups.bytes() / sizeof(Group),
+          .brick_count = tree.bricks.bytes() / sizeof(Brick),
+          .extra_levels = tree.extra_levels,
+          .pruned = tree.pruned};
+}
+
+TreeBuilder::TreeBuilder(const MapOptions& options)
+    : options_(std::make_unique<MapOptions>(options)), tree_(std::make_unique<BrickTree>(options.depth)) {
+  assert(options.validate() && options.depth >= 2);
+}
+TreeBuilder::~TreeBuilder() = default;
+
+Entry TreeBuilder::add(const CellStates& cells) {
+  return built(*tree_, cells, options_->clamp, options_->parents);
+}
+
+Entry TreeBuilder::add(const Group& group) {
+  return built(*tree_, group, options_->parents);
+}
+
+std::size_t TreeBuilder::bytes() const {
+  return bytes_of(*tree_);
+}
+
+OccupancyMap TreeBuilder::finish(Entry root) {
+  tree_->root = root;
+  return OccupancyMap(*options_, std::move(tree_));
+}
+
+}  // namespace detail
 }  // namespace pingvox

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "pingvox/map/brick_tree.hpp"
+#include "map/brick_tree.hpp"
 #include "pingvox/map/scan_update.hpp"
 
 namespace pingvox::detail {

@@ -1,4 +1,4 @@
-#include "pingvox/map/pool.hpp"
+#include "map/pool.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,8 +1,8 @@
 #include <array>
 #include <bit>
 
+#include "map/brick_tree.hpp"
 #include "map/page_votes.hpp"
-#include "pingvox/map/brick_tree.hpp"
 
 namespace pingvox::detail {
 namespace {

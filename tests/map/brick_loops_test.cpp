@@ -9,7 +9,7 @@
 #include <random>
 
 #include "map/bits.hpp"
-#include "pingvox/map/brick_tree.hpp"
+#include "map/brick_tree.hpp"
 
 namespace pingvox::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "pingvox/map/brick.hpp"
+#include "map/brick.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

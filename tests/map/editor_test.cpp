@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "map/map_access.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -116,7 +117,8 @@ TEST(Editor, SettingACellReplacesAllThatWasInIt) {
 
 TEST(Editor, AnUpdateThatCannotChangeACellMakesNothing) {
   for (const EarlyDrop early_drop : {EarlyDrop::kOn, EarlyDrop::kOff}) {
-    OccupancyMap map({.early_drop = early_drop});
+    OccupancyMap map;
+    detail::MapAccess::set_early_drop(map, early_drop);
     {
       Editor editor = map.edit();
       editor.set(Key{0, 0, 0}, 3, LogOdds(map.options().clamp.highest));

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "map/map_access.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "support/differences.hpp"
@@ -38,9 +39,10 @@ class RepeatedScans {
         random_(seed),
         edge_(std::min<WideWord>(WideWord{1} << way.depth, 20)),
         corner_(way.depth > 5 ? (WideWord{1} << (way.depth - 1)) - 10 : 0),
-        map_({.resolution_m = 1.0, .depth = way.depth, .parents = way.parents, .early_drop = way.early_drop}),
+        map_({.resolution_m = 1.0, .depth = way.depth, .parents = way.parents}),
         oracle_(way.depth, map_.options().clamp),
         turns_round_(seed % 5 == 0) {
+    detail::MapAccess::set_early_drop(map_, way.early_drop);
     const bool is_flat = seed % 2 == 0;
     for (WideWord x = 0; x < edge_; ++x) {
       for (WideWord y = 0; y < edge_; ++y) {

@@ -9,6 +9,7 @@
 #include "bench/paper/bytes.hpp"
 #include "bench/paper/cube.hpp"
 #include "bench/paper/parents.hpp"
+#include "map/map_access.hpp"
 #include "pingvox/map/compare.hpp"
 
 namespace pingvox::bench {
@@ -84,7 +85,8 @@ TEST(PaperKeys, TheHighestBitPicksTheChildOfTheRoot) {
 }
 
 TEST(PaperDrop, UpdatesDroppedEarlyChangeNoMap) {
-  OccupancyMap on({.early_drop = EarlyDrop::kOn}), off({.early_drop = EarlyDrop::kOff});
+  OccupancyMap on, off;
+  detail::MapAccess::set_early_drop(off, EarlyDrop::kOff);
   std::mt19937_64 random(8);
   {
     Editor with = on.edit(Pruning::kEachUpdate), without = off.edit(Pruning::kEachUpdate);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "differences.hpp"
+#include "map/map_access.hpp"
 #include "oracle_map.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/occupancy_map.hpp"
@@ -59,7 +60,9 @@ class Duel {
         map_(options(depth)),
         oracle_(depth, map_.options().clamp),
         reload_(std::move(reload)),
-        depth_(depth) {}
+        depth_(depth) {
+    detail::MapAccess::set_early_drop(map_, random_() % 2 == 0 ? EarlyDrop::kOn : EarlyDrop::kOff);
+  }
 
   void step() {
     switch (random_() % 13) {
@@ -111,7 +114,6 @@ class Duel {
   MapOptions options(int depth) {
     MapOptions options{.resolution_m = 1.0, .depth = depth};
     options.parents = random_() % 2 == 0 ? Parents::kMax : Parents::kMean;
-    options.early_drop = random_() % 2 == 0 ? EarlyDrop::kOn : EarlyDrop::kOff;
     options.thresholds = {LogOdds(-0.5F), LogOdds(0.5F)};
     return options;
   }

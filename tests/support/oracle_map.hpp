@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/map/brick_tree.hpp"
+#include "map/brick_tree.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 

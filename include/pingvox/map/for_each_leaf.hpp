@@ -79,7 +79,7 @@ template <KeyWord W, class Where, class Visitor>
 class LeafWalk {
  public:
   LeafWalk(const OccupancyMap& map, std::optional<int> max_depth, const Where& where, Visitor& visit)
-      : tree_(map.tree()),
+      : tree_(view_of(map)),
         lattice_depth_(map.lattice().depth()),
         parents_(map.options().parents),
         max_depth_(max_depth),
@@ -145,7 +145,7 @@ class LeafWalk {
     return {with_bit(key.x, 0), with_bit(key.y, 1), with_bit(key.z, 2)};
   }
 
-  const BrickTree& tree_;
+  TreeView tree_;
   int lattice_depth_;
   Parents parents_;
   std::optional<int> max_depth_;
@@ -160,7 +160,7 @@ class LeafWalk {
 template <KeyWord W, class Visitor>
 void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& visit) {
   assert(map.lattice().depth() <= kLevelsOf<W>);
-  const detail::BrickTree& tree = map.tree();
+  const detail::TreeView tree = detail::view_of(map);
   const auto walk = [&]<class Where>(const Where& where) {
     detail::LeafWalk<W, Where, std::remove_reference_t<Visitor>>(map, query.max_depth, where, visit)
         .over(tree.root, BasicKey<W>{}, -tree.extra_levels);

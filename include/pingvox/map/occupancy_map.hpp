@@ -3,14 +3,14 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
-#include <variant>
 
 #include "pingvox/geometry/key.hpp"
 #include "pingvox/geometry/lattice.hpp"
-#include "pingvox/map/brick_tree.hpp"
 #include "pingvox/map/log_odds.hpp"
+#include "pingvox/map/tree_view.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -18,13 +18,16 @@ namespace pingvox {
 class ScanUpdate;
 class Editor;
 
+namespace detail {
+struct MapAccess;
+}
+
 struct MapOptions {
   double resolution_m = 0.05;  ///< edge of a cell of the finest resolution, > 0
   int depth = Lattice::kDefaultDepth;
   Clamp clamp{};
   Thresholds thresholds{};  ///< what counts as occupied and as free
   Parents parents = Parents::kMax;
-  EarlyDrop early_drop = EarlyDrop::kOn;
   std::size_t memory_limit_bytes = 0;  ///< for what `memory_bytes` counts; 0: none
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
@@ -55,12 +58,16 @@ class OccupancyMap {
   static Result<OccupancyMap> make(const MapOptions& options);
   /// REQUIRES options that validate.
   explicit OccupancyMap(const MapOptions& options = {});
-  /// For readers. REQUIRES a tree of options.depth levels whose parents are right and whose equal leaves are joined.
-  OccupancyMap(const MapOptions& options, detail::BrickTree tree);
+  OccupancyMap(const OccupancyMap& other);
+  OccupancyMap& operator=(const OccupancyMap& other);
+  /// A map that was moved from may only be destroyed, or be given another one.
+  OccupancyMap(OccupancyMap&& other) noexcept;
+  OccupancyMap& operator=(OccupancyMap&& other) noexcept;
+  ~OccupancyMap();
 
   const Lattice& lattice() const { return lattice_; }
   const MapOptions& options() const { return options_; }
-  bool empty() const { return tree_.root.link == detail::Entry::kNone; }
+  bool empty() const;
 
   /// Belief about a cell of the finest resolution; nullopt: never observed, which is not log-odds 0.
   /// REQUIRES a key below 2^depth in each component.
@@ -110,14 +117,16 @@ class OccupancyMap {
   /// Forgets everything and gives the storage back.
   void clear();
 
-  /// The storage, for those parts of the library that go over whole bricks.
-  const detail::BrickTree& tree() const { return tree_; }
-
  private:
   friend class Editor;
+  friend class detail::TreeBuilder;
+  friend struct detail::MapAccess;
+  /// REQUIRES a tree of options.depth levels whose parents are right and whose equal leaves are joined.
+  OccupancyMap(const MapOptions& options, std::unique_ptr<detail::BrickTree> tree);
+
   MapOptions options_;
   Lattice lattice_;
-  detail::BrickTree tree_;
+  std::unique_ptr<detail::BrickTree> tree_;
 };
 
 /// Changes single cells. Inner nodes may be stale between `synchronize` calls, as `Pruning` says, and stay so in copies
@@ -144,8 +153,8 @@ class Editor {
 
  private:
   OccupancyMap& map_;
-  // Keys of 64 bits are quicker; deeper lattices need wide ones.
-  std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor_;
+  struct Place;
+  std::unique_ptr<Place> place_;  ///< in the tree
 };
 
 }  // namespace pingvox

@@ -88,6 +88,9 @@ class Pool {
     return reinterpret_cast<const T*>(arena_.data())[index];
   }
 
+  /// The records by index; the first kFirst are none.
+  const T* data() const { return reinterpret_cast<const T*>(arena_.data()); }
+
   /// A new record with this content. Throws std::bad_alloc.
   std::uint32_t allocate(const T& content) {
     std::uint32_t index = free_;

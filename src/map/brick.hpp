@@ -4,37 +4,19 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "map/pool.hpp"
 #include "pingvox/geometry/key.hpp"
-#include "pingvox/map/pool.hpp"
+#include "pingvox/map/tree_view.hpp"
 
 namespace pingvox::detail {
-
-/// What is believed of the cells of a brick, as log-odds. That of an unknown cell is 0.
-using CellValues = std::array<float, 64>;
-
-/// The bottom two levels: 4 x 4 x 4 cells. Cell o * 8 + i is child i of octant o, so that each octant is a byte of the
-/// mask.
-struct Brick {
-  std::uint64_t known = 0;
-  CellValues value{};
-};
 
 /// A brick to be written to, by itself or in a tree.
 struct BrickRef {
   BrickRef(Brick& brick) : known(brick.known), value(brick.value) {}
   BrickRef(std::uint64_t& known_cells, CellValues& values) : known(known_cells), value(values) {}
+  operator BrickView() const { return {known, value}; }
   std::uint64_t& known;
   CellValues& value;
-};
-
-/// A brick to be read, by itself or in a tree.
-struct BrickView {
-  BrickView(const Brick& brick) : known(brick.known), value(brick.value) {}
-  BrickView(const BrickRef& brick) : known(brick.known), value(brick.value) {}
-  BrickView(const std::uint64_t& known_cells, const CellValues& values) : known(known_cells), value(values) {}
-  operator Brick() const { return {known, value}; }
-  const std::uint64_t& known;
-  const CellValues& value;
 };
 
 /// Bricks by index. Which of their cells are known lies apart, close together: that alone answers much, and the values
@@ -60,6 +42,8 @@ class BrickPool {
     value_.release(index);
   }
 
+  /// All of them, to be read by index.
+  TreeView::Bricks view() const { return {known_.data(), value_.data()}; }
   /// Bricks that `allocate` would hand out without growing.
   std::size_t spare() const { return value_.spare(); }
   /// Bytes of bricks that were ever handed out.
@@ -70,13 +54,6 @@ class BrickPool {
   Pool<std::uint64_t> known_;
   Pool<CellValues> value_;
 };
-
-/// Asks for a brick from memory.
-inline void fetch(BrickView brick) {
-  constexpr std::size_t kInLine = 64 / sizeof(float);
-  __builtin_prefetch(&brick.known);
-  for (std::size_t cell = 0; cell < brick.value.size(); cell += kInLine) __builtin_prefetch(&brick.value[cell]);
-}
 
 /// Number of a cell in its brick.
 template <KeyWord W>

@@ -8,52 +8,19 @@
 #include <optional>
 #include <utility>
 
+#include "map/brick.hpp"
+#include "map/pool.hpp"
 #include "pingvox/geometry/key.hpp"
-#include "pingvox/map/brick.hpp"
 #include "pingvox/map/log_odds.hpp"
-#include "pingvox/map/pool.hpp"
+#include "pingvox/map/tree_view.hpp"
 
 namespace pingvox {
-
-/// What an inner node says of its children (paper, section 5.3.1).
-enum class Parents {
-  kMax,   ///< the largest log-odds below: careful, a planner that looks at inner nodes misses no obstacle
-  kMean,  ///< the mean log-odds of the children that are known: the least error
-};
-
-/// When eight equal leaves become one.
-enum class Pruning {
-  kEachUpdate,   ///< at once, and parents are right after each update (paper: "w/ pruning")
-  kWhenSettled,  ///< parents and pruning wait for `synchronize` (paper: "lazy evaluation")
-  kNever,        ///< parents wait for `synchronize`, nothing is joined (paper: "wo/ pruning")
-};
 
 /// Whether an update that cannot change a cell is dropped before anything above the cell is touched (paper, section
 /// 5.3). The map is the same either way.
 enum class EarlyDrop { kOn, kOff };
 
 namespace detail {
-
-/// A node above the bricks, as its parent holds it.
-struct Entry {
-  static constexpr std::uint32_t kNone = 0;  ///< nothing is known below; value is 0
-  static constexpr std::uint32_t kLeaf = 1;  ///< value holds for the whole cell
-  std::uint32_t link = kNone;                ///< else: index of its Group, or at brick level of its Brick
-  /// Of an inner node: what it says of its children. At brick level, whenever a map can be read, a maximum is never
-  /// less than the values below, also where an editor has not settled it yet: writers trust that.
-  float value = 0.0F;
-
-  static Entry leaf(float value) { return {kLeaf, value}; }
-  bool is_none() const { return link == kNone; }
-  bool is_leaf() const { return link == kLeaf; }
-  bool is_inner() const { return link > kLeaf; }
-  friend bool operator==(const Entry&, const Entry&) = default;
-};
-
-/// The eight children of an inner node, in one cache line. Child o is octant o (bit 0 x, bit 1 y, bit 2 z).
-struct alignas(64) Group {
-  std::array<Entry, 8> child;
-};
 
 /// Where look-ups start: eight nodes of one size, side by side, that hold all that is known. A map fits into eight that
 /// are as wide as it is or wider, wherever it lies, and hardly anything forks between the root and them.
@@ -85,6 +52,7 @@ struct BrickTree {
       : levels(other.levels),
         extra_levels(other.extra_levels),
         pruned(std::exchange(other.pruned, true)),
+        early_drop(other.early_drop),
         root(std::exchange(other.root, {})),
         shortcut(std::exchange(other.shortcut, std::nullopt)),
         groups(std::move(other.groups)),
@@ -93,6 +61,7 @@ struct BrickTree {
     levels = other.levels;
     extra_levels = other.extra_levels;
     pruned = std::exchange(other.pruned, true);
+    early_drop = other.early_drop;
     root = std::exchange(other.root, {});
     shortcut = std::exchange(other.shortcut, std::nullopt);
     groups = std::move(other.groups);
@@ -106,6 +75,7 @@ struct BrickTree {
   /// Whether equal siblings are joined everywhere. Not so after an editor with Pruning::kNever: then the octants of
   /// bricks are not to be read as joined either.
   bool pruned = true;
+  EarlyDrop early_drop = EarlyDrop::kOn;
   Entry root;
   /// Always right: it is dropped when a link at or above its nodes changes, and made again when that is settled.
   std::optional<Shortcut> shortcut;
@@ -123,26 +93,14 @@ struct BrickTree {
   }
 };
 
-/// Asks for the bricks below a group: they lie anywhere, and are there when a walk over them comes to the next one.
-inline void fetch_bricks(const BrickTree& tree, const Group& group) {
-  for (const Entry& child : group.child) {
-    if (child.is_inner()) fetch(tree.bricks[child.link]);
-  }
-}
-
 /// What a group says of its children. REQUIRES at least one known child.
 float summary_of(const Group& group, Parents parents);
-/// What an octant of a brick says of its cells. REQUIRES a known cell in it.
-float summary_of_octant(BrickView brick, int octant, Parents parents);
 /// What a brick says of its octants. REQUIRES a known cell.
 float summary_of(BrickView brick, Parents parents);
 /// All eight leaves, and equal.
 bool is_uniform(const Group& group);
 /// All cells known, and equal.
 bool is_uniform(BrickView brick);
-/// The cells of those octants of which all cells are known, and equal.
-std::uint64_t cells_of_uniform_octants(BrickView brick);
-
 /// Evidence for the cells of one brick: `miss` where a bit of `missed` is set; where bit i of `hit` is set hits[i], or
 /// `all_hits` when there are none. REQUIRES missed and hit to be disjoint.
 struct Votes {
@@ -162,12 +120,6 @@ std::optional<LogOdds> for_all_cells(const Votes& votes);
 Brick brick_of(Entry entry);
 /// The same for a group.
 Group group_of(Entry entry);
-
-/// Which cells of a brick are what. Those in neither mask are unknown, or in between the thresholds.
-struct CellStates {
-  std::uint64_t free = 0, occupied = 0;
-};
-CellStates classified(BrickView brick, const Thresholds& thresholds);
 
 /// For readers that build a tree from below: the entry for what they put together, which is stored unless that is
 /// uniform, or nothing is known in it. Throws std::bad_alloc.
@@ -269,33 +221,5 @@ class Cursor {
 };
 
 }  // namespace detail
-
-/// A node of a const map, to walk over: a small value, valid as long as the map is not changed.
-class NodeView {
- public:
-  /// Depth below the root of the lattice.
-  int depth() const { return depth_ - tree_->extra_levels; }
-  /// Of an inner node: what it says of its children (Parents).
-  LogOdds belief() const { return LogOdds(value_); }
-  bool is_leaf() const { return kind_ == Kind::kLeaf; }
-  /// Child in octant 0..7 (bit 0 x, bit 1 y, bit 2 z); nullopt: nothing is known there, or this is a leaf.
-  std::optional<NodeView> child(int octant) const;
-
-  /// The node of an entry at `depth` of the tree's levels; nullopt when nothing is known there.
-  static std::optional<NodeView> of(const detail::BrickTree& tree, detail::Entry entry, int depth, Parents parents);
-
- private:
-  enum class Kind : std::uint8_t { kLeaf, kGroup, kBrick, kOctant };
-  NodeView(const detail::BrickTree& tree, Kind kind, int depth, Parents parents, std::uint32_t index, float value)
-      : tree_(&tree), index_(index), value_(value), depth_(depth), kind_(kind), parents_(parents) {}
-
-  const detail::BrickTree* tree_;
-  std::uint32_t index_;  ///< of the group or brick
-  float value_;
-  int depth_;  ///< in the tree's levels
-  Kind kind_;
-  Parents parents_;
-  std::uint8_t octant_ = 0;  ///< kOctant: which of the brick's
-};
 
 }  // namespace pingvox
