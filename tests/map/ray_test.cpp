@@ -1,15 +1,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <set>
+#include <tuple>
 
 #include "pingvox/map/ray_bresenham.hpp"
 #include "pingvox/map/ray_dda.hpp"
+#include "pingvox/map/scan_update.hpp"
+#include "pingvox/map/trace_ray.hpp"
 #include "support/differences.hpp"
 #include "support/drawn.hpp"
 #include "support/exact_segment.hpp"
 #include "support/oracle_map.hpp"
+#include "support/scan_cells.hpp"
 
 using namespace pingvox;
 using test::drawn;
@@ -251,6 +256,31 @@ TEST(Dda, RefusesWalksThatWouldNeverEndAndEndsThatAreNoPoints) {
   EXPECT_FALSE(dda<WideWord>(deep, {0.0, 0.0, 0.0}, {1e30, 0.0, 0.0}));
   EXPECT_FALSE(dda<WideWord>(deep, {0.0, 0.0, 0.0}, {std::nan(""), 0.0, 0.0}));
   EXPECT_TRUE(dda<WideWord>(deep, {1e30, 0.0, 0.0}, {1e30, 0.0, 0.0}));
+}
+
+TEST(TraceRay, MarksTheCellsThatTheDdaWalksOver) {
+  std::size_t marked = 0;
+  // Up to 21 levels rays are walked by numbers in the tree's order; long ones and deeper lattices key by key.
+  for (const auto& [depth, reach, count] : std::vector<std::tuple<int, std::int64_t, int>>{
+           {3, 3, 2'000}, {8, 100, 2'000}, {16, 400, 500}, {16, 30'000, 3}, {21, 1'000, 100}, {22, 300, 100}}) {
+    const Lattice lattice(0.25, depth);
+    Segments segments(static_cast<std::uint64_t>(depth), reach);
+    ScanUpdate scan(lattice);
+    for (int i = 0; i < count; ++i) {
+      SCOPED_TRACE(testing::Message() << depth << " levels, reach " << reach << ", segment " << i);
+      const auto [from, to] = segments.next();
+      const Eigen::Vector3d from_m = metres(from, 0.25), to_m = metres(to, 0.25);
+      std::map<WideKey, bool> walked;
+      const auto ray = dda<WideWord>(lattice, from_m, to_m);
+      ASSERT_TRUE(ray);
+      for (const WideKey& key : *ray) walked.emplace(key, false);
+      scan.clear();
+      ASSERT_TRUE(trace_ray(from_m, to_m, RayAlgorithm::kDda, scan));
+      ASSERT_TRUE(test::cells_of(scan) == walked);
+      marked += walked.size();
+    }
+  }
+  EXPECT_GT(marked, 400'000U);
 }
 
 TEST(Bresenham, ShallowRayLeavesItsEndCellOut) {

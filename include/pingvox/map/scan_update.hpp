@@ -57,8 +57,9 @@ class ScanUpdate {
 
   /// For tracers that stay in a page for many cells: its index, made if it is not there.
   std::uint32_t page_of(const WideKey& key) {
-    const auto place = [](WideWord word) { return static_cast<std::size_t>(word >> kPageBits) & 3U; };
-    std::uint32_t& recent = recent_[place(key.x) | place(key.y) << 2 | place(key.z) << 4];
+    const auto page = [](WideWord word) { return static_cast<std::size_t>(word >> kPageBits); };
+    const std::size_t x = page(key.x) ^ page(key.z) << 2, y = page(key.y) ^ page(key.z);
+    std::uint32_t& recent = recent_[(x & 15U) | (y & 15U) << 4];
     if (recent >= used_ || !is_in(pages_[recent], key)) recent = page_at(key);
     return recent;
   }
@@ -136,7 +137,7 @@ class ScanUpdate {
   bool has_hits_ = false;
   LogOdds usual_hit_{};  ///< of the first hit: most scans have no other
   /// Pages that were asked for, by the lowest bits of their place: neighbours are asked for again and again.
-  std::array<std::uint32_t, 64> recent_{};
+  std::array<std::uint32_t, 256> recent_{};
   std::vector<std::uint32_t> slots_;  ///< open addressing by lowest cell: index of the page + 1, 0 is free
   std::size_t hashed_ = 0;            ///< the first so many pages are in slots_: the others when one is looked up
 };
