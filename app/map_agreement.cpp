@@ -21,8 +21,8 @@ class Walk {
   void visit(const std::optional<NodeView>& a, const std::optional<NodeView>& b, int depth) {
     if (!a && !b) return;
     if ((!a || a->is_leaf()) && (!b || b->is_leaf())) {
-      count(a ? classified(a->belief(), a_) : Occupancy::kUnknown,
-            b ? classified(b->belief(), b_) : Occupancy::kUnknown, depth);
+      count(a ? classify(a->belief(), a_) : Occupancy::kUnknown, b ? classify(b->belief(), b_) : Occupancy::kUnknown,
+            depth);
       return;
     }
     for (int octant = 0; octant < 8; ++octant) visit(part(a, octant), part(b, octant), depth + 1);
@@ -73,7 +73,7 @@ template <KeyWord W>
 std::uint64_t near_cells(const OccupancyMap& of, const OccupancyMap& to) {
   std::uint64_t near = 0;
   for_each_leaf<W>(of, {}, [&](const Leaf<W>& leaf) {
-    if (classified(leaf.belief, of.options().thresholds) != Occupancy::kOccupied) return;
+    if (classify(leaf.belief, of.options().thresholds) != Occupancy::kOccupied) return;
     const WideWord edge = WideWord{1} << (of.lattice().depth() - leaf.depth);
     for (WideWord x = 0; x < edge; ++x) {
       for (WideWord y = 0; y < edge; ++y) {

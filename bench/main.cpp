@@ -66,7 +66,7 @@ std::vector<std::string> known_words() {
 }
 
 /// kBadOption when the usage is invalid.
-Result<Call> parsed(const std::vector<std::string>& words) {
+Result<Call> parse(const std::vector<std::string>& words) {
   Call call;
   call.options.say = &say;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -147,12 +147,12 @@ int run(const Call& call) {
   return status;
 }
 
-int called_with(const std::vector<std::string>& words) {
+int run(const std::vector<std::string>& words) {
   if (const auto limited = app::limit_vectors(); !limited) {
     complain(limited.error().message);
     return kInvalidUsage;
   }
-  const Result<Call> call = parsed(words);
+  const Result<Call> call = parse(words);
   if (!call) {
     complain(call.error().message);
     return kInvalidUsage;
@@ -168,7 +168,7 @@ int called_with(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
   try {
-    return called_with({argv + 1, argv + argc});
+    return run({argv + 1, argv + argc});
   } catch (const std::exception& exception) {
     complain(exception.what());
     return kCouldNotBeDone;

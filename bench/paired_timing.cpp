@@ -29,7 +29,7 @@ void tidy_heap() {
   }
 }
 
-double timed(const Side& side, int times, double (*clock_s)()) {
+double time_side(const Side& side, int times, double (*clock_s)()) {
   if (side.prepare) side.prepare();
   tidy_heap();
   const double started = clock_s();
@@ -110,14 +110,14 @@ double median(std::vector<double> values) {
 PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTimingOptions& options) {
   const auto times_for = [&](const Side& side) {
     if (options.warm_up == WarmUp::kNone) return 1;
-    const double once = timed(side, 1, options.clock_s);
+    const double once = time_side(side, 1, options.clock_s);
     return std::clamp(static_cast<int>(std::ceil(options.min_s / std::max(once, 1e-7))), 1, 100'000);
   };
   const int ours_times = times_for(ours), peer_times = times_for(peer);
   std::vector<double> ours_s, peer_s, ratios;
   for (int pair = 0; pair < options.pairs; ++pair) {
-    ours_s.push_back(timed(ours, ours_times, options.clock_s));
-    peer_s.push_back(timed(peer, peer_times, options.clock_s));
+    ours_s.push_back(time_side(ours, ours_times, options.clock_s));
+    peer_s.push_back(time_side(peer, peer_times, options.clock_s));
     ratios.push_back(peer_s.back() / ours_s.back());
   }
   const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());

@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   near.box = Box{{-2.0, -2.0, -2.0}, {2.0, 2.0, 2.0}};
   std::size_t occupied = 0;
   for_each_leaf<WideWord>(map, near, [&](const Leaf<WideWord>& leaf) {
-    if (classified(leaf.belief, map.options().thresholds) == Occupancy::kOccupied) ++occupied;
+    if (classify(leaf.belief, map.options().thresholds) == Occupancy::kOccupied) ++occupied;
   });
   std::printf("within 2 m: %zu occupied leaves\n", occupied);
 }

@@ -33,7 +33,7 @@ struct Finder {
 };
 
 Echoes found(const Recording& recording, const Finder& finder) {
-  Echoes echoes = detected(recording, finder.filter, finder.echo);
+  Echoes echoes = detect(recording, finder.filter, finder.echo);
   if (finder.range == RangeFrom::kCrest) return echoes;
   return at_first_bins(std::move(echoes), recording.sonar.bin_length_m);
 }
@@ -186,12 +186,12 @@ class Measurement {
   void echoes(std::vector<Row>& rows) const {
     const EchoJudge judge{recording_.sonar.bin_length_m, kBlanking_m, recording_.sonar.range_m()};
     for (const Finder& finder : finders()) {
-      rows.push_back(echo_row(recording_, finder, judged(found(recording_, finder), truths_, judge)));
+      rows.push_back(echo_row(recording_, finder, score_echoes(found(recording_, finder), truths_, judge)));
     }
   }
 
   Result<void> maps(std::vector<Row>& rows) const {
-    const std::vector<Eigen::Vector3d> in_plane_m = seen_in_plane_m(recording_, kBlanking_m);
+    const std::vector<Eigen::Vector3d> in_plane_m = points_in_plane_m(recording_, kBlanking_m);
     for (const double resolution_m : plan_.plane_m) {
       if (auto done = maps(Extent::kPlane, resolution_m, in_plane_m, rows); !done) return done;
     }
@@ -228,12 +228,12 @@ class Measurement {
         BeamModelOptions model;
         model.shape = shape;
         const double before_s = cpu_time_s();
-        const Result<OccupancyMap> map = mapped(recording_, echoes, model, resolution_m);
+        const Result<OccupancyMap> map = map_echoes(recording_, echoes, model, resolution_m);
         if (!map) return tl::unexpected(map.error());
         const double seconds = cpu_time_s() - before_s;
         const Thresholds sure{.lower = LogOdds(0.0F), .upper = LogOdds::from_probability(0.7)};
-        rows.push_back(map_row(recording_, {extent, name, beam, resolution_m}, world->judged(*map),
-                               world->judged(*map, sure), seconds));
+        rows.push_back(map_row(recording_, {extent, name, beam, resolution_m}, world->score(*map),
+                               world->score(*map, sure), seconds));
       }
     }
     return {};
@@ -251,7 +251,7 @@ Result<std::vector<Row>> accuracy(const BenchOptions& options) {
   std::vector<Row> rows, map_rows;
   const std::vector<Plan> all = plans();
   for (const Plan& plan : all) {
-    Result<Recording> recording = recorded(plan.recording);
+    Result<Recording> recording = record(plan.recording);
     if (!recording) return tl::unexpected(recording.error());
     const Measurement measurement(plan, options, *std::move(recording));
     measurement.echoes(rows);

@@ -38,7 +38,7 @@ CellGrid::Cell CellBox::cell_of(const Eigen::Vector3d& point_m) const {
   return {key->x - low_[0], key->y - low_[1], key->z - low_[2]};
 }
 
-CellGrid CellBox::marked(const std::vector<Eigen::Vector3d>& points_m) const {
+CellGrid CellBox::mark(const std::vector<Eigen::Vector3d>& points_m) const {
   constexpr double kHair_m = 1e-9;
   CellGrid grid(size());
   for (const Eigen::Vector3d& point : points_m) {
@@ -56,7 +56,7 @@ CellGrid CellBox::classes_of(const OccupancyMap& map, const Thresholds& threshol
   };
   const LeafQuery query{.max_depth = {}, .box = Box{middle_of(low_), middle_of(high_)}};
   for_each_leaf<std::uint16_t>(map, query, [&](const Leaf<std::uint16_t>& leaf) {
-    const Occupancy kind = classified(leaf.belief, thresholds);
+    const Occupancy kind = classify(leaf.belief, thresholds);
     const std::int64_t edge = std::int64_t{1} << (lattice_.depth() - leaf.depth);
     const CellGrid::Cell corner = {leaf.key.x, leaf.key.y, leaf.key.z};
     CellGrid::Cell first{}, last{};

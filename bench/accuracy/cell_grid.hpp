@@ -60,7 +60,7 @@ class CellBox {
   CellGrid::Cell cell_of(const Eigen::Vector3d& point_m) const;
   /// kOccupied where a point lies, else kUnknown. A point in the face between two cells belongs to the upper one, with
   /// what rounding puts a hair below it.
-  CellGrid marked(const std::vector<Eigen::Vector3d>& points_m) const;
+  CellGrid mark(const std::vector<Eigen::Vector3d>& points_m) const;
   /// What a map of this lattice says of the cells, by its own thresholds or by others.
   CellGrid classes_of(const OccupancyMap& map) const { return classes_of(map, map.options().thresholds); }
   CellGrid classes_of(const OccupancyMap& map, const Thresholds& thresholds) const;

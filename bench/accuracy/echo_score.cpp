@@ -37,14 +37,14 @@ double share_within_5cm(const std::vector<Span>& returns, const EchoJudge& judge
     wider.push_back({std::max(span.first_m - 0.05, judge.min_range_m), std::min(span.last_m + 0.05, judge.range_m)});
   }
   double covered = 0.0;
-  for (const Span& span : joined(std::move(wider))) covered += span.last_m - span.first_m;
+  for (const Span& span : join(std::move(wider))) covered += span.last_m - span.first_m;
   return covered / (judge.range_m - judge.min_range_m);
 }
 
 }  // namespace
 
-EchoScore judged(std::span<const std::optional<Echo>> echoes, std::span<const TrueReturns> truths,
-                 const EchoJudge& judge) {
+EchoScore score_echoes(std::span<const std::optional<Echo>> echoes, std::span<const TrueReturns> truths,
+                       const EchoJudge& judge) {
   assert(echoes.size() == truths.size());
   EchoScore score;
   for (std::size_t n = 0; n < echoes.size(); ++n) {

@@ -41,7 +41,7 @@ struct EchoScore {
 };
 
 /// One optional echo for each beam of a truth. REQUIRES as many of each.
-EchoScore judged(std::span<const std::optional<Echo>> echoes, std::span<const TrueReturns> truths,
-                 const EchoJudge& judge);
+EchoScore score_echoes(std::span<const std::optional<Echo>> echoes, std::span<const TrueReturns> truths,
+                       const EchoJudge& judge);
 
 }  // namespace pingvox::bench

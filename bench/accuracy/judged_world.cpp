@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr double kBehind_m = 3.0;  ///< of what is behind a wall
 
 /// The world with what is behind its walls, as far as it has some.
-AlignedBox3d judged_box_of(const Recording& recording) {
+AlignedBox3d box_to_judge(const Recording& recording) {
   const std::string_view world = recording.options.world;
   const bool has_bottom = world != "tank", has_lid = world == "cave", has_sides = world != "seabed";
   AlignedBox3d box = recording.scene.water_m;
@@ -45,17 +45,17 @@ Result<JudgedWorld> JudgedWorld::make(const Recording& recording, Extent extent,
   const Vector3d inside_m = recording.pings.front().map_from_sensor.translation();
   const Result<OccupancyMap> truth = app::world_map(recording.scene.world, water, inside_m, resolution_m);
   if (!truth) return tl::unexpected(truth.error());
-  const AlignedBox3d judged_m = judged_box_of(recording);
+  const AlignedBox3d judged_m = box_to_judge(recording);
   const CellBox box =
       extent == Extent::kPlane ? CellBox::layer(truth->lattice(), judged_m, 0.0) : CellBox(truth->lattice(), judged_m);
-  return JudgedWorld(box, box.classes_of(*truth), box.marked(visible_m));
+  return JudgedWorld(box, box.classes_of(*truth), box.mark(visible_m));
 }
 
-MapScore JudgedWorld::judged(const OccupancyMap& map, const Thresholds& thresholds) const {
-  return bench::judged(box_.classes_of(map, thresholds), truth_, visible_);
+MapScore JudgedWorld::score(const OccupancyMap& map, const Thresholds& thresholds) const {
+  return score_map(box_.classes_of(map, thresholds), truth_, visible_);
 }
 
-Echoes detected(const Recording& recording, const FilterOptions& filter, const EchoOptions& options) {
+Echoes detect(const Recording& recording, const FilterOptions& filter, const EchoOptions& options) {
   Echoes all;
   for (const Sweep& sweep : recording.sweeps) {
     const Echoes echoes = detect_echoes(filtered(PolarImage(sweep), filter), sweep, options);
@@ -84,8 +84,8 @@ Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& t
   return echoes;
 }
 
-Result<OccupancyMap> mapped(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,
-                            double resolution_m) {
+Result<OccupancyMap> map_echoes(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,
+                                double resolution_m) {
   OccupancyMap map(MapOptions{.resolution_m = resolution_m});
   ScanUpdate scan(map.lattice());
   std::size_t n = 0;

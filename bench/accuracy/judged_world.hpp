@@ -31,8 +31,8 @@ class JudgedWorld {
                                   const std::vector<Eigen::Vector3d>& visible_m);
 
   /// REQUIRES a map of this resolution and 16 levels.
-  MapScore judged(const OccupancyMap& map) const { return judged(map, map.options().thresholds); }
-  MapScore judged(const OccupancyMap& map, const Thresholds& thresholds) const;
+  MapScore score(const OccupancyMap& map) const { return score(map, map.options().thresholds); }
+  MapScore score(const OccupancyMap& map, const Thresholds& thresholds) const;
   const CellBox& box() const { return box_; }
   const CellGrid& truth() const { return truth_; }
   const CellGrid& visible() const { return visible_; }
@@ -47,7 +47,7 @@ class JudgedWorld {
 /// One optional echo for each beam of a recording, in order.
 using Echoes = std::vector<std::optional<Echo>>;
 
-Echoes detected(const Recording& recording, const FilterOptions& filter, const EchoOptions& options);
+Echoes detect(const Recording& recording, const FilterOptions& filter, const EchoOptions& options);
 
 /// The same echoes, each taken to be in the middle of its first bin, as in the paper.
 Echoes at_first_bins(Echoes echoes, double bin_length_m);
@@ -56,7 +56,7 @@ Echoes at_first_bins(Echoes echoes, double bin_length_m);
 Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double min_range_m);
 
 /// The map of given echoes: what build_map makes of them. @return kLimit when it would grow too large
-Result<OccupancyMap> mapped(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,
-                            double resolution_m);
+Result<OccupancyMap> map_echoes(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,
+                                double resolution_m);
 
 }  // namespace pingvox::bench

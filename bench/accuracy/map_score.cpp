@@ -25,7 +25,7 @@ double MapScore::free_share_near() const {
   return share(free_near, free);
 }
 
-MapScore judged(const CellGrid& map, const CellGrid& truth, const CellGrid& visible) {
+MapScore score_map(const CellGrid& map, const CellGrid& truth, const CellGrid& visible) {
   assert(map.size() == truth.size() && map.size() == visible.size());
   MapScore score;
   map.for_each([&](const CellGrid::Cell& cell) {

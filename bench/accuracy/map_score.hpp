@@ -23,6 +23,6 @@ struct MapScore {
 };
 
 /// `visible` says kOccupied where a surface could be seen. REQUIRES grids of one size.
-MapScore judged(const CellGrid& map, const CellGrid& truth, const CellGrid& visible);
+MapScore score_map(const CellGrid& map, const CellGrid& truth, const CellGrid& visible);
 
 }  // namespace pingvox::bench

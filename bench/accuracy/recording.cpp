@@ -10,7 +10,7 @@
 namespace pingvox::bench {
 namespace {
 
-Result<Scene> scene_named(std::string_view world) {
+Result<Scene> find_scene(std::string_view world) {
   if (world == "tank") return tank_scene({});
   if (world == "harbour") return harbour_scene({});
   if (world == "harbour, no hull") return harbour_scene({.hull_length_m = 0.0});
@@ -20,7 +20,7 @@ Result<Scene> scene_named(std::string_view world) {
 }
 
 /// The same way, now and then higher and lower.
-Trajectory heaving(const Trajectory& way, double heave_m) {
+Trajectory add_heave(const Trajectory& way, double heave_m) {
   constexpr double kTimes = 5.0;
   std::vector<StampedPose> poses = way.poses();
   const double duration_s = poses.back().time_s - poses.front().time_s;
@@ -37,13 +37,13 @@ Trajectory way_of(const RecordingOptions& options, const Scene& scene, const Son
   const double duration_s =
       static_cast<double>(options.turns) * static_cast<double>(sonar.beams_per_turn) / sonar.beams_per_s;
   const Trajectory way = travelled(*route, duration_s, {.speed_m_s = options.speed_m_s});
-  return options.heave_m > 0.0 ? heaving(way, options.heave_m) : way;
+  return options.heave_m > 0.0 ? add_heave(way, options.heave_m) : way;
 }
 
 }  // namespace
 
-Result<Recording> recorded(const RecordingOptions& options) {
-  Result<Scene> scene = scene_named(options.world);
+Result<Recording> record(const RecordingOptions& options) {
+  Result<Scene> scene = find_scene(options.world);
   if (!scene) return tl::unexpected(scene.error());
   Recording recording{.options = options, .scene = *std::move(scene), .sonar = {}, .sweeps = {}, .pings = {}};
   SonarOptions& sonar = recording.sonar;

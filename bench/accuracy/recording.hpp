@@ -32,6 +32,6 @@ struct Recording {
 };
 
 /// @return kBadOption when there is no such world
-Result<Recording> recorded(const RecordingOptions& options);
+Result<Recording> record(const RecordingOptions& options);
 
 }  // namespace pingvox::bench

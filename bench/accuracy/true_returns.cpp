@@ -67,8 +67,8 @@ TrueReturns returns_of(const World& world, const SonarSimulator::Ping& ping, con
   for_each_return(world, ping, lobe, sonar.range_m(), [&](const Vector3d&, double range_m, double half_m) {
     truth.lobe.push_back({range_m - half_m, range_m + half_m});
   });
-  truth.returns = joined(std::move(truth.returns));
-  truth.lobe = joined(std::move(truth.lobe));
+  truth.returns = join(std::move(truth.returns));
+  truth.lobe = join(std::move(truth.lobe));
   return truth;
 }
 
@@ -83,7 +83,7 @@ std::optional<double> off_m(double range_m, const std::vector<Span>& spans) {
   return nearest;
 }
 
-std::vector<Span> joined(std::vector<Span> spans) {
+std::vector<Span> join(std::vector<Span> spans) {
   std::ranges::sort(spans, {}, &Span::first_m);
   std::vector<Span> apart;
   for (const Span& span : spans) {
@@ -112,7 +112,7 @@ std::vector<TrueReturns> true_returns(const Recording& recording) {
   return truths;
 }
 
-std::vector<Vector3d> seen_in_plane_m(const Recording& recording, double min_range_m) {
+std::vector<Vector3d> points_in_plane_m(const Recording& recording, double min_range_m) {
   constexpr int kRays = 16;  // to a step
   const double step = 2.0 * std::numbers::pi / static_cast<double>(recording.sonar.beams_per_turn);
   const bool stands_still = recording.options.motion == Motion::kStill;

@@ -31,13 +31,13 @@ struct TrueReturns {
 std::optional<double> off_m(double range_m, const std::vector<Span>& spans);
 
 /// Joins spans that overlap or touch.
-std::vector<Span> joined(std::vector<Span> spans);
+std::vector<Span> join(std::vector<Span> spans);
 
 /// What is true of each ping of a recording.
 std::vector<TrueReturns> true_returns(const Recording& recording);
 
 /// Where rays in the plane of the head first meet a surface, from each ping's bearing half a step to either side
 /// [m, map frame]: all that lies in line of sight and in range, as far as the head's steps leave no gap.
-std::vector<Eigen::Vector3d> seen_in_plane_m(const Recording& recording, double min_range_m);
+std::vector<Eigen::Vector3d> points_in_plane_m(const Recording& recording, double min_range_m);
 
 }  // namespace pingvox::bench

@@ -84,10 +84,10 @@ int best_threshold(RightAt&& right_at) {
 }
 
 /// Cells of the map that are occupied more than `range_m` from the head, where the tank has no wall.
-std::uint64_t occupied_beyond(const OccupancyMap& map, double range_m) {
+std::uint64_t count_occupied_beyond(const OccupancyMap& map, double range_m) {
   std::uint64_t cells = 0;
   for_each_leaf<std::uint16_t>(map, {}, [&](const Leaf<std::uint16_t>& leaf) {
-    if (classified(leaf.belief) != Occupancy::kOccupied) return;
+    if (classify(leaf.belief) != Occupancy::kOccupied) return;
     if (map.lattice().centre_of(leaf.key, leaf.depth).norm() > range_m) ++cells;
   });
   return cells;
@@ -117,7 +117,7 @@ OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, in
 }
 
 void add_thresholds(const TankLog& log, std::vector<Row>& rows) {
-  const auto rise = [&](int threshold) { return judged(log, {}, EchoOptions{.threshold = threshold}); };
+  const auto rise = [&](int threshold) { return judge_echoes(log, {}, EchoOptions{.threshold = threshold}); };
   const int best_rise = best_threshold([&](int threshold) { return rise(threshold).right; });
   const int best_of_paper =
       best_threshold([&](int threshold) { return paper_count(log, {}, threshold).judgement.right; });
@@ -145,7 +145,7 @@ void add_thresholds(const TankLog& log, std::vector<Row>& rows) {
 /// The authors' published program blacks out all up to 128 before it looks for a difference of 40: what is left begins
 /// with a step of more than that, so that it finds the first bin above 128.
 Row row_of_their_program(const TankLog& log) {
-  const EchoJudgement level = judged(log, {}, EchoOptions{.detector = Detector::kLevel, .threshold = 129});
+  const EchoJudgement level = judge_echoes(log, {}, EchoOptions{.detector = Detector::kLevel, .threshold = 129});
   return row_of({.name = "threshold-their-program-" + log.name,
                  .section = "8.2",
                  .unit = "% within 10 cm",
@@ -176,8 +176,8 @@ void add_falling(const TankLog& log, std::vector<Row>& rows) {
 void add_silent(const TankLog& log, std::vector<Row>& rows) {
   const PaperCount count = paper_count(log, {}, 70);
   const double beyond_m = 4.9;  // the corners are nearer
-  const auto walls = occupied_beyond(map_as_in_paper(log, {}, 70, SilentBeam::kWall), beyond_m);
-  const auto nothing = occupied_beyond(map_as_in_paper(log, {}, 70, SilentBeam::kNothing), beyond_m);
+  const auto walls = count_occupied_beyond(map_as_in_paper(log, {}, 70, SilentBeam::kWall), beyond_m);
+  const auto nothing = count_occupied_beyond(map_as_in_paper(log, {}, 70, SilentBeam::kNothing), beyond_m);
   rows.push_back(row_of({.name = fmt::format("silent-beams-{}", log.name),
                          .section = "8.2",
                          .unit = "% of beams",
@@ -210,7 +210,7 @@ Result<std::vector<Row>> paper_smoothing(const BenchOptions&) {
   std::vector<Row> rows;
   for (const TankLog& log : *logs) {
     const auto at = [&](Filter filter) {
-      return judged(log, {.filter = filter, .kernel = 5, .sigma = 1.0}, EchoOptions{.threshold = 70});
+      return judge_echoes(log, {.filter = filter, .kernel = 5, .sigma = 1.0}, EchoOptions{.threshold = 70});
     };
     const EchoJudgement none = at(Filter::kNone), mean = at(Filter::kMean), median = at(Filter::kMedian),
                         gaussian = at(Filter::kGaussian);
@@ -243,8 +243,8 @@ Result<std::vector<Row>> paper_canny(const BenchOptions&) {
   std::vector<Row> rows;
   for (const TankLog& log : *logs) {
     const EchoJudgement canny =
-        judged(log, usual_filter(Detector::kCanny), EchoOptions{.detector = Detector::kCanny, .threshold = 113});
-    const EchoJudgement rise = judged(log, {}, EchoOptions{.threshold = 70});
+        judge_echoes(log, usual_filter(Detector::kCanny), EchoOptions{.detector = Detector::kCanny, .threshold = 113});
+    const EchoJudgement rise = judge_echoes(log, {}, EchoOptions{.threshold = 70});
     rows.push_back(echo_row(log, "figure-21-canny", "9", "interesting", canny, Holds::kNotJudged));
     rows.push_back(echo_row(log, "figure-21-rise-beside", "9", {}, rise, Holds::kNotJudged));
   }

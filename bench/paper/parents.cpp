@@ -27,7 +27,7 @@ void add_leaves(const NodeView& node, int levels, float block_value, Below& belo
     return;
   }
   const std::uint64_t cells = std::uint64_t{1} << (3 * (levels - node.depth()));
-  (classified(node.belief()) == Occupancy::kOccupied ? below.occupied : below.free) += cells;
+  (classify(node.belief()) == Occupancy::kOccupied ? below.occupied : below.free) += cells;
   const double off = double{block_value} - double{node.belief().value()};
   below.squares += off * off * static_cast<double>(cells);
 }
@@ -47,7 +47,7 @@ void add_blocks(const NodeView& node, int depth, int levels, Sum& sum) {
   }
   Below below;
   add_leaves(node, levels, node.belief().value(), below);
-  const bool is_occupied = classified(node.belief()) == Occupancy::kOccupied;
+  const bool is_occupied = classify(node.belief()) == Occupancy::kOccupied;
   CoarseView& view = sum.view;
   ++view.blocks;
   view.called_occupied += is_occupied ? 1 : 0;

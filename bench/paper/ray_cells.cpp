@@ -20,7 +20,7 @@ Eigen::Vector3d cells_of(const ExactSegment::Point& point) {
 }
 
 template <class Keys>
-std::vector<Cell> listed(const Keys& keys) {
+std::vector<Cell> list_cells(const Keys& keys) {
   std::vector<Cell> cells;
   for (const Key key : keys) {
     cells.push_back({std::int64_t{key.x} - 32768, std::int64_t{key.y} - 32768, std::int64_t{key.z} - 32768});
@@ -75,13 +75,13 @@ std::vector<RandomSegment> random_segments(std::size_t count, int dimensions, st
 
 std::vector<Cell> dda_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const auto ray = dda<std::uint16_t>(Lattice(1.0), from, to);
-  return ray ? listed(*ray) : std::vector<Cell>();
+  return ray ? list_cells(*ray) : std::vector<Cell>();
 }
 
 std::vector<Cell> bresenham_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Lattice lattice(1.0);
   const auto start = lattice.key_of(from), end = lattice.key_of(to);
-  return start && end ? listed(bresenham(*start, *end)) : std::vector<Cell>();
+  return start && end ? list_cells(bresenham(*start, *end)) : std::vector<Cell>();
 }
 
 }  // namespace pingvox::bench

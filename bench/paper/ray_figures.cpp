@@ -49,7 +49,7 @@ Eigen::Vector3d worst_end(const Ends& ends, const Eigen::Vector3d& from, PaperSt
 }
 
 /// Cells and segment seen from above.
-RayFigure seen(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::vector<Cell>& cells) {
+RayFigure figure_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const std::vector<Cell>& cells) {
   RayFigure figure{.from = from.head<2>(), .to = to.head<2>(), .marked = {}};
   for (const Cell& cell : cells) figure.marked.push_back({cell[0], cell[1]});
   return figure;
@@ -98,12 +98,12 @@ Result<Picture> lost_ends() {
   const Eigen::Vector3d from(0.5, 0.5, 0.5);
   const Eigen::Vector3d missing = worst_end(on_faces, from, PaperStop::kBeyondLength);
   const Eigen::Vector3d snapping = worst_end(on_corners, from, PaperStop::kTravelled);
-  const std::array panels = {panel(seen(from, missing, paper_cells(from, missing, PaperStop::kBeyondLength)),
+  const std::array panels = {panel(figure_of(from, missing, paper_cells(from, missing, PaperStop::kBeyondLength)),
                                    "11: the paper's DDA, stopped beyond the length: its last cell is missing"),
-                             panel(seen(from, missing, our_cells(from, missing)), "ours"),
-                             panel(seen(from, snapping, paper_cells(from, snapping, PaperStop::kTravelled)),
+                             panel(figure_of(from, missing, our_cells(from, missing)), "ours"),
+                             panel(figure_of(from, snapping, paper_cells(from, snapping, PaperStop::kTravelled)),
                                    "12: stopped by the distance travelled: past its end, and snapping back"),
-                             panel(seen(from, snapping, our_cells(from, snapping)), "ours")};
+                             panel(figure_of(from, snapping, our_cells(from, snapping)), "ours")};
   return side_by_side(panels);
 }
 

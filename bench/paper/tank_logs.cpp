@@ -74,7 +74,7 @@ void EchoJudgement::add(std::optional<double> wall_m, std::optional<double> echo
   }
 }
 
-EchoJudgement judged(const TankLog& log, const FilterOptions& filter, const EchoOptions& echo) {
+EchoJudgement judge_echoes(const TankLog& log, const FilterOptions& filter, const EchoOptions& echo) {
   EchoJudgement judgement;
   for (const Sweep& sweep : log.sweeps) {
     const auto echoes = detect_echoes(filtered(PolarImage(sweep), filter), sweep, echo);

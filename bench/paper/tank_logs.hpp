@@ -54,6 +54,6 @@ struct EchoJudgement {
 };
 
 /// Judges a filter and a detector.
-EchoJudgement judged(const TankLog& log, const FilterOptions& filter, const EchoOptions& echo);
+EchoJudgement judge_echoes(const TankLog& log, const FilterOptions& filter, const EchoOptions& echo);
 
 }  // namespace pingvox::bench

@@ -10,12 +10,12 @@
 
 #include "bench/paired_timing.hpp"
 #include "bench/process.hpp"
-#include "hush.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/compare.hpp"
 #include "pingvox/sim/random.hpp"
 #include "pingvox/sim/scene.hpp"
+#include "silent_stderr.hpp"
 
 namespace pingvox::bench {
 namespace {
@@ -33,7 +33,7 @@ Eigen::Vector3d random_direction(Random& random) {
 }
 
 /// What a scanner that looks everywhere sees from here, in its own frame.
-std::unique_ptr<octomap::Pointcloud> scanned(const World& world, const Pose& map_from_sensor, Random& random) {
+std::unique_ptr<octomap::Pointcloud> scan_world(const World& world, const Pose& map_from_sensor, Random& random) {
   auto cloud = std::make_unique<octomap::Pointcloud>();
   cloud->reserve(kPoints);
   while (cloud->size() < kPoints) {
@@ -59,12 +59,12 @@ Result<void> write_graph(const std::string& path) {
     const Eigen::Vector3d at = pose->translation();
     const double yaw_rad = std::atan2(pose->linear()(1, 0), pose->linear()(0, 0));
     // The graph takes the cloud.
-    graph.addNode(scanned(scene.world, *pose, random).release(),
+    graph.addNode(scan_world(scene.world, *pose, random).release(),
                   octomap::pose6d(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()),
                                   0.0, 0.0, yaw_rad));
   }
   std::ofstream out(path, std::ios::binary);
-  const Hush hush;
+  const SilentStderr silent_stderr;
   graph.writeBinary(out);
   if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: cannot be written", path));
   return {};

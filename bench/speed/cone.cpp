@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "beam_sweeps.hpp"
-#include "map_contest.hpp"
+#include "map_benchmark.hpp"
 #include "peer.hpp"
 #include "same_map.hpp"
 #include "tank_echoes.hpp"
@@ -27,7 +27,7 @@ struct ConeCells {
   double missing = 0.0, more = 0.0;
 };
 
-Result<ConeCells> compared(const OccupancyMap& map, const octomap::OcTree& tree) {
+Result<ConeCells> compare(const OccupancyMap& map, const octomap::OcTree& tree) {
   const MapDifference found = difference(map, tree);
   const auto peer_cells = static_cast<double>(found.cells - found.only_ours);
   const ConeCells shares{found.cells, static_cast<double>(found.only_peer) / peer_cells,
@@ -51,16 +51,16 @@ Result<std::vector<Row>> tank_cone(const BenchOptions&) {
   const auto fill_peer = [&](octomap::OcTree& tree, PeerMode mode) { insert(tree, scans, PeerEnds::kExact, mode); };
   const PeerMode mode = faster_mode(kCell_m, fill_peer);
   ConeCells found;
-  Result<Row> row = measured({.name = "tank-cone",
-                              .resolution_m = kCell_m,
-                              .ours = [&](OccupancyMap& map, ScanUpdate& scan) { insert(map, scan, sweeps, model); },
-                              .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); },
-                              .check = [&](const OccupancyMap& map, const octomap::OcTree& tree) -> Result<void> {
-                                const Result<ConeCells> cells = compared(map, tree);
-                                if (!cells) return tl::unexpected(cells.error());
-                                found = *cells;
-                                return {};
-                              }});
+  Result<Row> row = measure({.name = "tank-cone",
+                             .resolution_m = kCell_m,
+                             .ours = [&](OccupancyMap& map, ScanUpdate& scan) { insert(map, scan, sweeps, model); },
+                             .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); },
+                             .check = [&](const OccupancyMap& map, const octomap::OcTree& tree) -> Result<void> {
+                               const Result<ConeCells> cells = compare(map, tree);
+                               if (!cells) return tl::unexpected(cells.error());
+                               found = *cells;
+                               return {};
+                             }});
   if (!row) return tl::unexpected(row.error());
   row->add("input", tank->input)
       .add("cells", found.cells)

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "map_contest.hpp"
+#include "map_benchmark.hpp"
 #include "peer.hpp"
 
 namespace pingvox::bench {
@@ -52,10 +52,10 @@ void fill(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> cells, Peer
 
 Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&, std::span<const Key>), PeerMode mode) {
   const Cells cells = cells_of_cube();
-  const Result<Row> row = measured({.name = std::move(name),
-                                    .resolution_m = kCell_m,
-                                    .ours = [&](OccupancyMap& map, ScanUpdate&) { fill_ours(map, cells.ours); },
-                                    .peer = [&](octomap::OcTree& tree) { fill(tree, cells.peer, mode); }});
+  const Result<Row> row = measure({.name = std::move(name),
+                                   .resolution_m = kCell_m,
+                                   .ours = [&](OccupancyMap& map, ScanUpdate&) { fill_ours(map, cells.ours); },
+                                   .peer = [&](octomap::OcTree& tree) { fill(tree, cells.peer, mode); }});
   if (!row) return tl::unexpected(row.error());
   return std::vector{*row};
 }

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "bench/paired_timing.hpp"
-#include "hush.hpp"
 #include "pingvox/io/maps.hpp"
 #include "same_map.hpp"
+#include "silent_stderr.hpp"
 #include "tank_maps.hpp"
 
 namespace pingvox::bench {
@@ -39,7 +39,7 @@ double cpu_of_whole_write_s(const octomap::OcTree& tree) {
 Result<std::vector<Row>> bt_write(const BenchOptions&) {
   const Result<TankMaps> maps = tank_maps();
   if (!maps) return tl::unexpected(maps.error());
-  const Hush hush;
+  const SilentStderr silent_stderr;
   const double whole_s = cpu_of_whole_write_s(*maps->peer);
   // Rounded once before, so that its quicker call, which only writes, gives the same bytes. Ours rounds as it writes.
   maps->peer->toMaxLikelihood();
@@ -64,7 +64,7 @@ Result<std::vector<Row>> bt_write(const BenchOptions&) {
 Result<std::vector<Row>> bt_read(const BenchOptions&) {
   const Result<TankMaps> maps = tank_maps();
   if (!maps) return tl::unexpected(maps.error());
-  const Hush hush;
+  const SilentStderr silent_stderr;
   const Result<std::string> bytes = bt_of(maps->ours);
   if (!bytes) return tl::unexpected(bytes.error());
   const FileBytes file{"tank.bt", {bytes->begin(), bytes->end()}};

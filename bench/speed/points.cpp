@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "map_contest.hpp"
+#include "map_benchmark.hpp"
 #include "peer.hpp"
 #include "pingvox/sim/random.hpp"
 
@@ -43,10 +43,10 @@ Result<std::vector<Row>> points(const std::string& name, double sigma) {
   const auto fill_peer = [&](octomap::OcTree& tree, PeerMode mode) { update(tree, peer_keys, hit, mode); };
   const PeerMode mode = faster_mode(kCell_m, fill_peer);
   Result<Row> row =
-      measured({.name = name,
-                .resolution_m = kCell_m,
-                .ours = [&](OccupancyMap& map, ScanUpdate&) { (void)map.update(std::span<const Key>(keys), hit); },
-                .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); }});
+      measure({.name = name,
+               .resolution_m = kCell_m,
+               .ours = [&](OccupancyMap& map, ScanUpdate&) { (void)map.update(std::span<const Key>(keys), hit); },
+               .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); }});
   if (!row) return tl::unexpected(row.error());
   row->add("octomap_mode", mode == PeerMode::kEager ? "eager" : "lazy");
   return std::vector{*row};

@@ -56,7 +56,7 @@ std::vector<Key> random_keys(const OccupancyMap& map) {
   return keys;
 }
 
-Occupancy classified_by(const octomap::OcTree& tree, const octomap::OcTreeKey& key) {
+Occupancy classify(const octomap::OcTree& tree, const octomap::OcTreeKey& key) {
   const octomap::OcTreeNode* node = tree.search(key);
   if (node == nullptr) return Occupancy::kUnknown;
   return tree.isNodeOccupied(node) ? Occupancy::kOccupied : Occupancy::kFree;
@@ -114,7 +114,7 @@ Result<std::vector<Row>> look_up(const BenchOptions&) {
   Counts counts{};
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Occupancy what = map.classify(keys[i]);
-    if (what != classified_by(tree, peer_keys[i])) {
+    if (what != classify(tree, peer_keys[i])) {
       return fail(Error::Code::kCorrupt, fmt::format("key {} of {} is not what liboctomap says", i, keys.size()));
     }
     ++counts[static_cast<std::size_t>(what)];
@@ -127,7 +127,7 @@ Result<std::vector<Row>> look_up(const BenchOptions&) {
   const Side peer{[&] { peer_counts = {}; },
                   [&] {
                     for (const octomap::OcTreeKey& key : peer_keys) {
-                      ++peer_counts[static_cast<std::size_t>(classified_by(tree, key))];
+                      ++peer_counts[static_cast<std::size_t>(classify(tree, key))];
                     }
                   }};
   const PairedTimes result = time_in_pairs(ours, peer);

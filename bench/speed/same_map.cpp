@@ -5,7 +5,7 @@
 #include <bit>
 #include <optional>
 
-#include "cells_settled.hpp"
+#include "cells_beyond_doubt.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox::bench {
@@ -95,7 +95,7 @@ Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& pee
     return fail(Error::Code::kCorrupt,
                 fmt::format("not what liboctomap makes: {} of {} cells differ", found.differs, found.cells));
   }
-  const std::vector<Key> settled = cells_settled(ours.lattice(), scans, found.keys);
+  const std::vector<Key> settled = cells_beyond_doubt(ours.lattice(), scans, found.keys);
   if (settled.empty()) return found;
   const Eigen::Vector3d first_m = ours.lattice().centre_of(settled.front());
   return fail(Error::Code::kCorrupt,

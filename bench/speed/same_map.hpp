@@ -26,8 +26,8 @@ struct MapDifference {
 /// Compares leaf by leaf: values to the last bit.
 MapDifference difference(const OccupancyMap& ours, const octomap::OcTree& peer);
 
-/// The same, or an error when a cell differs that these scans settle: see `cells_settled`. liboctomap walks rays in
-/// single precision with sums that drift, and each library is right about a cell that a ray only touches.
+/// The same, or an error when a cell differs that these scans settle: see `cells_beyond_doubt`. liboctomap walks rays
+/// in single precision with sums that drift, and each library is right about a cell that a ray only touches.
 Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& peer, std::span<const RayCloud> scans);
 
 /// An error that says how they differ, unless both hold the same cells and values and have the same nodes.

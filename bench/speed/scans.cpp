@@ -11,7 +11,7 @@
 #include "beam_sweeps.hpp"
 #include "insert_scans.hpp"
 #include "lidar_scans.hpp"
-#include "map_contest.hpp"
+#include "map_benchmark.hpp"
 #include "multibeam_scans.hpp"
 #include "peer.hpp"
 #include "tank_echoes.hpp"
@@ -52,19 +52,19 @@ Result<std::vector<Row>> run(const ScanWork& work) {
     insert(map, scan, work.scans, {.ends = work.ends});
   };
   MapDifference found;
-  Result<Row> row = measured({.name = work.name,
-                              .resolution_m = work.resolution_m,
-                              .ours = work.ours ? work.ours : as_clouds,
-                              .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); },
-                              .check = [&](const OccupancyMap& map, const octomap::OcTree& tree) -> Result<void> {
-                                const Result<MapDifference> difference =
-                                    work.ends == EndPoints::kCells
-                                        ? alike(map, tree, rays_to_cells(map.lattice(), work.scans))
-                                        : alike(map, tree, work.scans);
-                                if (!difference) return tl::unexpected(difference.error());
-                                found = *difference;
-                                return {};
-                              }});
+  Result<Row> row = measure({.name = work.name,
+                             .resolution_m = work.resolution_m,
+                             .ours = work.ours ? work.ours : as_clouds,
+                             .peer = [&](octomap::OcTree& tree) { fill_peer(tree, mode); },
+                             .check = [&](const OccupancyMap& map, const octomap::OcTree& tree) -> Result<void> {
+                               const Result<MapDifference> difference =
+                                   work.ends == EndPoints::kCells
+                                       ? alike(map, tree, rays_to_cells(map.lattice(), work.scans))
+                                       : alike(map, tree, work.scans);
+                               if (!difference) return tl::unexpected(difference.error());
+                               found = *difference;
+                               return {};
+                             }});
   if (!row) return tl::unexpected(row.error());
   std::uint64_t rays = 0;
   for (const RayCloud& scan : work.scans) rays += scan.ends_m.size();

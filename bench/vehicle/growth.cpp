@@ -99,18 +99,18 @@ ScanUpdate unsaid(const Lattice& lattice, std::size_t n) {
 }
 
 /// By the wall clock: asking for CPU time may take as long as a probe.
-Result<ApplyReport> timed(OccupancyMap& map, const ScanUpdate& scan, std::vector<double>& times_us) {
+Result<ApplyReport> time_apply(OccupancyMap& map, const ScanUpdate& scan, std::vector<double>& times_us) {
   const auto started = std::chrono::steady_clock::now();
   auto applied = map.apply(scan);
   times_us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - started).count());
   return applied;
 }
 
-/// Applies kPlaces probes, from number `first` on. @return how many cells they voted on
+/// Applies kPlaces probes, from number `first` on. @return how many cells they updated
 Result<std::uint64_t> cells_of_probes(OccupancyMap& map, std::size_t first, std::vector<double>& times_us) {
   std::uint64_t cells = 0;
   for (std::size_t n = first; n < first + kPlaces; ++n) {
-    const auto applied = timed(map, probe(map.lattice(), n), times_us);
+    const auto applied = time_apply(map, probe(map.lattice(), n), times_us);
     if (!applied) return tl::unexpected(applied.error());
     cells += applied->cells_freed + applied->cells_hit;
   }
@@ -130,7 +130,7 @@ struct Known {
 
 /// Applies the first kPlaces probes again and again, where a vehicle was a moment ago, to a small map and to a large
 /// one by turns: what else the machine does slows both down.
-Result<Known> probed_again(OccupancyMap& small, OccupancyMap& large) {
+Result<Known> probe_again(OccupancyMap& small, OccupancyMap& large) {
   std::vector<double> small_us, large_us;
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (const auto& [map, times_us] : {std::pair(&small, &small_us), std::pair(&large, &large_us)}) {
@@ -167,7 +167,7 @@ Result<std::vector<Row>> rows_by_size() {
     if (known_cells(map) != cells) {
       return fail(Error::Code::kCorrupt, fmt::format("{} cells are known, {} were filled", known_cells(map), cells));
     }
-    const auto known = probed_again(small, map);
+    const auto known = probe_again(small, map);
     if (!known) return tl::unexpected(known.error());
     std::vector<double> new_us;
     const auto new_cells = cells_of_probes(map, (i + 1) * kPlaces, new_us);

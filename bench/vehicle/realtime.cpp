@@ -19,7 +19,7 @@ constexpr double kCell_m = 0.05;
 constexpr double kTankRate_hz = 23.0, kFastRate_hz = 100.0;  ///< beams per second: of the recording, of a fast head
 constexpr int kReplays = 5;
 
-/// A vehicle wants each beam in its map at once: a beam votes as it comes.
+/// A vehicle wants each beam in its map at once: each updates it as it comes.
 BuildOptions vehicle_options() {
   BuildOptions options;
   options.filter = usual_filter(Detector::kRise);
@@ -45,7 +45,7 @@ double cpu_of_asking_s() {
 }
 
 /// Beams one by one, back to back: what a vehicle does between two beams, without the waiting. By the wall clock.
-Replay replayed(const std::vector<Beam>& beams, BeamMapper& live) {
+Replay replay(const std::vector<Beam>& beams, BeamMapper& live) {
   Replay replay;
   std::vector<Beam> fresh = beams;
   const double cpu_before_s = cpu_time_s();
@@ -131,7 +131,7 @@ Result<std::vector<Row>> realtime(const BenchOptions&) {
   for (int i = 0; i < kReplays; ++i) {
     OccupancyMap map({.resolution_m = kCell_m});
     BeamMapper live = *BeamMapper::make(vehicle_options(), map);
-    replays.push_back(replayed(tank->beams, live));
+    replays.push_back(replay(tank->beams, live));
     if (const std::size_t mapped = live.report().beams; mapped != tank->beams.size()) {
       return fail(Error::Code::kCorrupt, fmt::format("{} of {} beams came out", mapped, tank->beams.size()));
     }

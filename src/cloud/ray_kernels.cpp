@@ -13,13 +13,13 @@
 // It must come after it.
 #include <hwy/highway.h>
 
-#ifndef PINGVOX_HALVES_OF_SOME
-#define PINGVOX_HALVES_OF_SOME
+#ifndef PINGVOX_COMPRESS_TABLE
+#define PINGVOX_COMPRESS_TABLE
 namespace pingvox::detail {
 namespace {
 
 /// For each choice of four words, a bit each: where the halves of the chosen ones stand, one after the other.
-alignas(32) [[maybe_unused]] constexpr std::array<std::array<std::uint32_t, 8>, 16> kHalvesOfSome = [] {
+alignas(32) [[maybe_unused]] constexpr std::array<std::array<std::uint32_t, 8>, 16> kCompressTable = [] {
   std::array<std::array<std::uint32_t, 8>, 16> all{};
   for (std::size_t some = 0; some < all.size(); ++some) {
     std::size_t count = 0;
@@ -43,15 +43,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using DI = hn::RebindToSigned<D>;
 using DU = hn::RebindToUnsigned<D>;
-using Doubles = hn::Vec<D>;
-using Ints = hn::Vec<DI>;
-using Words = hn::Vec<DU>;
+using DoubleVec = hn::Vec<D>;
+using IntVec = hn::Vec<DI>;
+using UintVec = hn::Vec<DU>;
 using DoubleMask = hn::Mask<D>;
 using IntMask = hn::Mask<DI>;
 
 constexpr D kDoubles;
 constexpr DI kInts;
-constexpr DU kWords;
+constexpr DU kUints;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 std::size_t lanes() {
@@ -59,24 +59,24 @@ std::size_t lanes() {
 }
 
 /// Whole numbers as integers. REQUIRES numbers between -2^51 and 2^51
-Ints to_ints(Doubles whole) {
+IntVec to_integers(DoubleVec whole) {
   constexpr double kNoFraction = 0x1.8p52;  // a number of its size has no bits for one
   return hn::BitCast(kInts, whole + hn::Set(kDoubles, kNoFraction)) -
          hn::BitCast(kInts, hn::Set(kDoubles, kNoFraction));
 }
 
 /// spread_bits (map/tree_order.hpp) for each lane. REQUIRES up to 11 bits
-Words spread(Words words) {
-  words = hn::And(hn::Or(words, hn::ShiftLeft<16>(words)), hn::Set(kWords, 0x1F0000FF0000FF));
-  words = hn::And(hn::Or(words, hn::ShiftLeft<8>(words)), hn::Set(kWords, 0x100F00F00F00F00F));
-  words = hn::And(hn::Or(words, hn::ShiftLeft<4>(words)), hn::Set(kWords, 0x10C30C30C30C30C3));
-  return hn::And(hn::Or(words, hn::ShiftLeft<2>(words)), hn::Set(kWords, 0x1249249249249249));
+UintVec spread(UintVec words) {
+  words = hn::And(hn::Or(words, hn::ShiftLeft<16>(words)), hn::Set(kUints, 0x1F0000FF0000FF));
+  words = hn::And(hn::Or(words, hn::ShiftLeft<8>(words)), hn::Set(kUints, 0x100F00F00F00F00F));
+  words = hn::And(hn::Or(words, hn::ShiftLeft<4>(words)), hn::Set(kUints, 0x10C30C30C30C30C3));
+  return hn::And(hn::Or(words, hn::ShiftLeft<2>(words)), hn::Set(kUints, 0x1249249249249249));
 }
 
-void load(const double* points, Doubles& x, Doubles& y, Doubles& z) {
+void load(const double* points, DoubleVec& x, DoubleVec& y, DoubleVec& z) {
   hn::LoadInterleaved3(kDoubles, points, x, y, z);
 }
-void load(const float* points, Doubles& x, Doubles& y, Doubles& z) {
+void load(const float* points, DoubleVec& x, DoubleVec& y, DoubleVec& z) {
   const hn::Rebind<float, D> floats;
   hn::Vec<decltype(floats)> fx, fy, fz;
   hn::LoadInterleaved3(floats, points, fx, fy, fz);
@@ -86,32 +86,32 @@ void load(const float* points, Doubles& x, Doubles& y, Doubles& z) {
 }
 
 /// Stores those lanes that a mask has, one after the other, where there is room for all.
-void store_some(Words words, hn::Mask<DU> mask, std::uint64_t* to) {
+void compress_store(UintVec words, hn::Mask<DU> mask, std::uint64_t* to) {
   // Compiled by g++, Compress of Highway 1.0.3 copies its tables to the stack each time; CompressStore is slow on
   // Zen 4.
 #if HWY_TARGET == HWY_AVX3
   _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(mask.raw, words.raw));
 #elif HWY_TARGET == HWY_AVX2
   const auto some = static_cast<std::size_t>(_mm256_movemask_pd(_mm256_castsi256_pd(mask.raw)));
-  const __m256i halves = _mm256_load_si256(reinterpret_cast<const __m256i*>(kHalvesOfSome[some].data()));
+  const __m256i halves = _mm256_load_si256(reinterpret_cast<const __m256i*>(kCompressTable[some].data()));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(words.raw, halves));
 #else
-  hn::CompressStore(words, mask, kWords, to);
+  hn::CompressStore(words, mask, kUints, to);
 #endif
 }
 
 /// Points in cells; those outside of the window become the place where rays begin.
 struct Points {
-  Doubles x, y, z;
+  DoubleVec x, y, z;
   DoubleMask is_inside;
 };
 
 template <class Real>
 Points load_points(const RayGrid& grid, const Real* points_m) {
-  Doubles x, y, z;
+  DoubleVec x, y, z;
   load(points_m, x, y, z);
-  const Doubles cells_per_m = hn::Set(kDoubles, grid.cells_per_m);
-  const auto is_inside_along = [&](Doubles at, std::size_t a) HWY_ATTR {
+  const DoubleVec cells_per_m = hn::Set(kDoubles, grid.cells_per_m);
+  const auto is_inside_along = [&](DoubleVec at, std::size_t a) HWY_ATTR {
     return hn::And(hn::Ge(at, hn::Set(kDoubles, grid.inside_from[a])),
                    hn::Lt(at, hn::Set(kDoubles, grid.inside_to[a])));
   };
@@ -126,9 +126,9 @@ Points load_points(const RayGrid& grid, const Real* points_m) {
 }
 
 /// The bits of one axis of the places of cells.
-Words axis_of_place(const RayGrid& grid, Doubles cell, std::size_t a) {
-  const Doubles in_window = cell - hn::Set(kDoubles, static_cast<double>(grid.lowest[a]));
-  return spread(hn::BitCast(kWords, to_ints(in_window)));
+UintVec axis_of_place(const RayGrid& grid, DoubleVec cell, std::size_t a) {
+  const DoubleVec in_window = cell - hn::Set(kDoubles, static_cast<double>(grid.lowest[a]));
+  return spread(hn::BitCast(kUints, to_integers(in_window)));
 }
 
 /// Calls f(first, points) for as many points as there are lanes; the last ones stand together with some that are no
@@ -148,37 +148,37 @@ void for_each_vector(std::span<const Point> points_m, F&& f) {
 
 /// What the axes of rays have in common.
 struct Preparing {
-  Ints left, ahead;
+  IntVec left, ahead;
   // The last face that is crossed, and the first one beyond an end, along the axes so far.
-  Ints last_crossing, beyond_end;
-  Words end;
+  IntVec last_crossing, beyond_end;
+  UintVec end;
 };
 
 /// What FaceCrossings counts along one axis, for rays that end at these coordinates [cells].
-void prepare_axis(const RayGrid& grid, std::size_t a, Doubles to, std::size_t first, Preparing& all,
+void prepare_axis(const RayGrid& grid, std::size_t a, DoubleVec to, std::size_t first, Preparing& all,
                   PreparedRays& rays) {
-  const Doubles kOne = hn::Set(kDoubles, 1.0), kUnits = hn::Set(kDoubles, 0x1p62);
+  const DoubleVec kOne = hn::Set(kDoubles, 1.0), kUnits = hn::Set(kDoubles, 0x1p62);
   const double from_axis = grid.from[static_cast<Eigen::Index>(a)];
-  const Doubles from = hn::Set(kDoubles, from_axis), first_cell = hn::Set(kDoubles, std::floor(from_axis));
-  const Doubles last_cell = hn::Floor(to);
+  const DoubleVec from = hn::Set(kDoubles, from_axis), first_cell = hn::Set(kDoubles, std::floor(from_axis));
+  const DoubleVec last_cell = hn::Floor(to);
   const DoubleMask is_ahead = hn::Ge(last_cell, first_cell);
-  const Doubles faces = hn::Abs(last_cell - first_cell);
+  const DoubleVec faces = hn::Abs(last_cell - first_cell);
   const DoubleMask some = hn::Gt(faces, hn::Zero(kDoubles)), several = hn::Gt(faces, kOne);
-  const Doubles length = hn::IfThenElse(some, hn::Abs(to - from), kOne);
-  const Doubles to_first = hn::IfThenElse(is_ahead, first_cell + kOne - from, from - first_cell) / length * kUnits;
-  const Doubles between = kOne / length * kUnits;
+  const DoubleVec length = hn::IfThenElse(some, hn::Abs(to - from), kOne);
+  const DoubleVec to_first = hn::IfThenElse(is_ahead, first_cell + kOne - from, from - first_cell) / length * kUnits;
+  const DoubleVec between = kOne / length * kUnits;
 
   const IntMask some_ints = hn::RebindMask(kInts, some), several_ints = hn::RebindMask(kInts, several);
-  const Ints next = hn::ConvertTo(kInts, hn::IfThenElseZero(some, to_first));
-  const Ints apart = hn::ConvertTo(kInts, hn::IfThenElseZero(several, between));
-  const Ints never = hn::Set(kInts, kNever), face_count = to_ints(faces);
+  const IntVec next = hn::ConvertTo(kInts, hn::IfThenElseZero(some, to_first));
+  const IntVec apart = hn::ConvertTo(kInts, hn::IfThenElseZero(several, between));
+  const IntVec never = hn::Set(kInts, kNever), face_count = to_integers(faces);
   hn::StoreU(hn::IfThenElse(some_ints, next, never), kInts, rays.next[a].data() + first);
   // Behind its only face nothing is left.
   hn::StoreU(hn::IfThenElse(several_ints, apart, hn::IfThenElseZero(some_ints, never - next)), kInts,
              rays.apart[a].data() + first);
   // What does not fit becomes negative, and the ray is not taken.
-  const Ints last_crossing = next + (face_count - hn::Set(kInts, 1)) * apart;
-  const Ints beyond = last_crossing + apart;
+  const IntVec last_crossing = next + (face_count - hn::Set(kInts, 1)) * apart;
+  const IntVec beyond = last_crossing + apart;
   all.last_crossing =
       hn::IfThenElse(hn::And(some_ints, last_crossing > all.last_crossing), last_crossing, all.last_crossing);
   all.beyond_end = hn::IfThenElse(hn::And(several_ints, beyond < all.beyond_end), beyond, all.beyond_end);
@@ -203,17 +203,17 @@ void prepare(const RayGrid& grid, std::span<const Point> ends_m, PreparedRays& r
   for_each_vector(ends_m, [&](std::size_t first, const auto* some_m) HWY_ATTR {
     const Points ends = load_points(grid, some_m);
     Preparing all{hn::Zero(kInts), hn::Zero(kInts), hn::Set(kInts, std::numeric_limits<std::int64_t>::min()),
-                  hn::Set(kInts, kNever), hn::Zero(kWords)};
+                  hn::Set(kInts, kNever), hn::Zero(kUints)};
     prepare_axis(grid, 0, ends.x, first, all, rays);
     prepare_axis(grid, 1, ends.y, first, all, rays);
     prepare_axis(grid, 2, ends.z, first, all, rays);
     // Whether sums of these units give the order of faces that FaceCrossings gives.
-    const auto kMaxFaces = static_cast<std::int64_t>(FaceCrossings::kFewFaces);
+    const auto kMaxFaces = static_cast<std::int64_t>(FaceCrossings::kMaxFacesIn64Bits);
     const IntMask is_ready = hn::And(hn::And(hn::RebindMask(kInts, ends.is_inside), all.beyond_end > all.last_crossing),
                                      all.left < hn::Set(kInts, kMaxFaces + 1));
     hn::StoreU(hn::IfThenElseZero(is_ready, all.left), kInts, rays.left.data() + first);
     hn::StoreU(all.ahead, kInts, rays.ahead.data() + first);
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(kWords, is_ready), all.end, hn::Set(kWords, kNoPlace)), kWords,
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(kUints, is_ready), all.end, hn::Set(kUints, kNoPlace)), kUints,
                rays.end.data() + first);
   });
 }
@@ -223,11 +223,11 @@ void find_each_place(const RayGrid& grid, std::span<const Point> points_m, std::
   places.resize((points_m.size() + lanes() - 1) / lanes() * lanes());
   for_each_vector(points_m, [&](std::size_t first, const auto* some_m) HWY_ATTR {
     const Points points = load_points(grid, some_m);
-    const Words x = axis_of_place(grid, hn::Floor(points.x), 0), y = axis_of_place(grid, hn::Floor(points.y), 1),
-                z = axis_of_place(grid, hn::Floor(points.z), 2);
-    const Words place = hn::Or(x, hn::Or(hn::ShiftLeft<1>(y), hn::ShiftLeft<2>(z)));
-    const auto is_inside = hn::RebindMask(kWords, points.is_inside);
-    hn::StoreU(hn::IfThenElse(is_inside, place, hn::Set(kWords, kNoPlace)), kWords, places.data() + first);
+    const UintVec x = axis_of_place(grid, hn::Floor(points.x), 0), y = axis_of_place(grid, hn::Floor(points.y), 1),
+                  z = axis_of_place(grid, hn::Floor(points.z), 2);
+    const UintVec place = hn::Or(x, hn::Or(hn::ShiftLeft<1>(y), hn::ShiftLeft<2>(z)));
+    const auto is_inside = hn::RebindMask(kUints, points.is_inside);
+    hn::StoreU(hn::IfThenElse(is_inside, place, hn::Set(kUints, kNoPlace)), kUints, places.data() + first);
   });
   places.resize(points_m.size());
 }
@@ -252,21 +252,21 @@ struct MarksToSet {
 /// Where rays are along one axis.
 struct Axis {
   /// @param rays   which ones, as many as there are lanes
-  Axis(const PreparedRays& all, Ints rays, Ints ahead, std::size_t a, std::uint64_t start)
+  Axis(const PreparedRays& all, IntVec rays, IntVec ahead, std::size_t a, std::uint64_t start)
       : next(hn::GatherIndex(kInts, all.next[a].data(), rays)),
         apart(hn::GatherIndex(kInts, all.apart[a].data(), rays)),
-        bits(hn::Set(kWords, kPlaceBits[a])),
-        place(hn::Set(kWords, start & kPlaceBits[a])) {
+        bits(hn::Set(kUints, kPlaceBits[a])),
+        place(hn::Set(kUints, start & kPlaceBits[a])) {
     // Added before the bits are masked: a carry must run through the bits of the other axes.
     const std::uint64_t axis_bits = kPlaceBits[a], lowest = axis_bits & (~axis_bits + 1);
-    const Ints flag = hn::Set(kInts, std::int64_t{1} << a);
-    step = hn::IfThenElse(hn::RebindMask(kWords, hn::Eq(hn::And(ahead, flag), flag)), hn::Set(kWords, ~axis_bits + 1),
-                          hn::Set(kWords, ~lowest + 1));
+    const IntVec flag = hn::Set(kInts, std::int64_t{1} << a);
+    step = hn::IfThenElse(hn::RebindMask(kUints, hn::Eq(hn::And(ahead, flag), flag)), hn::Set(kUints, ~axis_bits + 1),
+                          hn::Set(kUints, ~lowest + 1));
   }
   /// Crosses a face where `is` is set.
   void cross(IntMask is) {
     // What the next face is of a ray that has ended means nothing.
-    const auto is_word = hn::RebindMask(kWords, is);
+    const auto is_word = hn::RebindMask(kUints, is);
 #if HWY_TARGET == HWY_AVX3
     next = hn::IfThenElse(is, next + apart, next);
     place = hn::IfThenElse(is_word, hn::And(place + step, bits), place);
@@ -276,34 +276,34 @@ struct Axis {
     place = hn::And(place + hn::IfThenElseZero(is_word, step), bits);
 #endif
   }
-  Ints next, apart;
-  Words bits, place, step;
+  IntVec next, apart;
+  UintVec bits, place, step;
 };
 
 /// Walks rays of about the same length, face by face.
 /// @param numbers  of as many as there are lanes, the one with most faces first
-void mark_some(const PreparedRays& all, const std::int64_t* numbers, std::uint64_t start, MarksToSet& to_set,
-               ScanWindow& window) {
-  const Ints rays = hn::LoadU(kInts, numbers);
-  const Ints left = hn::GatherIndex(kInts, all.left.data(), rays);
-  const Ints ahead = hn::GatherIndex(kInts, all.ahead.data(), rays);
+void mark_vector(const PreparedRays& all, const std::int64_t* numbers, std::uint64_t start, MarksToSet& to_set,
+                 ScanWindow& window) {
+  const IntVec rays = hn::LoadU(kInts, numbers);
+  const IntVec left = hn::GatherIndex(kInts, all.left.data(), rays);
+  const IntVec ahead = hn::GatherIndex(kInts, all.ahead.data(), rays);
   const std::int64_t longest = all.left[static_cast<std::size_t>(numbers[0])];
   const std::int64_t shortest = all.left[static_cast<std::size_t>(numbers[lanes() - 1])];
   Axis x(all, rays, ahead, 0, start), y(all, rays, ahead, 1, start), z(all, rays, ahead, 2, start);
-  const Words begin = hn::Set(kWords, start), one = hn::Set(kWords, 1), cell_bits = hn::Set(kWords, 63);
-  Words word = hn::ShiftRight<6>(begin), marks = hn::Zero(kWords);
+  const UintVec begin = hn::Set(kUints, start), one = hn::Set(kUints, 1), cell_bits = hn::Set(kUints, 63);
+  UintVec word = hn::ShiftRight<6>(begin), marks = hn::Zero(kUints);
   std::size_t count = to_set.count;
   for (std::int64_t n = 0; n < longest; ++n) {
-    Words at = hn::Or(x.place, hn::Or(y.place, z.place));
+    UintVec at = hn::Or(x.place, hn::Or(y.place, z.place));
     if (n >= shortest) {
       // A ray that has ended marks where it began once more.
-      at = hn::IfThenElse(hn::RebindMask(kWords, left > hn::Set(kInts, n)), at, begin);
+      at = hn::IfThenElse(hn::RebindMask(kUints, left > hn::Set(kInts, n)), at, begin);
     }
-    const Words entered = hn::ShiftRight<6>(at), cell = one << hn::And(at, cell_bits);
+    const UintVec entered = hn::ShiftRight<6>(at), cell = one << hn::And(at, cell_bits);
     const auto moved_on = hn::Ne(entered, word);
-    store_some(word, moved_on, to_set.word.data() + count);
-    store_some(marks, moved_on, to_set.marks.data() + count);
-    count += hn::CountTrue(kWords, moved_on);
+    compress_store(word, moved_on, to_set.word.data() + count);
+    compress_store(marks, moved_on, to_set.marks.data() + count);
+    count += hn::CountTrue(kUints, moved_on);
     marks = hn::Or(hn::IfThenZeroElse(moved_on, marks), cell);
     word = entered;
     if (count > MarksToSet::kRoom - 2 * lanes()) {
@@ -311,15 +311,15 @@ void mark_some(const PreparedRays& all, const std::int64_t* numbers, std::uint64
       to_set.set(window);
       count = 0;
     }
-    // axis_of_least for each lane.
+    // axis_of_min for each lane.
     const IntMask x_before_y = x.next < y.next, x_before_z = x.next < z.next, y_before_z = y.next < z.next;
     const IntMask is_x = hn::And(x_before_y, x_before_z), is_y = hn::AndNot(x_before_y, y_before_z);
     x.cross(is_x);
     y.cross(is_y);
     z.cross(hn::Not(hn::Or(is_x, is_y)));
   }
-  hn::StoreU(word, kWords, to_set.word.data() + count);
-  hn::StoreU(marks, kWords, to_set.marks.data() + count);
+  hn::StoreU(word, kUints, to_set.word.data() + count);
+  hn::StoreU(marks, kUints, to_set.marks.data() + count);
   to_set.count = count + lanes();
 }
 
@@ -344,27 +344,27 @@ std::vector<std::int64_t> order_by_length(const PreparedRays& rays) {
 void mark(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
   const std::vector<std::int64_t> order = order_by_length(rays);
   MarksToSet to_set;
-  for (std::size_t i = 0; i < order.size(); i += lanes()) mark_some(rays, order.data() + i, start, to_set, window);
+  for (std::size_t i = 0; i < order.size(); i += lanes()) mark_vector(rays, order.data() + i, start, to_set, window);
   to_set.set(window);
 }
 
 }  // namespace
 
-void prepare_doubles(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays) {
+void prepare_doubles_here(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays) {
   prepare(grid, ends_m, rays);
 }
-void prepare_floats(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays) {
+void prepare_floats_here(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays) {
   prepare(grid, ends_m, rays);
 }
-void places_of_doubles(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m,
-                       std::vector<std::uint64_t>& places) {
+void find_places_of_doubles(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m,
+                            std::vector<std::uint64_t>& places) {
   find_each_place(grid, points_m, places);
 }
-void places_of_floats(const RayGrid& grid, std::span<const Eigen::Vector3f> points_m,
-                      std::vector<std::uint64_t>& places) {
+void find_places_of_floats(const RayGrid& grid, std::span<const Eigen::Vector3f> points_m,
+                           std::vector<std::uint64_t>& places) {
   find_each_place(grid, points_m, places);
 }
-void mark_prepared(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
+void mark_rays_here(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
   mark(rays, start, window);
 }
 
@@ -374,27 +374,27 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pingvox::detail {
 namespace {
-HWY_EXPORT(prepare_doubles);
-HWY_EXPORT(prepare_floats);
-HWY_EXPORT(places_of_doubles);
-HWY_EXPORT(places_of_floats);
-HWY_EXPORT(mark_prepared);
+HWY_EXPORT(prepare_doubles_here);
+HWY_EXPORT(prepare_floats_here);
+HWY_EXPORT(find_places_of_doubles);
+HWY_EXPORT(find_places_of_floats);
+HWY_EXPORT(mark_rays_here);
 }  // namespace
 
 void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays) {
-  HWY_DYNAMIC_DISPATCH(prepare_doubles)(grid, ends_m, rays);
+  HWY_DYNAMIC_DISPATCH(prepare_doubles_here)(grid, ends_m, rays);
 }
 void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays) {
-  HWY_DYNAMIC_DISPATCH(prepare_floats)(grid, ends_m, rays);
+  HWY_DYNAMIC_DISPATCH(prepare_floats_here)(grid, ends_m, rays);
 }
 void find_places(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m, std::vector<std::uint64_t>& places) {
-  HWY_DYNAMIC_DISPATCH(places_of_doubles)(grid, points_m, places);
+  HWY_DYNAMIC_DISPATCH(find_places_of_doubles)(grid, points_m, places);
 }
 void find_places(const RayGrid& grid, std::span<const Eigen::Vector3f> points_m, std::vector<std::uint64_t>& places) {
-  HWY_DYNAMIC_DISPATCH(places_of_floats)(grid, points_m, places);
+  HWY_DYNAMIC_DISPATCH(find_places_of_floats)(grid, points_m, places);
 }
 void mark_rays(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
-  HWY_DYNAMIC_DISPATCH(mark_prepared)(rays, start, window);
+  HWY_DYNAMIC_DISPATCH(mark_rays_here)(rays, start, window);
 }
 
 }  // namespace pingvox::detail

@@ -7,7 +7,7 @@
 namespace pingvox::detail {
 
 template <class T>
-ScanWindow::Zeroed<T> ScanWindow::zeroed(std::size_t count) {
+ScanWindow::Zeroed<T> ScanWindow::allocate_zeroed(std::size_t count) {
   auto* const memory = static_cast<T*>(std::calloc(count, sizeof(T)));  // NOLINT(cppcoreguidelines-no-malloc)
   if (memory == nullptr) throw std::bad_alloc();
   return Zeroed<T>(memory);
@@ -20,10 +20,10 @@ void ScanWindow::open(int bits) {
     const std::size_t cells = std::size_t{1} << (3 * bits);
     // A few bytes at least: take_touched looks at eight at once.
     const std::size_t pages = std::max<std::size_t>(cells >> kPageCellBits, 8);
-    missed_ = zeroed<std::uint64_t>(cells / 64);
-    hit_ = zeroed<std::uint64_t>(cells / 64);
-    touched_ = zeroed<std::uint8_t>(pages);
-    with_hits_ = zeroed<std::uint8_t>(pages);
+    missed_ = allocate_zeroed<std::uint64_t>(cells / 64);
+    hit_ = allocate_zeroed<std::uint64_t>(cells / 64);
+    touched_ = allocate_zeroed<std::uint8_t>(pages);
+    with_hits_ = allocate_zeroed<std::uint8_t>(pages);
     room_bits_ = bits;
   }
   bits_ = bits;

@@ -51,7 +51,7 @@ class ScanWindow {
   }
 
   /// Takes back all hits among these places. REQUIRES that nothing else is marked
-  void forget_hits(std::span<const std::uint64_t> places) {
+  void clear_hits(std::span<const std::uint64_t> places) {
     for (const std::uint64_t place : places) {
       hit_[place / 64] = 0;
       touched_[place >> kPageCellBits] = 0;
@@ -82,7 +82,7 @@ class ScanWindow {
   template <class T>
   using Zeroed = std::unique_ptr<T[], Free>;
   template <class T>
-  static Zeroed<T> zeroed(std::size_t count);
+  static Zeroed<T> allocate_zeroed(std::size_t count);
 
   int bits_ = 0;
   int room_bits_ = 0;  ///< what there is memory for

@@ -21,7 +21,7 @@ using detail::ScanWindow;
 enum class RayEnds { kHit, kNothing };
 
 /// Below, opening and emptying a window costs more than it saves.
-constexpr std::size_t kFewRays = 16;
+constexpr std::size_t kMinRays = 16;
 /// Rays that are walked together.
 constexpr std::size_t kBlock = 1024;
 constexpr int kPageBits = ScanUpdate::kPageBits;
@@ -88,12 +88,12 @@ class PointTracer::Tracer {
   std::span<const Eigen::Vector3d> cells_of(std::span<const Point> points_m) {
     middles_m_.clear();
     std::set<WideKey> seen;  // of those outside of the window
-    const auto add_singly = [&](const Eigen::Vector3d& point_m) {
+    const auto add_one = [&](const Eigen::Vector3d& point_m) {
       const auto key = lattice_.key_of<WideWord>(point_m);
       if (!key || seen.insert(*key).second) middles_m_.push_back(key ? lattice_.centre_of(*key) : point_m);
     };
     if (!has_window_) {
-      for (const Point& point : points_m) add_singly(point.template cast<double>());
+      for (const Point& point : points_m) add_one(point.template cast<double>());
       return middles_m_;
     }
     // The window's hits tell which cells were found before.
@@ -103,14 +103,14 @@ class PointTracer::Tracer {
       for (std::size_t i = 0; i < block.size(); ++i) {
         const std::uint64_t place = places_[i];
         if (place == detail::kNoPlace) {
-          add_singly(block[i].template cast<double>());
+          add_one(block[i].template cast<double>());
         } else if (window_.mark_hit(place)) {
           found_.push_back(place);
           middles_m_.push_back(middle_of(block[i].template cast<double>()));
         }
       }
     });
-    window_.forget_hits(found_);
+    window_.clear_hits(found_);
     return middles_m_;
   }
 
@@ -130,14 +130,14 @@ class PointTracer::Tracer {
   std::size_t trace_ends(std::span<const Point> ends_m, RayEnds ends) {
     std::size_t outside = 0;
     if (!has_window_) {
-      for (const Point& point : ends_m) outside += trace_singly(point.template cast<double>(), ends);
+      for (const Point& point : ends_m) outside += trace_one(point.template cast<double>(), ends);
       return outside;
     }
     for_each_block(ends_m, [&](std::span<const Point> block) {
       prepare_rays(grid_, block, rays_);
       for (std::size_t i = 0; i < block.size(); ++i) {
         if (rays_.end[i] == detail::kNoPlace) {
-          outside += trace_singly(block[i].template cast<double>(), ends);
+          outside += trace_one(block[i].template cast<double>(), ends);
         } else if (ends == RayEnds::kHit) {
           window_.mark_hit(rays_.end[i]);
         }
@@ -148,7 +148,7 @@ class PointTracer::Tracer {
   }
 
   /// @return how many rays leave the lattice: 0 or 1
-  std::size_t trace_singly(const Eigen::Vector3d& end_m, RayEnds ends) {
+  std::size_t trace_one(const Eigen::Vector3d& end_m, RayEnds ends) {
     if (ends == RayEnds::kHit) {
       if (const auto end = lattice_.key_of<WideWord>(end_m)) scan_->add_hit(*end, options_.hit);
     }
@@ -179,7 +179,7 @@ class PointTracer::Tracer {
   template <class Point>
   void open_window(std::span<const Point> points_m) {
     const int bits = window_bits(reach_of(points_m));
-    has_window_ = options_.ray == RayAlgorithm::kDda && points_m.size() >= kFewRays && lattice_.depth() > kPageBits &&
+    has_window_ = options_.ray == RayAlgorithm::kDda && points_m.size() >= kMinRays && lattice_.depth() > kPageBits &&
                   bits <= ScanWindow::kMaxBits;
     if (!has_window_) return;
     window_.open(bits);

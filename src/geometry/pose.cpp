@@ -13,7 +13,7 @@ Pose pose_from_rpy(const Eigen::Vector3d& position_m, double roll_rad, double pi
   return pose;
 }
 
-Pose interpolated(const Pose& a, const Pose& b, double share) {
+Pose interpolate(const Pose& a, const Pose& b, double share) {
   const Eigen::Quaterniond qa(a.linear()), qb(b.linear());
   Pose pose = Pose::Identity();
   pose.linear() = qa.slerp(share, qb).toRotationMatrix();

@@ -34,7 +34,7 @@ std::optional<Pose> Trajectory::at(double time_s) const {
   if (after == poses_.begin()) return std::nullopt;
   const auto before = std::prev(after);
   const double share = (time_s - before->time_s) / (after->time_s - before->time_s);
-  return interpolated(before->map_from_body, after->map_from_body, share);
+  return interpolate(before->map_from_body, after->map_from_body, share);
 }
 
 }  // namespace pingvox

@@ -29,8 +29,8 @@ bool touches(const Triangle& triangle, const Vector3d& centre, const Vector3d& h
 }
 
 /// Halves the range of cells until one is left: most of a large triangle's box is far from it.
-void visit_touched(const Triangle& triangle, double cell_m, const CellRange& range,
-                   const std::function<void(const Cell&)>& visit) {
+void visit_cells(const Triangle& triangle, double cell_m, const CellRange& range,
+                 const std::function<void(const Cell&)>& visit) {
   const auto& [first, last] = range;
   if ((first.array() > last.array()).any()) return;
   // A face belongs to the cell above it. So does what rounding puts a hair below it.
@@ -46,8 +46,8 @@ void visit_touched(const Triangle& triangle, double cell_m, const CellRange& ran
   CellRange below = range, above = range;
   below.last[axis] = first[axis] + longest / 2;
   above.first[axis] = below.last[axis] + 1;
-  visit_touched(triangle, cell_m, below, visit);
-  visit_touched(triangle, cell_m, above, visit);
+  visit_cells(triangle, cell_m, below, visit);
+  visit_cells(triangle, cell_m, above, visit);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void for_each_cell_of(const Triangle& triangle, double cell_m, const CellRange& 
   // One cell more to each side: `touches` decides.
   const Cell first = (low / cell_m).array().floor().cast<std::int64_t>() - 1;
   const Cell last = (high / cell_m).array().floor().cast<std::int64_t>() + 1;
-  visit_touched(triangle, cell_m, {first.cwiseMax(range.first), last.cwiseMin(range.last)}, visit);
+  visit_cells(triangle, cell_m, {first.cwiseMax(range.first), last.cwiseMin(range.last)}, visit);
 }
 
 }  // namespace pingvox

@@ -13,7 +13,7 @@ template <class Visitor>
 void for_each_occupied(const OccupancyMap& map, Visitor visit) {
   with_key_word(map.lattice().depth(), [&]<KeyWord W>() {
     for_each_leaf<W>(map, {}, [&](const Leaf<W>& leaf) {
-      if (classified(leaf.belief, map.options().thresholds) == Occupancy::kOccupied) visit(leaf);
+      if (classify(leaf.belief, map.options().thresholds) == Occupancy::kOccupied) visit(leaf);
     });
   });
 }

@@ -173,7 +173,7 @@ class TreeWords {
     if (entry.is_leaf()) return state_of(LogOdds(entry.value));
     if (depth < kBrickDepth) return add(tree_.groups[entry.link], depth);
     const detail::BrickView brick = tree_.bricks[entry.link];
-    return add(is_all_free(entry) ? detail::CellStates{brick.known, 0} : detail::classified(brick, thresholds_));
+    return add(is_all_free(entry) ? detail::CellStates{brick.known, 0} : detail::classify(brick, thresholds_));
   }
 
   unsigned add(const detail::Group& group, int depth) {
@@ -219,7 +219,7 @@ class TreeWords {
   }
 
   unsigned state_of(LogOdds belief) const {
-    switch (classified(belief, thresholds_)) {
+    switch (classify(belief, thresholds_)) {
       case Occupancy::kOccupied:
         return kOccupied;
       case Occupancy::kFree:

@@ -31,8 +31,8 @@ inline bool any_of(FourMasks lanes) {
   return (lanes[0] | lanes[1] | lanes[2] | lanes[3]) != 0;
 }
 
-/// for each cell of `cells`: value = updated_by(value, evidence, clamp). REQUIRES evidence != 0 and unknown cells to be
-/// 0.
+/// for each cell of `cells`: value = add_evidence(value, evidence, clamp). REQUIRES evidence != 0 and unknown cells to
+/// be 0.
 /// @return whether a value changed
 inline bool add_alike(BrickRef brick, std::uint64_t cells, float evidence, const Clamp& clamp) {
   const float lowest = clamp.lowest.value(), highest = clamp.highest.value();

@@ -19,12 +19,12 @@ int octant_known(BrickView brick, int octant) {
   return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
 }
 
-/// Belief of a cell after more evidence, as raw floats; `updated_by` has the rule.
-float added(float belief, LogOdds evidence, const Clamp& clamp) {
-  return updated_by(LogOdds(belief), evidence, clamp).value();
+/// Belief of a cell after more evidence, as raw floats; `add_evidence` has the rule.
+float add_evidence(float belief, LogOdds evidence, const Clamp& clamp) {
+  return add_evidence(LogOdds(belief), evidence, clamp).value();
 }
 
-float clamped(float value, const Clamp& clamp) {
+float clamp_to(float value, const Clamp& clamp) {
   return std::clamp(value, clamp.lowest.value(), clamp.highest.value());
 }
 
@@ -37,11 +37,11 @@ int highest_bit(WideWord word) {
   return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<std::uint64_t>(word));
 }
 
-Entry pruned(BrickTree& tree, Entry entry, int depth, Parents parents) {
+Entry prune(BrickTree& tree, Entry entry, int depth, Parents parents) {
   if (!entry.is_inner()) return entry;
-  if (depth == tree.brick_depth()) return settled_brick(tree, entry.link, parents, Pruning::kWhenSettled);
+  if (depth == tree.brick_depth()) return settle_brick(tree, entry.link, parents, Pruning::kWhenSettled);
   for (std::size_t o = 0; o < 8; ++o) {
-    const Entry child = pruned(tree, tree.groups[entry.link].child[o], depth + 1, parents);
+    const Entry child = prune(tree, tree.groups[entry.link].child[o], depth + 1, parents);
     tree.groups[entry.link].child[o] = child;
   }
   // Only where memory ran out between making a group and making what it is for.
@@ -50,39 +50,39 @@ Entry pruned(BrickTree& tree, Entry entry, int depth, Parents parents) {
     tree.groups.release(entry.link);
     return {};
   }
-  return settled_group(tree, entry.link, parents, Pruning::kWhenSettled);
+  return settle_group(tree, entry.link, parents, Pruning::kWhenSettled);
 }
 
 /// Copies what hangs below an entry of another tree into this one, clamped.
-Entry copied(BrickTree& tree, const BrickTree& other, Entry entry, int depth, Parents parents, const Clamp& clamp) {
+Entry copy_from(BrickTree& tree, const BrickTree& other, Entry entry, int depth, Parents parents, const Clamp& clamp) {
   if (entry.is_none()) return entry;
-  if (entry.is_leaf()) return Entry::leaf(clamped(entry.value, clamp));
+  if (entry.is_leaf()) return Entry::leaf(clamp_to(entry.value, clamp));
   if (depth == tree.brick_depth()) {
     Brick brick = other.bricks[entry.link];
     for (std::size_t i = 0; i < 64; ++i) {
-      if ((brick.known >> i) & 1) brick.value[i] = clamped(brick.value[i], clamp);
+      if ((brick.known >> i) & 1) brick.value[i] = clamp_to(brick.value[i], clamp);
     }
-    return settled_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kWhenSettled);
+    return settle_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kWhenSettled);
   }
   const std::uint32_t index = tree.groups.allocate({});
   for (std::size_t o = 0; o < 8; ++o) {
-    const Entry child = copied(tree, other, other.groups[entry.link].child[o], depth + 1, parents, clamp);
+    const Entry child = copy_from(tree, other, other.groups[entry.link].child[o], depth + 1, parents, clamp);
     tree.groups[index].child[o] = child;
   }
-  return settled_group(tree, index, parents, Pruning::kWhenSettled);
+  return settle_group(tree, index, parents, Pruning::kWhenSettled);
 }
 
-Entry merged_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Parents parents, const Clamp& clamp) {
+Entry merge_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Parents parents, const Clamp& clamp) {
   const std::uint32_t index = a.is_inner() ? a.link : tree.bricks.allocate(brick_of(a));
   const BrickRef into = tree.bricks[index];
   const Brick from = b.is_leaf() ? brick_of(b) : Brick(other.bricks[b.link]);
   for (std::size_t i = 0; i < 64; ++i) {
     if (!((from.known >> i) & 1)) continue;
     const bool known = (into.known >> i) & 1;
-    into.value[i] = known ? clamped(into.value[i] + from.value[i], clamp) : clamped(from.value[i], clamp);
+    into.value[i] = known ? clamp_to(into.value[i] + from.value[i], clamp) : clamp_to(from.value[i], clamp);
   }
   into.known |= from.known;
-  return settled_brick(tree, index, parents, Pruning::kWhenSettled);
+  return settle_brick(tree, index, parents, Pruning::kWhenSettled);
 }
 
 }  // namespace
@@ -107,9 +107,9 @@ Brick brick_of(Entry entry) {
   return brick;
 }
 
-std::optional<LogOdds> for_all_cells(const Votes& votes) {
-  if (votes.missed == kAllCells) return votes.miss;
-  if (votes.hit == kAllCells && votes.hits == nullptr) return votes.all_hits;
+std::optional<LogOdds> evidence_for_all(const CellUpdates& updates) {
+  if (updates.missed == kAllCells) return updates.miss;
+  if (updates.hit == kAllCells && updates.hits == nullptr) return updates.all_hits;
   return std::nullopt;
 }
 
@@ -119,7 +119,7 @@ Group group_of(Entry entry) {
   return group;
 }
 
-Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+Entry settle_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
   const BrickView brick = tree.bricks[index];
   if (pruning != Pruning::kNever && is_uniform(brick)) {
     const Entry leaf = Entry::leaf(brick.value[0]);
@@ -129,7 +129,7 @@ Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruni
   return {index, summary_of(brick, parents)};
 }
 
-Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+Entry settle_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
   const Group& group = tree.groups[index];
   if (pruning != Pruning::kNever && is_uniform(group)) {
     const Entry leaf = group.child[0];
@@ -139,14 +139,14 @@ Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruni
   return {index, summary_of(group, parents)};
 }
 
-CellStates classified(BrickView brick, const Thresholds& thresholds) {
+CellStates classify(BrickView brick, const Thresholds& thresholds) {
   const std::uint64_t occupied = brick.known & cells_from(brick, thresholds.upper.value());
   const std::uint64_t lower =
       thresholds.lower == thresholds.upper ? occupied : cells_from(brick, thresholds.lower.value());
   return {brick.known & ~lower & ~occupied, occupied};
 }
 
-Entry built(BrickTree& tree, const Group& group, Parents parents) {
+Entry store(BrickTree& tree, const Group& group, Parents parents) {
   if (std::all_of(group.child.begin(), group.child.end(), [](const Entry& child) { return child.is_none(); })) {
     return {};
   }
@@ -154,7 +154,7 @@ Entry built(BrickTree& tree, const Group& group, Parents parents) {
   return {tree.groups.allocate(group), summary_of(group, parents)};
 }
 
-Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents) {
+Entry store(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents) {
   assert((cells.free & cells.occupied) == 0);
   const float lowest = clamp.lowest.value(), highest = clamp.highest.value();
   if (cells.free == kAllCells || cells.occupied == kAllCells) return Entry::leaf(cells.free != 0 ? lowest : highest);
@@ -166,8 +166,8 @@ Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parent
   return {tree.bricks.allocate(brick), parents == Parents::kMax ? most : summary_of(brick, parents)};
 }
 
-bool add(const Votes& votes, const Clamp& clamp, BrickRef brick) {
-  assert((votes.missed & votes.hit) == 0);
+bool add(const CellUpdates& updates, const Clamp& clamp, BrickRef brick) {
+  assert((updates.missed & updates.hit) == 0);
   bool changed = false;
   const auto add_to = [&](std::uint64_t cells, LogOdds evidence) {
     if (cells == 0 || evidence == LogOdds(0.0F)) return;
@@ -175,17 +175,17 @@ bool add(const Votes& votes, const Clamp& clamp, BrickRef brick) {
     changed |= (cells & ~brick.known) != 0;
     brick.known |= cells;
   };
-  add_to(votes.missed, votes.miss);
-  if (votes.hits == nullptr) {
-    add_to(votes.hit, votes.all_hits);
+  add_to(updates.missed, updates.miss);
+  if (updates.hits == nullptr) {
+    add_to(updates.hit, updates.all_hits);
     return changed;
   }
-  for (std::uint64_t left = votes.hit; left != 0; left &= left - 1) {
+  for (std::uint64_t left = updates.hit; left != 0; left &= left - 1) {
     const auto cell = static_cast<std::size_t>(std::countr_zero(left));
     const std::uint64_t bit = left & (~left + 1);
-    const LogOdds evidence(votes.hits[cell]);
+    const LogOdds evidence(updates.hits[cell]);
     if (evidence == LogOdds(0.0F)) continue;
-    const float after = added(brick.value[cell], evidence, clamp);
+    const float after = add_evidence(brick.value[cell], evidence, clamp);
     changed |= after != brick.value[cell] || (brick.known & bit) == 0;
     brick.value[cell] = after;
     brick.known |= bit;
@@ -258,34 +258,33 @@ void release_below(BrickTree& tree, Entry entry, int depth) {
 }
 
 void prune_all(BrickTree& tree, Parents parents) {
-  tree.root = pruned(tree, tree.root, 0, parents);
+  tree.root = prune(tree, tree.root, 0, parents);
   tree.pruned = true;
   tree.shortcut = shortcut_of(tree);
 }
 
-Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents,
-             const Clamp& clamp) {
+Entry merge(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp) {
   if (b.is_none()) return a;
-  if (a.is_none()) return copied(tree, other, b, depth, parents, clamp);
-  if (a.is_leaf() && b.is_leaf()) return Entry::leaf(clamped(a.value + b.value, clamp));
-  if (depth == tree.brick_depth()) return merged_brick(tree, a, other, b, parents, clamp);
+  if (a.is_none()) return copy_from(tree, other, b, depth, parents, clamp);
+  if (a.is_leaf() && b.is_leaf()) return Entry::leaf(clamp_to(a.value + b.value, clamp));
+  if (depth == tree.brick_depth()) return merge_brick(tree, a, other, b, parents, clamp);
   const std::uint32_t index = a.is_inner() ? a.link : tree.groups.allocate(group_of(a));
   for (std::size_t o = 0; o < 8; ++o) {
     const Entry from = b.is_leaf() ? b : other.groups[b.link].child[o];
-    const Entry child = merged(tree, tree.groups[index].child[o], other, from, depth + 1, parents, clamp);
+    const Entry child = merge(tree, tree.groups[index].child[o], other, from, depth + 1, parents, clamp);
     tree.groups[index].child[o] = child;
   }
-  return settled_group(tree, index, parents, Pruning::kWhenSettled);
+  return settle_group(tree, index, parents, Pruning::kWhenSettled);
 }
 
-Entry voted_without_brick(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry) {
+Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry) {
   assert(!entry.is_inner() && rules.pruning != Pruning::kNever);
-  if (const auto evidence = for_all_cells(votes)) {
+  if (const auto evidence = evidence_for_all(updates)) {
     // The same for the whole of a leaf: what becomes of it is a leaf.
-    return *evidence == LogOdds(0.0F) ? entry : Entry::leaf(added(entry.value, *evidence, rules.clamp));
+    return *evidence == LogOdds(0.0F) ? entry : Entry::leaf(add_evidence(entry.value, *evidence, rules.clamp));
   }
   Brick made = brick_of(entry);
-  if (!add(votes, rules.clamp, made)) return entry;
+  if (!add(updates, rules.clamp, made)) return entry;
   if (is_uniform(made)) return Entry::leaf(made.value[0]);
   return {tree.bricks.allocate(made), summary_of(made, rules.parents)};
 }
@@ -344,7 +343,7 @@ void Cursor<W>::grow_to(int depth) {
 }
 
 template <KeyWord W>
-BrickRef Cursor<W>::brick_made() {
+BrickRef Cursor<W>::make_brick() {
   if (brick_ == Entry::kNone) {
     grow_to(tree_.brick_depth());
     Entry& entry = entry_at(tree_.brick_depth());
@@ -380,7 +379,7 @@ void Cursor<W>::settle_group(int depth) {
   if (!stale_[at]) return;
   stale_[at] = false;
   Entry& entry = entry_at(depth);
-  const Entry now = settled_group(tree_, entry.link, rules_.parents, rules_.pruning);
+  const Entry now = detail::settle_group(tree_, entry.link, rules_.parents, rules_.pruning);
   if (now.is_leaf()) {
     reach_ = depth;
     drop_shortcut_at(depth);
@@ -413,20 +412,20 @@ void Cursor<W>::drop_shortcut_at(int depth) {
 }
 
 template <KeyWord W>
-void Cursor<W>::after_change(int depth) {
+void Cursor<W>::finish_change(int depth) {
   mark_stale_above(depth);
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
 }
 
 template <KeyWord W>
-void Cursor<W>::forget_brick() {
+void Cursor<W>::leave_brick() {
   brick_ = Entry::kNone;
   brick_stale_ = false;
   brick_summary_ = Summary::kRight;
 }
 
 template <KeyWord W>
-void Cursor<W>::brick_changed() {
+void Cursor<W>::mark_brick_stale() {
   brick_stale_ = true;
   brick_summary_ = Summary::kStale;
   if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
@@ -458,11 +457,11 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
   const Entry end = in_brick ? Entry{} : entry_at(reach_);
   const bool known = in_brick ? (tree_.bricks[brick_].known & bit) != 0 : end.is_leaf();
   const float before = in_brick ? tree_.bricks[brick_].value[cell] : end.value;
-  const float after = added(before, evidence, rules_.clamp);
+  const float after = add_evidence(before, evidence, rules_.clamp);
   // What changes nothing is dropped before anything is made or marked. Evidence of nothing makes no cell known.
   const bool changes = known ? after != before : evidence != LogOdds(0.0F);
   if (!changes && (rules_.early_drop == EarlyDrop::kOn || !in_brick || !known)) return;
-  const BrickRef brick = brick_made();
+  const BrickRef brick = make_brick();
   const bool is_first = brick.known == 0;
   brick.known |= bit;
   brick.value[cell] = after;
@@ -476,20 +475,20 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
 }
 
 template <KeyWord W>
-bool Cursor<W>::vote(const BasicKey<W>& key, const Votes& votes) {
+bool Cursor<W>::update_brick(const BasicKey<W>& key, const CellUpdates& updates) {
   move_to(key);
   const Entry entry = entry_at(reach_);
   if (entry.is_inner()) {
-    const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]);
-    if (changed || rules_.early_drop == EarlyDrop::kOff) brick_changed();
+    const bool changed = add(updates, rules_.clamp, tree_.bricks[entry.link]);
+    if (changed || rules_.early_drop == EarlyDrop::kOff) mark_brick_stale();
     return changed;
   }
-  const Entry now = voted_without_brick(tree_, rules_, votes, entry);
+  const Entry now = update_without_brick(tree_, rules_, updates, entry);
   if (now == entry) return false;
   grow_to(tree_.brick_depth());
   entry_at(tree_.brick_depth()) = now;
   brick_ = now.is_inner() ? now.link : Entry::kNone;
-  after_change(reach_);
+  finish_change(reach_);
   return true;
 }
 
@@ -500,7 +499,7 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
   if (reach_ > at) {
     // What lies below is thrown away, so there is nothing to settle there.
     reach_ = at;
-    forget_brick();
+    leave_brick();
   }
   grow_to(at);
   Entry& entry = entry_at(at);
@@ -508,18 +507,18 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
     release_below(tree_, entry, at);
     entry = Entry::leaf(value);
     drop_shortcut_at(at);
-    forget_brick();
-    after_change(at);
+    leave_brick();
+    finish_change(at);
     return;
   }
-  const BrickRef brick = brick_made();
+  const BrickRef brick = make_brick();
   const bool whole_octant = depth == tree_.levels - 1;
   const int first = whole_octant ? key.octant(1) * 8 : cell_in_brick(key);
   const int count = whole_octant ? 8 : 1;
   brick.known |= whole_octant ? octant_mask(key.octant(1)) : std::uint64_t{1} << first;
   std::fill_n(brick.value.begin() + first, count, value);
   raise_maximum(value);
-  brick_changed();
+  mark_brick_stale();
 }
 
 template <KeyWord W>
@@ -529,7 +528,7 @@ typename Cursor<W>::Reach Cursor<W>::reach(const BasicKey<W>& key) {
 }
 
 template <KeyWord W>
-Entry Cursor<W>::look_at(const BasicKey<W>& key, int depth) {
+Entry Cursor<W>::seek(const BasicKey<W>& key, int depth) {
   assert(reach_ <= depth);
   move_to(key, depth);
   return entry_at(reach_);

@@ -103,7 +103,7 @@ bool is_uniform(const Group& group);
 bool is_uniform(BrickView brick);
 /// Evidence for the cells of one brick: `miss` where a bit of `missed` is set; where bit i of `hit` is set hits[i], or
 /// `all_hits` when there are none. REQUIRES missed and hit to be disjoint.
-struct Votes {
+struct CellUpdates {
   std::uint64_t missed = 0;
   LogOdds miss;
   std::uint64_t hit = 0;
@@ -111,10 +111,10 @@ struct Votes {
   LogOdds all_hits;
 };
 /// Adds evidence to a brick. @return whether anything changed
-bool add(const Votes& votes, const Clamp& clamp, BrickRef brick);
+bool add(const CellUpdates& updates, const Clamp& clamp, BrickRef brick);
 
 /// The evidence that each cell of a brick gets alike; nullopt: not all of them do.
-std::optional<LogOdds> for_all_cells(const Votes& votes);
+std::optional<LogOdds> evidence_for_all(const CellUpdates& updates);
 
 /// A brick that stands for an entry without one: of an unknown or a joined cell.
 Brick brick_of(Entry entry);
@@ -123,25 +123,25 @@ Group group_of(Entry entry);
 
 /// For readers that build a tree from below: the entry for what they put together, which is stored unless that is
 /// uniform, or nothing is known in it. Throws std::bad_alloc.
-Entry built(BrickTree& tree, const Group& group, Parents parents);
+Entry store(BrickTree& tree, const Group& group, Parents parents);
 /// The same for a brick of cells that are as sure as can be. REQUIRES masks without a common bit.
-Entry built(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
+Entry store(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
 
 /// The shortcut that leads farthest down, though not below pages. None where it would lead nowhere, nor in a tree of
 /// more than 64 levels.
 std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
 /// What a brick that changed became: itself, or less when it is uniform.
-Entry settled_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
+Entry settle_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
 /// The same for a group whose children are settled.
-Entry settled_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
+Entry settle_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
 
 /// Frees all that hangs below an entry of `depth`.
 void release_below(BrickTree& tree, Entry entry, int depth);
 /// Recomputes all inner nodes, and joins equal leaves everywhere. Sets `pruned`, and the shortcut.
 void prune_all(BrickTree& tree, Parents parents);
 /// Recomputes and returns `a` with the leaves of `b` (of another tree of the same levels) added, clamped.
-Entry merged(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
+Entry merge(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth, Parents parents, const Clamp& clamp);
 
 /// How a cursor changes a tree.
 struct CursorRules {
@@ -153,11 +153,11 @@ struct CursorRules {
 
 /// What becomes of an entry at brick level that has no brick, of an unknown or a joined cell. A brick is made only
 /// where something changes that no leaf can say. Throws std::bad_alloc. REQUIRES !entry.is_inner(), and pruning
-Entry voted_without_brick(BrickTree& tree, const CursorRules& rules, const Votes& votes, Entry entry);
+Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry);
 
-/// A place in a tree and the path to it: what changes trees (below pages so does `voted`, map/page_votes.hpp). Moving
-/// on settles what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every parent is
-/// recomputed once. Two widths are compiled: 64 bits, and wide for lattices that are deeper.
+/// A place in a tree and the path to it: what changes trees (below pages so does `update_page`, map/page_updates.hpp).
+/// Moving on settles what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every
+/// parent is recomputed once. Two widths are compiled: 64 bits, and wide for lattices that are deeper.
 template <KeyWord W>
 class Cursor {
  public:
@@ -168,7 +168,7 @@ class Cursor {
 
   /// Adds evidence to the cells of the brick that holds `key`. Throws std::bad_alloc: a brick that was made for it may
   /// then be lost until the map is cleared. @return whether anything changed. REQUIRES pruning
-  bool vote(const BasicKey<W>& key, const Votes& votes);
+  bool update_brick(const BasicKey<W>& key, const CellUpdates& updates);
 
   /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
   void set(const BasicKey<W>& key, int depth, float value);
@@ -184,8 +184,8 @@ class Cursor {
   Reach reach(const BasicKey<W>& key);
   /// The entry of the node of `depth` that holds `key`, or of the leaf (or what is not known) that this is part of.
   /// Moves there; what hangs below may be changed before the next move. REQUIRES that the cursor was nowhere deeper.
-  Entry look_at(const BasicKey<W>& key, int depth);
-  /// Puts what became of the node that was looked at last there.
+  Entry seek(const BasicKey<W>& key, int depth);
+  /// Puts what became of the node sought last there.
   void put(int depth, Entry entry);
 
  private:
@@ -195,16 +195,16 @@ class Cursor {
   Entry& entry_at(int depth);
   int octant_at(int depth) const { return tree_.octant_below(key_, depth); }
   void grow_to(int depth);
-  BrickRef brick_made();
+  BrickRef make_brick();
   void mark_stale_above(int depth);
   void drop_shortcut_at(int depth);
   void settle_brick();
   void settle_group(int depth);
   void settle_down_to(int depth);
-  void after_change(int depth);
-  void brick_changed();
+  void finish_change(int depth);
+  void mark_brick_stale();
   void raise_maximum(float value);
-  void forget_brick();
+  void leave_brick();
 
   BrickTree& tree_;
   CursorRules rules_;

@@ -69,7 +69,7 @@ constexpr auto kCellAt = [] {
 
 /// The same ray node by node: within a brick by its bits, and where the tree has no brick to the node's last face at
 /// once. The faces are those of FaceCrossings, in its order (of those crossed at once the highest axis first), so a ray
-/// ends where `cast_far` ends it. REQUIRES at most FaceCrossings::kFewFaces, and two levels or more.
+/// ends where `cast_far` ends it. REQUIRES at most FaceCrossings::kMaxFacesIn64Bits, and two levels or more.
 template <KeyWord W>
 class NodeWalk {
  public:
@@ -105,8 +105,8 @@ class NodeWalk {
 
   /// Goes on until the ray has left the node without a brick that is so many levels high.
   Stop cross(const detail::Entry& entry, int levels) {
-    const Occupancy what = entry.is_none() ? Occupancy::kUnknown : classified(LogOdds(entry.value), thresholds_);
-    if (stops(what, unknown_)) return stopped_at(what);
+    const Occupancy what = entry.is_none() ? Occupancy::kUnknown : classify(LogOdds(entry.value), thresholds_);
+    if (stops(what, unknown_)) return stop_at(what);
     const W inner_bits = static_cast<W>(levels < kLevelsOf<W> ? (W{1} << levels) - 1 : ~W{0});
     // Faces to cross within the node, and when the one behind them, which is the node's, is crossed.
     std::array<std::uint64_t, 3> within{}, leaves{kNever, kNever, kNever};
@@ -168,9 +168,9 @@ class NodeWalk {
     while ((place & kHigh) == kIn) {
       const std::size_t cell = kCellAt[place & kLow];
       const bool known = (brick.known >> cell & 1) != 0;
-      const Occupancy what = known ? classified(LogOdds(brick.value[cell]), thresholds_) : Occupancy::kUnknown;
+      const Occupancy what = known ? classify(LogOdds(brick.value[cell]), thresholds_) : Occupancy::kUnknown;
       if (stops(what, unknown_)) {
-        stop = stopped_at(what);
+        stop = stop_at(what);
         break;
       }
       if (left == 0) {
@@ -208,7 +208,7 @@ class NodeWalk {
     axis.next = axis.left == 0 ? kNever : axis.next;
   }
 
-  Stop stopped_at(Occupancy what) {
+  Stop stop_at(Occupancy what) {
     what_ = what;
     return Stop::kAtCell;
   }
@@ -234,7 +234,7 @@ RayEnd cast(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const Eige
   if (!start) return {Occupancy::kUnknown, {}, 0.0};
   const FaceCrossings crossings(lattice.in_cells(origin_m), lattice.in_cells(origin_m + way_m));
   const double range_m = way_m.norm();
-  if (lattice.depth() < 2 || crossings.left() > FaceCrossings::kFewFaces) {
+  if (lattice.depth() < 2 || crossings.left() > FaceCrossings::kMaxFacesIn64Bits) {
     return cast_far(map, *start, crossings, range_m, unknown);
   }
   return NodeWalk<W>(map, *start, crossings, unknown).end(range_m);
@@ -247,8 +247,8 @@ RayEnd cast_ray(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const 
   assert(direction.norm() > 0.0 && max_range_m > 0.0 && std::isfinite(max_range_m));
   const Eigen::Vector3d way_m = direction.normalized() * max_range_m;
   // Farther than 2^60 cells no walk ends.
-  const double most_m = std::ldexp(map.lattice().resolution_m(), 60);
-  const Eigen::Vector3d inside_m = way_m * std::min(share_inside(map.lattice(), origin_m, way_m), most_m / max_range_m);
+  const double max_m = std::ldexp(map.lattice().resolution_m(), 60);
+  const Eigen::Vector3d inside_m = way_m * std::min(share_inside(map.lattice(), origin_m, way_m), max_m / max_range_m);
   if (map.lattice().depth() <= kLevelsOf<std::uint64_t>) return cast<std::uint64_t>(map, origin_m, inside_m, unknown);
   return cast<WideWord>(map, origin_m, inside_m, unknown);
 }

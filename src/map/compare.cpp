@@ -50,7 +50,7 @@ class Comparison {
     const double difference = std::abs(double{belief_a.value()} - double{belief_b.value()});
     result_.max_log_odds_difference = std::max(result_.max_log_odds_difference, difference);
     const bool same =
-        sameness_ == Sameness::kLogOdds ? belief_a == belief_b : classified(belief_a, a_) == classified(belief_b, b_);
+        sameness_ == Sameness::kLogOdds ? belief_a == belief_b : classify(belief_a, a_) == classify(belief_b, b_);
     add_saturated(same ? result_.same : result_.different, cells);
   }
 

@@ -135,11 +135,11 @@ class CountWindow {
 class KeyBatch {
  public:
   /// Deeper lattices have more bits than a code.
-  static constexpr int kMostDepth = 23;
+  static constexpr int kMaxLevels = 23;
   /// Smaller batches are only sorted.
   static constexpr std::size_t kWorthAWindow = 16'384;
 
-  /// REQUIRES keys of a lattice of kMostDepth levels at most, fewer than 2^32.
+  /// REQUIRES keys of a lattice of kMaxLevels levels at most, fewer than 2^32.
   template <KeyWord W>
   void gather(std::span<const BasicKey<W>> keys) {
     assert(entries_.empty());

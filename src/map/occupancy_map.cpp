@@ -13,7 +13,7 @@
 #include "map/bits.hpp"
 #include "map/key_batch.hpp"
 #include "map/map_access.hpp"
-#include "map/page_votes.hpp"
+#include "map/page_updates.hpp"
 #include "map/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -45,7 +45,7 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   ++counts.leaves;
   const int levels = depth - node.depth();
   const std::uint64_t cells = levels > 21 ? kMost : std::uint64_t{1} << (3 * levels);
-  switch (classified(node.belief(), thresholds)) {
+  switch (classify(node.belief(), thresholds)) {
     case Occupancy::kOccupied:
       counts.occupied_cells = saturated_sum(counts.occupied_cells, cells);
       break;
@@ -124,12 +124,12 @@ class Growth {
   Growth(detail::BrickTree& tree, const Clamp& clamp) : tree_(tree), clamp_(clamp), cursor_(tree, {}) {}
 
   enum class More { kNo, kYes };
-  /// @param more  whether votes on the same brick follow
-  void add(const BasicKey<W>& key, const detail::Votes& votes, More more) {
+  /// @param more  whether updates on the same brick follow
+  void add(const BasicKey<W>& key, const detail::CellUpdates& updates, More more) {
     const auto reach = cursor_.reach(key);
     if (reach.end.is_inner()) return;
     detail::Brick brick = detail::brick_of(reach.end);
-    if (!detail::add(votes, clamp_, brick)) return;
+    if (!detail::add(updates, clamp_, brick)) return;
     if (more == More::kYes || !detail::is_uniform(brick)) ++bricks_;
     // Groups that the brick made before needs are counted already.
     const int from = std::max(reach.depth, made_ ? tree_.common_depth(*made_, key) + 1 : 0);
@@ -157,7 +157,7 @@ std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Cla
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
     detail::for_each_bit(page.bricks, [&](std::size_t brick) {
-      growth.add(lowest_in<W>(page, brick), detail::votes_on(scan, page, brick), Growth<W>::More::kNo);
+      growth.add(lowest_in<W>(page, brick), detail::updates_of_brick(scan, page, brick), Growth<W>::More::kNo);
     });
   }
   return growth.bytes();
@@ -172,7 +172,7 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
   return growth.bytes();
 }
 
-void count_votes(const ScanUpdate::Page& page, ApplyReport& report) {
+void count_updates(const ScanUpdate::Page& page, ApplyReport& report) {
   report.cells_freed += detail::count_bits(page.missed);
   detail::for_each_bit(page.bricks_hit, [&](std::size_t brick) {
     report.cells_freed -= detail::count_bits(page.missed[brick] & page.hit[brick]);
@@ -181,21 +181,21 @@ void count_votes(const ScanUpdate::Page& page, ApplyReport& report) {
 }
 
 template <KeyWord W>
-ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
+ApplyReport apply_scan(detail::BrickTree& tree, const detail::CursorRules& rules, const ScanUpdate& scan) {
   ApplyReport report;
   detail::Cursor<W> cursor(tree, rules);
   const int page_depth = tree.brick_depth() - detail::kPageLevels;
   for (const std::uint32_t index : scan.pages_in_order()) {
     const ScanUpdate::Page& page = scan.page(index);
-    count_votes(page, report);
+    count_updates(page, report);
     if (page_depth < 0) {
       detail::for_each_bit(page.bricks, [&](std::size_t brick) {
-        cursor.vote(lowest_in<W>(page, brick), detail::votes_on(scan, page, brick));
+        cursor.update_brick(lowest_in<W>(page, brick), detail::updates_of_brick(scan, page, brick));
       });
       continue;
     }
-    const detail::Entry before = cursor.look_at(page.lowest.as<W>(), page_depth);
-    const detail::Entry after = detail::voted(tree, rules, scan, page, before);
+    const detail::Entry before = cursor.seek(page.lowest.as<W>(), page_depth);
+    const detail::Entry after = detail::update_page(tree, rules, scan, page, before);
     if (after != before) cursor.put(page_depth, after);
   }
   cursor.flush();
@@ -205,11 +205,11 @@ ApplyReport applied(detail::BrickTree& tree, const detail::CursorRules& rules, c
 void apply_batch(detail::BrickTree& tree, const detail::CursorRules& rules, detail::KeyBatch& batch, LogOdds evidence) {
   detail::Cursor<std::uint64_t> cursor(tree, rules);
   batch.take([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
-    const auto vote = [&](std::uint64_t some) { return cursor.vote(key, {0, {}, some, nullptr, evidence}); };
-    bool changed = vote(cells.once);
+    const auto update = [&](std::uint64_t some) { return cursor.update_brick(key, {0, {}, some, nullptr, evidence}); };
+    bool changed = update(cells.once);
     std::uint64_t left = cells.more;
     for (std::uint32_t round = 2; left != 0 && changed; ++round) {
-      changed = vote(left);  // once nothing changes, nothing will: it is the same evidence
+      changed = update(left);  // once nothing changes, nothing will: it is the same evidence
       for (std::uint64_t some = left; some != 0; some &= some - 1) {
         const auto cell = static_cast<std::size_t>(std::countr_zero(some));
         if (cells.times[cell] <= round) left &= ~(std::uint64_t{1} << cell);
@@ -332,7 +332,7 @@ Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
 
 Occupancy OccupancyMap::classify(const Eigen::Vector3d& point_m) const {
   const auto belief = at(point_m);
-  return belief ? classified(*belief, options_.thresholds) : Occupancy::kUnknown;
+  return belief ? pingvox::classify(*belief, options_.thresholds) : Occupancy::kUnknown;
 }
 
 MapCounts OccupancyMap::counts() const {
@@ -374,7 +374,7 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
       if (const auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return tl::unexpected(fits.error());
     }
     const detail::CursorRules rules = rules_of(*tree_, options_, Pruning::kWhenSettled);
-    return with_cursor_word(tree_->levels, [&]<KeyWord W>() { return applied<W>(*tree_, rules, scan); });
+    return with_cursor_word(tree_->levels, [&]<KeyWord W>() { return apply_scan<W>(*tree_, rules, scan); });
   } catch (const std::bad_alloc&) {
     detail::prune_all(*tree_, options_.parents);
     return fail(Error::Code::kNoMemory, kOutOfMemory);
@@ -385,7 +385,7 @@ template <KeyWord W>
 Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evidence) {
   try {
     if (!tree_->pruned) detail::prune_all(*tree_, options_.parents);
-    if (tree_->levels > detail::KeyBatch::kMostDepth || keys.size() > std::numeric_limits<std::uint32_t>::max()) {
+    if (tree_->levels > detail::KeyBatch::kMaxLevels || keys.size() > std::numeric_limits<std::uint32_t>::max()) {
       Editor editor = edit();
       for (const BasicKey<W>& key : keys) editor.update(key, evidence);
       return {};
@@ -415,7 +415,7 @@ Result<void> OccupancyMap::merge(const OccupancyMap& other) {
   try {
     detail::BrickTree merged = *tree_;
     merged.root =
-        detail::merged(merged, merged.root, *other.tree_, other.tree_->root, 0, options_.parents, options_.clamp);
+        detail::merge(merged, merged.root, *other.tree_, other.tree_->root, 0, options_.parents, options_.clamp);
     merged.shortcut = detail::shortcut_of(merged);
     if (!merged.pruned) detail::prune_all(merged, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0 && bytes_of(merged) > limit) {
@@ -523,11 +523,11 @@ TreeBuilder::TreeBuilder(const MapOptions& options)
 TreeBuilder::~TreeBuilder() = default;
 
 Entry TreeBuilder::add(const CellStates& cells) {
-  return built(*tree_, cells, options_->clamp, options_->parents);
+  return store(*tree_, cells, options_->clamp, options_->parents);
 }
 
 Entry TreeBuilder::add(const Group& group) {
-  return built(*tree_, group, options_->parents);
+  return store(*tree_, group, options_->parents);
 }
 
 std::size_t TreeBuilder::bytes() const {

@@ -17,7 +17,7 @@ using detail::for_each_bit;
 
 constexpr std::uint32_t kFree = 0;
 
-std::size_t hashed(const WideKey& key) {
+std::size_t hash_of(const WideKey& key) {
   // Neighbouring pages must spread: multiply each component by a different odd constant, and take the high bits.
   const auto mixed = [](WideWord word, std::uint64_t factor) {
     word >>= ScanUpdate::kPageBits;
@@ -32,7 +32,7 @@ std::size_t hashed(const WideKey& key) {
 
 std::size_t ScanUpdate::slot_of(const WideKey& lowest) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hashed(lowest) & mask;
+  std::size_t slot = hash_of(lowest) & mask;
   while (slots_[slot] != kFree && pages_[slots_[slot] - 1].lowest != lowest) slot = (slot + 1) & mask;
   return slot;
 }

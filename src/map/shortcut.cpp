@@ -2,12 +2,12 @@
 #include <bit>
 
 #include "map/brick_tree.hpp"
-#include "map/page_votes.hpp"
+#include "map/page_updates.hpp"
 
 namespace pingvox::detail {
 namespace {
 
-/// That of pages. Links below come and go: with them it would be made again after each scan, and votes on a page change
+/// That of pages. Links below come and go: with them it would be made again after each scan, and updates of a page change
 /// them by themselves.
 constexpr int kLowestLevel = 2 + kPageLevels;
 

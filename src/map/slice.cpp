@@ -137,19 +137,19 @@ Result<void> SliceOptions::validate() const {
 }
 
 Result<Raster<Occupancy>> slice_of(const OccupancyMap& map, const SliceOptions& options) {
-  const Result<Frame> frame = frame_of(map, options, kMostRasterCells);
+  const Result<Frame> frame = frame_of(map, options, kMaxRasterCells);
   if (!frame) return tl::unexpected(frame.error());
   auto raster = raster_of(map.lattice(), *frame, Occupancy::kUnknown);
   for_each_in_slice(map, options, [&](const Leaf<WideWord>& leaf, const KeyBox& cells) {
     // Unknown, free, occupied: each one beats those before it.
-    const Occupancy occupancy = classified(leaf.belief, map.options().thresholds);
+    const Occupancy occupancy = classify(leaf.belief, map.options().thresholds);
     for_each_column(raster, *frame, cells, [occupancy](Occupancy& value) { value = std::max(value, occupancy); });
   });
   return raster;
 }
 
 Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& options) {
-  if (const auto frame = frame_of(map, options, kMostRasterCells); !frame) return tl::unexpected(frame.error());
+  if (const auto frame = frame_of(map, options, kMaxRasterCells); !frame) return tl::unexpected(frame.error());
   const int levels = map.lattice().depth();
   const auto [first, last] = layers_of(map.lattice(), options);
   OccupancyMap out(map.options());
@@ -162,13 +162,13 @@ Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& o
 }
 
 Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& options, Surface surface) {
-  const Result<Frame> frame = frame_of(map, options, kMostRasterCells / 4);
+  const Result<Frame> frame = frame_of(map, options, kMaxRasterCells / 4);
   if (!frame) return tl::unexpected(frame.error());
   const Lattice& lattice = map.lattice();
   auto raster = raster_of(lattice, *frame, std::numeric_limits<float>::quiet_NaN());
   bool is_empty = true;
   for_each_in_slice(map, options, [&](const Leaf<WideWord>& leaf, const KeyBox& cells) {
-    if (classified(leaf.belief, map.options().thresholds) != Occupancy::kOccupied) return;
+    if (classify(leaf.belief, map.options().thresholds) != Occupancy::kOccupied) return;
     is_empty = false;
     const WideKey cell{cells.first.x, cells.first.y, surface == Surface::kHighest ? cells.last.z : cells.first.z};
     const auto top_m = static_cast<float>(lattice.centre_of(cell).z() + 0.5 * lattice.resolution_m());

@@ -41,7 +41,7 @@ constexpr std::uint64_t spread_16_bits(std::uint16_t word) {
 }
 
 /// Takes every third bit, from the lowest on.
-constexpr std::uint64_t gathered_bits(std::uint64_t code) {
+constexpr std::uint64_t gather_bits(std::uint64_t code) {
   code &= 0x1249249249249249U;
   code = (code | code >> 2) & 0x10C30C30C30C30C3U;
   code = (code | code >> 4) & 0x100F00F00F00F00FU;
@@ -62,7 +62,7 @@ constexpr std::uint64_t code_of(const BasicKey<W>& key) {
 
 /// The key with that number.
 constexpr BasicKey<std::uint64_t> key_of_code(std::uint64_t code) {
-  return {gathered_bits(code), gathered_bits(code >> 1), gathered_bits(code >> 2)};
+  return {gather_bits(code), gather_bits(code >> 1), gather_bits(code >> 2)};
 }
 
 }  // namespace pingvox::detail

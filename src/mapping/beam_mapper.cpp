@@ -38,12 +38,12 @@ Result<void> check_size(const PlacedBeam& placed, const BuildOptions& options, c
   const double range_m = echo ? echo->range_m : static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
   const double cells =
       cells_in_beam(options.model, std::min(range_m, options.echo.max_range_m), lattice.resolution_m());
-  if (cells <= kMostCellsInBeam) return {};
+  if (cells <= kMaxCellsInBeam) return {};
   return fail(
       Error::Code::kLimit,
       fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
                   "a shorter maximum range or a thinner beam would do",
-                  range_m, beam.time_s, cells, lattice.resolution_m(), kMostCellsInBeam));
+                  range_m, beam.time_s, cells, lattice.resolution_m(), kMaxCellsInBeam));
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ class BeamMapper::Stages {
   }
 
   /// After an error: what waits is not whole any more.
-  void start_anew() {
+  void restart() {
     stream_ = empty_stream_;
     poses_.clear();
     beams_ = 0;
@@ -90,7 +90,7 @@ class BeamMapper::Stages {
     watch_.lap(report_.seconds.detect);
     const Result<std::vector<PlacedBeam>> placed = place(std::move(heard));
     if (!placed) return tl::unexpected(placed.error());
-    Result<void> mapped = options_.vote == Vote::kPerSweep ? map_together(*placed) : map_singly(*placed);
+    Result<void> mapped = options_.vote == Vote::kPerSweep ? map_as_one_scan(*placed) : map_one_by_one(*placed);
     if (!mapped) return mapped;
     report_.sweeps += stream_.complete_sweeps() - sweeps_;
     sweeps_ = stream_.complete_sweeps();
@@ -133,7 +133,7 @@ class BeamMapper::Stages {
   }
 
   /// All beams in one scan.
-  Result<void> map_together(const std::vector<PlacedBeam>& beams) {
+  Result<void> map_as_one_scan(const std::vector<PlacedBeam>& beams) {
     std::vector<Fit> fits(beams.size());
     parts_.run(beams.size(), scan_, [&](std::size_t, std::size_t first, std::size_t last, ScanUpdate& part) {
       BeamTracer tracer(options_.model, options_.echo.max_range_m);
@@ -144,7 +144,7 @@ class BeamMapper::Stages {
   }
 
   /// Each beam as a scan of its own.
-  Result<void> map_singly(const std::vector<PlacedBeam>& beams) {
+  Result<void> map_one_by_one(const std::vector<PlacedBeam>& beams) {
     for (const PlacedBeam& beam : beams) {
       count(beam, trace(beam, tracer_, scan_));
       if (const auto applied = apply(); !applied) return applied;
@@ -197,13 +197,13 @@ BeamMapper::~BeamMapper() = default;
 
 Result<void> BeamMapper::add(Beam beam, const std::optional<Pose>& map_from_body) {
   Result<void> added = detail::without_exceptions([&] { return stages_->add(std::move(beam), map_from_body); });
-  if (!added) stages_->start_anew();
+  if (!added) stages_->restart();
   return added;
 }
 
 Result<void> BeamMapper::finish() {
   Result<void> finished = detail::without_exceptions([&] { return stages_->finish(); });
-  if (!finished) stages_->start_anew();
+  if (!finished) stages_->restart();
   return finished;
 }
 

@@ -11,7 +11,7 @@ namespace pingvox {
 namespace {
 
 /// The part of the beam within which silence means that nothing is there.
-BeamModelOptions passed_part(BeamModelOptions options) {
+BeamModelOptions free_part(BeamModelOptions options) {
   options.width_rad *= options.free_share;
   options.height_rad *= options.free_share;
   return options;
@@ -56,7 +56,7 @@ std::size_t BeamTracer::trace(const Pose& map_from_sensor, const Beam& beam, con
   const double passed_m = echo ? std::min(heard_m, static_cast<double>(echo->first) * beam.bin_length_m) : heard_m;
   const double free_m = std::min(passed_m, max_range_m_);
   std::size_t outside = 0;
-  if (free_m > 0.0) outside = add_misses(map_from_sensor, beam.bearing_rad, free_m, passed_part(options_), scan);
+  if (free_m > 0.0) outside = add_misses(map_from_sensor, beam.bearing_rad, free_m, free_part(options_), scan);
   if (!is_hit || !(heard_m > 0.0)) return outside;
 
   const LogOdds evidence =

@@ -9,7 +9,7 @@ namespace pingvox {
 namespace {
 
 /// What beams and points have in common.
-std::string broken_in_both(const BuildOptions& options) {
+std::string common_errors(const BuildOptions& options) {
   std::string bad;
   const auto say = [&bad](const std::string& what) { bad += (bad.empty() ? "" : "; ") + what; };
   if (const auto model = options.model.validate(); !model) say(model.error().message);
@@ -21,7 +21,7 @@ std::string broken_in_both(const BuildOptions& options) {
   return bad;
 }
 
-Result<void> valid_unless(const std::string& bad) {
+Result<void> result_of(const std::string& bad) {
   if (bad.empty()) return {};
   return fail(Error::Code::kBadOption, bad);
 }
@@ -34,22 +34,22 @@ Result<void> BuildOptions::validate() const {
   for (const Result<void>& part : {filter.validate(), echo.validate()}) {
     if (!part) say(part.error().message);
   }
-  say(broken_in_both(*this));
+  say(common_errors(*this));
   if (!body_from_sensor.matrix().allFinite()) say("mount is not finite");
   if (!(sound_speed_ratio > 0.1 && sound_speed_ratio < 10.0)) {
     say(fmt::format("sound speed must be within a tenth and ten times of what the device assumed, is {} times",
                     sound_speed_ratio));
   }
-  if (timing == Timing::kByBeam && vote != Vote::kPerBeam) say("beams that are mapped one by one vote one by one");
-  return valid_unless(bad);
+  if (timing == Timing::kByBeam && vote != Vote::kPerBeam) say("beams that are mapped one by one need a vote per beam");
+  return result_of(bad);
 }
 
 Result<void> BuildOptions::validate_for_points() const {
-  std::string bad = broken_in_both(*this);
+  std::string bad = common_errors(*this);
   if (!(echo.max_range_m > 0.0)) {
     bad += fmt::format("{}max_range_m must be > 0, is {}", bad.empty() ? "" : "; ", echo.max_range_m);
   }
-  return valid_unless(bad);
+  return result_of(bad);
 }
 
 }  // namespace pingvox

@@ -8,14 +8,14 @@ namespace pingvox {
 namespace {
 
 /// What evidence is divided by that may come from so many cells.
-double thinned_by(double cells_on_arc) {
+double divisor_on_arc(double cells_on_arc) {
   return std::pow(std::max(1.0, cells_on_arc), 0.25);
 }
 
 }  // namespace
 
 double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc) {
-  return detail::vertical_pattern(elevation_rad, height_rad) / thinned_by(cells_on_arc);
+  return detail::vertical_pattern(elevation_rad, height_rad) / divisor_on_arc(cells_on_arc);
 }
 
 std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
@@ -44,7 +44,8 @@ BundleGrid bundle_grid(const BeamModelOptions& options, double bearing_rad, doub
                        ElevationTables& tables) {
   const double width = width_of(options), height = height_of(options);
   const double apart_rad = resolution_m / (std::numbers::sqrt2 * std::max(range_m, resolution_m));
-  BundleGrid grid{{}, tables.at_most_apart(apart_rad), thinned_by(std::max(width, height) * range_m / resolution_m)};
+  BundleGrid grid{
+      {}, tables.elevations_for(apart_rad), divisor_on_arc(std::max(width, height) * range_m / resolution_m)};
   const std::size_t gaps = gaps_between(width, apart_rad);
   grid.azimuths.reserve(gaps + 1);
   for (std::size_t i = 0; i <= gaps; ++i) {

@@ -15,14 +15,14 @@ struct BundleGrid {
   };
   std::vector<Level> azimuths;
   const Elevations& elevations;  ///< as long as the tables that it came from are not asked again
-  double thinned_by;             ///< see share_on_arc
+  double divisor;                ///< see share_on_arc
 
   Eigen::Vector3d direction(std::size_t elevation, const Level& azimuth) const {
     const double across = elevations.across[elevation];
     return {across * azimuth.x, across * azimuth.y, elevations.up[elevation]};
   }
   /// Of the echo's evidence.
-  double share(std::size_t elevation) const { return elevations.pattern[elevation] / thinned_by; }
+  double share(std::size_t elevation) const { return elevations.pattern[elevation] / divisor; }
 };
 
 double width_of(const BeamModelOptions& options);

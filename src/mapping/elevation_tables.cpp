@@ -30,9 +30,9 @@ Elevations::Elevations(double height_rad, std::size_t gaps)
   }
 }
 
-const Elevations& ElevationTables::at_most_apart(double apart_rad) {
+const Elevations& ElevationTables::elevations_for(double apart_rad) {
   const std::size_t gaps = gaps_between(height_rad_, apart_rad);
-  if (gaps >= kMostKept) return large_.emplace(height_rad_, gaps);
+  if (gaps >= kMaxKept) return large_.emplace(height_rad_, gaps);
   if (gaps >= kept_.size()) kept_.resize(gaps + 1);
   std::optional<Elevations>& table = kept_[gaps];
   if (!table) table.emplace(height_rad_, gaps);

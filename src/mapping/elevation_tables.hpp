@@ -31,10 +31,10 @@ class ElevationTables {
   explicit ElevationTables(double height_rad) : height_rad_(height_rad) {}
 
   /// Valid until the next call.
-  const Elevations& at_most_apart(double apart_rad);
+  const Elevations& elevations_for(double apart_rad);
 
  private:
-  static constexpr std::size_t kMostKept = 256;  ///< gaps: some 800 KB for all
+  static constexpr std::size_t kMaxKept = 256;  ///< gaps: some 800 KB for all
   double height_rad_;
   std::vector<std::optional<Elevations>> kept_;  ///< by gaps
   std::optional<Elevations> large_;

@@ -95,10 +95,10 @@ class Piece {
     const Run layers = cells_in_box(order_.layer), cells = cells_in_box(order_.cell);
     detail::ColumnOfRows column;
     // Columns begin with a page, and a brick at least below the lowest cell: places below 4 are for rows without cells.
-    column.lowest_cell = lowest_together(cells.first - 4, kPage, origin, order_.cell);
+    column.lowest_cell = align_down(cells.first - 4, kPage, origin, order_.cell);
     detail::BrickColumn bricks(order_, static_cast<std::size_t>(cells.last + 1 - column.lowest_cell));
     column.no_place = bricks.no_place();
-    const std::int64_t lowest_layer = lowest_together(layers.first, kPage, origin, order_.layer);
+    const std::int64_t lowest_layer = align_down(layers.first, kPage, origin, order_.layer);
     for (std::int64_t first = lowest_layer; first <= layers.last; first += kLayers) {
       const detail::RowsOfLayers rows = rows_of(first, layers);
       for (std::int64_t l = 0; l < kLayers; l += 4) {
@@ -136,7 +136,7 @@ class Piece {
     const Run rows = rows_of_all(column);
     if (rows.first > rows.last) return;
     detail::RunsOfRows runs;
-    const std::int64_t lowest_row = lowest_together(rows.first, 4, origin, order_.row);
+    const std::int64_t lowest_row = align_down(rows.first, 4, origin, order_.row);
     for (column.first_row = lowest_row; column.first_row <= rows.last; column.first_row += 4) {
       detail::find_cells(body_, column, runs);
       bricks.mark(runs, lowest_key(column, origin), scan);
@@ -156,7 +156,7 @@ class Piece {
   }
 
   /// The lowest of the `size` cells along an axis that belong together, of which this is one.
-  static std::int64_t lowest_together(std::int64_t cell, std::int64_t size, const WideKey& origin, int axis) {
+  static std::int64_t align_down(std::int64_t cell, std::int64_t size, const WideKey& origin, int axis) {
     const WideWord word = axis == 0 ? origin.x : (axis == 1 ? origin.y : origin.z);
     return cell - ((cell + static_cast<std::int64_t>(word & (kPage - 1))) & (size - 1));
   }
@@ -179,7 +179,7 @@ class Piece {
     // Cells are closed below and open above, so a fan that lies exactly between two layers of cells belongs to the
     // upper one.
     face.reach = 0.5 * normal.cwiseAbs().sum() + ((normal.array() <= 0.0).all() ? detail::kGrazing : -detail::kGrazing);
-    face.most_along_row = std::max(face.normal.cell * body_.low.cell, face.normal.cell * body_.high.cell);
+    face.max_along_row = std::max(face.normal.cell * body_.low.cell, face.normal.cell * body_.high.cell);
     return face;
   }
 

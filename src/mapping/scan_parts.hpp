@@ -17,7 +17,7 @@ namespace pingvox::detail {
 class ScanParts {
  public:
   /// Fewer rays or beams than this for each thread are not worth starting it.
-  static constexpr std::size_t kLeast = 16;
+  static constexpr std::size_t kMinPerThread = 16;
 
   explicit ScanParts(std::size_t threads) : threads_(threads) {}
 
@@ -25,7 +25,7 @@ class ScanParts {
   /// the first part, and those whose thread does not start. Throws std::bad_alloc: the scan then holds some marks.
   template <class Trace>
   void run(std::size_t count, ScanUpdate& scan, const Trace& trace) {
-    const std::size_t parts = std::clamp<std::size_t>(count / kLeast, 1, threads_);
+    const std::size_t parts = std::clamp<std::size_t>(count / kMinPerThread, 1, threads_);
     while (others_.size() + 1 < parts) others_.emplace_back(scan.lattice(), scan.miss());
     for (ScanUpdate& other : others_) other.clear();
     const auto begin_of = [&](std::size_t part) { return count * part / parts; };

@@ -196,7 +196,7 @@ double share_of(LogOdds belief, LogOdds from, LogOdds to) {
 
 Rgb colour_of(float belief, const MapOptions& map, const MapColours& colours) {
   if (belief == kNothing) return colours.unknown;
-  switch (classified(LogOdds(belief), map.thresholds)) {
+  switch (classify(LogOdds(belief), map.thresholds)) {
     case Occupancy::kOccupied:
       return mixed(colours.barely_occupied, colours.surely_occupied,
                    share_of(LogOdds(belief), map.thresholds.upper, map.clamp.highest));

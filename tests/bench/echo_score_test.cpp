@@ -20,7 +20,7 @@ TrueReturns wall() {
 }
 
 EchoScore of_one(const std::optional<Echo>& echo, const TrueReturns& truth) {
-  return judged(std::vector{echo}, std::vector{truth}, kJudge);
+  return score_echoes(std::vector{echo}, std::vector{truth}, kJudge);
 }
 
 TEST(EchoScore, CountsByHowFarOffTheEchoIs) {
@@ -72,7 +72,7 @@ TEST(EchoScore, ChanceIsTheShareOfRangesThatWouldBeRight) {
 }
 
 TEST(Spans, AreJoinedWhereTheyTouch) {
-  const std::vector<Span> apart = joined({{3.0, 4.0}, {1.0, 2.0}, {2.0, 2.5}, {3.5, 3.6}});
+  const std::vector<Span> apart = join({{3.0, 4.0}, {1.0, 2.0}, {2.0, 2.5}, {3.5, 3.6}});
   ASSERT_EQ(apart.size(), 2U);
   EXPECT_EQ(apart[0].first_m, 1.0);
   EXPECT_EQ(apart[0].last_m, 2.5);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 Recording tank(std::size_t turns) {
-  return *recorded({.world = "tank", .motion = Motion::kStill, .turns = turns});
+  return *record({.world = "tank", .motion = Motion::kStill, .turns = turns});
 }
 
 TEST(TrueReturns, OnTheAxisAreTheTanksOwnFormula) {
@@ -34,7 +34,7 @@ TEST(TrueReturns, OnTheAxisAreTheTanksOwnFormula) {
 }
 
 TEST(TrueReturns, OverABottomBeginAtTheLowerEdgeOfTheCone) {
-  const Recording recording = *recorded({.world = "harbour", .motion = Motion::kStill, .turns = 1});
+  const Recording recording = *record({.world = "harbour", .motion = Motion::kStill, .turns = 1});
   const std::vector<TrueReturns> truths = true_returns(recording);
   const TrueReturns& right = truths[50];  // clockwise by 90 degrees: out of the harbour's mouth
   EXPECT_FALSE(right.axis_m);
@@ -68,7 +68,7 @@ TEST(Mapped, IsWhatBuildMapMakes) {
   } source(recording);
   OccupancyMap built(MapOptions{.resolution_m = 0.05});
   ASSERT_TRUE(build_map(source, Trajectory::still(Pose::Identity()), {}, built));
-  const auto map = mapped(recording, detected(recording, {}, {}), {}, 0.05);
+  const auto map = map_echoes(recording, detect(recording, {}, {}), {}, 0.05);
   ASSERT_TRUE(map);
   const auto same = compare_maps(built, *map, Sameness::kLogOdds);
   ASSERT_TRUE(same);
@@ -85,12 +85,12 @@ class OfPerfectRanges : public testing::Test {
       echo->range_m += bias_m;
       echo->first = static_cast<std::size_t>(echo->range_m / recording_.sonar.bin_length_m);
     }
-    return world_->judged(*mapped(recording_, echoes, {}, 0.05));
+    return world_->score(*map_echoes(recording_, echoes, {}, 0.05));
   }
 
   Recording recording_ = tank(2);
   std::vector<TrueReturns> truths_ = true_returns(recording_);
-  Result<JudgedWorld> world_ = JudgedWorld::make(recording_, Extent::kPlane, 0.05, seen_in_plane_m(recording_, 0.75));
+  Result<JudgedWorld> world_ = JudgedWorld::make(recording_, Extent::kPlane, 0.05, points_in_plane_m(recording_, 0.75));
 };
 
 TEST_F(OfPerfectRanges, AMapInThePlaneIsRight) {
@@ -115,7 +115,7 @@ TEST_F(OfPerfectRanges, ABiasOfThreeCellsIsSeenInEachMeasure) {
 }
 
 TEST(Recorded, RefusesAnUnknownWorld) {
-  EXPECT_FALSE(recorded({.world = "moon"}));
+  EXPECT_FALSE(record({.world = "moon"}));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ const std::vector<std::string> kSeen = {"      ",  //
                                         "      "};
 
 TEST(MapScore, OfTheTruthItselfIsPerfect) {
-  const MapScore score = judged(grid_of(kWall), grid_of(kWall), grid_of(kSeen));
+  const MapScore score = score_map(grid_of(kWall), grid_of(kWall), grid_of(kSeen));
   EXPECT_EQ(score.precision(), 1.0);
   EXPECT_EQ(score.recall(), 1.0);
   EXPECT_EQ(score.free_share(), 1.0);
@@ -45,39 +45,40 @@ TEST(MapScore, OfTheTruthItselfIsPerfect) {
 
 TEST(MapScore, ForgivesAWallOneCellOffAndNotTwo) {
   const MapScore one =
-      judged(grid_of({"......", "......", "######", "      ", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
+      score_map(grid_of({"......", "......", "######", "      ", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
   EXPECT_EQ(one.precision(), 1.0);
   EXPECT_EQ(one.recall(), 1.0);
   const MapScore two =
-      judged(grid_of({"......", "######", "      ", "      ", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
+      score_map(grid_of({"......", "######", "      ", "      ", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
   EXPECT_EQ(two.precision(), 0.0);
   EXPECT_EQ(two.recall(), 0.0);
 }
 
 TEST(MapScore, AWallThatIsNotThereLowersPrecisionOnly) {
   const MapScore score =
-      judged(grid_of({"######", "......", "......", "######", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
+      score_map(grid_of({"######", "......", "......", "######", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
   EXPECT_EQ(score.precision(), 0.5);
   EXPECT_EQ(score.recall(), 1.0);
 }
 
 TEST(MapScore, HalfAWallLowersRecallOnly) {
   const MapScore score =
-      judged(grid_of({"......", "......", "......", "###   ", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
+      score_map(grid_of({"......", "......", "......", "###   ", "      ", "      "}), grid_of(kWall), grid_of(kSeen));
   EXPECT_EQ(score.precision(), 1.0);
   EXPECT_EQ(score.recall(), 4.0 / 6.0);  // the fourth cell touches the third
 }
 
 TEST(MapScore, WhatCouldNotBeSeenIsNotMissed) {
-  const MapScore score = judged(grid_of({"......", "......", "......", "###   ", "      ", "      "}), grid_of(kWall),
-                                grid_of({"      ", "      ", "      ", "###   ", "      ", "      "}));
+  const MapScore score =
+      score_map(grid_of({"......", "......", "......", "###   ", "      ", "      "}), grid_of(kWall),
+                grid_of({"      ", "      ", "      ", "###   ", "      ", "      "}));
   EXPECT_EQ(score.recall(), 1.0);
 }
 
 TEST(MapScore, CellsFreedBehindAWallAreWrongEvenWithinOneCell) {
   // One cell of the wall is freed, and two behind it.
   const MapScore score =
-      judged(grid_of({"......", "......", "......", "###.##", "   .  ", "   .  "}), grid_of(kWall), grid_of(kSeen));
+      score_map(grid_of({"......", "......", "......", "###.##", "   .  ", "   .  "}), grid_of(kWall), grid_of(kSeen));
   EXPECT_EQ(score.free, 21U);
   EXPECT_EQ(score.free_right, 18U);
   EXPECT_EQ(score.free_near, 19U);  // the wall's own touches water

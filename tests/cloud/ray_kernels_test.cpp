@@ -58,7 +58,7 @@ std::uint64_t place_or_none(const RayGrid& grid, const Eigen::Vector3d& at) {
 }
 
 /// Places that are marked as missed.
-std::set<std::uint64_t> missed_in(ScanWindow& window) {
+std::set<std::uint64_t> missed_cells(ScanWindow& window) {
   std::set<std::uint64_t> missed;
   for (std::uint64_t place = 0; place < std::uint64_t{1} << (3 * kWindowBits); ++place) {
     if ((window.missed()[place / 64] >> (place % 64) & 1) == 0) continue;
@@ -165,7 +165,7 @@ void expect_marks() {
       ScanWindow window;
       window.open(kWindowBits);
       mark_rays(rays, start, window);
-      ASSERT_EQ(missed_in(window), expected);
+      ASSERT_EQ(missed_cells(window), expected);
       marked += expected.size();
     });
   }
@@ -208,7 +208,7 @@ TEST(RayKernels, MarkedCellsAreThoseOfExactArithmetic) {
       ScanWindow window;
       window.open(kWindowBits);
       mark_rays(rays, place_of(cell_of(grid.from)), window);
-      const std::set<std::uint64_t> found = missed_in(window);
+      const std::set<std::uint64_t> found = missed_cells(window);
       std::set<std::uint64_t> expected;
       for (const Cell& cell : segment.cells()) expected.insert(place_of(cell));
       for (const Cell& cell : segment.cells()) {

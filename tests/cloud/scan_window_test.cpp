@@ -7,7 +7,7 @@
 namespace pingvox::detail {
 namespace {
 
-std::map<std::uint64_t, bool> taken_from(ScanWindow& window) {
+std::map<std::uint64_t, bool> take_all(ScanWindow& window) {
   std::map<std::uint64_t, bool> pages;
   window.take_touched([&](std::uint64_t page, bool has_hits) { EXPECT_TRUE(pages.emplace(page, has_hits).second); });
   return pages;
@@ -28,8 +28,8 @@ TEST(ScanWindow, TouchedPagesAreTakenOnce) {
       window.touched()[3] = 1;
       expected.emplace(3, false);
     }
-    EXPECT_EQ(taken_from(window), expected);
-    EXPECT_TRUE(taken_from(window).empty());
+    EXPECT_EQ(take_all(window), expected);
+    EXPECT_TRUE(take_all(window).empty());
     EXPECT_EQ(window.hit()[last / 64], std::uint64_t{3} << 62);
     window.hit()[last / 64] = 0;
   }
@@ -41,8 +41,8 @@ TEST(ScanWindow, HitsAreForgotten) {
   window.open(5);
   const std::array<std::uint64_t, 3> places{0, 77, 32767};
   for (const std::uint64_t place : places) EXPECT_TRUE(window.mark_hit(place));
-  window.forget_hits(places);
-  EXPECT_TRUE(taken_from(window).empty());
+  window.clear_hits(places);
+  EXPECT_TRUE(take_all(window).empty());
   for (const std::uint64_t place : places) EXPECT_TRUE(window.mark_hit(place));
 }
 
@@ -54,7 +54,7 @@ TEST(ScanWindow, LeavesNothingWhenItIsDropped) {
   window.missed()[5] = 1;
   window.drop();
   window.open(5);
-  EXPECT_TRUE(taken_from(window).empty());
+  EXPECT_TRUE(take_all(window).empty());
   EXPECT_EQ(window.missed()[5], 0U);
   EXPECT_EQ(window.hit()[4097 / 64], 0U);
 }

@@ -29,7 +29,7 @@ struct Case {
 
 /// Few points and many, in clumps that share cells; some are no numbers, and in small lattices some lie outside. Now
 /// and then one is so far away that no window is made for all of them.
-Case drawn_case(std::uint64_t seed) {
+Case random_case(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   Case one{.lattice = Lattice(0.1, seed % 3 == 0 ? 6 : 16), .points_m = {}, .options = {}};
   one.origin_m = {uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0)};
@@ -54,17 +54,17 @@ struct Traced {
   std::size_t outside = 0;
 };
 
-Traced applied(const Case& one, const ScanUpdate& scan, std::size_t outside) {
+Traced apply_scan(const Case& one, const ScanUpdate& scan, std::size_t outside) {
   OccupancyMap map({.resolution_m = one.lattice.resolution_m(), .depth = one.lattice.depth()});
   EXPECT_TRUE(map.apply(scan));
   return {test::nodes_of(map), outside};
 }
 
 template <class Point>
-Traced traced(const Case& one, const std::vector<Point>& points_m) {
+Traced trace_case(const Case& one, const std::vector<Point>& points_m) {
   ScanUpdate scan(one.lattice);
   const std::size_t outside = PointTracer(one.options).trace(one.origin_m, std::span<const Point>(points_m), scan);
-  return applied(one, scan, outside);
+  return apply_scan(one, scan, outside);
 }
 
 std::vector<Eigen::Vector3d> as_doubles(const std::vector<Eigen::Vector3f>& points_m) {
@@ -78,10 +78,10 @@ TEST(TracePoints, SinglePrecisionMakesTheSameMap) {
   std::size_t nodes = 0, outside = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
-    Case one = drawn_case(seed);
+    Case one = random_case(seed);
     for (const EndPoints ends : {EndPoints::kExact, EndPoints::kCells}) {
       one.options.ends = ends;
-      const Traced found = traced(one, one.points_m), expected = traced(one, as_doubles(one.points_m));
+      const Traced found = trace_case(one, one.points_m), expected = trace_case(one, as_doubles(one.points_m));
       ASSERT_EQ(found.outside, expected.outside);
       ASSERT_EQ(test::first_difference(found.nodes, expected.nodes), "");
       nodes += found.nodes.size();
@@ -122,12 +122,12 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
     }
     PointTracer tracer(one.options);
     ASSERT_EQ(tracer.trace(one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), together), 0U);
-    const Traced expected = applied(one, singly, 0), found = applied(one, together, 0);
+    const Traced expected = apply_scan(one, singly, 0), found = apply_scan(one, together, 0);
     ASSERT_EQ(found.nodes, expected.nodes);
     nodes += found.nodes.size();
     together.clear();
     ASSERT_EQ(tracer.trace(one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), together), 0U);
-    ASSERT_EQ(applied(one, together, 0).nodes, expected.nodes) << "the second time";
+    ASSERT_EQ(apply_scan(one, together, 0).nodes, expected.nodes) << "the second time";
     together.clear();
   }
   EXPECT_GT(nodes, 50'000U);
@@ -138,7 +138,7 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
 TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
-    Case one = drawn_case(seed);
+    Case one = random_case(seed);
     std::map<std::tuple<std::uint16_t, std::uint16_t, std::uint16_t>, Eigen::Vector3d> middles_m;
     std::vector<Eigen::Vector3d> ends_m;
     for (const Eigen::Vector3d& point_m : as_doubles(one.points_m)) {
@@ -162,7 +162,7 @@ TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
       outside += trace_ray(one.origin_m, end_m, one.options.ray, scan) ? 0 : 1;
     }
     one.options.ends = EndPoints::kCells;
-    const Traced found = traced(one, one.points_m), expected = applied(one, scan, outside);
+    const Traced found = trace_case(one, one.points_m), expected = apply_scan(one, scan, outside);
     ASSERT_EQ(found.outside, expected.outside);
     ASSERT_EQ(test::first_difference(found.nodes, expected.nodes), "");
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-Pose yawed(double x_m, double yaw_rad) {
+Pose pose_with_yaw(double x_m, double yaw_rad) {
   return pose_from_rpy({x_m, 0.0, 0.0}, 0.0, 0.0, yaw_rad);
 }
 
@@ -25,8 +25,8 @@ TEST(Pose, TurnsRollThenPitchThenYawAboutFixedAxes) {
 }
 
 TEST(Pose, InterpolationTakesTheShortWayAround) {
-  const Pose middle = interpolated(yawed(0.0, 170.0 * kPi / 180), yawed(2.0, -170.0 * kPi / 180), 0.5);
-  EXPECT_TRUE(middle.isApprox(yawed(1.0, kPi), 1e-12));
+  const Pose middle = interpolate(pose_with_yaw(0.0, 170.0 * kPi / 180), pose_with_yaw(2.0, -170.0 * kPi / 180), 0.5);
+  EXPECT_TRUE(middle.isApprox(pose_with_yaw(1.0, kPi), 1e-12));
 }
 
 // Kills another order of the turns: only two angles at once tell.
@@ -40,23 +40,24 @@ TEST(Pose, TurnsByRollThenPitchThenYaw) {
 }
 
 TEST(Trajectory, IsReadBetweenItsPosesAndNowhereElse) {
-  const auto made = Trajectory::make({{10.0, yawed(0.0, 0.0)}, {20.0, yawed(1.0, 1.0)}, {21.0, yawed(5.0, 1.0)}});
+  const auto made = Trajectory::make(
+      {{10.0, pose_with_yaw(0.0, 0.0)}, {20.0, pose_with_yaw(1.0, 1.0)}, {21.0, pose_with_yaw(5.0, 1.0)}});
   ASSERT_TRUE(made);
-  EXPECT_TRUE(made->at(10.0)->isApprox(yawed(0.0, 0.0)));
-  EXPECT_TRUE(made->at(12.5)->isApprox(yawed(0.25, 0.25), 1e-12));
-  EXPECT_TRUE(made->at(20.0)->isApprox(yawed(1.0, 1.0)));
-  EXPECT_TRUE(made->at(20.5)->isApprox(yawed(3.0, 1.0), 1e-12));
-  EXPECT_TRUE(made->at(21.0)->isApprox(yawed(5.0, 1.0)));
+  EXPECT_TRUE(made->at(10.0)->isApprox(pose_with_yaw(0.0, 0.0)));
+  EXPECT_TRUE(made->at(12.5)->isApprox(pose_with_yaw(0.25, 0.25), 1e-12));
+  EXPECT_TRUE(made->at(20.0)->isApprox(pose_with_yaw(1.0, 1.0)));
+  EXPECT_TRUE(made->at(20.5)->isApprox(pose_with_yaw(3.0, 1.0), 1e-12));
+  EXPECT_TRUE(made->at(21.0)->isApprox(pose_with_yaw(5.0, 1.0)));
   for (const double time_s : {9.999, 21.001, std::nan(""), -std::numeric_limits<double>::infinity()}) {
     EXPECT_FALSE(made->at(time_s)) << time_s;
   }
-  EXPECT_TRUE(Trajectory::still(yawed(3.0, 1.0)).at(-1e9)->isApprox(yawed(3.0, 1.0)));
+  EXPECT_TRUE(Trajectory::still(pose_with_yaw(3.0, 1.0)).at(-1e9)->isApprox(pose_with_yaw(3.0, 1.0)));
 }
 
 TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
   EXPECT_FALSE(Trajectory::make({}));
   for (const double second : {1.0, 0.5, std::nan("")}) {
-    const auto made = Trajectory::make({{1.0, yawed(0.0, 0.0)}, {second, yawed(0.0, 0.0)}});
+    const auto made = Trajectory::make({{1.0, pose_with_yaw(0.0, 0.0)}, {second, pose_with_yaw(0.0, 0.0)}});
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, Error::Code::kCorrupt);
     EXPECT_NE(made.error().message.find("pose 1"), std::string::npos) << made.error().message;

@@ -53,7 +53,7 @@ TEST(BrickLoops, GiveWhatThePlainLoopsGive) {
     bool changed = false;
     for (std::size_t i = 0; i < 64; ++i) {
       if (!((missed >> i) & 1)) continue;
-      const float after = updated_by(LogOdds(plain.value[i]), evidence, kClamp).value();
+      const float after = add_evidence(LogOdds(plain.value[i]), evidence, kClamp).value();
       changed |= after != plain.value[i];
       plain.value[i] = after;
     }

@@ -27,9 +27,8 @@ MapComparison oracle(const std::map<WideKey, float>& a, const std::map<WideKey, 
       ++out.only_a;
       continue;
     }
-    const bool same = sameness == Sameness::kLogOdds
-                          ? belief == other->second
-                          : classified(LogOdds(belief)) == classified(LogOdds(other->second));
+    const bool same = sameness == Sameness::kLogOdds ? belief == other->second
+                                                     : classify(LogOdds(belief)) == classify(LogOdds(other->second));
     ++(same ? out.same : out.different);
     out.max_log_odds_difference =
         std::max(out.max_log_odds_difference, std::abs(double{belief} - double{other->second}));

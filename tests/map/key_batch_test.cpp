@@ -26,7 +26,7 @@ std::uint64_t middle_of_range() {
 
 /// Keys in a cube of `edge` cells, in no order; some of them again and again, some far away.
 template <KeyWord W>
-std::vector<BasicKey<W>> drawn_keys(std::mt19937_64& random, std::size_t count, std::uint64_t edge) {
+std::vector<BasicKey<W>> random_keys(std::mt19937_64& random, std::size_t count, std::uint64_t edge) {
   std::vector<BasicKey<W>> keys;
   const std::uint64_t most = 2 * middle_of_range<W>() + 1;
   const auto word = [&](std::uint64_t among) {
@@ -43,7 +43,7 @@ std::vector<BasicKey<W>> drawn_keys(std::mt19937_64& random, std::size_t count, 
   return keys;
 }
 
-std::map<Place, std::uint64_t> taken_from(KeyBatch& batch) {
+std::map<Place, std::uint64_t> take_all(KeyBatch& batch) {
   std::map<Place, std::uint64_t> times;
   batch.take([&](const BasicKey<std::uint64_t>& lowest, const KeyBatch::Cells& cells) {
     EXPECT_EQ((lowest.x | lowest.y | lowest.z) & 3, 0U);
@@ -69,11 +69,11 @@ TEST(KeyBatch, TellsHowOftenEachCellIsNamed) {
     const std::size_t count = seed % 4 == 0 ? 1000 : KeyBatch::kWorthAWindow + random() % 20'000;
     const std::uint64_t edge = seed % 3 == 0 ? 400 : 5 + random() % 100;
     const auto expect_counts = [&]<KeyWord W>() {
-      const std::vector<BasicKey<W>> keys = drawn_keys<W>(random, count, edge);
+      const std::vector<BasicKey<W>> keys = random_keys<W>(random, count, edge);
       std::map<Place, std::uint64_t> expected;
       for (const BasicKey<W>& key : keys) ++expected[{key.x, key.y, key.z}];
       batch.gather(std::span<const BasicKey<W>>(keys));
-      ASSERT_EQ(taken_from(batch), expected);
+      ASSERT_EQ(take_all(batch), expected);
       const std::uint64_t middle = middle_of_range<W>();
       for (const auto& [place, times] : expected) {
         often += times > 255 ? 1 : 0;
@@ -97,7 +97,7 @@ TEST(KeyBatch, MakesTheMapOfSingleUpdates) {
     std::mt19937_64 random(seed);
     OccupancyMap at_once({.resolution_m = 0.1}), one_by_one({.resolution_m = 0.1});
     for (const LogOdds evidence : {LogOdds(0.01F), LogOdds(-0.7F), LogOdds(0.85F)}) {
-      const std::vector<Key> keys = drawn_keys<std::uint16_t>(random, 40'000, 20 + 30 * seed);
+      const std::vector<Key> keys = random_keys<std::uint16_t>(random, 40'000, 20 + 30 * seed);
       ASSERT_TRUE(at_once.update(std::span<const Key>(keys), evidence));
       Editor editor = one_by_one.edit();
       for (const Key& key : keys) editor.update(key, evidence);

@@ -3,7 +3,7 @@
 #include <array>
 #include <random>
 
-#include "support/map_duel.hpp"
+#include "support/random_operations.hpp"
 
 using namespace pingvox;
 
@@ -18,15 +18,15 @@ TEST_P(OccupancyMapAtDepth, AnswersLikeTheOracleAfterRandomOperations) {
   const std::uint64_t seeds = GetParam() <= 3 ? 60 : (GetParam() <= 17 ? 8 : 4);
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     SCOPED_TRACE(seed);
-    test::Duel duel(GetParam(), seed);
+    test::RandomOperations operations(GetParam(), seed);
     for (int i = 0; i < 40; ++i) {
       SCOPED_TRACE(i);
-      duel.step();
-      if (i % 2 == 1) duel.check();
+      operations.step();
+      if (i % 2 == 1) operations.check();
       if (HasFailure()) return;
     }
-    compared += duel.nodes_compared();
-    joined += duel.joined_leaves();
+    compared += operations.nodes_compared();
+    joined += operations.joined_leaves();
   }
   EXPECT_GT(compared, GetParam() == 1 ? 5'000U : 100'000U);
   EXPECT_GT(joined, 50U);
@@ -52,7 +52,7 @@ TEST_P(OccupancyMapAtDepth, ClassifiesTheBeliefThatItHolds) {
     for (int i = 0; i < 50; ++i) {
       const WideKey asked = any_key();
       const auto belief = map.at(asked);
-      const Occupancy expected = belief ? classified(*belief, map.options().thresholds) : Occupancy::kUnknown;
+      const Occupancy expected = belief ? classify(*belief, map.options().thresholds) : Occupancy::kUnknown;
       ASSERT_EQ(map.classify(asked), expected);
       with_key_word(depth, [&]<KeyWord W>() { ASSERT_EQ(map.classify(asked.as<W>()), expected); });
       ++seen[static_cast<std::size_t>(expected)];

@@ -100,7 +100,7 @@ TEST(Octomap, SingleUpdatesGiveTheSameTree) {
         if (theirs == nullptr) continue;
         ASSERT_EQ(theirs->getLogOdds(), ours->belief().value());
         ASSERT_EQ(theirs->getOccupancy(), ours->belief().probability());
-        ASSERT_EQ(eager.isNodeOccupied(theirs), classified(ours->belief()) == Occupancy::kOccupied);
+        ASSERT_EQ(eager.isNodeOccupied(theirs), classify(ours->belief()) == Occupancy::kOccupied);
       }
     }
   }

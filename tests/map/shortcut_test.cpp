@@ -122,7 +122,7 @@ class LookUps {
     if (node) {
       ASSERT_EQ(*belief, node->belief());
     }
-    ASSERT_EQ(map_.classify(key), node ? classified(node->belief(), map_.options().thresholds) : Occupancy::kUnknown);
+    ASSERT_EQ(map_.classify(key), node ? classify(node->belief(), map_.options().thresholds) : Occupancy::kUnknown);
   }
 
   void look_up(int times) {

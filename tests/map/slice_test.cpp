@@ -29,7 +29,7 @@ OccupancyMap column(std::string_view cells) {
 }
 
 /// What the only column of a slice is: '#', '.', ' '; 'x' when there is no slice.
-char seen(std::string_view cells, const SliceOptions& options) {
+char draw_slice(std::string_view cells, const SliceOptions& options) {
   const auto slice = slice_of(column(cells), options);
   if (!slice) return 'x';
   EXPECT_EQ(slice->values.size(), 1U);
@@ -37,22 +37,22 @@ char seen(std::string_view cells, const SliceOptions& options) {
 }
 
 TEST(Slice, OfAColumnIsItsMostOccupiedCell) {
-  EXPECT_EQ(seen("..#.", {}), '#');
-  EXPECT_EQ(seen(". ..", {}), '.');
-  EXPECT_EQ(seen("..#.", {0.0, 1.0}), '.');
-  EXPECT_EQ(seen("..#.", {1.5, 9.0}), '.');
-  EXPECT_EQ(seen("##  ", {1.5, 1.5}), 'x') << "nothing is known there";
+  EXPECT_EQ(draw_slice("..#.", {}), '#');
+  EXPECT_EQ(draw_slice(". ..", {}), '.');
+  EXPECT_EQ(draw_slice("..#.", {0.0, 1.0}), '.');
+  EXPECT_EQ(draw_slice("..#.", {1.5, 9.0}), '.');
+  EXPECT_EQ(draw_slice("##  ", {1.5, 1.5}), 'x') << "nothing is known there";
 }
 
 TEST(Slice, EndsWithAFaceAndOneHeightIsOneLayer) {
-  EXPECT_EQ(seen(".#..", {0.0, 0.5}), '.') << "does not reach into the layer above";
-  EXPECT_EQ(seen(".#..", {0.0, 0.51}), '#');
-  EXPECT_EQ(seen(".#..", {0.5, 0.5}), '#') << "a point on a face is in the cell above";
-  EXPECT_EQ(seen(".#..", {0.49, 0.49}), '.');
-  EXPECT_EQ(seen(".#..", {1.0, std::nullopt}), '.');
-  EXPECT_EQ(seen("#...", {std::nullopt, 0.5}), '#');
-  EXPECT_EQ(seen("#...", {-1e9, 1e9}), '#') << "heights outside of the lattice";
-  EXPECT_EQ(seen("#...", {1e8, 1e9}), 'x');
+  EXPECT_EQ(draw_slice(".#..", {0.0, 0.5}), '.') << "does not reach into the layer above";
+  EXPECT_EQ(draw_slice(".#..", {0.0, 0.51}), '#');
+  EXPECT_EQ(draw_slice(".#..", {0.5, 0.5}), '#') << "a point on a face is in the cell above";
+  EXPECT_EQ(draw_slice(".#..", {0.49, 0.49}), '.');
+  EXPECT_EQ(draw_slice(".#..", {1.0, std::nullopt}), '.');
+  EXPECT_EQ(draw_slice("#...", {std::nullopt, 0.5}), '#');
+  EXPECT_EQ(draw_slice("#...", {-1e9, 1e9}), '#') << "heights outside of the lattice";
+  EXPECT_EQ(draw_slice("#...", {1e8, 1e9}), 'x');
 }
 
 TEST(Slice, KeepsUnknownApartFromFree) {

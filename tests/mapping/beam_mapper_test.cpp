@@ -212,7 +212,7 @@ TEST(BeamMapper, GoesOnAfterAnErrorWithANewSweep) {
   EXPECT_TRUE(mapper->finish()) << "nothing waits any more";
 }
 
-TEST(BeamMapper, RefusesVotesOfSweepsFromSingleBeams) {
+TEST(BeamMapper, RefusesOneUpdatePerSweepFromSingleBeams) {
   BuildOptions options;
   options.timing = Timing::kByBeam;
   OccupancyMap map;

@@ -136,7 +136,7 @@ TEST(BuildMap, BeamsOutsideOfTheTrajectoryAreLeftOutAndCounted) {
 }
 
 // In a sweep a hit beats the misses of its neighbours; beam by beam they take turns.
-TEST(BuildMap, VotesPerSweepAndPerBeamDiffer) {
+TEST(BuildMap, UpdatesPerSweepAndPerBeamDiffer) {
   // Neighbouring beams alternate between 2 m and 3 m: the far ones pass the near ones' cells.
   const auto alternating = [](double time, double) { return std::lround(time / 0.04) % 2 == 0 ? 0.9 : 3.0; };
   BuildOptions options = clean_options();

@@ -27,7 +27,7 @@ ConvexBody random_body(std::mt19937_64& random) {
     face.row_way = 1.0 / face.normal.row;
     face.cell_way = 1.0 / face.normal.cell;
     face.reach = uniform(random, 0.1, 10.0);
-    face.most_along_row = std::max(face.normal.cell * body.low.cell, face.normal.cell * body.high.cell);
+    face.max_along_row = std::max(face.normal.cell * body.low.cell, face.normal.cell * body.high.cell);
   }
   return body;
 }

@@ -35,14 +35,14 @@ bool has_to_fail() {
   return number >= g_first && number <= g_last;
 }
 
-void* allocated(std::size_t size) {
+void* allocate(std::size_t size) {
   void* const place = has_to_fail() ? nullptr : std::malloc(size == 0 ? 1 : size);
   if (place == nullptr) throw std::bad_alloc();
   ++g_alive;
   return place;
 }
 
-void freed(void* place) {
+void release(void* place) {
   if (place == nullptr) return;
   --g_alive;
   std::free(place);
@@ -51,22 +51,22 @@ void freed(void* place) {
 }  // namespace
 
 void* operator new(std::size_t size) {
-  return allocated(size);
+  return allocate(size);
 }
 void* operator new[](std::size_t size) {
-  return allocated(size);
+  return allocate(size);
 }
 void operator delete(void* place) noexcept {
-  freed(place);
+  release(place);
 }
 void operator delete[](void* place) noexcept {
-  freed(place);
+  release(place);
 }
 void operator delete(void* place, std::size_t) noexcept {
-  freed(place);
+  release(place);
 }
 void operator delete[](void* place, std::size_t) noexcept {
-  freed(place);
+  release(place);
 }
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

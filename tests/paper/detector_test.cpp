@@ -75,7 +75,7 @@ TEST(PaperDetector, OfTheFourThresholdsSeventyIsBestWhereItsDifferencesAreAddedU
   ASSERT_TRUE(logs);
   for (const TankLog& log : *logs) {
     SCOPED_TRACE(log.name);
-    const auto right = [&](int threshold) { return judged(log, {}, {.threshold = threshold}).right; };
+    const auto right = [&](int threshold) { return judge_echoes(log, {}, {.threshold = threshold}).right; };
     for (const int other : {20, 40, 140}) EXPECT_GT(right(70), right(other)) << other;
     std::size_t found = 0;
     for (const Sweep& sweep : log.sweeps) {

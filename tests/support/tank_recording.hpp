@@ -27,7 +27,7 @@ class TankRecording {
     std::ifstream file(shared_data / "tank-static-mat" / "dataset_static.mat", std::ios::binary);
     if (!file) return {};
     const std::string packed((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    return TankRecording(inflated(packed.substr(136))).decoded();
+    return TankRecording(inflate(packed.substr(136))).decode();
   }
 
  private:
@@ -38,7 +38,7 @@ class TankRecording {
 
   explicit TankRecording(std::string bytes) : bytes_(std::move(bytes)) {}
 
-  static std::string inflated(const std::string& packed) {
+  static std::string inflate(const std::string& packed) {
     std::string out(8U << 20U, '\0');
     auto size = static_cast<uLongf>(out.size());
     const auto* in = reinterpret_cast<const Bytef*>(packed.data());
@@ -70,7 +70,7 @@ class TankRecording {
     return element(element(element(flags.next).next).next);
   }
 
-  std::vector<Beam> decoded() const {
+  std::vector<Beam> decode() const {
     const Element matrix = element(0);
     const Element flags = element(matrix.begin);
     const Element dimensions = element(flags.next);

@@ -12,6 +12,6 @@ using Pose = Eigen::Isometry3d;
 Pose pose_from_rpy(const Eigen::Vector3d& position_m, double roll_rad, double pitch_rad, double yaw_rad);
 
 /// Between two poses: position linearly, rotation along the shortest great arc. `share` 0 gives `a`, 1 gives `b`.
-Pose interpolated(const Pose& a, const Pose& b, double share);
+Pose interpolate(const Pose& a, const Pose& b, double share);
 
 }  // namespace pingvox

@@ -42,7 +42,7 @@ constexpr bool is_unchanged_by(LogOdds belief, LogOdds evidence, const Clamp& cl
 }
 
 /// Belief after one more piece of independent evidence: add, then clamp (paper, equation 1 in log-odds).
-constexpr LogOdds updated_by(LogOdds belief, LogOdds evidence, const Clamp& clamp) {
+constexpr LogOdds add_evidence(LogOdds belief, LogOdds evidence, const Clamp& clamp) {
   if (is_unchanged_by(belief, evidence, clamp)) return belief;
   const LogOdds sum(belief.value() + evidence.value());
   return sum < clamp.lowest ? clamp.lowest : (sum > clamp.highest ? clamp.highest : sum);
@@ -57,7 +57,7 @@ struct Thresholds {
   LogOdds upper{0.0F};
 };
 
-constexpr Occupancy classified(LogOdds belief, const Thresholds& thresholds = {}) {
+constexpr Occupancy classify(LogOdds belief, const Thresholds& thresholds = {}) {
   if (belief >= thresholds.upper) return Occupancy::kOccupied;
   return belief < thresholds.lower ? Occupancy::kFree : Occupancy::kUnknown;
 }

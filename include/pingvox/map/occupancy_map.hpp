@@ -45,7 +45,7 @@ struct MapCounts {
   std::uint64_t nodes() const { return leaves + inner; }
 };
 
-/// What a scan did: cells of the finest resolution that it voted on.
+/// What a scan did: cells of the finest resolution that it updated.
 struct ApplyReport {
   std::uint64_t cells_freed = 0, cells_hit = 0;
 };

@@ -14,7 +14,7 @@ namespace pingvox {
 
 /// Axis of the least of three numbers; of equal ones the one that liboctomap takes, the last.
 template <class Number>
-constexpr std::size_t axis_of_least(const std::array<Number, 3>& next) {
+constexpr std::size_t axis_of_min(const std::array<Number, 3>& next) {
   if (next[0] < next[1]) return next[0] < next[2] ? 0 : 2;
   return next[1] < next[2] ? 1 : 2;
 }
@@ -22,12 +22,12 @@ constexpr std::size_t axis_of_least(const std::array<Number, 3>& next) {
 /// The order in which a segment crosses the faces between cells (Amanatides & Woo 1987), on integers: crossings of an
 /// axis lie at first + n * apart along the segment, and each axis has a known number of them. So no rounding can miss
 /// the end or run past it, which is what goes wrong in the paper's figures 11 and 12. They are compared in units of
-/// 2^-62 of the segment's length. Up to kFewFaces they are added up in these units, too; beyond in units of 2^-126, or
-/// a long ray would drift.
+/// 2^-62 of the segment's length. Up to kMaxFacesIn64Bits they are added up in these units, too; beyond in units of
+/// 2^-126, or a long ray would drift.
 class FaceCrossings {
  public:
   /// Sums over so many faces stay within 1e-9 of a cell in units of 2^-62 (tracers of many rays rely on these).
-  static constexpr std::uint64_t kFewFaces = 32768;
+  static constexpr std::uint64_t kMaxFacesIn64Bits = 32768;
 
   /// @param from, to  ends of the segment in cells (metres times cells per metre)
   /// REQUIRES finite ends with |floor(to) - floor(from)| < 2^62 along each axis
@@ -45,14 +45,14 @@ class FaceCrossings {
       // A segment with one crossing may be so short that its inverse is no number.
       if (left_[i] > 1) apart_[i] = static_cast<WideWord>(std::ldexp(1.0 / std::abs(along), 126));
     }
-    if (total_ > kFewFaces) return;
+    if (total_ > kMaxFacesIn64Bits) return;
     for (WideWord& apart : apart_) apart = apart >> 64 << 64;
   }
 
   /// Faces that are left to cross: the Manhattan distance of the two cells.
   std::uint64_t left() const { return total_; }
   /// Axis of the next face; of several crossed at once the one that liboctomap takes. REQUIRES left() > 0.
-  std::size_t next_axis() const { return axis_of_least(next_); }
+  std::size_t next_axis() const { return axis_of_min(next_); }
   /// Whether the key component grows along an axis.
   bool is_ahead(std::size_t axis) const { return ahead_[axis]; }
   /// Crosses the next face, which must be that of `axis`. REQUIRES left() > 0.
@@ -69,7 +69,7 @@ class FaceCrossings {
   struct OneAxis {
     static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t next = kNever;  ///< the next face, in units of 2^-62 of the segment; kNever: none left
-    std::uint64_t apart = 0;      ///< from face to face; right up to kFewFaces
+    std::uint64_t apart = 0;      ///< from face to face; right up to kMaxFacesIn64Bits
     std::uint64_t left = 0;
   };
   OneAxis along(std::size_t axis) const {

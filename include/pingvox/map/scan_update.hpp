@@ -15,7 +15,7 @@
 namespace pingvox {
 
 /// What one scan (a sweep, a beam, a cloud) says: which cells sound passed through and which it came back from. Each
-/// cell has one vote, a hit beats a miss, and of several hits the surest counts. Marks go into bit masks, so
+/// cell is updated once: a hit beats a miss, and of several hits the surest counts. Marks go into bit masks, so
 /// overlapping rays cost nothing and nothing is hashed but one page in 4096 cells.
 class ScanUpdate {
  public:

@@ -31,11 +31,11 @@ struct Raster {
 };
 
 /// The largest raster that is made.
-inline constexpr std::size_t kMostRasterCells = std::size_t{1} << 28;
+inline constexpr std::size_t kMaxRasterCells = std::size_t{1} << 28;
 
 /// A column of the slice is occupied when any of its cells is, free when at least one is and none is occupied, else
 /// unknown: where nothing was observed, or nothing that the map's thresholds decide.
-/// @return kUnsupported when nothing is known there; kLimit beyond kMostRasterCells
+/// @return kUnsupported when nothing is known there; kLimit beyond kMaxRasterCells
 Result<Raster<Occupancy>> slice_of(const OccupancyMap& map, const SliceOptions& options);
 
 enum class Surface {
@@ -45,11 +45,11 @@ enum class Surface {
 
 /// Where the highest (lowest) occupied cell of each column of the slice has its upper face [m, map frame]; NaN in a
 /// column without one. The raster is that of `slice_of`.
-/// @return kUnsupported when nothing is occupied there; kLimit beyond a quarter of kMostRasterCells
+/// @return kUnsupported when nothing is occupied there; kLimit beyond a quarter of kMaxRasterCells
 Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& options, Surface surface);
 
 /// The cells of a slice as a map with the same options; cells of other layers are unknown.
-/// @return kUnsupported when nothing is known there; kLimit when the slice is beyond kMostRasterCells
+/// @return kUnsupported when nothing is known there; kLimit when the slice is beyond kMaxRasterCells
 Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& options);
 
 }  // namespace pingvox

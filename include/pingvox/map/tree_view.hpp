@@ -110,7 +110,7 @@ std::uint64_t cells_of_uniform_octants(BrickView brick);
 struct CellStates {
   std::uint64_t free = 0, occupied = 0;
 };
-CellStates classified(BrickView brick, const Thresholds& thresholds);
+CellStates classify(BrickView brick, const Thresholds& thresholds);
 
 /// The tree of a map.
 TreeView view_of(const OccupancyMap& map);

@@ -39,7 +39,7 @@ enum class Silent {
 /// How fan and cone find the cells that they filled with sound.
 enum class Tracing {
   kGeometry,  ///< from the volume's closed form (insonified_volume.hpp)
-  kBundle,    ///< by rays as dense as the far end needs: slower, the witness of the first
+  kBundle,    ///< by rays as dense as the far end needs: slower, to check the first
 };
 
 struct BeamModelOptions {
@@ -82,7 +82,7 @@ std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double beari
 double cells_in_beam(const BeamModelOptions& options, double range_m, double resolution_m);
 
 /// The most that `build_map` takes for one beam: such a scan needs some hundred megabytes.
-inline constexpr double kMostCellsInBeam = 3e8;
+inline constexpr double kMaxCellsInBeam = 3e8;
 
 /// Adds to `scan` what one beam says: cells freed up to the first bin of the echo (from there on sound came back),
 /// cells hit at its range with their share of the evidence. What lies between the two stays as it was.

@@ -13,10 +13,10 @@
 
 namespace pingvox {
 
-/// How the beams of one sweep vote on a cell.
+/// How often a cell is updated.
 enum class Vote {
-  kPerSweep,  ///< one vote a cell and sweep, a hit beats a miss: liboctomap's insertPointCloud
-  kPerBeam,   ///< each beam votes
+  kPerSweep,  ///< once per sweep, a hit beats a miss: liboctomap's insertPointCloud
+  kPerBeam,   ///< once per beam
 };
 
 /// When a beam goes into the map.
@@ -60,7 +60,7 @@ struct BuildReport {
   LeftOut no_pose;          ///< of those skipped, the ones heard when nobody knows where the vehicle was
   LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
-  std::uint64_t cells_freed = 0, cells_hit = 0;     ///< votes, summed over scans
+  std::uint64_t cells_freed = 0, cells_hit = 0;     ///< cell updates, summed over scans
   struct Seconds {
     double read = 0, detect = 0, trace = 0, apply = 0;
   } seconds;

@@ -18,7 +18,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::ScalableTag<double>;
-using Doubles = hn::Vec<D>;
+using DoubleVec = hn::Vec<D>;
 using Mask = hn::Mask<D>;
 constexpr D kDoubles;
 constexpr hn::RebindToSigned<D> kInts;
@@ -32,19 +32,19 @@ constexpr std::array<double, 16> kRowNumbers{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3,
 std::size_t lanes() {
   return hn::Lanes(kDoubles);
 }
-Doubles set(double number) {
+DoubleVec set(double number) {
   return hn::Set(kDoubles, number);
 }
 
 /// What each row's layer has, of rows from number `at` on: vectors hold rows of two layers at most.
-Doubles of_layers(const double* of_layer, std::size_t at) {
+DoubleVec of_layers(const double* of_layer, std::size_t at) {
   return hn::IfThenElse(hn::FirstN(kDoubles, kRowsInLayer), set(of_layer[at / kRowsInLayer]),
                         set(of_layer[(at + lanes() - 1) / kRowsInLayer]));
 }
 
 /// Narrows low..high to where slope * place >= needed; `way` is 1 / slope.
-void narrow(double slope, double way, Doubles needed, Doubles& low, Doubles& high) {
-  const Doubles place = needed * set(way);
+void narrow(double slope, double way, DoubleVec needed, DoubleVec& low, DoubleVec& high) {
+  const DoubleVec place = needed * set(way);
   if (slope > 0.0) {
     low = hn::IfThenElse(low < place, place, low);
   } else if (slope < 0.0) {
@@ -56,65 +56,65 @@ void narrow(double slope, double way, Doubles needed, Doubles& low, Doubles& hig
 
 /// Narrows the cells first..last of rows to those that the sphere touches.
 /// @param left  of the square of the sphere's radius, beyond the rows
-void cut_by_sphere(double in_cell, Doubles left, Doubles& first, Doubles& last) {
-  const Doubles zero = hn::Zero(kDoubles), half = set(0.5);
-  const Doubles reach = hn::Sqrt(hn::Max(left, zero)) + half + set(kGrazing);
-  const Doubles from = hn::Ceil(hn::Neg(reach) - half + set(in_cell)), to = hn::Floor(reach - half + set(in_cell));
+void cut_by_sphere(double in_cell, DoubleVec left, DoubleVec& first, DoubleVec& last) {
+  const DoubleVec zero = hn::Zero(kDoubles), half = set(0.5);
+  const DoubleVec reach = hn::Sqrt(hn::Max(left, zero)) + half + set(kGrazing);
+  const DoubleVec from = hn::Ceil(hn::Neg(reach) - half + set(in_cell)), to = hn::Floor(reach - half + set(in_cell));
   first = hn::Max(first, from);
   last = hn::IfThenElse(left < zero, first - set(1.0), hn::Min(to, last));
 }
 
 void rows_of_layers(const ConvexBody& body, std::int64_t first_layer, RowsOfLayers& rows) {
   for (std::size_t at = 0; at < RowsOfLayers::kLayers; at += lanes()) {
-    const Doubles number = hn::LoadU(kDoubles, kNumbers.data() + at);
-    const Doubles layer = number + set(static_cast<double>(first_layer)) + set(0.5) - set(body.in_cell.layer);
-    Doubles low = set(body.low.row), high = set(body.high.row);
+    const DoubleVec number = hn::LoadU(kDoubles, kNumbers.data() + at);
+    const DoubleVec layer = number + set(static_cast<double>(first_layer)) + set(0.5) - set(body.in_cell.layer);
+    DoubleVec low = set(body.low.row), high = set(body.high.row);
     for (const Face& face : body.faces) {
-      const Doubles needed = set(-face.reach) - set(face.normal.layer) * layer;
-      narrow(face.normal.row, face.row_way, needed - set(face.most_along_row), low, high);
+      const DoubleVec needed = set(-face.reach) - set(face.normal.layer) * layer;
+      narrow(face.normal.row, face.row_way, needed - set(face.max_along_row), low, high);
     }
     // Outside of the box nothing is meant, and huge numbers are no cells.
     const Mask some = low <= high;
-    const Doubles first = hn::Ceil(low - set(0.5) + set(body.in_cell.row));
-    const Doubles last = hn::Floor(high - set(0.5) + set(body.in_cell.row));
+    const DoubleVec first = hn::Ceil(low - set(0.5) + set(body.in_cell.row));
+    const DoubleVec last = hn::Floor(high - set(0.5) + set(body.in_cell.row));
     hn::StoreU(hn::IfThenElse(some, first, set(1.0)), kDoubles, rows.first.data() + at);
     hn::StoreU(hn::IfThenElseZero(some, last), kDoubles, rows.last.data() + at);
   }
 }
 
 void cells_of_rows(const ConvexBody& body, const ColumnOfRows& column, RunsOfRows& runs) {
-  const Doubles zero = hn::Zero(kDoubles), half = set(0.5);
-  const Doubles none = set(static_cast<double>(column.no_place));
-  const Doubles lowest_cell = set(static_cast<double>(column.lowest_cell));
-  Doubles lowest = none, highest = zero;
+  const DoubleVec zero = hn::Zero(kDoubles), half = set(0.5);
+  const DoubleVec none = set(static_cast<double>(column.no_place));
+  const DoubleVec lowest_cell = set(static_cast<double>(column.lowest_cell));
+  DoubleVec lowest = none, highest = zero;
   for (std::size_t at = 0; at < ColumnOfRows::kRows; at += lanes()) {
-    const Doubles first_row = of_layers(column.first_of_layer, at), last_row = of_layers(column.last_of_layer, at);
-    const Doubles row_number =
+    const DoubleVec first_row = of_layers(column.first_of_layer, at), last_row = of_layers(column.last_of_layer, at);
+    const DoubleVec row_number =
         hn::LoadU(kDoubles, kRowNumbers.data() + at) + set(static_cast<double>(column.first_row));
-    const Doubles layer_number =
+    const DoubleVec layer_number =
         hn::LoadU(kDoubles, kLayerNumbers.data() + at) + set(static_cast<double>(column.first_layer));
-    const Doubles layer = layer_number + half - set(body.in_cell.layer),
-                  row = row_number + half - set(body.in_cell.row);
-    Doubles low = set(body.low.cell), high = set(body.high.cell);
+    const DoubleVec layer = layer_number + half - set(body.in_cell.layer),
+                    row = row_number + half - set(body.in_cell.row);
+    DoubleVec low = set(body.low.cell), high = set(body.high.cell);
     for (const Face& face : body.faces) {
-      const Doubles needed = set(-face.reach) - set(face.normal.layer) * layer;
+      const DoubleVec needed = set(-face.reach) - set(face.normal.layer) * layer;
       narrow(face.normal.cell, face.cell_way, needed - set(face.normal.row) * row, low, high);
     }
     const Mask some = hn::And(low <= high, hn::And(row_number >= first_row, row_number <= last_row));
-    Doubles first = hn::Ceil(low - half + set(body.in_cell.cell));
-    Doubles last = hn::Floor(high - half + set(body.in_cell.cell));
+    DoubleVec first = hn::Ceil(low - half + set(body.in_cell.cell));
+    DoubleVec last = hn::Floor(high - half + set(body.in_cell.cell));
 
-    const Doubles to_layer = hn::Max(hn::Abs(layer) - half, zero), to_row = hn::Max(hn::Abs(row) - half, zero);
-    const Doubles left = set(body.range * body.range) - to_layer * to_layer - to_row * to_row;
+    const DoubleVec to_layer = hn::Max(hn::Abs(layer) - half, zero), to_row = hn::Max(hn::Abs(row) - half, zero);
+    const DoubleVec left = set(body.range * body.range) - to_layer * to_layer - to_row * to_row;
     // Most rows end before they come near the sphere, by half a cell at least.
-    const Doubles farthest = hn::Max(high, hn::Neg(low));
+    const DoubleVec farthest = hn::Max(high, hn::Neg(low));
     if (!hn::AllFalse(kDoubles, hn::And(some, farthest * farthest > left))) {
       cut_by_sphere(body.in_cell.cell, left, first, last);
     }
 
     const Mask has_cells = hn::And(some, first <= last);
-    const Doubles begin = hn::IfThenElse(has_cells, first - lowest_cell, none);
-    const Doubles end = hn::IfThenElseZero(has_cells, last + set(1.0) - lowest_cell);
+    const DoubleVec begin = hn::IfThenElse(has_cells, first - lowest_cell, none);
+    const DoubleVec end = hn::IfThenElseZero(has_cells, last + set(1.0) - lowest_cell);
     lowest = hn::Min(begin, lowest);
     highest = hn::Max(end, highest);
     hn::StoreU(hn::ConvertTo(kInts, begin), kInts, runs.begin.data() + at);

@@ -18,7 +18,7 @@ struct Face {
   WalkAxes normal;
   double row_way = 0.0, cell_way = 0.0;  ///< 1 / normal.row, 1 / normal.cell
   double reach = 0.0;
-  double most_along_row = 0.0;  ///< the most that normal.cell times a place within the box can be
+  double max_along_row = 0.0;  ///< the most that normal.cell times a place within the box can be
 };
 
 /// What five half-spaces through the origin, a sphere around it and a box have in common.

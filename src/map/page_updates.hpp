@@ -11,7 +11,7 @@ namespace pingvox::detail {
 inline constexpr int kPageLevels = 2;
 
 /// What a scan says of a brick of one of its pages.
-Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick);
+CellUpdates updates_of_brick(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick);
 
 /// Adds what a scan says of a page to a tree: from the page's node down, without a path that is kept for each brick.
 /// Nothing is made where nothing changes. Throws std::bad_alloc; parents are to be made right by prune_all then, and of
@@ -19,7 +19,7 @@ Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t
 /// @param entry  of the page's node; where that is part of a leaf, or of a node that nothing is known of, its entry
 /// @return what the node is now, to be put there
 /// REQUIRES brick_depth >= kPageLevels and pruning
-Entry voted(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page,
-            Entry entry);
+Entry update_page(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page,
+                  Entry entry);
 
 }  // namespace pingvox::detail

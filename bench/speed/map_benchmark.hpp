@@ -14,7 +14,7 @@
 namespace pingvox::bench {
 
 /// Two libraries that make the same map from nothing.
-struct MapContest {
+struct MapBenchmark {
   std::string name;
   double resolution_m = 0.05;
   /// Fills an empty map. The scan is room that is used for all runs, empty before and after.
@@ -26,6 +26,6 @@ struct MapContest {
 
 /// Checks the maps, then measures the peak memory of each side, from nothing in a process of its own, and the times.
 /// @return the row of speed_row, to which the caller may add; the error of `check`
-Result<Row> measured(const MapContest& contest);
+Result<Row> measure(const MapBenchmark& benchmark);
 
 }  // namespace pingvox::bench

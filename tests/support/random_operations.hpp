@@ -48,13 +48,13 @@ class Places {
 };
 
 /// A map and its oracle under the same random operations.
-class Duel {
+class RandomOperations {
  public:
   /// Gives a map that holds the same: by way of a file, for instance.
   using Reload = std::function<OccupancyMap(const OccupancyMap&)>;
 
   /// @param reload  one more operation; none if empty
-  Duel(int depth, std::uint64_t seed, Reload reload = {})
+  RandomOperations(int depth, std::uint64_t seed, Reload reload = {})
       : random_(seed),
         places_(depth, random_),
         map_(options(depth)),

@@ -6,12 +6,12 @@ namespace pingvox::bench {
 
 /// liboctomap talks on standard error when it reads and writes. As long as this lives it is not heard, and its words
 /// cost it no system call.
-class Hush {
+class SilentStderr {
  public:
-  Hush();
-  Hush(const Hush&) = delete;
-  Hush& operator=(const Hush&) = delete;
-  ~Hush();
+  SilentStderr();
+  SilentStderr(const SilentStderr&) = delete;
+  SilentStderr& operator=(const SilentStderr&) = delete;
+  ~SilentStderr();
 
  private:
   std::streambuf* stream_;  ///< of std::cerr

@@ -1,4 +1,4 @@
-#include "cells_settled.hpp"
+#include "cells_beyond_doubt.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -76,7 +76,8 @@ bool leaves_doubt(std::span<const Ray> rays, const Eigen::Vector3d& middle) {
 
 }  // namespace
 
-std::vector<Key> cells_settled(const Lattice& lattice, std::span<const RayCloud> scans, std::span<const Key> cells) {
+std::vector<Key> cells_beyond_doubt(const Lattice& lattice, std::span<const RayCloud> scans,
+                                    std::span<const Key> cells) {
   std::vector<Key> settled(cells.begin(), cells.end());
   for (const RayCloud& scan : scans) {
     if (settled.empty()) break;

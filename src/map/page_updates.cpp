@@ -1,4 +1,4 @@
-#include "map/page_votes.hpp"
+#include "map/page_updates.hpp"
 
 #include <cassert>
 
@@ -7,10 +7,10 @@
 namespace pingvox::detail {
 namespace {
 
-/// The votes of one page. A node that changed is settled once, when all of its children are.
-class PageVoter {
+/// The updates of one page. A node that changed is settled once, when all of its children are.
+class PageUpdater {
  public:
-  PageVoter(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page)
+  PageUpdater(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page)
       : tree_(tree),
         rules_(rules),
         scan_(scan),
@@ -22,7 +22,7 @@ class PageVoter {
   /// What becomes of the page.
   Entry page(Entry entry) {
     return children(entry, bytes_in_use(page_.bricks), [this](std::size_t o, Entry octant) {
-      if (stays(octant, o)) return octant;
+      if (is_unchanged(octant, o)) return octant;
       return children(octant, page_.bricks >> (8 * o) & 0xFF,
                       [this, o](std::size_t i, Entry at) { return brick(at, 8 * o + i); });
     });
@@ -30,7 +30,7 @@ class PageVoter {
 
  private:
   /// What becomes of a node.
-  /// @param which  of its children have votes: a bit each
+  /// @param which  of its children have updates: a bit each
   /// @param f      f(number, entry) is what becomes of one of them
   template <class F>
   Entry children(Entry entry, std::uint64_t which, F&& f) {
@@ -42,7 +42,7 @@ class PageVoter {
         changed |= now != group.child[o];
         group.child[o] = now;
       });
-      return changed ? built(tree_, group, rules_.parents) : entry;
+      return changed ? store(tree_, group, rules_.parents) : entry;
     }
     for_each_bit(which, [&](std::size_t o) {
       // Groups may be elsewhere when f has made one.
@@ -51,19 +51,19 @@ class PageVoter {
       tree_.groups[entry.link].child[o] = now;
       changed = true;
     });
-    return changed ? settled_group(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
+    return changed ? settle_group(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }
 
   Entry brick(Entry entry, std::size_t number) {
-    const Votes votes = votes_on(scan_, page_, number);
-    if (!entry.is_inner()) return voted_without_brick(tree_, rules_, votes, entry);
-    const bool changed = add(votes, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
-    return changed ? settled_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
+    const CellUpdates updates = updates_of_brick(scan_, page_, number);
+    if (!entry.is_inner()) return update_without_brick(tree_, rules_, updates, entry);
+    const bool changed = add(updates, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
+    return changed ? settle_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }
 
   /// Whether an octant stays as it is because there are misses only, and all that is known there is as free as can be.
   /// That asks for one word of each brick: after some scans from one place that is nearly all there is to do.
-  bool stays(Entry octant, std::size_t o) const {
+  bool is_unchanged(Entry octant, std::size_t o) const {
     const std::uint64_t hit = page_.bricks_hit >> (8 * o) & 0xFF;
     if (!may_stay_ || hit != 0 || LogOdds(octant.value) > rules_.clamp.lowest) return false;
     if (octant.is_leaf()) return true;
@@ -87,17 +87,17 @@ class PageVoter {
 
 }  // namespace
 
-Votes votes_on(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick) {
+CellUpdates updates_of_brick(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick) {
   if ((page.bricks_hit >> brick & 1) == 0) return {page.missed[brick], scan.miss(), 0, nullptr, {}};
   const std::uint64_t hit = page.hit[brick];
   const ScanUpdate::Hits hits = scan.hits(page, brick);
   return {page.missed[brick] & ~hit, scan.miss(), hit, hits.of_cell, hits.all};
 }
 
-Entry voted(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page,
-            Entry entry) {
+Entry update_page(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page,
+                  Entry entry) {
   assert(tree.brick_depth() >= kPageLevels && rules.pruning != Pruning::kNever);
-  return PageVoter(tree, rules, scan, page).page(entry);
+  return PageUpdater(tree, rules, scan, page).page(entry);
 }
 
 }  // namespace pingvox::detail

@@ -1,4 +1,4 @@
-#include "map/page_votes.hpp"
+#include "map/page_updates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,13 +17,13 @@ ScanUpdate scan_of_brick(std::size_t brick, std::uint64_t missed, LogOdds hit) {
   return scan;
 }
 
-Entry voted_once(BrickTree& tree, const ScanUpdate& scan, Entry entry) {
-  return voted(tree, kRules, scan, scan.page(0), entry);
+Entry update_once(BrickTree& tree, const ScanUpdate& scan, Entry entry) {
+  return update_page(tree, kRules, scan, scan.page(0), entry);
 }
 
-TEST(PageVotes, HitsThatSayWhatMissesSayMakeALeaf) {
+TEST(PageUpdates, HitsThatSayWhatMissesSayMakeALeaf) {
   BrickTree tree(16);
-  const Entry page = voted_once(tree, scan_of_brick(13, ~std::uint64_t{1}, kMiss), {});
+  const Entry page = update_once(tree, scan_of_brick(13, ~std::uint64_t{1}, kMiss), {});
   ASSERT_TRUE(page.is_inner());
   const Entry octant = tree.groups[page.link].child[1];
   ASSERT_TRUE(octant.is_inner());
@@ -31,23 +31,23 @@ TEST(PageVotes, HitsThatSayWhatMissesSayMakeALeaf) {
   EXPECT_EQ(tree.bricks.bytes(), 0U);
 }
 
-TEST(PageVotes, WhatChangesNothingMakesNothing) {
+TEST(PageUpdates, WhatChangesNothingMakesNothing) {
   BrickTree tree(16);
   // Part of a larger node that is as free as can be already, beyond that, or of what evidence of nothing says nothing.
   for (const float value : {-2.0F, -9.0F}) {
     const Entry leaf = Entry::leaf(value);
-    EXPECT_EQ(voted_once(tree, scan_of_brick(13, 0xF0F0, kMiss), leaf), leaf);
-    EXPECT_EQ(voted_once(tree, scan_of_brick(63, ~std::uint64_t{0}, kMiss), leaf), leaf);
+    EXPECT_EQ(update_once(tree, scan_of_brick(13, 0xF0F0, kMiss), leaf), leaf);
+    EXPECT_EQ(update_once(tree, scan_of_brick(63, ~std::uint64_t{0}, kMiss), leaf), leaf);
   }
   ScanUpdate nothing(Lattice(1.0), LogOdds(0.0F));
   nothing.mark_missed_in(nothing.page_of({0, 0, 0}), 5, 0xFF);
-  EXPECT_EQ(voted_once(tree, nothing, {}), Entry{});
+  EXPECT_EQ(update_once(tree, nothing, {}), Entry{});
   EXPECT_EQ(tree.groups.bytes() + tree.bricks.bytes(), 0U);
 }
 
-TEST(PageVotes, OneCellOfALeafMakesOneBrick) {
+TEST(PageUpdates, OneCellOfALeafMakesOneBrick) {
   BrickTree tree(16);
-  const Entry page = voted_once(tree, scan_of_brick(63, ~std::uint64_t{1}, LogOdds(0.85F)), Entry::leaf(-1.0F));
+  const Entry page = update_once(tree, scan_of_brick(63, ~std::uint64_t{1}, LogOdds(0.85F)), Entry::leaf(-1.0F));
   ASSERT_TRUE(page.is_inner());
   EXPECT_EQ(page.value, -1.0F + 0.85F);
   EXPECT_EQ(tree.groups.bytes(), 2 * sizeof(Group));

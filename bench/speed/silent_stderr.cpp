@@ -1,4 +1,4 @@
-#include "hush.hpp"
+#include "silent_stderr.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,14 +8,14 @@
 namespace pingvox::bench {
 
 // It uses std::cerr in some places and stderr in others.
-Hush::Hush() : stream_(std::cerr.rdbuf(nullptr)), descriptor_(dup(STDERR_FILENO)) {
+SilentStderr::SilentStderr() : stream_(std::cerr.rdbuf(nullptr)), descriptor_(dup(STDERR_FILENO)) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere < 0) return;
   dup2(nowhere, STDERR_FILENO);
   close(nowhere);
 }
 
-Hush::~Hush() {
+SilentStderr::~SilentStderr() {
   std::cerr.rdbuf(stream_);
   if (descriptor_ < 0) return;
   dup2(descriptor_, STDERR_FILENO);

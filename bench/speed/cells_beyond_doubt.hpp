@@ -12,6 +12,7 @@ namespace pingvox::bench {
 /// surely ends in the cell, and one may, or when no ray surely passes through it, and one may touch it. A ray is sure
 /// of a cell that it meets also when the cell is made a hundredth smaller on all sides, and may touch one that it meets
 /// when the cell is made as much larger.
-std::vector<Key> cells_settled(const Lattice& lattice, std::span<const RayCloud> scans, std::span<const Key> cells);
+std::vector<Key> cells_beyond_doubt(const Lattice& lattice, std::span<const RayCloud> scans,
+                                    std::span<const Key> cells);
 
 }  // namespace pingvox::bench
