@@ -7,8 +7,8 @@
 namespace pingvox::detail {
 namespace {
 
-/// That of pages. Links below come and go: with them it would be made again after each scan, and updates of a page change
-/// them by themselves.
+/// That of pages. Links below come and go: with them it would be made again after each scan, and updates of a page
+/// change them by themselves.
 constexpr int kLowestLevel = 2 + kPageLevels;
 
 /// Calls f(child, place) for the known children of eight nodes: a place is 0..3 along each axis.

@@ -94,7 +94,7 @@ class Walk {
       if (axis.left() > 0) last = std::max(last, axis.last());
       if (axis.left() > 1) beyond = std::min(beyond, axis.last() + axis.apart());
     }
-    return left_ <= FaceCrossings::kFewFaces && beyond > last;
+    return left_ <= FaceCrossings::kMaxFacesIn64Bits && beyond > last;
   }
 
   void mark_missed(ScanUpdate& scan) {
@@ -127,7 +127,7 @@ class Walk {
 
   /// Marks the cell and crosses the next face. @return its axis
   std::size_t step(ScanUpdate& scan) {
-    const std::size_t axis = axis_of_least(std::array{axes_[0].next(), axes_[1].next(), axes_[2].next()});
+    const std::size_t axis = axis_of_min(std::array{axes_[0].next(), axes_[1].next(), axes_[2].next()});
     add(axes_[0].place() | axes_[1].place() | axes_[2].place(), brick_, cells_, used_);
     if (used_ + 4 > kRoom) hand_over(scan);
     axes_[axis].cross();
@@ -143,7 +143,7 @@ class Walk {
     Axis along = axes_[major], first = axes_[a], second = axes_[b];
     std::uint64_t brick = brick_, cells = cells_, crossed = 0;
     std::size_t used = used_;
-    // Of faces that are crossed at once the last axis comes first, as in axis_of_least.
+    // Of faces that are crossed at once the last axis comes first, as in axis_of_min.
     const std::uint64_t first_wins = a > major ? 1 : 0, second_wins = b > major ? 1 : 0;
     for (std::uint64_t n = 0; n < faces; ++n) {
       const bool is_first = first.next() < along.next() + first_wins;
