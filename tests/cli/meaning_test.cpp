@@ -28,8 +28,8 @@ std::string wall_ahead() {
 std::array<double, 3> corner_with(const std::vector<std::string>& options) {
   const Workplace here;
   here.write("wall.csv", wall_ahead());
-  std::vector<std::string> words = {"map",  "wall.csv",     "-o",  "map.pvx",     "--json", "--filter",
-                                    "none", "--resolution", "0.1", "--min-range", "0.1"};
+  std::vector<std::string> words = {"map",      "wall.csv", "-o",           "map.pvx", "--json",      "--beam", "ray",
+                                    "--filter", "none",     "--resolution", "0.1",     "--min-range", "0.1"};
   words.insert(words.end(), options.begin(), options.end());
   const Outcome made = here.call(words);
   EXPECT_EQ(made.status, 0) << made.err;
