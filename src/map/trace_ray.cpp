@@ -135,9 +135,9 @@ class Walk {
     return axis;
   }
 
-  /// Crosses so many faces of one axis, and those of the `kOthers` others that come before each. REQUIRES a < b where
+  /// Crosses so many faces of one axis, and those of the `Others` other axes that come before each. REQUIRES a < b where
   /// there are two.
-  template <int kOthers>
+  template <int Others>
   void step_along(std::size_t major, std::size_t a, std::size_t b, std::uint64_t faces, ScanUpdate& scan) {
     // By themselves, not as members, which would be stored in each step.
     Axis along = axes_[major], first = axes_[a], second = axes_[b];
@@ -148,7 +148,7 @@ class Walk {
     for (std::uint64_t n = 0; n < faces; ++n) {
       const bool is_first = first.next() < along.next() + first_wins;
       add(along.place() | first.place() | second.place(), brick, cells, used);
-      if constexpr (kOthers == 1) {
+      if constexpr (Others == 1) {
         first.cross_if(is_first);
       } else {
         const bool is_second = second.next() < along.next() + second_wins;
