@@ -41,7 +41,7 @@ OccupancyMap with_threshold(const OccupancyMap& map, double probability) {
   options.thresholds.lower = std::min(options.thresholds.lower, options.thresholds.upper);
   OccupancyMap out(options);
   Editor editor = out.edit();
-  for_each_leaf<WideWord>(map, {}, [&](const Leaf<WideWord>& leaf) { editor.set(leaf.key, leaf.depth, leaf.belief); });
+  for_each_leaf(map, [&](const Leaf& leaf) { editor.set(leaf.key, leaf.depth, leaf.belief); });
   editor.synchronize();
   return out;
 }

@@ -72,7 +72,7 @@ bool is_near_occupied(const OccupancyMap& map, const BasicKey<W>& key) {
 template <KeyWord W>
 std::uint64_t near_cells(const OccupancyMap& of, const OccupancyMap& to) {
   std::uint64_t near = 0;
-  for_each_leaf<W>(of, {}, [&](const Leaf<W>& leaf) {
+  for_each_leaf(of, [&](const Leaf& leaf) {
     if (classify(leaf.belief, of.options().thresholds) != Occupancy::kOccupied) return;
     const WideWord edge = WideWord{1} << (of.lattice().depth() - leaf.depth);
     for (WideWord x = 0; x < edge; ++x) {

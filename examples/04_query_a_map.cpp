@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   LeafQuery near;
   near.box = Box{{-2.0, -2.0, -2.0}, {2.0, 2.0, 2.0}};
   std::size_t occupied = 0;
-  for_each_leaf<WideWord>(map, near, [&](const Leaf<WideWord>& leaf) {
+  for_each_leaf(map, near, [&](const Leaf& leaf) {
     if (classify(leaf.belief, map.options().thresholds) == Occupancy::kOccupied) ++occupied;
   });
   std::printf("within 2 m: %zu occupied leaves\n", occupied);

@@ -55,10 +55,11 @@ CellGrid CellBox::classes_of(const OccupancyMap& map, const Thresholds& threshol
     return lattice_.centre_of(Key{word(c[0]), word(c[1]), word(c[2])});
   };
   const LeafQuery query{.max_depth = {}, .box = Box{middle_of(low_), middle_of(high_)}};
-  for_each_leaf<std::uint16_t>(map, query, [&](const Leaf<std::uint16_t>& leaf) {
+  for_each_leaf(map, query, [&](const Leaf& leaf) {
     const Occupancy kind = classify(leaf.belief, thresholds);
     const std::int64_t edge = std::int64_t{1} << (lattice_.depth() - leaf.depth);
-    const CellGrid::Cell corner = {leaf.key.x, leaf.key.y, leaf.key.z};
+    const auto number = [](WideWord word) { return static_cast<std::int64_t>(word); };
+    const CellGrid::Cell corner = {number(leaf.key.x), number(leaf.key.y), number(leaf.key.z)};
     CellGrid::Cell first{}, last{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       first[axis] = std::max(corner[axis], low_[axis]) - low_[axis];

@@ -86,9 +86,9 @@ int best_threshold(RightAt&& right_at) {
 /// Cells of the map that are occupied more than `range_m` from the head, where the tank has no wall.
 std::uint64_t count_occupied_beyond(const OccupancyMap& map, double range_m) {
   std::uint64_t cells = 0;
-  for_each_leaf<std::uint16_t>(map, {}, [&](const Leaf<std::uint16_t>& leaf) {
+  for_each_leaf(map, [&](const Leaf& leaf) {
     if (classify(leaf.belief) != Occupancy::kOccupied) return;
-    if (map.lattice().centre_of(leaf.key, leaf.depth).norm() > range_m) ++cells;
+    if (leaf.centre_m().norm() > range_m) ++cells;
   });
   return cells;
 }

@@ -25,23 +25,23 @@ std::uint64_t below(Random& random, std::uint64_t end) {
 }
 
 /// Of a random leaf a random cell.
-Key known_key(const std::vector<Leaf<std::uint16_t>>& leaves, int levels, Random& random) {
-  const Leaf<std::uint16_t>& leaf = leaves[below(random, leaves.size())];
+Key known_key(const std::vector<Leaf>& leaves, int levels, Random& random) {
+  const Leaf& leaf = leaves[below(random, leaves.size())];
   const std::uint64_t edge = std::uint64_t{1} << (levels - leaf.depth);
-  const auto word = [&](std::uint16_t lowest) { return static_cast<std::uint16_t>(lowest + below(random, edge)); };
+  const auto word = [&](WideWord lowest) { return static_cast<std::uint16_t>(lowest + below(random, edge)); };
   return {word(leaf.key.x), word(leaf.key.y), word(leaf.key.z)};
 }
 
-std::vector<Leaf<std::uint16_t>> leaves_of(const OccupancyMap& map) {
-  std::vector<Leaf<std::uint16_t>> all;
-  for_each_leaf<std::uint16_t>(map, {}, [&](const Leaf<std::uint16_t>& leaf) { all.push_back(leaf); });
+std::vector<Leaf> leaves_of(const OccupancyMap& map) {
+  std::vector<Leaf> all;
+  for_each_leaf(map, [&](const Leaf& leaf) { all.push_back(leaf); });
   return all;
 }
 
 /// By turns a cell that is known and any one in the map's bounds.
 std::vector<Key> random_keys(const OccupancyMap& map) {
   Random random(12);
-  const std::vector<Leaf<std::uint16_t>> known = leaves_of(map);
+  const std::vector<Leaf> known = leaves_of(map);
   const Box box = *map.bounds();
   std::vector<Key> keys;
   keys.reserve(kKeys);
@@ -68,7 +68,7 @@ struct Cast {
 
 std::vector<Cast> random_casts(const OccupancyMap& map) {
   Random random(13);
-  const std::vector<Leaf<std::uint16_t>> known = leaves_of(map);
+  const std::vector<Leaf> known = leaves_of(map);
   std::vector<Cast> casts;
   casts.reserve(kRays);
   while (casts.size() < kRays) {
@@ -189,10 +189,10 @@ Result<std::vector<Row>> leaves(const BenchOptions&) {
   LeafSums ours_sums, peer_sums;
   const Side ours{{}, [&] {
                     ours_sums = {};
-                    for_each_leaf<std::uint16_t>(map, {}, [&](const Leaf<std::uint16_t>& leaf) {
+                    for_each_leaf(map, [&](const Leaf& leaf) {
                       ++ours_sums.leaves;
                       ours_sums.values += static_cast<double>(leaf.belief.value());
-                      ours_sums.sizes_m += map.lattice().cell_size_m(leaf.depth);
+                      ours_sums.sizes_m += leaf.edge_m();
                     });
                   }};
   const Side peer{{}, [&] {

@@ -19,7 +19,7 @@ namespace pingvox::fuzz {
 /// All that a map holds, bit for bit.
 inline std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves_in(const OccupancyMap& map) {
   std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves;
-  for_each_leaf<WideWord>(map, {}, [&](const Leaf<WideWord>& leaf) {
+  for_each_leaf(map, [&](const Leaf& leaf) {
     leaves.emplace_back(leaf.key, leaf.depth, std::bit_cast<std::uint32_t>(leaf.belief.value()));
   });
   return leaves;

@@ -538,7 +538,7 @@ template <KeyWord W>
 void Cursor<W>::put(int depth, Entry entry) {
   grow_to(depth);
   Entry& before = entry_at(depth);
-  // Of a leaf the shortcut holds the value, too.
+  // The shortcut holds the values of leaves, too.
   if (!entry.is_inner() || entry.link != before.link) drop_shortcut_at(depth);
   before = entry;
   mark_stale_above(depth);

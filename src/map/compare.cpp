@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+
+#include "map/bits.hpp"
 
 namespace pingvox {
 namespace {
 
-void add_saturated(std::uint64_t& sum, std::uint64_t n) {
-  sum = n > std::numeric_limits<std::uint64_t>::max() - sum ? std::numeric_limits<std::uint64_t>::max() : sum + n;
-}
+using detail::add_saturated;
 
 class Comparison {
  public:
@@ -37,13 +36,8 @@ class Comparison {
     return node && !node->is_leaf() ? node->child(octant) : node;
   }
 
-  std::uint64_t cells_at(int depth) const {
-    const int bits = 3 * (levels_ - depth);
-    return bits < 64 ? std::uint64_t{1} << bits : std::numeric_limits<std::uint64_t>::max();
-  }
-
   void count(const std::optional<NodeView>& a, const std::optional<NodeView>& b, int depth) {
-    const std::uint64_t cells = cells_at(depth);
+    const std::uint64_t cells = detail::cells_in_node(levels_ - depth);
     if (!b) return add_saturated(result_.only_a, cells);
     if (!a) return add_saturated(result_.only_b, cells);
     const LogOdds belief_a = a->belief(), belief_b = b->belief();

@@ -21,14 +21,8 @@
 namespace pingvox {
 namespace {
 
-/// So short that the message needs no memory of its own.
+/// Short enough to fit into a std::string without an allocation.
 constexpr const char* kOutOfMemory = "out of memory";
-
-constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-
-std::uint64_t saturated_sum(std::uint64_t a, std::uint64_t b) {
-  return a > kMost - b ? kMost : a + b;
-}
 
 detail::CursorRules rules_of(const detail::BrickTree& tree, const MapOptions& options, Pruning pruning) {
   return {options.parents, pruning, tree.early_drop, options.clamp};
@@ -43,17 +37,16 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
     return;
   }
   ++counts.leaves;
-  const int levels = depth - node.depth();
-  const std::uint64_t cells = levels > 21 ? kMost : std::uint64_t{1} << (3 * levels);
+  const std::uint64_t cells = detail::cells_in_node(depth - node.depth());
   switch (classify(node.belief(), thresholds)) {
     case Occupancy::kOccupied:
-      counts.occupied_cells = saturated_sum(counts.occupied_cells, cells);
+      detail::add_saturated(counts.occupied_cells, cells);
       break;
     case Occupancy::kFree:
-      counts.free_cells = saturated_sum(counts.free_cells, cells);
+      detail::add_saturated(counts.free_cells, cells);
       break;
     case Occupancy::kUnknown:
-      counts.undecided_cells = saturated_sum(counts.undecided_cells, cells);
+      detail::add_saturated(counts.undecided_cells, cells);
       break;
   }
 }
@@ -324,7 +317,7 @@ Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
     value = brick.value[cell];
     is_known = static_cast<unsigned>(brick.known >> cell) & 1U;
   }
-  // By arithmetic: what is where is as good as random, and a branch on it is not foreseen.
+  // By arithmetic: a branch would be mispredicted, as neighbouring queries differ.
   const unsigned is_occupied = value >= options_.thresholds.upper.value() ? 1 : 0;
   const unsigned is_free = value < options_.thresholds.lower.value() ? 1 : 0;
   return static_cast<Occupancy>(is_known * (2 * is_occupied + is_free));
@@ -345,12 +338,10 @@ std::optional<Box> OccupancyMap::bounds() const {
   if (empty()) return std::nullopt;
   const double inf = std::numeric_limits<double>::infinity();
   Box box{Eigen::Vector3d::Constant(inf), Eigen::Vector3d::Constant(-inf)};
-  with_key_word(lattice_.depth(), [&]<KeyWord W>() {
-    for_each_leaf<W>(*this, {}, [&](const Leaf<W>& leaf) {
-      const Eigen::Vector3d corner = lattice_.lowest_corner_of(leaf.key, leaf.depth);
-      box.min = box.min.cwiseMin(corner);
-      box.max = box.max.cwiseMax((corner.array() + lattice_.cell_size_m(leaf.depth)).matrix());
-    });
+  for_each_leaf(*this, [&](const Leaf& leaf) {
+    const Eigen::Vector3d corner = lattice_.lowest_corner_of(leaf.key, leaf.depth);
+    box.min = box.min.cwiseMin(corner);
+    box.max = box.max.cwiseMax((corner.array() + leaf.edge_m()).matrix());
   });
   return box;
 }

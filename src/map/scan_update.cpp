@@ -126,13 +126,9 @@ void ScanUpdate::clear() {
 std::vector<std::uint32_t> ScanUpdate::pages_in_order() const {
   std::vector<std::uint32_t> order(used_);
   std::iota(order.begin(), order.end(), 0U);
-  // Places of up to 21 bits make one number to sort by; only deep lattices have longer ones.
-  WideWord most = 0;
-  for (std::size_t i = 0; i < used_; ++i) most |= pages_[i].lowest.x | pages_[i].lowest.y | pages_[i].lowest.z;
-  if (most >> kPageBits >> 21 != 0) {
-    std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
-      return detail::is_before(pages_[a].lowest, pages_[b].lowest);
-    });
+  if (lattice_.depth() > kPageBits + 21) {
+    std::sort(order.begin(), order.end(),
+              [this](std::uint32_t a, std::uint32_t b) { return pages_[a].lowest < pages_[b].lowest; });
     return order;
   }
   std::vector<std::uint64_t> code(used_);

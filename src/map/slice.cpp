@@ -17,7 +17,7 @@ struct KeyBox {
 };
 
 /// The cells of a leaf.
-KeyBox cells_of(const Leaf<WideWord>& leaf, int levels) {
+KeyBox cells_of(const Leaf& leaf, int levels) {
   const int bits = levels - leaf.depth;
   const WideWord rest = bits == 0 ? 0 : ~WideWord{0} >> (kMaxDepth - bits);
   const WideKey& low = leaf.key;
@@ -44,7 +44,7 @@ std::pair<WideWord, WideWord> layers_of(const Lattice& lattice, const SliceOptio
 template <class Visitor>
 void for_each_in_slice(const OccupancyMap& map, const SliceOptions& options, Visitor visit) {
   const auto [first, last] = layers_of(map.lattice(), options);
-  for_each_leaf<WideWord>(map, {}, [&, low = first, high = last](const Leaf<WideWord>& leaf) {
+  for_each_leaf(map, [&, low = first, high = last](const Leaf& leaf) {
     KeyBox cells = cells_of(leaf, map.lattice().depth());
     if (cells.first.z > high || cells.last.z < low) return;
     cells.first.z = std::max(cells.first.z, low);
@@ -70,7 +70,7 @@ Result<Frame> frame_of(const OccupancyMap& map, const SliceOptions& options, std
   const WideWord none = ~WideWord{0};
   Frame frame{{{none, none, none}, {0, 0, 0}}, 0, 0};
   KeyBox& box = frame.box;
-  for_each_in_slice(map, options, [&](const Leaf<WideWord>&, const KeyBox& cells) {
+  for_each_in_slice(map, options, [&](const Leaf&, const KeyBox& cells) {
     box.first = {std::min(box.first.x, cells.first.x), std::min(box.first.y, cells.first.y),
                  std::min(box.first.z, cells.first.z)};
     box.last = {std::max(box.last.x, cells.last.x), std::max(box.last.y, cells.last.y),
@@ -108,7 +108,7 @@ void for_each_column(Raster<T>& raster, const Frame& frame, const KeyBox& cells,
 }
 
 /// Sets the cells of a node that lie in the layers `first` to `last`, as few nodes as possible.
-void set_layers(Editor& editor, const Leaf<WideWord>& node, WideWord first, WideWord last, int levels) {
+void set_layers(Editor& editor, const Leaf& node, WideWord first, WideWord last, int levels) {
   const KeyBox cells = cells_of(node, levels);
   if (cells.first.z > last || cells.last.z < first) return;
   if (cells.first.z >= first && cells.last.z <= last) {
@@ -119,7 +119,7 @@ void set_layers(Editor& editor, const Leaf<WideWord>& node, WideWord first, Wide
   for (int octant = 0; octant < 8; ++octant) {
     const auto child = [&](WideWord word, int axis) { return word + ((octant >> axis & 1) != 0 ? half : 0); };
     const WideKey key{child(node.key.x, 0), child(node.key.y, 1), child(node.key.z, 2)};
-    set_layers(editor, {key, node.depth + 1, node.belief}, first, last, levels);
+    set_layers(editor, {key, node.depth + 1, node.belief, node.lattice}, first, last, levels);
   }
 }
 
@@ -140,7 +140,7 @@ Result<Raster<Occupancy>> slice_of(const OccupancyMap& map, const SliceOptions& 
   const Result<Frame> frame = frame_of(map, options, kMaxRasterCells);
   if (!frame) return tl::unexpected(frame.error());
   auto raster = raster_of(map.lattice(), *frame, Occupancy::kUnknown);
-  for_each_in_slice(map, options, [&](const Leaf<WideWord>& leaf, const KeyBox& cells) {
+  for_each_in_slice(map, options, [&](const Leaf& leaf, const KeyBox& cells) {
     // Unknown, free, occupied: each one beats those before it.
     const Occupancy occupancy = classify(leaf.belief, map.options().thresholds);
     for_each_column(raster, *frame, cells, [occupancy](Occupancy& value) { value = std::max(value, occupancy); });
@@ -154,9 +154,7 @@ Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& o
   const auto [first, last] = layers_of(map.lattice(), options);
   OccupancyMap out(map.options());
   Editor editor = out.edit();
-  for_each_leaf<WideWord>(map, {}, [&, low = first, high = last](const Leaf<WideWord>& leaf) {
-    set_layers(editor, leaf, low, high, levels);
-  });
+  for_each_leaf(map, [&, low = first, high = last](const Leaf& leaf) { set_layers(editor, leaf, low, high, levels); });
   editor.synchronize();
   return out;
 }
@@ -167,7 +165,7 @@ Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& op
   const Lattice& lattice = map.lattice();
   auto raster = raster_of(lattice, *frame, std::numeric_limits<float>::quiet_NaN());
   bool is_empty = true;
-  for_each_in_slice(map, options, [&](const Leaf<WideWord>& leaf, const KeyBox& cells) {
+  for_each_in_slice(map, options, [&](const Leaf& leaf, const KeyBox& cells) {
     if (classify(leaf.belief, map.options().thresholds) != Occupancy::kOccupied) return;
     is_empty = false;
     const WideKey cell{cells.first.x, cells.first.y, surface == Surface::kHighest ? cells.last.z : cells.first.z};

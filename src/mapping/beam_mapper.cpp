@@ -98,7 +98,7 @@ class BeamMapper::Stages {
     return {};
   }
 
-  /// Each beam where it was heard: de-skew. Those that nobody has a place for are left out.
+  /// Each beam where it was heard: de-skew. Those without a pose are left out.
   Result<std::vector<PlacedBeam>> place(std::vector<EchoStream::Heard> heard) {
     std::vector<PlacedBeam> placed;
     for (EchoStream::Heard& one : heard) {
@@ -171,7 +171,7 @@ class BeamMapper::Stages {
 
   BuildOptions options_;
   OccupancyMap& map_;
-  EchoStream empty_stream_;  ///< to start anew without asking for memory
+  EchoStream empty_stream_;  ///< to restart without an allocation
   EchoStream stream_;
   BeamTracer tracer_;
   ScanUpdate scan_;

@@ -102,7 +102,7 @@ void for_each_shown(const OccupancyMap& map, const MapPictureOptions& options, V
   } else if (options.min_z_m || options.max_z_m) {
     query.box = Box{{-inf, -inf, options.min_z_m.value_or(-inf)}, {inf, inf, options.max_z_m.value_or(inf)}};
   }
-  for_each_leaf<WideWord>(map, query, visit);
+  for_each_leaf(map, query, visit);
 }
 
 /// The lowest and the highest cell of the shown part.
@@ -113,7 +113,7 @@ struct Corners {
 std::optional<Corners> corners_of(const OccupancyMap& map, const MapPictureOptions& options) {
   const int levels = map.lattice().depth();
   WideKey low{~WideWord{0}, ~WideWord{0}, ~WideWord{0}}, high{0, 0, 0};
-  for_each_shown(map, options, [&](const Leaf<WideWord>& leaf) {
+  for_each_shown(map, options, [&](const Leaf& leaf) {
     const int bits = levels - leaf.depth;
     const WideWord last = bits == 0 ? 0 : (~WideWord{0} >> (kMaxDepth - bits));
     low = {std::min(low.x, leaf.key.x), std::min(low.y, leaf.key.y), std::min(low.z, leaf.key.z)};
@@ -158,7 +158,7 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
     const auto up = static_cast<std::size_t>(shifted(high_up, bits) - least_up) + 1;
     grids.push_back({least_across, least_up, across, up, std::vector<float>(across * up, kNothing)});
   }
-  for_each_shown(map, options, [&](const Leaf<WideWord>& leaf) {
+  for_each_shown(map, options, [&](const Leaf& leaf) {
     const int bits = std::max(levels - leaf.depth, shift);
     grids[static_cast<std::size_t>(bits - shift)].raise(shifted(word_along(leaf.key, look.across), bits),
                                                         shifted(word_along(leaf.key, look.up), bits),

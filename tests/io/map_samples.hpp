@@ -54,7 +54,7 @@ inline Result<MapFile> read(Bytes bytes, std::size_t memory_limit_bytes = 0) {
 /// One line for each leaf: two maps hold the same, bit for bit, when these are equal.
 inline std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves_of(const OccupancyMap& map) {
   std::vector<std::tuple<WideKey, int, std::uint32_t>> leaves;
-  for_each_leaf<WideWord>(map, {}, [&](const Leaf<WideWord>& leaf) {
+  for_each_leaf(map, [&](const Leaf& leaf) {
     leaves.emplace_back(leaf.key, leaf.depth, std::bit_cast<std::uint32_t>(leaf.belief.value()));
   });
   return leaves;

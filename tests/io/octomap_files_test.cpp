@@ -242,8 +242,7 @@ TEST(Bt, ReadsTheFreiburgCorridor) {
   const MapCounts counts = map->map.counts();
   EXPECT_EQ(counts.nodes(), 532'566U);
   std::size_t occupied = 0, free = 0;
-  for_each_leaf<std::uint16_t>(
-      map->map, {}, [&](const Leaf<std::uint16_t>& leaf) { ++(leaf.belief > LogOdds(0.0F) ? occupied : free); });
+  for_each_leaf(map->map, {}, [&](const Leaf& leaf) { ++(leaf.belief > LogOdds(0.0F) ? occupied : free); });
   EXPECT_EQ(occupied, 143'729U);
   EXPECT_EQ(free, 284'415U);
   EXPECT_EQ(map->map.lattice().resolution_m(), 0.08);

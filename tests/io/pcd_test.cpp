@@ -31,9 +31,9 @@ TEST(Pcd, AndPlyAreReadBackAsTheyWereWritten) {
   std::mt19937_64 random(11);
   const OccupancyMap map = map_of(random_updates(random, 16, 3000), {.resolution_m = 0.05});
   std::vector<Eigen::Vector3d> centres;
-  for_each_leaf<WideWord>(map, {}, [&](const Leaf<WideWord>& leaf) {
+  for_each_leaf(map, [&](const Leaf& leaf) {
     if (leaf.belief < LogOdds(0.0F)) return;
-    centres.push_back(map.lattice().centre_of(leaf.key, leaf.depth).cast<float>().cast<double>());
+    centres.push_back(leaf.centre_m().cast<float>().cast<double>());
   });
   ASSERT_GT(centres.size(), 500U);
   EXPECT_EQ(read_back(map, Format::kPcd), centres);

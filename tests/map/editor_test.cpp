@@ -212,19 +212,19 @@ TEST(ForEachLeaf, GivesCubesInMetresWithoutKeys) {
     scan.add_hit(*map.lattice().key_of<WideWord>({-0.25, 0.35, 0.45}), LogOdds(0.85F));
     ASSERT_TRUE(map.apply(scan));
     std::size_t free = 0, occupied = 0;
-    for_each_leaf(map, [&](const LeafCube& leaf) {
+    for_each_leaf(map, [&](const Leaf& leaf) {
       const bool is_free = leaf.belief < LogOdds(0.0F);
       EXPECT_NEAR(
-          (leaf.centre_m - (is_free ? Eigen::Vector3d(0.1, 0.1, 0.1) : Eigen::Vector3d(-0.25, 0.35, 0.45))).norm(), 0.0,
-          1e-9);
-      EXPECT_NEAR(leaf.edge_m, is_free ? 0.2 : 0.1, 1e-12);
+          (leaf.centre_m() - (is_free ? Eigen::Vector3d(0.1, 0.1, 0.1) : Eigen::Vector3d(-0.25, 0.35, 0.45))).norm(),
+          0.0, 1e-9);
+      EXPECT_NEAR(leaf.edge_m(), is_free ? 0.2 : 0.1, 1e-12);
       (is_free ? free : occupied) += 1;
     });
     EXPECT_EQ(free, 1U);
     EXPECT_EQ(occupied, 1U);
     std::size_t boxed = 0;
     for_each_leaf(map, {.max_depth = {}, .box = Box{{-1.0, -1.0, -1.0}, {0.0, 1.0, 1.0}}},
-                  [&](const LeafCube& leaf) { boxed += leaf.belief > LogOdds(0.0F) ? 1 : 2; });
+                  [&](const Leaf& leaf) { boxed += leaf.belief > LogOdds(0.0F) ? 1 : 2; });
     EXPECT_EQ(boxed, 1U);
   }
 }

@@ -234,8 +234,7 @@ class LookUps {
     OccupancyMap loaded(map_.options());
     {
       Editor editor = loaded.edit();
-      for_each_leaf<WideWord>(map_, {},
-                              [&](const Leaf<WideWord>& leaf) { editor.set(leaf.key, leaf.depth, leaf.belief); });
+      for_each_leaf(map_, {}, [&](const Leaf& leaf) { editor.set(leaf.key, leaf.depth, leaf.belief); });
     }
     map_ = std::move(loaded);
   }

@@ -38,7 +38,7 @@ TEST(Threads, ManyReadersOfOneMapAgree) {
       seen += static_cast<std::uint64_t>(shared.classify(point_m)) * 3;
       seen += static_cast<std::uint64_t>(cast_ray(shared, {0.0, 0.0, 0.0}, point_m, 5.0).range_m * 1000.0);
     }
-    for_each_leaf<std::uint16_t>(shared, {.max_depth = 14, .box = {}}, [&](const Leaf<std::uint16_t>&) { ++seen; });
+    for_each_leaf(shared, {.max_depth = 14, .box = {}}, [&](const Leaf&) { ++seen; });
     // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): copying while others read is part of the test
     const OccupancyMap copied(shared);
     return seen + copied.counts().nodes() + static_cast<std::uint64_t>(shared.bounds()->max.x() * 10.0);

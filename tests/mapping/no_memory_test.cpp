@@ -146,7 +146,7 @@ bool are_equal(const OccupancyMap& a, const OccupancyMap& b) {
 /// Each cell is as in one map or as in the other, and the map is one that a scan can be applied to.
 void expect_between(const OccupancyMap& map, const OccupancyMap& before, const OccupancyMap& after) {
   std::size_t neither = 0;
-  for_each_leaf<std::uint16_t>(map, {}, [&](const Leaf<std::uint16_t>& leaf) {
+  for_each_leaf(map, [&](const Leaf& leaf) {
     neither += leaf.belief != before.at(leaf.key) && leaf.belief != after.at(leaf.key) ? 1 : 0;
   });
   EXPECT_EQ(neither, 0U);

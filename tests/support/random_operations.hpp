@@ -338,11 +338,8 @@ class RandomOperations {
 
   std::vector<Node> leaves(const LeafQuery& query) const {
     std::vector<Node> found;
-    with_key_word(depth_, [&]<KeyWord W>() {
-      for_each_leaf<W>(map_, query, [&](const Leaf<W>& leaf) {
-        found.push_back(
-            {leaf.key.template as<WideWord>(), leaf.depth, true, std::bit_cast<std::uint32_t>(leaf.belief.value())});
-      });
+    for_each_leaf(map_, query, [&](const Leaf& leaf) {
+      found.push_back({leaf.key, leaf.depth, true, std::bit_cast<std::uint32_t>(leaf.belief.value())});
     });
     return found;
   }

@@ -23,7 +23,7 @@ class Trajectory {
   /// @return kCorrupt naming the first pose (counted from 0) that breaks this
   static Result<Trajectory> make(std::vector<StampedPose> poses);
 
-  /// map_from_body at a time; nullopt before the first pose and after the last, where nobody knows.
+  /// map_from_body at a time; nullopt before the first pose and after the last.
   std::optional<Pose> at(double time_s) const;
 
   const std::vector<StampedPose>& poses() const { return poses_; }

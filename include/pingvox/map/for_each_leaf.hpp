@@ -12,19 +12,16 @@
 
 namespace pingvox {
 
-/// A leaf of a map: the whole cell of `depth` whose lowest corner cell is `key` has this belief.
-template <KeyWord W>
+/// A leaf of a map: the whole cell of `depth` whose lowest corner cell is `key` has this belief. Valid as long as the
+/// map.
 struct Leaf {
-  BasicKey<W> key;
+  WideKey key;
   int depth = 0;
   LogOdds belief;
-};
+  const Lattice* lattice = nullptr;
 
-/// The same in metres, for who needs no keys.
-struct LeafCube {
-  Eigen::Vector3d centre_m;  ///< map frame
-  double edge_m = 0.0;
-  LogOdds belief;
+  Eigen::Vector3d centre_m() const { return lattice->centre_of(key, depth); }  ///< map frame
+  double edge_m() const { return lattice->cell_size_m(depth); }
 };
 
 struct LeafQuery {
@@ -80,33 +77,34 @@ class LeafWalk {
  public:
   LeafWalk(const OccupancyMap& map, std::optional<int> max_depth, const Where& where, Visitor& visit)
       : tree_(view_of(map)),
-        lattice_depth_(map.lattice().depth()),
+        lattice_(map.lattice()),
+        lattice_depth_(lattice_.depth()),
         parents_(map.options().parents),
         max_depth_(max_depth),
         where_(where),
-        visit_(visit) {}
+        visitor_(visit) {}
 
-  void over(const Entry& entry, const BasicKey<W>& key, int depth) {
+  void visit(const Entry& entry, const BasicKey<W>& key, int depth) {
     if (entry.is_none() || !where_.overlaps(key, depth)) return;
     if (entry.is_leaf() || depth == max_depth_) {
-      visit_(Leaf<W>{key, depth, LogOdds(entry.value)});
+      give(key, depth, entry.value);
       return;
     }
     if (depth == lattice_depth_ - 2) {
-      over(tree_.bricks[entry.link], key, depth);
+      visit(tree_.bricks[entry.link], key, depth);
       return;
     }
     const Group& group = tree_.groups[entry.link];
     if (depth == lattice_depth_ - 3) fetch_bricks(tree_, group);
-    for (std::size_t octant = 0; octant < 8; ++octant) over(group.child[octant], below(key, depth, octant), depth + 1);
+    for (std::size_t octant = 0; octant < 8; ++octant) visit(group.child[octant], below(key, depth, octant), depth + 1);
   }
 
  private:
   static constexpr std::uint64_t kFirstCells = 0x0101010101010101;  ///< of each octant
 
-  void over(BrickView brick, const BasicKey<W>& key, int depth) {
+  void visit(BrickView brick, const BasicKey<W>& key, int depth) {
     if (depth + 1 == max_depth_) {
-      over_octants(brick, key, depth);
+      visit_octants(brick, key, depth);
       return;
     }
     const std::uint64_t joined = tree_.pruned ? cells_of_uniform_octants(brick) : 0;
@@ -117,17 +115,16 @@ class LeafWalk {
       const BasicKey<W> leaf_key = cell_below(key, cell);
       const BasicKey<W> octant_key = cell_below(key, cell & ~std::size_t{7});
       if (!where_.overlaps(octant_key, depth + 1) || !where_.overlaps(leaf_key, leaf_depth)) continue;
-      visit_(Leaf<W>{leaf_key, leaf_depth, LogOdds(brick.value[cell])});
+      give(leaf_key, leaf_depth, brick.value[cell]);
     }
   }
 
-  void over_octants(BrickView brick, const BasicKey<W>& key, int depth) {
+  void visit_octants(BrickView brick, const BasicKey<W>& key, int depth) {
     for (std::size_t octant = 0; octant < 8; ++octant) {
       if ((brick.known >> (octant * 8) & 0xFF) == 0) continue;
       const BasicKey<W> octant_key = cell_below(key, octant * 8);
       if (!where_.overlaps(octant_key, depth + 1)) continue;
-      const float summary = summary_of_octant(brick, static_cast<int>(octant), parents_);
-      visit_(Leaf<W>{octant_key, depth + 1, LogOdds(summary)});
+      give(octant_key, depth + 1, summary_of_octant(brick, static_cast<int>(octant), parents_));
     }
   }
 
@@ -145,42 +142,36 @@ class LeafWalk {
     return {with_bit(key.x, 0), with_bit(key.y, 1), with_bit(key.z, 2)};
   }
 
+  void give(const BasicKey<W>& key, int depth, float belief) {
+    visitor_(Leaf{key.template as<WideWord>(), depth, LogOdds(belief), &lattice_});
+  }
+
   TreeView tree_;
+  const Lattice& lattice_;
   int lattice_depth_;
   Parents parents_;
   std::optional<int> max_depth_;
   Where where_;
-  Visitor& visit_;
+  Visitor& visitor_;
 };
 
 }  // namespace detail
 
-/// Calls `visit(const Leaf<W>&)` for each leaf, in the tree's order (octant by octant, x fastest).
-/// REQUIRES W wide enough for the map's lattice; with_key_word picks it, WideWord always is.
-template <KeyWord W, class Visitor>
-void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& visit) {
-  assert(map.lattice().depth() <= kLevelsOf<W>);
-  const detail::TreeView tree = detail::view_of(map);
-  const auto walk = [&]<class Where>(const Where& where) {
-    detail::LeafWalk<W, Where, std::remove_reference_t<Visitor>>(map, query.max_depth, where, visit)
-        .over(tree.root, BasicKey<W>{}, -tree.extra_levels);
-  };
-  if (query.box) {
-    walk(detail::InBox(map.lattice(), *query.box));
-  } else {
-    walk(detail::Everywhere{});
-  }
-}
-
-/// Calls `visit(const LeafCube&)` for each leaf, in the same order.
+/// Calls `visit(const Leaf&)` for each leaf, in the tree's order (octant by octant, x fastest).
 template <class Visitor>
 void for_each_leaf(const OccupancyMap& map, const LeafQuery& query, Visitor&& visit) {
-  const Lattice& lattice = map.lattice();
-  with_key_word(lattice.depth(), [&]<KeyWord W>() {
-    for_each_leaf<W>(map, query, [&](const Leaf<W>& leaf) {
-      visit(LeafCube{lattice.centre_of(leaf.key, leaf.depth), lattice.cell_size_m(leaf.depth), leaf.belief});
-    });
-  });
+  const auto walk = [&]<KeyWord W, class Where>(const BasicKey<W>& root, const Where& where) {
+    const detail::TreeView tree = detail::view_of(map);
+    detail::LeafWalk<W, Where, std::remove_reference_t<Visitor>>(map, query.max_depth, where, visit)
+        .visit(tree.root, root, -tree.extra_levels);
+  };
+  const auto walk_by = [&]<KeyWord W>(const BasicKey<W>& root) {
+    if (query.box) return walk(root, detail::InBox(map.lattice(), *query.box));
+    walk(root, detail::Everywhere{});
+  };
+  // Keys of 64 bits are quicker.
+  if (map.lattice().depth() <= kLevelsOf<std::uint64_t>) return walk_by(BasicKey<std::uint64_t>{});
+  walk_by(WideKey{});
 }
 template <class Visitor>
 void for_each_leaf(const OccupancyMap& map, Visitor&& visit) {

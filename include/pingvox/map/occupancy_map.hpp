@@ -73,7 +73,7 @@ class OccupancyMap {
   /// REQUIRES a key below 2^depth in each component.
   template <KeyWord W>
   std::optional<LogOdds> at(const BasicKey<W>& key) const;
-  /// The same for the cell that holds a point [m]; nullopt outside of the lattice, too.
+  /// The same for the cell that holds a point [m]; also nullopt outside of the lattice.
   std::optional<LogOdds> at(const Eigen::Vector3d& point_m) const;
 
   /// The whole tree to walk over; nullopt when nothing is known.

@@ -23,7 +23,7 @@ class ScanSource {
   virtual Result<std::optional<PointScan>> next() = 0;
   /// Points or scans left out so far because they were damaged.
   virtual std::size_t skipped() const { return 0; }
-  /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: nobody knows.
+  /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: not known.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };
 

@@ -104,7 +104,8 @@ class ScanUpdate {
   /// REQUIRES the same lattice and evidence of misses.
   void add(const ScanUpdate& other);
 
-  /// The pages in the tree's order.
+  /// The pages in the tree's order; in lattices of more than 25 levels by x, y, z: their numbers have more than 64
+  /// bits.
   std::vector<std::uint32_t> pages_in_order() const;
   const Page& page(std::uint32_t index) const { return pages_[index]; }
   /// REQUIRES hits in the brick.

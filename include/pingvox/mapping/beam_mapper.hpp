@@ -30,7 +30,7 @@ class BeamMapper {
   ~BeamMapper();
 
   /// Takes the next beam, which must be valid, and maps those that are due.
-  /// @param map_from_body  where the vehicle was when it was heard; nullopt: nobody knows. Such a beam is left out and
+  /// @param map_from_body  where the vehicle was when it was heard; nullopt: not known. Such a beam is left out and
   ///        counted, though what it heard still counts for its neighbours' echoes.
   /// @return kLimit when the map or a beam would grow too large, kNoMemory when memory ran out. The map keeps what it
   ///         had got; the beams that wait are lost, and the next one begins a new sweep.

@@ -44,7 +44,7 @@ struct BuildOptions {
 /// Beams (or points) that were left out for one reason.
 struct LeftOut {
   std::size_t count = 0;
-  std::optional<double> first_s;  ///< when the first of them was heard; of points nobody knows
+  std::optional<double> first_s;  ///< when the first of them was heard; not known of points
 
   void add(double time_s) {
     if (count++ == 0) first_s = time_s;
@@ -57,7 +57,7 @@ struct BuildReport {
   std::size_t sweeps = 0;   ///< complete ones (or point scans)
   std::size_t echoes = 0;   ///< within max_range_m; of point scans all points
   std::size_t skipped = 0;  ///< damaged, without a pose, or outside
-  LeftOut no_pose;          ///< of those skipped, the ones heard when nobody knows where the vehicle was
+  LeftOut no_pose;          ///< of those skipped, those heard when the pose is not known
   LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
   std::uint64_t cells_freed = 0, cells_hit = 0;     ///< cell updates, summed over scans
