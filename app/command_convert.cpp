@@ -6,12 +6,14 @@
 #include "commands.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
+#include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/grids.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
+#include "pingvox/io/nav.hpp"
 #include "pingvox/map/slice.hpp"
 #include "pingvox/map/surface_map.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
@@ -80,6 +82,24 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   return what + (skipped > 0 ? fmt::format("; {} damaged ones skipped", skipped) : "");
 }
 
+Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command) {
+  const Result<FileBytes> file = ByteStream::whole(std::move(stream));
+  if (!file) return tl::unexpected(file.error());
+  const Result<NavFile> nav = read_nav(*file, command.damage);
+  if (!nav) return tl::unexpected(nav.error());
+  std::size_t samples = 0;
+  const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
+    const Result<std::size_t> count = write_nav_csv(nav->log, out);
+    if (!count) return tl::unexpected(count.error());
+    samples = *count;
+    return {};
+  });
+  if (!written) return tl::unexpected(written.error());
+  const std::size_t skipped = damaged_records(*nav);
+  return fmt::format("{} samples of {} sources{}", samples, nav->log.sources().size(),
+                     skipped > 0 ? fmt::format("; {} damaged records skipped", skipped) : "");
+}
+
 Error with_name(Error error, const std::string& name) {
   error.message = fmt::format("{}: {}", name, error.message);
   return error;
@@ -146,6 +166,7 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
     return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
+  if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command);
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
   if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return conversion_error(stream.name(), format, command.format);
   const Result<FileBytes> file = ByteStream::whole(std::move(stream));

@@ -12,10 +12,12 @@
 #include "commands.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
+#include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
+#include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
@@ -316,6 +318,17 @@ Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
   return summary;
 }
 
+Result<Summary> summarize_nav(const FileBytes& file, Format format, Damage damage) {
+  const Result<NavFile> nav = read_nav(file, damage);
+  if (!nav) return tl::unexpected(nav.error());
+  Summary summary;
+  summary.json.add("kind", "nav").add("format", name_of(format));
+  add_nav(summary.json, *nav);
+  summary.text = headline(file.name, format) + nav_text(*nav);
+  add_damage(summary, nav->damage);
+  return summary;
+}
+
 Result<Summary> summarize_file(ByteStream stream, Damage damage, const std::vector<LimitedOption>& limited) {
   const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
@@ -330,6 +343,8 @@ Result<Summary> summarize_file(ByteStream stream, Damage damage, const std::vect
       return summarize_mesh(file, *format);
     case FormatKind::kTrajectory:
       return summarize_trajectory(file, *format);
+    case FormatKind::kNav:
+      return summarize_nav(file, *format, damage);
     default:
       return summarize_log(std::move(stream), *format, damage);
   }

@@ -37,6 +37,8 @@ std::string describe(Format format) {
       return with("a map");
     case FormatKind::kTrajectory:
       return with("a trajectory");
+    case FormatKind::kNav:
+      return with("a navigation log");
     case FormatKind::kCloud:
       return with("a cloud of points");
     case FormatKind::kMesh:

@@ -62,10 +62,10 @@ Result<Command> convert_command(const Args& args) {
   const std::vector<std::string> maps = {std::string(kMaps), std::string(kMeshes)};
   OptionTable table{
       "convert",
-      "Writes a file in another format: a log of beams, or its echoes, as CSV; a map as another map, as points, as a\n"
-      "grid for ROS's map_server, or as heights; a mesh as the map of its surface.",
-      {{"IN", Positional::Count::kOne, "a log of beams, a map or a mesh (OFF, PLY, STL); - is standard input",
-        into(command.input)}},
+      "Writes a file in another format: a log of beams, its echoes or navigation as CSV; a map as another map, as\n"
+      "points, as a grid for ROS's map_server, or as heights; a mesh as the map of its surface.",
+      {{"IN", Positional::Count::kOne,
+        "a log of beams or of navigation, a map or a mesh (OFF, PLY, STL); - is standard input", into(command.input)}},
       {{"Options",
         {output_option(command.output,
                        "the output: .csv from a log; .bt .ot .pvx from a map or a mesh, .ply .pcd .xyz (occupied "

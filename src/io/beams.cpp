@@ -37,6 +37,10 @@ std::string_view described(Format format) {
       return "a pingvox map";
     case Format::kTum:
       return "a trajectory";
+    case Format::kTlog:
+    case Format::kDataflash:
+    case Format::kNavCsv:
+      return "a navigation log";
     case Format::kPly:
     case Format::kPcd:
     case Format::kXyz:

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/byte_reader.hpp"
+#include "io/nav_readers.hpp"
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
@@ -48,6 +49,10 @@ FormatKind kind_of(Format format) {
       return FormatKind::kMap;
     case Format::kTum:
       return FormatKind::kTrajectory;
+    case Format::kTlog:
+    case Format::kDataflash:
+    case Format::kNavCsv:
+      return FormatKind::kNav;
     case Format::kPly:
     case Format::kPcd:
     case Format::kXyz:
@@ -93,6 +98,12 @@ std::string_view name_of(Format format) {
       return "pvx";
     case Format::kTum:
       return "tum";
+    case Format::kTlog:
+      return "tlog";
+    case Format::kDataflash:
+      return "dataflash";
+    case Format::kNavCsv:
+      return "csv";
     case Format::kPly:
     case Format::kPlyMesh:
       return "ply";
@@ -122,6 +133,9 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (const auto streamed = streamed_format_of(bytes.first(std::min(bytes.size(), ByteStream::kBeginning)))) {
     return streamed;
   }
+  if (looks_like_dataflash(bytes)) return Format::kDataflash;
+  if (looks_like_tlog(bytes)) return Format::kTlog;
+  if (looks_like_nav_csv(bytes)) return Format::kNavCsv;
   if (looks_like_ply(bytes)) return is_ply_with_faces(bytes) ? Format::kPlyMesh : Format::kPly;
   if (looks_like_pcd(bytes)) return Format::kPcd;
   if (looks_like_mat(bytes)) return Format::kMat;

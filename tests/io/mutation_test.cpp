@@ -10,6 +10,7 @@
 #include "fuzz/bodies/beams.hpp"
 #include "fuzz/bodies/maps.hpp"
 #include "fuzz/bodies/mesh.hpp"
+#include "fuzz/bodies/nav.hpp"
 #include "fuzz/bodies/scans.hpp"
 #include "fuzz/bodies/tum.hpp"
 #include "pingvox/io/file.hpp"
@@ -62,8 +63,9 @@ INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
                                          Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
                                          Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
                                          Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},
-                                         Reader{"tum", fuzz::tum}, Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps},
-                                         Reader{"pvx", fuzz::pvx}),
+                                         Reader{"tum", fuzz::tum}, Reader{"tlog", fuzz::nav},
+                                         Reader{"dataflash", fuzz::nav}, Reader{"navcsv", fuzz::nav},
+                                         Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

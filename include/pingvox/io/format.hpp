@@ -23,6 +23,9 @@ enum class Format {
   kOt,             ///< OctoMap's tree with log-odds
   kPvx,            ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
   kTum,            ///< a trajectory
+  kTlog,           ///< MAVLink telemetry log of a ground station: navigation
+  kDataflash,      ///< log that an ArduPilot autopilot keeps: navigation
+  kNavCsv,         ///< navigation as text (docs/formats.md)
   kPly,            ///< a cloud of points
   kPcd,            ///< a cloud of points, PCL's
   kXyz,            ///< a cloud of points as text
@@ -34,7 +37,7 @@ enum class Format {
   kPng,            ///< pictures, written only
 };
 
-enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kCloud, kMesh, kGrid, kPicture };
+enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kNav, kCloud, kMesh, kGrid, kPicture };
 
 FormatKind kind_of(Format format);
 /// Short lower-case name, as in "csv".

@@ -1,0 +1,56 @@
+#include "nav_report.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "console.hpp"
+#include "map_report.hpp"
+
+namespace pingvox::app {
+
+std::size_t damaged_records(const NavFile& nav) {
+  std::size_t count = 0;
+  for (const DamageKind& kind : nav.damage) count += kind.count;
+  return count;
+}
+
+void add_nav(JsonObject& json, const NavFile& nav) {
+  std::vector<JsonObject> sources;
+  for (const NavSource& source : nav.log.sources()) {
+    const NavSummary summary = summary_of(source);
+    sources.emplace_back()
+        .add("name", source.name)
+        .add("quantity", name_of(source.quantity))
+        .add("samples", summary.samples)
+        .add("invalid", summary.invalid)
+        .add("rate_hz", summary.rate_hz)
+        .add("gaps", summary.gaps)
+        .add("from_s", summary.from_s)
+        .add("to_s", summary.to_s);
+  }
+  json.add("clock", name_of(nav.log.clock()))
+      .add("records", nav.records)
+      .add("sources", sources)
+      .add("skipped", damaged_records(nav));
+}
+
+std::string nav_text(const NavFile& nav) {
+  std::string text = report_line("records", fmt::format("{}", nav.records)) +
+                     report_line("clock", std::string(name_of(nav.log.clock())));
+  std::size_t widest = 6;
+  for (const NavSource& source : nav.log.sources()) widest = std::max(widest, on_one_line(source.name).size());
+  text += fmt::format("  {:<{}}  {:<9} {:>8} {:>8} {:>8} {:>5} {:>17} {:>17}\n", "source", widest, "quantity",
+                      "samples", "invalid", "rate Hz", "gaps", "from s", "to s");
+  for (const NavSource& source : nav.log.sources()) {
+    const NavSummary summary = summary_of(source);
+    text += fmt::format("  {:<{}}  {:<9} {:>8} {:>8} {:>8.2f} {:>5} {:>17.3f} {:>17.3f}\n", on_one_line(source.name),
+                        widest, name_of(source.quantity), summary.samples, summary.invalid, summary.rate_hz,
+                        summary.gaps, summary.from_s, summary.to_s);
+  }
+  if (damaged_records(nav) > 0) text += report_line("skipped", fmt::format("{} damaged", damaged_records(nav)));
+  return text;
+}
+
+}  // namespace pingvox::app

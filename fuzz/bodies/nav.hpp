@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <sstream>
+#include <string>
+
+#include "fuzz/bodies/require.hpp"
+#include "pingvox/io/mavlink.hpp"
+#include "pingvox/io/nav.hpp"
+
+namespace pingvox::fuzz {
+
+/// Any bytes as a navigation log, and as MAVLink frames that come in two pieces.
+/// @return samples and frames
+inline std::size_t nav(std::span<const std::uint8_t> bytes) {
+  std::size_t whole = 0, in_pieces = 0;
+  MavlinkStream stream, split;
+  stream.push(bytes, [&whole](const MavlinkFrame&) { ++whole; });
+  split.push(bytes.first(bytes.size() / 2), [&in_pieces](const MavlinkFrame&) { ++in_pieces; });
+  split.push(bytes.subspan(bytes.size() / 2), [&in_pieces](const MavlinkFrame&) { ++in_pieces; });
+  require(whole == in_pieces && stream.skipped() == split.skipped(), "pieces do not change what is found");
+
+  const auto read = read_nav({"fuzzed", {bytes.begin(), bytes.end()}});
+  if (!read) {
+    require(read.error().message.starts_with("fuzzed"), "an error names the file");
+    return whole;
+  }
+  std::size_t samples = 0;
+  for (const NavSource& source : read->log.sources()) {
+    double before_s = source.samples.front().time_s;
+    for (const NavSample& sample : source.samples) {
+      require(sample.time_s >= before_s && sample.value.allFinite(), "samples are finite, in order of time");
+      before_s = sample.time_s;
+      ++samples;
+    }
+    const NavSummary summary = summary_of(source);
+    require(summary.samples == source.samples.size() && summary.rate_hz >= 0.0, "a summary makes sense");
+  }
+  for (const DamageKind& damage : read->damage) {
+    require(damage.count > 0 && damage.first_byte < bytes.size(), "damage is in the file");
+  }
+  std::stringstream text;
+  require(write_nav_csv(read->log, text).value_or(bytes.size() * 3) == samples, "what is read is written");
+  const std::string written = text.str();
+  const auto back = read_nav({"written", {written.begin(), written.end()}});
+  std::size_t samples_back = 0;
+  if (back) {
+    for (const NavSource& source : back->log.sources()) samples_back += source.samples.size();
+  }
+  require(back && back->damage.empty() && samples_back == samples, "what is written is read");
+  require(samples <= 2 * bytes.size(), "samples come from bytes");
+  return samples + whole;
+}
+
+}  // namespace pingvox::fuzz

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace pingvox {
+
+/// One frame of MAVLink 1 or 2 (docs/formats.md).
+struct MavlinkFrame {
+  enum class Check {
+    kRight,           ///< the checksum is right
+    kRightPadded,     ///< right for the payload before its zeros at the end were cut off: what BlueOS sent until 2023
+    kUnknownMessage,  ///< a message that we have no definition of, so its checksum tells nothing
+    kWrong,
+  };
+
+  std::uint32_t message = 0;
+  std::uint8_t system = 0, component = 0, sequence = 0;
+  Check check = Check::kWrong;
+  std::size_t payload_bytes = 0;            ///< as sent
+  std::array<std::uint8_t, 255> payload{};  ///< and zeros behind them, as fields that were not sent are
+};
+
+/// The frame that `bytes` begin with, and its length. `frame` is empty when they begin with none, or with less than a
+/// whole one: then `is_cut` says that more bytes would tell.
+struct MavlinkRead {
+  std::optional<MavlinkFrame> frame;
+  std::size_t length = 0;
+  bool is_cut = false;
+};
+MavlinkRead read_mavlink(std::span<const std::uint8_t> bytes);
+
+/// Finds frames in bytes that come piece by piece, as from a serial line. Only frames whose checksum is right come out:
+/// without one nothing tells a frame from bytes that look like it.
+class MavlinkStream {
+ public:
+  /// Calls `take` for each frame that these bytes complete.
+  void push(std::span<const std::uint8_t> bytes, const std::function<void(const MavlinkFrame&)>& take);
+  /// Bytes so far that were in no such frame.
+  std::uint64_t skipped() const { return skipped_; }
+
+ private:
+  std::vector<std::uint8_t> held_;  ///< less than a frame
+  std::uint64_t skipped_ = 0;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <vector>
+
+#include "pingvox/io/beams.hpp"
+#include "pingvox/io/bytes.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+namespace pingvox {
+
+/// What a navigation log holds.
+struct NavFile {
+  NavLog log;
+  std::size_t records = 0;         ///< frames, records or lines that were read, also those without navigation in them
+  std::vector<DamageKind> damage;  ///< in the order in which the kinds were met
+};
+
+/// Any navigation log, told by content. Frames are converted: whatever the device counts in, the log is in ours.
+/// @return kUnsupported when the file is none; with Damage::kFail, kCorrupt naming the first damage
+Result<NavFile> read_nav(const FileBytes& file, Damage damage = Damage::kSkip);
+
+/// Writes all samples as CSV (docs/formats.md). Numbers are written so that reading gives the same to the last bit;
+/// what cannot stand in a name there becomes `_`.
+/// @return how many there were; kIo when `out` fails
+Result<std::size_t> write_nav_csv(const NavLog& log, std::ostream& out);
+
+}  // namespace pingvox

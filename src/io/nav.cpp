@@ -1,0 +1,45 @@
+#include "pingvox/io/nav.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "io/nav_readers.hpp"
+#include "io/nav_sources.hpp"
+#include "pingvox/io/format.hpp"
+
+namespace pingvox {
+
+NavSample* NavSources::add(const std::string& name, NavQuantity quantity, const NavSample& sample) {
+  if (!std::isfinite(sample.time_s) || !sample.value.allFinite()) return nullptr;
+  const auto [place, is_new] = places_.try_emplace({name, quantity}, sources_.size());
+  if (is_new) sources_.push_back({name, quantity, {}});
+  std::vector<NavSample>& samples = sources_[place->second].samples;
+  samples.push_back(sample);
+  return &samples.back();
+}
+
+Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
+  const std::optional<Format> format = format_of(file.view());
+  NavReading reading;
+  if (format == Format::kTlog) {
+    reading = read_tlog(file.view());
+  } else if (format == Format::kDataflash) {
+    reading = read_dataflash(file.view());
+  } else if (format == Format::kNavCsv) {
+    reading = read_nav_csv(file.view());
+  } else {
+    return fail(Error::Code::kUnsupported, fmt::format("{}: is not a navigation log", file.name));
+  }
+  if (damage == Damage::kFail && !reading.damage.empty()) {
+    const DamageKind& first = reading.damage.front();
+    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", file.name, first.first_byte, first.what));
+  }
+  Result<NavLog> log = NavLog::make(std::move(reading.sources), reading.clock);
+  if (!log) return fail(log.error().code, fmt::format("{}: {}", file.name, log.error().message));
+  return NavFile{*std::move(log), reading.records, std::move(reading.damage)};
+}
+
+}  // namespace pingvox

@@ -1,0 +1,73 @@
+#include "io/tlog.hpp"
+
+#include <bit>
+#include <optional>
+
+#include "io/byte_reader.hpp"
+#include "pingvox/io/frame_finder.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::size_t kTime = 8;
+constexpr std::uint64_t kYear2005_us = 1'104'537'600'000'000, kYear2100_us = 4'102'444'800'000'000;
+constexpr std::uint64_t kMinute_us = 60'000'000;
+
+/// The time in front of what may be a record.
+std::optional<std::uint64_t> time_at(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() <= kTime || (bytes[kTime] != 0xfe && bytes[kTime] != 0xfd)) return std::nullopt;
+  const auto time_us = value_from<std::uint64_t>(bytes.first(kTime), std::endian::big);
+  if (time_us < kYear2005_us || time_us > kYear2100_us) return std::nullopt;
+  return time_us;
+}
+
+/// Whether a record may follow here: the end of the file may too.
+bool may_follow(std::span<const std::uint8_t> bytes, std::uint64_t before_us) {
+  if (bytes.size() <= kTime) return true;
+  const std::optional<std::uint64_t> time_us = time_at(bytes);
+  return time_us && (*time_us > before_us ? *time_us - before_us : before_us - *time_us) <= kMinute_us;
+}
+
+}  // namespace
+
+std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vector<DamageKind>& damage,
+                                 const std::function<void(const TlogRecord&)>& take) {
+  using Check = MavlinkFrame::Check;
+  std::size_t records = 0;
+  std::size_t at = 0;
+  std::size_t stray_from = 0;  ///< the first of the bytes skipped just now
+  bool is_stray = false;       ///< whether there are any
+  bool is_cut = false;         ///< whether a record that the file ends in began there
+  const auto end_of_stray = [&](bool at_end) {
+    if (is_stray) add_damage(damage, at_end && is_cut ? "cut off at the end" : "bytes between records", stray_from);
+    is_stray = is_cut = false;
+  };
+  while (at < bytes.size()) {
+    const auto rest = bytes.subspan(at);
+    const std::optional<std::uint64_t> time_us = time_at(rest);
+    const MavlinkRead read = time_us ? read_mavlink(rest.subspan(kTime)) : MavlinkRead{};
+    const std::size_t length = kTime + read.length;
+    // Without a right checksum, what follows has to say that this was a record.
+    const bool is_right =
+        read.frame && (read.frame->check == Check::kRight || read.frame->check == Check::kRightPadded);
+    if (!is_right && !(read.frame && may_follow(rest.subspan(length), *time_us))) {
+      if (!is_stray) stray_from = at;
+      is_stray = true;
+      is_cut = is_cut || read.is_cut || rest.size() <= kTime;
+      ++at;
+      continue;
+    }
+    end_of_stray(false);
+    if (read.frame->check == Check::kWrong) {
+      add_damage(damage, "wrong checksum", at);
+    } else {
+      ++records;
+      take({*time_us, *read.frame});
+    }
+    at += length;
+  }
+  end_of_stray(true);
+  return records;
+}
+
+}  // namespace pingvox

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "pingvox/io/mavlink.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+namespace pingvox {
+
+/// A frame and when it was received [us since 1970].
+struct TlogRecord {
+  std::uint64_t time_us = 0;
+  MavlinkFrame frame;
+};
+
+/// Walks through the records of a telemetry log, frames with a wrong checksum left out.
+/// @return how many there were
+std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vector<DamageKind>& damage,
+                                 const std::function<void(const TlogRecord&)>& take);
+
+}  // namespace pingvox

@@ -1,0 +1,182 @@
+#include "io/tlog.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/io/nav.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+// Records that a ground station wrote (BlueROV2, 2023-05-04).
+constexpr std::string_view kAttitude =
+    "0005fae152744f08 fd1c0000ec01011e0000 53840a00 9c11c7bc 2b3eca3c a04516c0 1673bfbc 590e303c 070737ba 07ba";
+constexpr std::string_view kPosition =
+    "0005fae1527452f0 fd1c0000160101210000 c1840a00 ad23d71c 40e2b6b5 14000000 1c000000 0e00 0500 0700 1358 fdfc";
+constexpr std::string_view kPressure = "0005fae15272fb30 fd0e0000d70101890000 17840a00 33f37d44 00000000 dd04 f85f";
+
+Result<NavFile> read(std::vector<std::uint8_t> bytes, Damage damage = Damage::kSkip) {
+  return read_nav({"dive.tlog", std::move(bytes)}, damage);
+}
+
+std::vector<std::uint8_t> golden() {
+  return from_hex(std::string(kPressure) + std::string(kAttitude) + std::string(kPosition));
+}
+
+const NavSource* source_of(const NavLog& log, std::string_view name, NavQuantity quantity) {
+  for (const NavSource& source : log.sources()) {
+    if (source.name == name && source.quantity == quantity) return &source;
+  }
+  return nullptr;
+}
+
+TEST(Tlog, TurnsWhatAVehicleSaidIntoOurFrames) {
+  EXPECT_EQ(format_of(golden()), Format::kTlog);
+  const auto nav = read(golden());
+  ASSERT_TRUE(nav) << nav.error().message;
+  EXPECT_EQ(nav->records, 3U);
+  EXPECT_TRUE(nav->damage.empty());
+  const NavSource* attitude = source_of(nav->log, "ATTITUDE", NavQuantity::kAttitude);
+  ASSERT_NE(attitude, nullptr);
+  const Eigen::Vector3d rpy = attitude->samples.at(0).value;
+  EXPECT_NEAR(rpy.x(), -0.0243004, 1e-7);
+  EXPECT_NEAR(rpy.y(), -0.0246878, 1e-7);
+  EXPECT_NEAR(rpy.z(), std::numbers::pi / 2 + 2.3480 - 2 * std::numbers::pi, 1e-4);
+  const NavSource* depth = source_of(nav->log, "GLOBAL_POSITION_INT", NavQuantity::kDepth);
+  ASSERT_NE(depth, nullptr);
+  EXPECT_NEAR(depth->samples.at(0).value.x(), -0.028, 1e-9);
+  const NavSource* fix = source_of(nav->log, "GLOBAL_POSITION_INT", NavQuantity::kFix);
+  ASSERT_NE(fix, nullptr);
+  EXPECT_NEAR(fix->samples.at(0).value.x() * 180 / std::numbers::pi, 48.3861421, 1e-9);
+  EXPECT_NEAR(fix->samples.at(0).value.y() * 180 / std::numbers::pi, -124.6305728, 1e-9);
+  const NavSource* pressure = source_of(nav->log, "SCALED_PRESSURE2", NavQuantity::kPressure);
+  ASSERT_NE(pressure, nullptr);
+  EXPECT_NEAR(pressure->samples.at(0).value.x(), 101580, 1);
+}
+
+TEST(Tlog, PutsSamplesWhereTheirSenderMadeThemNotWhereTheyArrived) {
+  const auto nav = read(golden());
+  ASSERT_TRUE(nav);
+  // All three carry the sender's own clock: their distances are those of that clock.
+  const double pressure_s = source_of(nav->log, "SCALED_PRESSURE2", NavQuantity::kPressure)->samples[0].time_s;
+  const double attitude_s = source_of(nav->log, "ATTITUDE", NavQuantity::kAttitude)->samples[0].time_s;
+  const double position_s = source_of(nav->log, "GLOBAL_POSITION_INT", NavQuantity::kDepth)->samples[0].time_s;
+  EXPECT_NEAR(attitude_s - pressure_s, 0.060, 1e-6);
+  EXPECT_NEAR(position_s - attitude_s, 0.110, 1e-6);
+  EXPECT_LE(attitude_s, 1683220541.493 + 1e-6);
+}
+
+TEST(Tlog, StepsOverDamageAndSaysWhere) {
+  auto flipped = golden();
+  const std::size_t first = from_hex(kPressure).size();
+  flipped[first + 20] ^= 1;
+  const auto one_lost = read(flipped);
+  ASSERT_TRUE(one_lost);
+  EXPECT_EQ(one_lost->records, 2U);
+  ASSERT_EQ(one_lost->damage.size(), 1U);
+  EXPECT_EQ(one_lost->damage[0].what, "wrong checksum");
+  EXPECT_EQ(one_lost->damage[0].first_byte, first);
+
+  auto stray = golden();
+  stray.insert(stray.begin() + static_cast<std::ptrdiff_t>(first), {1, 2, 3, 4, 5});
+  const auto all = read(stray);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->records, 3U);
+  ASSERT_EQ(all->damage.size(), 1U);
+  EXPECT_EQ(all->damage[0].what, "bytes between records");
+
+  auto cut = golden();
+  cut.resize(cut.size() - 3);
+  const auto without_last = read(cut);
+  ASSERT_TRUE(without_last);
+  EXPECT_EQ(without_last->records, 2U);
+  ASSERT_EQ(without_last->damage.size(), 1U);
+  EXPECT_EQ(without_last->damage[0].what, "cut off at the end");
+  EXPECT_EQ(without_last->damage[0].first_byte, cut.size() - 45);
+
+  const auto strict = read(cut, Damage::kFail);
+  ASSERT_FALSE(strict);
+  EXPECT_THAT(strict.error().message, testing::StartsWith("dive.tlog: byte "));
+}
+
+struct Recording {
+  const char* file;
+  std::size_t frames;  ///< right ones, and those of messages that we do not check
+  std::size_t right_padded;
+  std::map<std::uint32_t, std::size_t> messages;
+};
+
+class RealTlog : public testing::TestWithParam<Recording> {};
+
+TEST_P(RealTlog, HasAsManyFramesAsItsReadmeSays) {
+  const std::filesystem::path path = std::filesystem::path(PINGVOX_SHARED_DATA) / GetParam().file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const auto file = read_file(path.string());
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_EQ(format_of(file->view()), Format::kTlog);
+  std::vector<DamageKind> damage;
+  std::map<std::uint32_t, std::size_t> messages;
+  std::size_t padded = 0;
+  const std::size_t frames = for_each_tlog_record(file->view(), damage, [&](const TlogRecord& record) {
+    ++messages[record.frame.message];
+    padded += record.frame.check == MavlinkFrame::Check::kRightPadded ? 1 : 0;
+  });
+  if (GetParam().frames > 0) {
+    EXPECT_EQ(frames, GetParam().frames);
+    EXPECT_TRUE(damage.empty());
+  }
+  EXPECT_EQ(padded, GetParam().right_padded);
+  for (const auto& [message, count] : GetParam().messages) EXPECT_EQ(messages[message], count) << message;
+}
+
+// The four frames of camera messages whose checksum is wrong are of messages that we do not check.
+INSTANTIATE_TEST_SUITE_P(
+    Recordings, RealTlog,
+    testing::Values(Recording{"bluerov2-tlog-bin/ugps_2023-05-04.tlog",
+                              35'916,
+                              0,
+                              {{30, 5245},
+                               {178, 5245},
+                               {251, 4224},
+                               {74, 3060},
+                               {232, 1011},
+                               {33, 792},
+                               {32, 792},
+                               {29, 528},
+                               {137, 635},
+                               {22, 888}}},
+                    Recording{"bluerov2-tlog-bin/badcrc_2023-04-18.tlog", 52'103, 1949, {{132, 919 + 1949}}},
+                    Recording{
+                        "bluerov2-tlog-bin/dive5m_2023-07-14_09-02-35.tlog", 48'343, 73, {{132, 2767 + 73 + 899}}},
+                    Recording{"bluerov2-echosounder-nav/2024-04-05 09-19-03.tlog", 27'362, 0, {{132, 1463 + 465}}},
+                    Recording{"bluerov2-echosounder-nav/2024-04-05 09-25-32.tlog", 59'880, 0, {{132, 3930 + 1117}}},
+                    Recording{"generic-mavlink-dataflash/flight_v1_2015.tlog", 0, 0, {{30, 2829}}}));
+
+TEST(RealTlogs, TheDiveIsAsDeepAsItWas) {
+  const std::string path = PINGVOX_SHARED_DATA "/bluerov2-tlog-bin/dive5m_2023-07-14_09-02-35.tlog";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const auto file = read_file(path);
+  ASSERT_TRUE(file);
+  const auto nav = read_nav(*file);
+  ASSERT_TRUE(nav) << nav.error().message;
+  const NavSource* depth = nav->log.best(NavQuantity::kDepth);
+  ASSERT_NE(depth, nullptr);
+  double least_m = 1e9, most_m = -1e9;
+  for (const NavSample& sample : depth->samples) {
+    least_m = std::min(least_m, sample.value.x());
+    most_m = std::max(most_m, sample.value.x());
+  }
+  EXPECT_NEAR(least_m, 0.07, 0.005);
+  EXPECT_NEAR(most_m, 5.36, 0.005);
+}
+
+}  // namespace
+}  // namespace pingvox
