@@ -15,7 +15,8 @@ namespace pingvox::app {
 
 /// The kinds of input that options may be limited to (Option::only_for).
 inline constexpr std::string_view kBeamLogs = "logs of beams", kPointLogs = "point scans", kClouds = "clouds of points",
-                                  kMaps = "maps", kMeshes = "meshes", kEchoTables = "tables of echoes";
+                                  kNavLogs = "navigation logs", kMaps = "maps", kMeshes = "meshes",
+                                  kEchoTables = "tables of echoes";
 
 /// Echo options of the command line. The filter that is not given follows from the detector.
 struct EchoArgs {

@@ -65,6 +65,8 @@ std::string kind_text(FormatKind kind) {
       return std::string(kMeshes);
     case FormatKind::kTrajectory:
       return "trajectories";
+    case FormatKind::kNav:
+      return std::string(kNavLogs);
     default:
       return "this file";
   }

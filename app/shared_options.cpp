@@ -37,7 +37,7 @@ Option config_option() {
 
 Option strict_option(Damage& damage) {
   Option option = flag("--strict", "stop at the first damaged record instead of skipping it", damage, Damage::kFail);
-  option.only_for = {std::string(kBeamLogs), std::string(kPointLogs), std::string(kClouds)};
+  option.only_for = {std::string(kBeamLogs), std::string(kPointLogs), std::string(kClouds), std::string(kNavLogs)};
   return option;
 }
 
