@@ -117,6 +117,12 @@ TEST(Pipeline, FromTheSimulatedTankToItsPictures) {
     EXPECT_EQ(found["different"], "0");
     EXPECT_EQ(found["only_a"], "0");
     EXPECT_EQ(found["only_b"], "0");
+    // A large leaf is as many cells as the map counts in it, and an occupied cell is near the one in its own place.
+    EXPECT_EQ(found["classes.free_a"], made["map.free_cells"]);
+    EXPECT_EQ(found["classes.free_both"], made["map.free_cells"]);
+    EXPECT_EQ(found["classes.occupied_b"], made["map.occupied_cells"]);
+    EXPECT_EQ(found["against_b.precision"], "1");
+    EXPECT_EQ(found["against_b.recall"], "1");
     if (name == "tank.pvx") {
       EXPECT_EQ(found["max_log_odds_difference"], "0");
     }
