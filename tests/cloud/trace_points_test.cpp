@@ -67,6 +67,19 @@ Traced trace_case(const Case& one, const std::vector<Point>& points_m) {
   return apply_scan(one, scan, outside);
 }
 
+/// One ray after the other. REQUIRES that all points lie in the lattice
+ScanUpdate trace_rays_singly(const Case& one) {
+  ScanUpdate singly(one.lattice);
+  for (const Eigen::Vector3f& point_m : one.points_m) {
+    const Eigen::Vector3d end_m = point_m.cast<double>(), way_m = end_m - one.origin_m;
+    const double part = std::min(1.0, one.options.max_range_m / way_m.norm());
+    if (part == 1.0) singly.add_hit(*one.lattice.key_of<WideWord>(end_m), one.options.hit);
+    const Eigen::Vector3d cut_m = part == 1.0 ? end_m : Eigen::Vector3d(one.origin_m + way_m * part);
+    EXPECT_TRUE(trace_ray(one.origin_m, cut_m, one.options.ray, singly));
+  }
+  return singly;
+}
+
 std::vector<Eigen::Vector3d> as_doubles(const std::vector<Eigen::Vector3f>& points_m) {
   std::vector<Eigen::Vector3d> same_m;
   for (const Eigen::Vector3f& point_m : points_m) same_m.push_back(point_m.cast<double>());
@@ -112,14 +125,7 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
       if (seed % 3 == 0 && ray >= rays - 10) end_m.z() += uniform(random, -3.0, 3.0);
       one.points_m.emplace_back(end_m.cast<float>());
     }
-    ScanUpdate singly(one.lattice);
-    for (const Eigen::Vector3f& point_m : one.points_m) {
-      const Eigen::Vector3d end_m = point_m.cast<double>(), way_m = end_m - one.origin_m;
-      const double part = std::min(1.0, one.options.max_range_m / way_m.norm());
-      if (part == 1.0) singly.add_hit(*one.lattice.key_of<WideWord>(end_m), one.options.hit);
-      const Eigen::Vector3d cut_m = part == 1.0 ? end_m : Eigen::Vector3d(one.origin_m + way_m * part);
-      ASSERT_TRUE(trace_ray(one.origin_m, cut_m, one.options.ray, singly));
-    }
+    const ScanUpdate singly = trace_rays_singly(one);
     PointTracer tracer(one.options);
     ASSERT_EQ(tracer.trace(one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), together), 0U);
     const Traced expected = apply_scan(one, singly, 0), found = apply_scan(one, together, 0);
@@ -131,6 +137,40 @@ TEST(TracePoints, FlatSweepsMarkWhatTheirRaysMark) {
     together.clear();
   }
   EXPECT_GT(nodes, 50'000U);
+}
+
+// Kills rays that are farther than the points that the size of a window is guessed from, and are marked beside their
+// place: in and around each cell of the window's borders.
+TEST(TracePoints, RaysBeyondTheWindowAreMarkedWhereTheyAre) {
+  Case one{.points_m = {}, .options = {}};
+  one.origin_m.setConstant(0.05);
+  for (int pair = 0; pair < 1200; ++pair) {
+    one.points_m.emplace_back(3.0F, 0.05F, 0.05F);  // every second one is looked at
+    Eigen::Vector3d end_m = one.origin_m;
+    end_m[pair % 3] += (pair % 2 == 0 ? 0.1 : -0.1) * (pair / 6);
+    one.points_m.push_back(end_m.cast<float>());
+  }
+  ScanUpdate together(one.lattice);
+  ASSERT_EQ(PointTracer(one.options).trace(one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), together), 0U);
+  EXPECT_EQ(apply_scan(one, together, 0).nodes, apply_scan(one, trace_rays_singly(one), 0).nodes);
+}
+
+// Kills cells that one scan marked and that are still marked in the next one, which is another.
+TEST(TracePoints, ScansOfOneTracerAreIndependent) {
+  PointTracer tracer;
+  std::size_t nodes = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    Case one = random_case(seed);
+    one.options = {};
+    ScanUpdate scan(one.lattice);
+    const std::size_t outside = tracer.trace(one.origin_m, std::span<const Eigen::Vector3f>(one.points_m), scan);
+    const Traced found = apply_scan(one, scan, outside), expected = trace_case(one, one.points_m);
+    ASSERT_EQ(found.outside, expected.outside);
+    ASSERT_EQ(test::first_difference(found.nodes, expected.nodes), "");
+    nodes += found.nodes.size();
+  }
+  EXPECT_GT(nodes, 20'000U);
 }
 
 // Kills a cell whose ray is not walked, one that stays hit although it is too far away, a ray that ends
