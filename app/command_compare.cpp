@@ -4,46 +4,66 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "json.hpp"
-#include "map_agreement.hpp"
+#include "map_log.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/compare.hpp"
-#include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/map/map_agreement.hpp"
 #include "pingvox/map/slice.hpp"
+#include "pingvox/map/visible_cells.hpp"
 
 namespace pingvox::app {
 namespace {
 
-/// The map in a file, or one layer of it.
-Result<MapFile> map_at(const std::string& path, const std::optional<double>& layer_z_m) {
+Result<MapFile> map_at(const std::string& path) {
   const Result<FileBytes> file = read_file(path);
   if (!file) return tl::unexpected(file.error());
   if (const auto format = format_of(file->view()); format && kind_of(*format) != FormatKind::kMap) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: is {}, not a map (.bt, .ot or .pvx)", file->name, describe(*format)));
   }
-  Result<MapFile> read = read_map(*file);
-  if (!read || !layer_z_m) return read;
-  Result<OccupancyMap> layer = map_of_slice(read->map, {layer_z_m, layer_z_m});
-  if (!layer) return fail(layer.error().code, fmt::format("{}: {}", file->name, layer.error().message));
-  return MapFile{read->format, *std::move(layer), read->made_by};
+  return read_map(*file);
 }
 
-/// The map with another probability from which on a cell is occupied; those below are free up to 0.5 and unknown above.
-OccupancyMap with_threshold(const OccupancyMap& map, double probability) {
-  MapOptions options = map.options();
-  options.thresholds.upper = LogOdds::from_probability(probability);
-  options.thresholds.lower = std::min(options.thresholds.lower, options.thresholds.upper);
-  OccupancyMap out(options);
-  Editor editor = out.edit();
-  for_each_leaf(map, [&](const Leaf& leaf) { editor.set(leaf.key, leaf.depth, leaf.belief); });
-  editor.synchronize();
-  return out;
+/// Leaves only the layer of cells that holds a height.
+Result<void> keep_layer(MapFile& file, const std::string& name, double z_m) {
+  Result<OccupancyMap> layer = map_of_slice(file.map, {z_m, z_m});
+  if (!layer) return fail(layer.error().code, fmt::format("{}: {}", name, layer.error().message));
+  file.map = *std::move(layer);
+  return {};
+}
+
+/// Cells are occupied from a probability on; those below are free up to 0.5 and unknown above.
+Thresholds thresholds_at(double probability, const Thresholds& standard) {
+  const LogOdds upper = LogOdds::from_probability(probability);
+  return {std::min(standard.lower, upper), upper};
+}
+
+/// The occupied cells of `surface`, which is the world or a layer of it, that could be seen.
+Result<OccupancyMap> visible_cells_of(const CompareCommand& command, const OccupancyMap& surface,
+                                      const OccupancyMap& world) {
+  const Result<Trajectory> trajectory = trajectory_of(command.visible_from);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  std::vector<Pose> map_from_sensor;
+  for (const StampedPose& pose : trajectory->poses()) {
+    map_from_sensor.push_back(pose.map_from_body * command.body_from_sensor);
+  }
+  Result<OccupancyMap> visible = visible_cells(surface, world, map_from_sensor, command.view);
+  if (!visible) return fail(visible.error().code, fmt::format("{}: {}", command.b, visible.error().message));
+  if (visible->empty()) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: nothing of {} could be seen from these poses: are they in its frame, and is what they "
+                            "saw in range?",
+                            *command.visible_from, command.b));
+  }
+  return visible;
 }
 
 /// How two lattices differ.
@@ -62,7 +82,7 @@ void add_share(JsonObject& json, std::string_view key, const std::optional<doubl
   }
 }
 
-std::string json_of(const MapComparison& found, const MapAgreement& agreement) {
+std::string json_of(const CompareCommand& command, const MapComparison& found, const MapAgreement& agreement) {
   JsonObject classes, against_b, json;
   classes.add("occupied_a", agreement.occupied_a)
       .add("occupied_b", agreement.occupied_b)
@@ -73,6 +93,8 @@ std::string json_of(const MapComparison& found, const MapAgreement& agreement) {
   add_share(against_b, "precision", agreement.precision());
   add_share(against_b, "recall", agreement.recall());
   add_share(against_b, "free_true", agreement.free_true());
+  add_share(against_b, "free_true_1_cell", agreement.free_true_near());
+  if (command.visible_from) against_b.add("visible", agreement.to_find);
   json.add("cells", found.cells())
       .add("same", found.same)
       .add("different", found.different)
@@ -92,6 +114,24 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
 
 std::string share_text(const std::optional<double>& share) {
   return share ? fmt::format("{:.4g} %", 100.0 * *share) : "-";
+}
+
+std::string count_text(const std::optional<std::uint64_t>& count) {
+  return count ? fmt::format("{}", *count) : "-";
+}
+
+/// A judged by what could be seen of B.
+std::string text_of(const MapAgreement& agreement) {
+  return fmt::format("precision {}, recall {}, free {}\n", share_text(agreement.precision()),
+                     share_text(agreement.recall()), share_text(agreement.free_true())) +
+         report_line("precision", fmt::format("{} of A's {} occupied cells are within one cell of one of B's",
+                                              count_text(agreement.a_near_b), agreement.occupied_a)) +
+         report_line("recall",
+                     fmt::format("{} of the {} cells of B that could be seen are within one cell of one of A's",
+                                 count_text(agreement.found_by_a), agreement.to_find)) +
+         report_line("free",
+                     fmt::format("{} of A's {} free cells are free in B, {} within one cell", agreement.free_both,
+                                 agreement.free_a, share_text(agreement.free_true_near())));
 }
 
 std::string text_of(const MapComparison& found, const MapAgreement& agreement, Sameness sameness) {
@@ -119,24 +159,41 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
 }  // namespace
 
 Result<int> run(const CompareCommand& command, Console& console) {
-  Result<MapFile> a = map_at(command.a, command.layer_z_m);
+  Result<MapFile> a = map_at(command.a);
   if (!a) return tl::unexpected(a.error());
-  const Result<MapFile> b = map_at(command.b, command.layer_z_m);
+  Result<MapFile> b = map_at(command.b);
   if (!b) return tl::unexpected(b.error());
-  if (command.occupied_probability) a->map = with_threshold(a->map, *command.occupied_probability);
+  if (!(a->map.lattice() == b->map.lattice())) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}: only maps of the same cells can be compared",
+                            difference_of(command.a, a->map.lattice(), command.b, b->map.lattice())));
+  }
+  const OccupancyMap world = b->map;  // what hides a cell of a layer may lie in another one
+  if (command.layer_z_m) {
+    if (auto kept = keep_layer(*a, command.a, *command.layer_z_m); !kept) return tl::unexpected(kept.error());
+    if (auto kept = keep_layer(*b, command.b, *command.layer_z_m); !kept) return tl::unexpected(kept.error());
+  }
+  if (command.occupied_probability) {
+    a->map = with_thresholds(a->map, thresholds_at(*command.occupied_probability, a->map.options().thresholds));
+  }
 
   const bool has_bt = a->format == Format::kBt || b->format == Format::kBt;
   const Sameness sameness = has_bt ? Sameness::kOccupancy : Sameness::kLogOdds;
   const Result<MapComparison> found = compare_maps(a->map, b->map, sameness);
-  if (!found) {
-    return fail(found.error().code,
-                fmt::format("{}: only maps of the same cells can be compared",
-                            difference_of(command.a, a->map.lattice(), command.b, b->map.lattice())));
+  if (!found) return tl::unexpected(found.error());
+  std::optional<OccupancyMap> visible;
+  AgreementOptions counted;
+  if (command.visible_from) {
+    Result<OccupancyMap> cells = visible_cells_of(command, b->map, world);
+    if (!cells) return tl::unexpected(cells.error());
+    visible = *std::move(cells);
+    counted = {judged_box(b->map), &*visible};
   }
-  const MapAgreement agreement = agreement_of(a->map, b->map);
+  const MapAgreement agreement = agreement_of(a->map, b->map, counted);
+  const auto text = [&] { return visible ? text_of(agreement) : text_of(*found, agreement, sameness); };
   const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(*found, agreement))
-                                   : console.summarise(text_of(*found, agreement, sameness), "");
+                                   ? console.print(json_of(command, *found, agreement))
+                                   : console.summarise(text(), "");
   if (!summary) return tl::unexpected(summary.error());
   return found->equal() ? 0 : 1;
 }

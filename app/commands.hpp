@@ -13,6 +13,7 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/slice.hpp"
+#include "pingvox/map/visible_cells.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -78,6 +79,9 @@ struct CompareCommand {
   std::string a, b;
   std::optional<double> layer_z_m;             ///< compare only the layer of cells that holds this height
   std::optional<double> occupied_probability;  ///< a cell of A is occupied from here on
+  std::optional<std::string> visible_from;     ///< poses from which the cells to find could be seen
+  Pose body_from_sensor = Pose::Identity();
+  ViewOptions view{.min_range_m = EchoOptions::kUsualBlanking_m};
 };
 
 struct ConvertCommand {

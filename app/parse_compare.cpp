@@ -1,3 +1,9 @@
+#include <fmt/core.h>
+
+#include <string>
+#include <utility>
+
+#include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
@@ -5,8 +11,20 @@
 
 namespace pingvox::app {
 
+namespace {
+
+/// An option of what could be seen.
+Option seen(Option option) {
+  option.only_with = {{"--visible-from"}};
+  return option;
+}
+
+}  // namespace
+
 Result<Command> compare_command(const Args& args) {
   CompareCommand command;
+  ViewOptions& view = command.view;
+  std::string visible_from;
   const OptionTable table{
       "compare",
       "Compares two maps cell by cell, at the finest resolution. Cells are equal if their log-odds are; if one of the\n"
@@ -20,12 +38,33 @@ Result<Command> compare_command(const Args& args) {
          {"--occupied", 0, "P", "probability from which on a cell of A is occupied", "0.5",
           within({0.0, 1.0, Limits::Ends::kBothOut}, into_optional(command.occupied_probability))},
          json_option(command.output_options),
-         quiet_option(command.output_options)}}},
+         quiet_option(command.output_options)}},
+       {"What could be seen",
+        {{"--visible-from", 0, "POSES",
+          "judge A as `pingvox bench accuracy` does: only what could be seen of B from these poses (TUM) is to be "
+          "found, and what lies beyond a side of B without a wall is left out",
+          "all of B", into(visible_from)},
+         seen({"--min-range", 0, "M", "nearest range at which a cell is seen", shown(view.min_range_m),
+               within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_number(view.min_range_m))}),
+         seen({"--max-range", 0, "M", "farthest range at which a cell is seen: that of the log", "no limit",
+               within({0.0, kAnyHigh, Limits::Ends::kBothOut}, into_number(view.max_range_m))}),
+         seen({"--beam-height", 0, "DEG", "vertical beam width, full angle", shown(view.height_rad / kDegree_rad),
+               within({0.0, 180.0, Limits::Ends::kLowOut}, into_number(view.height_rad, kDegree_rad))}),
+         seen({"--mount", 0, "X,Y,Z,R,P,Y",
+               "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
+               into_mount(command.body_from_sensor)})}}},
       {"pingvox compare ours.bt theirs.bt", "pingvox compare before.ot after.ot --json",
-       "pingvox compare harbour.ot truth/world.bt --layer 0 --occupied 0.7"},
+       "pingvox compare harbour.ot truth/world.bt --layer 0 --occupied 0.7",
+       "pingvox compare harbour.ot truth/world.bt --visible-from truth/poses.tum --max-range 10"},
       "Exit status: 0 equal, 1 different, 2 failed."};
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
-    if (const auto once = check_standard_input({command.a, command.b}); !once) return tl::unexpected(once.error());
+    if (const auto once = check_standard_input({command.a, command.b, visible_from}); !once)
+      return tl::unexpected(once.error());
+    if (!visible_from.empty()) command.visible_from = visible_from;
+    if (!(command.view.max_range_m > command.view.min_range_m)) {
+      return usage_error(fmt::format("--max-range: must be above --min-range, which is {:.6g} m, is {:.6g} m",
+                                     command.view.min_range_m, command.view.max_range_m));
+    }
     return command;
   });
 }

@@ -21,7 +21,8 @@ _pingvox_options() {
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
-    compare) options+=(--layer --occupied --json --quiet) ;;
+    compare)
+      options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
       options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height --echoes)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,7 +14,6 @@
 #include "accuracy/draw_accuracy.hpp"
 #include "accuracy/echo_score.hpp"
 #include "accuracy/judged_world.hpp"
-#include "accuracy/map_score.hpp"
 #include "accuracy/recording.hpp"
 #include "accuracy/true_returns.hpp"
 #include "paired_timing.hpp"
@@ -132,8 +133,11 @@ struct MapCase {
   double resolution_m;
 };
 
-Row map_row(const Recording& recording, const MapCase& which, const MapScore& score, const MapScore& sure,
+Row map_row(const Recording& recording, const MapCase& which, const MapAgreement& score, const MapAgreement& sure,
             double seconds) {
+  const auto number = [](const std::optional<double>& share) {
+    return share.value_or(std::numeric_limits<double>::quiet_NaN());
+  };
   Row row;
   row.add("name", "accuracy-map")
       .add("world", recording.options.world)
@@ -142,15 +146,15 @@ Row map_row(const Recording& recording, const MapCase& which, const MapScore& sc
       .add("echoes", which.echoes)
       .add("beam", which.beam)
       .add("resolution_m", which.resolution_m)
-      .add("occupied", score.occupied)
-      .add("visible", score.visible)
-      .add("free", score.free)
-      .add("precision", score.precision())
-      .add("recall", score.recall())
-      .add("sure_precision", sure.precision())
-      .add("sure_recall", sure.recall())
-      .add("free_true", score.free_share())
-      .add("free_true_1_cell", score.free_share_near())
+      .add("occupied", score.occupied_a)
+      .add("visible", score.to_find)
+      .add("free", score.free_a)
+      .add("precision", number(score.precision()))
+      .add("recall", number(score.recall()))
+      .add("sure_precision", number(sure.precision()))
+      .add("sure_recall", number(sure.recall()))
+      .add("free_true", number(score.free_true()))
+      .add("free_true_1_cell", number(score.free_true_near()))
       .add("seconds", seconds);
   return row;
 }
@@ -191,16 +195,11 @@ class Measurement {
   }
 
   Result<void> maps(std::vector<Row>& rows) const {
-    const std::vector<Eigen::Vector3d> in_plane_m = points_in_plane_m(recording_, kBlanking_m);
     for (const double resolution_m : plan_.plane_m) {
-      if (auto done = maps(Extent::kPlane, resolution_m, in_plane_m, rows); !done) return done;
-    }
-    std::vector<Eigen::Vector3d> in_cones_m;
-    for (const TrueReturns& truth : truths_) {
-      in_cones_m.insert(in_cones_m.end(), truth.seen_m.begin(), truth.seen_m.end());
+      if (auto done = maps(Extent::kPlane, resolution_m, rows); !done) return done;
     }
     for (const double resolution_m : plan_.space_m) {
-      if (auto done = maps(Extent::kSpace, resolution_m, in_cones_m, rows); !done) return done;
+      if (auto done = maps(Extent::kSpace, resolution_m, rows); !done) return done;
     }
     return {};
   }
@@ -208,13 +207,12 @@ class Measurement {
  private:
   static constexpr double kBlanking_m = EchoOptions::kUsualBlanking_m;
 
-  Result<void> maps(Extent extent, double resolution_m, const std::vector<Eigen::Vector3d>& visible_m,
-                    std::vector<Row>& rows) const {
+  Result<void> maps(Extent extent, double resolution_m, std::vector<Row>& rows) const {
     if (options_.say != nullptr) {
       options_.say(fmt::format("  {}, {}: maps of {} m in {}", recording_.options.world, poses_of(recording_.options),
                                resolution_m, extent == Extent::kPlane ? "the plane" : "space"));
     }
-    const Result<JudgedWorld> world = JudgedWorld::make(recording_, extent, resolution_m, visible_m);
+    const Result<JudgedWorld> world = JudgedWorld::make(recording_, extent, resolution_m, kBlanking_m);
     if (!world) return tl::unexpected(world.error());
     const std::array<std::pair<std::string_view, Echoes>, 3> sources = {
         {{"default", found(recording_, usual())},
@@ -232,8 +230,10 @@ class Measurement {
         if (!map) return tl::unexpected(map.error());
         const double seconds = cpu_time_s() - before_s;
         const Thresholds sure{.lower = LogOdds(0.0F), .upper = LogOdds::from_probability(0.7)};
-        rows.push_back(map_row(recording_, {extent, name, beam, resolution_m}, world->score(*map),
-                               world->score(*map, sure), seconds));
+        const Result<MapAgreement> score = world->score(*map), of_sure = world->score(*map, sure);
+        if (!score) return tl::unexpected(score.error());
+        if (!of_sure) return tl::unexpected(of_sure.error());
+        rows.push_back(map_row(recording_, {extent, name, beam, resolution_m}, *score, *of_sure, seconds));
       }
     }
     return {};

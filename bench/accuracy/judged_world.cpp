@@ -4,55 +4,48 @@
 
 #include "app/world_map.hpp"
 #include "pingvox/map/scan_update.hpp"
+#include "pingvox/map/slice.hpp"
+#include "pingvox/map/visible_cells.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 
 namespace pingvox::bench {
 namespace {
 
-using Eigen::AlignedBox3d;
-using Eigen::Vector3d;
-
-constexpr double kBehind_m = 3.0;  ///< of what is behind a wall
-
-/// The world with what is behind its walls, as far as it has some.
-AlignedBox3d box_to_judge(const Recording& recording) {
-  const std::string_view world = recording.options.world;
-  const bool has_bottom = world != "tank", has_lid = world == "cave", has_sides = world != "seabed";
-  AlignedBox3d box = recording.scene.water_m;
-  if (has_bottom) box.min().z() -= kBehind_m;
-  if (has_lid) box.max().z() += kBehind_m;
-  if (has_sides) {
-    box.min().x() -= kBehind_m;
-    box.max().x() += kBehind_m;
-    box.max().y() += kBehind_m;
-    if (!world.starts_with("harbour")) box.min().y() -= kBehind_m;
-  }
-  // A face of the box belongs to the upper cell, which lies outside of the world.
-  constexpr double kHair_m = 1e-6;
-  return {box.min() + Vector3d::Constant(kHair_m), box.max() - Vector3d::Constant(kHair_m)};
+/// The layer of cells in which the head turns, or all of a map.
+Result<OccupancyMap> part_of(const OccupancyMap& map, Extent extent) {
+  if (extent == Extent::kSpace) return map;
+  return map_of_slice(map, {.min_z_m = 0.0, .max_z_m = 0.0});
 }
 
 }  // namespace
 
 Result<JudgedWorld> JudgedWorld::make(const Recording& recording, Extent extent, double resolution_m,
-                                      const std::vector<Vector3d>& visible_m) {
-  AlignedBox3d water = recording.scene.water_m;
+                                      double min_range_m) {
+  Eigen::AlignedBox3d water = recording.scene.water_m;
   if (extent == Extent::kPlane) {
     water.min().z() = -2.0 * resolution_m;
     water.max().z() = 2.0 * resolution_m;
   }
-  const Vector3d inside_m = recording.pings.front().map_from_sensor.translation();
-  const Result<OccupancyMap> truth = app::world_map(recording.scene.world, water, inside_m, resolution_m);
+  const Eigen::Vector3d inside_m = recording.pings.front().map_from_sensor.translation();
+  const Result<OccupancyMap> world = app::world_map(recording.scene.world, water, inside_m, resolution_m);
+  if (!world) return tl::unexpected(world.error());
+  Result<OccupancyMap> truth = part_of(*world, extent);
   if (!truth) return tl::unexpected(truth.error());
-  const AlignedBox3d judged_m = box_to_judge(recording);
-  const CellBox box =
-      extent == Extent::kPlane ? CellBox::layer(truth->lattice(), judged_m, 0.0) : CellBox(truth->lattice(), judged_m);
-  return JudgedWorld(box, box.classes_of(*truth), box.mark(visible_m));
+  std::vector<Pose> map_from_sensor;
+  for (const SonarSimulator::Ping& ping : recording.pings) map_from_sensor.push_back(ping.map_from_sensor);
+  Result<OccupancyMap> visible = visible_cells(*truth, *world, map_from_sensor,
+                                               {.min_range_m = min_range_m,
+                                                .max_range_m = recording.sonar.range_m(),
+                                                .height_rad = recording.sonar.beam_height_rad});
+  if (!visible) return tl::unexpected(visible.error());
+  return JudgedWorld(extent, *std::move(truth), *std::move(visible));
 }
 
-MapScore JudgedWorld::score(const OccupancyMap& map, const Thresholds& thresholds) const {
-  return score_map(box_.classes_of(map, thresholds), truth_, visible_);
+Result<MapAgreement> JudgedWorld::score(const OccupancyMap& map, const Thresholds& thresholds) const {
+  const Result<OccupancyMap> part = part_of(map, extent_);
+  if (!part) return tl::unexpected(part.error());
+  return agreement_of(with_thresholds(*part, thresholds), truth_, {judged_box(truth_), &visible_});
 }
 
 Echoes detect(const Recording& recording, const FilterOptions& filter, const EchoOptions& options) {

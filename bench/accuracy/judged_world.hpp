@@ -4,10 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "accuracy/cell_grid.hpp"
-#include "accuracy/map_score.hpp"
 #include "accuracy/recording.hpp"
 #include "accuracy/true_returns.hpp"
+#include "pingvox/map/map_agreement.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 #include "pingvox/result.hpp"
@@ -21,27 +20,21 @@ enum class Extent {
   kSpace,  ///< all of the world, and 3 m of what is behind its walls
 };
 
-/// The truth of a world in cells of one size, ready to judge maps. What lies behind a side of the world that has no
-/// wall (above the surface, out of the harbour's mouth, beyond the seabed's edge) is neither right nor wrong: it is
-/// left out.
+/// The ground truth of a world in cells of one size, ready to judge maps as `pingvox compare --visible-from` does: what
+/// lies beyond a side without a wall is left out, and only what could be seen from where the head was is to be found.
 class JudgedWorld {
  public:
-  /// @param visible_m  points on surfaces that could be seen
-  static Result<JudgedWorld> make(const Recording& recording, Extent extent, double resolution_m,
-                                  const std::vector<Eigen::Vector3d>& visible_m);
+  static Result<JudgedWorld> make(const Recording& recording, Extent extent, double resolution_m, double min_range_m);
 
-  /// REQUIRES a map of this resolution and 16 levels.
-  MapScore score(const OccupancyMap& map) const { return score(map, map.options().thresholds); }
-  MapScore score(const OccupancyMap& map, const Thresholds& thresholds) const;
-  const CellBox& box() const { return box_; }
-  const CellGrid& truth() const { return truth_; }
-  const CellGrid& visible() const { return visible_; }
+  /// REQUIRES a map of this resolution and 16 levels. @return kUnsupported when nothing is known in the plane
+  Result<MapAgreement> score(const OccupancyMap& map) const { return score(map, map.options().thresholds); }
+  Result<MapAgreement> score(const OccupancyMap& map, const Thresholds& thresholds) const;
 
  private:
-  JudgedWorld(CellBox box, CellGrid truth, CellGrid visible)
-      : box_(std::move(box)), truth_(std::move(truth)), visible_(std::move(visible)) {}
-  CellBox box_;
-  CellGrid truth_, visible_;
+  JudgedWorld(Extent extent, OccupancyMap truth, OccupancyMap visible)
+      : extent_(extent), truth_(std::move(truth)), visible_(std::move(visible)) {}
+  Extent extent_;
+  OccupancyMap truth_, visible_;
 };
 
 /// One optional echo for each beam of a recording, in order.

@@ -27,7 +27,7 @@ double null_rad(double half_width_rad) {
   return std::asin(std::min(1.0, std::numbers::pi / 1.391557 * std::sin(half_width_rad)));
 }
 
-/// Calls f(crossing point, range, half the way by which the range changes to the next ray) for each ray of a cone that
+/// Calls f(range, half the way by which the range changes to the next ray) for each ray of a cone that
 /// meets something.
 template <class F>
 void for_each_return(const World& world, const SonarSimulator::Ping& ping, const HalfAngles& half, double range_m,
@@ -48,7 +48,7 @@ void for_each_return(const World& world, const SonarSimulator::Ping& ping, const
           map_from_sensor.linear() * direction_of(bearing, elevation + 0.5 * std::numbers::pi) * up_step;
       const double slant = hit->range_m / std::max(-hit->normal.dot(ray.direction), 0.01);
       const double change = std::max(std::abs(hit->normal.dot(sideways)), std::abs(hit->normal.dot(upwards)));
-      f(ray.at(hit->range_m), hit->range_m, 0.5 * slant * change);
+      f(hit->range_m, 0.5 * slant * change);
     }
   }
 }
@@ -59,14 +59,12 @@ TrueReturns returns_of(const World& world, const SonarSimulator::Ping& ping, con
   const auto on_axis = world.first({ping.map_from_sensor.translation(), axis}, sonar.range_m());
   if (on_axis) truth.axis_m = on_axis->range_m;
   const HalfAngles cone{0.5 * sonar.beam_width_rad, 0.5 * sonar.beam_height_rad};
-  for_each_return(world, ping, cone, sonar.range_m(), [&](const Vector3d& at_m, double range_m, double half_m) {
-    truth.seen_m.push_back(at_m);
+  for_each_return(world, ping, cone, sonar.range_m(), [&](double range_m, double half_m) {
     truth.returns.push_back({range_m - half_m, range_m + half_m});
   });
   const HalfAngles lobe{null_rad(cone.width_rad), null_rad(cone.height_rad)};
-  for_each_return(world, ping, lobe, sonar.range_m(), [&](const Vector3d&, double range_m, double half_m) {
-    truth.lobe.push_back({range_m - half_m, range_m + half_m});
-  });
+  for_each_return(world, ping, lobe, sonar.range_m(),
+                  [&](double range_m, double half_m) { truth.lobe.push_back({range_m - half_m, range_m + half_m}); });
   truth.returns = join(std::move(truth.returns));
   truth.lobe = join(std::move(truth.lobe));
   return truth;
@@ -110,26 +108,6 @@ std::vector<TrueReturns> true_returns(const Recording& recording) {
     }
   }
   return truths;
-}
-
-std::vector<Vector3d> points_in_plane_m(const Recording& recording, double min_range_m) {
-  constexpr int kRays = 16;  // to a step
-  const double step = 2.0 * std::numbers::pi / static_cast<double>(recording.sonar.beams_per_turn);
-  const bool stands_still = recording.options.motion == Motion::kStill;
-  const std::size_t pings =
-      stands_still ? std::min(recording.sonar.beams_per_turn, recording.pings.size()) : recording.pings.size();
-  std::vector<Vector3d> seen;
-  for (std::size_t n = 0; n < pings; ++n) {
-    const SonarSimulator::Ping& ping = recording.pings[n];
-    for (int i = 0; i < kRays; ++i) {
-      const double bearing = ping.bearing_rad + step * ((i + 0.5) / kRays - 0.5);
-      const SoundRay ray{ping.map_from_sensor.translation(),
-                         ping.map_from_sensor.linear() * direction_of(bearing, 0.0)};
-      const auto hit = recording.scene.world.first(ray, recording.sonar.range_m());
-      if (hit && hit->range_m >= min_range_m) seen.push_back(ray.at(hit->range_m));
-    }
-  }
-  return seen;
 }
 
 }  // namespace pingvox::bench

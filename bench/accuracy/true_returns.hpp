@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,8 +22,6 @@ struct TrueReturns {
   std::vector<Span> returns;
   /// The same of all the main lobe, out to where it hears nothing: more than twice as wide and high.
   std::vector<Span> lobe;
-  /// Points on those surfaces [m, map frame], as dense as the rays that found them.
-  std::vector<Eigen::Vector3d> seen_m;
 };
 
 /// How far a range is from the nearest of some spans; nullopt: there are none.
@@ -35,9 +32,5 @@ std::vector<Span> join(std::vector<Span> spans);
 
 /// What is true of each ping of a recording.
 std::vector<TrueReturns> true_returns(const Recording& recording);
-
-/// Where rays in the plane of the head first meet a surface, from each ping's bearing half a step to either side
-/// [m, map frame]: all that lies in line of sight and in range, as far as the head's steps leave no gap.
-std::vector<Eigen::Vector3d> points_in_plane_m(const Recording& recording, double min_range_m);
 
 }  // namespace pingvox::bench

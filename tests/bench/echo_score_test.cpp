@@ -16,7 +16,7 @@ std::optional<Echo> echo_at(double range_m) {
 
 /// A wall at 3 m on the axis, seen to 3.2 m at the edge of the cone and to 4 m by the rest of the lobe.
 TrueReturns wall() {
-  return {.axis_m = 3.0, .returns = {{3.0, 3.2}}, .lobe = {{3.0, 4.0}}, .seen_m = {}};
+  return {.axis_m = 3.0, .returns = {{3.0, 3.2}}, .lobe = {{3.0, 4.0}}};
 }
 
 EchoScore of_one(const std::optional<Echo>& echo, const TrueReturns& truth) {

@@ -78,40 +78,40 @@ TEST(Mapped, IsWhatBuildMapMakes) {
 
 class OfPerfectRanges : public testing::Test {
  protected:
-  MapScore score_of(double bias_m) const {
+  MapAgreement score_of(double bias_m) const {
     Echoes echoes = true_echoes(recording_, truths_, 0.75);
     for (std::optional<Echo>& echo : echoes) {
       if (!echo) continue;
       echo->range_m += bias_m;
       echo->first = static_cast<std::size_t>(echo->range_m / recording_.sonar.bin_length_m);
     }
-    return world_->score(*map_echoes(recording_, echoes, {}, 0.05));
+    return *world_->score(*map_echoes(recording_, echoes, {}, 0.05));
   }
 
   Recording recording_ = tank(2);
   std::vector<TrueReturns> truths_ = true_returns(recording_);
-  Result<JudgedWorld> world_ = JudgedWorld::make(recording_, Extent::kPlane, 0.05, points_in_plane_m(recording_, 0.75));
+  Result<JudgedWorld> world_ = JudgedWorld::make(recording_, Extent::kPlane, 0.05, 0.75);
 };
 
 TEST_F(OfPerfectRanges, AMapInThePlaneIsRight) {
   ASSERT_TRUE(world_);
-  const MapScore score = score_of(0.0);
+  const MapAgreement score = score_of(0.0);
   EXPECT_EQ(score.precision(), 1.0);
   EXPECT_GT(score.recall(), 0.98);
-  EXPECT_GT(score.free_share(), 0.99);
-  EXPECT_EQ(score.free_share_near(), 1.0);
-  EXPECT_GT(score.visible, 300U);
+  EXPECT_GT(score.free_true(), 0.99);
+  EXPECT_EQ(score.free_true_near(), 1.0);
+  EXPECT_GT(score.to_find, 300U);
 }
 
 TEST_F(OfPerfectRanges, ABiasOfThreeCellsIsSeenInEachMeasure) {
   ASSERT_TRUE(world_);
-  const MapScore behind = score_of(0.15);
+  const MapAgreement behind = score_of(0.15);
   EXPECT_LT(behind.precision(), 0.2);
   EXPECT_LT(behind.recall(), 0.2);
-  EXPECT_LT(behind.free_share_near(), 0.99);  // the wall itself is freed, and what is behind
-  const MapScore before = score_of(-0.15);
+  EXPECT_LT(behind.free_true_near(), 0.99);  // the wall itself is freed, and what is behind
+  const MapAgreement before = score_of(-0.15);
   EXPECT_LT(before.precision(), 0.2);
-  EXPECT_GT(before.free_share(), 0.999);  // hardly anything but water was passed
+  EXPECT_GT(before.free_true(), 0.999);  // hardly anything but water was passed
 }
 
 TEST(Recorded, RefusesAnUnknownWorld) {

@@ -109,10 +109,11 @@ TEST(Pipeline, FromTheSimulatedTankToItsPictures) {
     const Outcome converted = here.call({"convert", "tank.ot", "-o", name});
     EXPECT_EQ(converted.status, 0) << converted.err;
     const Outcome compared = here.call({"compare", "tank.ot", name, "--json"});
-    FlatJson found = json_with(
-        compared, {"cells", "same", "different", "only_a", "only_b", "max_log_odds_difference", "classes.occupied_a",
-                   "classes.occupied_b", "classes.occupied_both", "classes.free_a", "classes.free_b",
-                   "classes.free_both", "against_b.precision", "against_b.recall", "against_b.free_true"});
+    FlatJson found =
+        json_with(compared, {"cells", "same", "different", "only_a", "only_b", "max_log_odds_difference",
+                             "classes.occupied_a", "classes.occupied_b", "classes.occupied_both", "classes.free_a",
+                             "classes.free_b", "classes.free_both", "against_b.precision", "against_b.recall",
+                             "against_b.free_true", "against_b.free_true_1_cell"});
     EXPECT_EQ(found["same"], found["cells"]);
     EXPECT_EQ(found["different"], "0");
     EXPECT_EQ(found["only_a"], "0");

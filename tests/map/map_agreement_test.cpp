@@ -1,0 +1,118 @@
+// Maps judged by ground truth, on worlds drawn by hand: '#' occupied, '.' free, ' ' unknown; a cell is 1 m wide, the
+// first row has the lowest y.
+#include "pingvox/map/map_agreement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pingvox {
+namespace {
+
+using Drawing = std::vector<std::string>;
+
+OccupancyMap drawn(const Drawing& rows) {
+  OccupancyMap map(MapOptions{.resolution_m = 1.0});
+  Editor editor = map.edit();
+  for (std::size_t y = 0; y < rows.size(); ++y) {
+    for (std::size_t x = 0; x < rows[y].size(); ++x) {
+      if (rows[y][x] == ' ') continue;
+      const auto key = map.lattice().key_of({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, 0.5});
+      editor.set(*key, map.lattice().depth(), LogOdds(rows[y][x] == '#' ? 2.0F : -2.0F));
+    }
+  }
+  editor.synchronize();
+  return map;
+}
+
+const Drawing kWall = {"......",  //
+                       "......",  //
+                       "......",  //
+                       "######"};
+
+MapAgreement judged(const Drawing& map) {
+  return agreement_of(drawn(map), drawn(kWall));
+}
+
+TEST(MapAgreement, OfTheTruthItselfIsPerfect) {
+  const MapAgreement score = judged(kWall);
+  EXPECT_EQ(score.precision(), 1.0);
+  EXPECT_EQ(score.recall(), 1.0);
+  EXPECT_EQ(score.free_true(), 1.0);
+  EXPECT_EQ(score.free_true_near(), 1.0);
+  EXPECT_EQ(score.occupied_a, 6U);
+  EXPECT_EQ(score.free_a, 18U);
+}
+
+TEST(MapAgreement, ForgivesAWallOneCellOffAndNotTwo) {
+  const MapAgreement one = judged({"......", "......", "######"});
+  EXPECT_EQ(one.precision(), 1.0);
+  EXPECT_EQ(one.recall(), 1.0);
+  const MapAgreement two = judged({"......", "######"});
+  EXPECT_EQ(two.precision(), 0.0);
+  EXPECT_EQ(two.recall(), 0.0);
+}
+
+TEST(MapAgreement, AWallThatIsNotThereLowersPrecisionOnly) {
+  const MapAgreement score = judged({"######", "......", "......", "######"});
+  EXPECT_EQ(score.precision(), 0.5);
+  EXPECT_EQ(score.recall(), 1.0);
+}
+
+TEST(MapAgreement, HalfAWallLowersRecallOnly) {
+  const MapAgreement score = judged({"......", "......", "......", "###   "});
+  EXPECT_EQ(score.precision(), 1.0);
+  EXPECT_EQ(score.recall(), 4.0 / 6.0);  // the fourth cell touches the third
+}
+
+TEST(MapAgreement, WhatCouldNotBeSeenIsNotMissed) {
+  const OccupancyMap visible = drawn({"      ", "      ", "      ", "###   "});
+  const MapAgreement score =
+      agreement_of(drawn({"......", "......", "......", "###   "}), drawn(kWall), {.box = {}, .visible = &visible});
+  EXPECT_EQ(score.recall(), 1.0);
+  EXPECT_EQ(score.to_find, 3U);
+  EXPECT_EQ(score.precision(), 1.0);
+}
+
+TEST(MapAgreement, CellsFreedBehindAWallAreWrongEvenWithinOneCell) {
+  // One cell of the wall is freed, and two behind it.
+  const MapAgreement score = judged({"......", "......", "......", "###.##", "   .  ", "   .  "});
+  EXPECT_EQ(score.free_a, 21U);
+  EXPECT_EQ(score.free_both, 18U);
+  EXPECT_EQ(score.free_near, 19U);  // the wall's own touches water
+}
+
+TEST(MapAgreement, CountsOnlyCellsWithTheirMiddleInTheBox) {
+  // A leaf of 8 x 8 x 8 cells, of which the box cuts 3 x 8 x 1 out.
+  OccupancyMap map(MapOptions{.resolution_m = 1.0});
+  map.edit().set(*map.lattice().key_of({0.5, 0.5, 0.5}), map.lattice().depth() - 3, LogOdds(-2.0F));
+  const AgreementOptions options{.box = Box{{0.6, -100.0, 0.4}, {3.6, 1e30, 1.4}}, .visible = nullptr};
+  EXPECT_EQ(agreement_of(map, map, options).free_both, 3U * 8U);
+  const AgreementOptions nowhere{.box = Box{{0.6, 0.0, 0.0}, {1.4, 9.0, 9.0}}, .visible = nullptr};
+  EXPECT_EQ(agreement_of(map, map, nowhere).free_a, 0U);
+}
+
+TEST(JudgedBox, EndsWhereTheTruthHasNoWallAndGoesOnBehindOne) {
+  const auto box = judged_box(drawn({"......#",  //
+                                     "......#",  //
+                                     "#######"}),
+                              3.0);
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->min, Eigen::Vector3d(0.0, 0.0, 0.0));
+  EXPECT_EQ(box->max, Eigen::Vector3d(10.0, 6.0, 1.0));
+}
+
+TEST(JudgedBox, IsNotOpenedByAWallThatRisesAboveTheWater) {
+  OccupancyMap truth = drawn({"......#", "......#", "#######"});
+  truth.edit().set(*truth.lattice().key_of({6.5, 0.5, 1.5}), truth.lattice().depth(), LogOdds(2.0F));
+  EXPECT_EQ(judged_box(truth)->max.z(), 1.0);
+}
+
+TEST(JudgedBox, OfNothingIsNothing) {
+  EXPECT_FALSE(judged_box(OccupancyMap(MapOptions{.resolution_m = 1.0})));
+}
+
+}  // namespace
+}  // namespace pingvox
