@@ -303,9 +303,12 @@ void check_bresenham(const BasicKey<W>& from, const BasicKey<W>& to) {
     const std::array<Wide, 3> at{distance(from.x, key.x), distance(from.y, key.y), distance(from.z, key.z)};
     Wide moved = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // At most half a cell off the line, which has come step / main of its way.
+      // At most half a cell off the line, which has come step / main of its way; exactly between two cells, it is the
+      // nearer one.
       const Wide off = at[axis] * main - step * along[axis];
-      ASSERT_LE(2 * (off < 0 ? -off : off), main) << "step " << static_cast<long>(step);
+      const Wide behind = along[axis] < 0 ? off : -off;
+      ASSERT_LE(2 * behind, main) << "step " << static_cast<long>(step);
+      ASSERT_LT(-2 * behind, main) << "step " << static_cast<long>(step);
       const Wide change = at[axis] - before[axis];
       moved = std::max(moved, change < 0 ? -change : change);
     }
@@ -317,6 +320,7 @@ void check_bresenham(const BasicKey<W>& from, const BasicKey<W>& to) {
   ASSERT_EQ(step, main);
 }
 
+// Kills a line exactly between two cells that takes the farther one.
 TEST(Bresenham, StaysWithinHalfACellAndTakesOneStepAlongItsMainAxisAtATime) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 20'000; ++i) {
