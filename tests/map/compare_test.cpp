@@ -85,6 +85,24 @@ TEST(CompareMaps, CountsLikeListsOfCellsWhateverWasPruned) {
   EXPECT_GT(compared, 50'000U);
 }
 
+// Kills a map that is classified by the thresholds of the other.
+TEST(CompareMaps, ClassifiesEachMapByItsOwnThresholds) {
+  MapOptions undecided = at_depth(16);
+  undecided.thresholds = {.lower = LogOdds(-1.0F), .upper = LogOdds(1.0F)};
+  OccupancyMap one(at_depth(16)), two(undecided);
+  for (const float belief : {-2.0F, -0.5F, 0.5F, 2.0F}) {
+    const WideKey key{static_cast<WideWord>(10.0F + 2.0F * belief), 0, 0};
+    one.edit().set(key, 16, LogOdds(belief));
+    two.edit().set(key, 16, LogOdds(belief));
+  }
+  for (const auto& result :
+       {compare_maps(one, two, Sameness::kOccupancy), compare_maps(two, one, Sameness::kOccupancy)}) {
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->same, 2U);
+    EXPECT_EQ(result->different, 2U);
+  }
+}
+
 TEST(CompareMaps, AMapEqualsItsCopy) {
   std::mt19937_64 random(7);
   OccupancyMap map(at_depth(16));
