@@ -129,7 +129,7 @@ OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
   OptionTable::Group group = {
       "Echoes",
       {{"--min-range", 0, "M|auto",
-        "ignore echoes nearer than M (transducer ringing); auto measures the ringing in each sweep",
+        "ignore echoes nearer than M (transducer ringing); auto measures it per sweep",
         shown(EchoOptions::kUsualBlanking_m),
         within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_or_auto(echo.min_range_m))},
        {"--min-bin", 0, "N", "ignore bins before bin N (the first is 0)", fmt::format("{}", echo.min_bin),

@@ -58,7 +58,7 @@ Result<Command> map_command(const Args& args) {
 
   OptionTable::Group map_options = map_group(build);
   map_options.options.push_back(
-      choice("--parents", kParents, "value of a parent: maximum or mean of its children", map.parents));
+      choice("--parents", kParents, "parent value: maximum or mean of its children", map.parents));
   map_options.options.push_back(
       {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count});
   OptionTable::Group sensor_options = sensor_group(build);

@@ -210,7 +210,7 @@ Result<Command> render_command(const Args& args) {
       "render",
       "Draws a PNG: of a log of beams what was heard, with a mark on each echo; of a map (or a log, mapped as by\n"
       "'pingvox map') what is where. Several FILEs, and several settings of one, stand side by side.",
-      {{"FILE", Positional::Count::kMany, "a log or a map, summary by content; - is standard input",
+      {{"FILE", Positional::Count::kMany, "a log or a map, recognised by content; - is standard input",
         into_list(inputs)}},
       panel_groups(first),
       {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50",

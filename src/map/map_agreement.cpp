@@ -5,16 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "map/bits.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox {
 namespace {
 
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint64_t>::max();
-
-void add_saturated(std::uint64_t& sum, std::uint64_t n) {
-  sum = n > kMaxCount - sum ? kMaxCount : sum + n;
-}
 
 /// Cells from `first` to `last` along each axis, both included. REQUIRES at least one.
 struct CellRange {
@@ -114,7 +111,7 @@ void for_each_occupied(const OccupancyMap& map, const CellRange& within, F&& f) 
 std::uint64_t occupied_cells(const OccupancyMap& map, const CellRange& within) {
   std::uint64_t sum = 0;
   with_key_word(map.lattice().depth(), [&]<KeyWord W>() {
-    for_each_occupied<W>(map, within, [&](const CellRange& cells) { add_saturated(sum, cells.cells()); });
+    for_each_occupied<W>(map, within, [&](const CellRange& cells) { detail::add_saturated(sum, cells.cells()); });
   });
   return sum;
 }
@@ -162,17 +159,17 @@ class Walk {
 
   void count(Occupancy a, Occupancy b, const CellRange& range) {
     const std::uint64_t cells = range.cells();
-    if (a == Occupancy::kOccupied) add_saturated(out_.occupied_a, cells);
-    if (b == Occupancy::kOccupied) add_saturated(out_.occupied_b, cells);
-    if (a == Occupancy::kOccupied && b == a) add_saturated(out_.occupied_both, cells);
-    if (a == Occupancy::kFree) add_saturated(out_.free_a, cells);
-    if (b == Occupancy::kFree) add_saturated(out_.free_b, cells);
-    if (a == Occupancy::kFree && b == a) add_saturated(out_.free_both, cells);
+    if (a == Occupancy::kOccupied) detail::add_saturated(out_.occupied_a, cells);
+    if (b == Occupancy::kOccupied) detail::add_saturated(out_.occupied_b, cells);
+    if (a == Occupancy::kOccupied && b == a) detail::add_saturated(out_.occupied_both, cells);
+    if (a == Occupancy::kFree) detail::add_saturated(out_.free_a, cells);
+    if (b == Occupancy::kFree) detail::add_saturated(out_.free_b, cells);
+    if (a == Occupancy::kFree && b == a) detail::add_saturated(out_.free_both, cells);
     if (a == Occupancy::kFree && b != a) look_around(range, cells);
   }
 
   void look_around(const CellRange& range, std::uint64_t cells) {
-    add_saturated(freed_only_by_a_, cells);
+    detail::add_saturated(freed_only_by_a_, cells);
     if (freed_only_by_a_ > MapAgreement::kMaxLookedAround) return;
     with_key_word(map_b_.lattice().depth(),
                   [&]<KeyWord W>() { near_free_ += near_cells<W>(range, map_b_, Occupancy::kFree); });

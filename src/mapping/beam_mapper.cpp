@@ -88,11 +88,15 @@ class BeamMapper::Stages {
   /// Maps the beams whose echoes are settled.
   Result<void> take(std::vector<EchoStream::Heard> heard) {
     watch_.lap(report_.seconds.detect);
+    if (options_.timing == Timing::kBySweep) no_pose_before_ = report_.no_pose.count;  // these beams are one sweep
     const Result<std::vector<PlacedBeam>> placed = place(std::move(heard));
     if (!placed) return tl::unexpected(placed.error());
     Result<void> mapped = options_.vote == Vote::kPerSweep ? map_as_one_scan(*placed) : map_one_by_one(*placed);
     if (!mapped) return mapped;
-    report_.sweeps += stream_.complete_sweeps() - sweeps_;
+    if (stream_.complete_sweeps() > sweeps_) {
+      if (report_.no_pose.count == no_pose_before_) report_.sweeps += stream_.complete_sweeps() - sweeps_;
+      no_pose_before_ = report_.no_pose.count;
+    }
     sweeps_ = stream_.complete_sweeps();
     report_.skipped = report_.no_pose.count + report_.outside.count;
     return {};
@@ -179,6 +183,7 @@ class BeamMapper::Stages {
   std::map<std::uint64_t, std::optional<Pose>> poses_;  ///< map_from_body of the beams that wait, by their numbers
   std::uint64_t beams_ = 0;                             ///< that the stream was given
   std::size_t sweeps_ = 0;                              ///< complete ones that it has counted
+  std::size_t no_pose_before_ = 0;                      ///< beams left out before this sweep
   BuildReport report_;
   detail::Stopwatch watch_;
 };

@@ -115,7 +115,7 @@ TEST(FirstUse, BinLengthsAreListedWithTheirBeams) {
   std::string csv = turns_csv(3);
   csv += "3,27,0.2,1,2,3\n";
   here.write("a.csv", csv);
-  EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("0.1 m (3 beams), 0.2 m (1 beams)"));
+  EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("0.1 m (3 beams), 0.2 m (1 beam)"));
 }
 
 TEST(FirstUse, APictureEndsAtTheMaximumRange) {

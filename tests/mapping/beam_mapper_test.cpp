@@ -169,6 +169,20 @@ TEST(BeamMapper, EachBeamKeepsItsPoseWhenBeamsAreMappedOneByOne) {
   expect_same(by_sweep, by_beam);
 }
 
+// Kills a report of more sweeps than its beams can fill: those that the poses do not cover.
+TEST(BeamMapper, CountsNoSweepWithBeamsLeftOut) {
+  OccupancyMap map({.resolution_m = 0.05});
+  auto mapper = BeamMapper::make(options_of(BeamShape::kRay, Vote::kPerSweep), map);
+  ASSERT_TRUE(mapper);
+  const std::vector<Beam> beams = room(630);  // three turns of 200 beams, and 30
+  for (std::size_t n = 0; n < beams.size(); ++n) {
+    ASSERT_TRUE(mapper->add(beams[n], n < 410 ? std::optional(Pose::Identity()) : std::nullopt));
+  }
+  ASSERT_TRUE(mapper->finish());
+  EXPECT_EQ(mapper->report().beams, 410U);
+  EXPECT_EQ(mapper->report().sweeps, 2U);
+}
+
 // Kills a beam that is counted for another reason, or whose place is not told.
 TEST(BeamMapper, CountsWhatItLeavesOutByReasonWithTheFirst) {
   BuildOptions options = options_of(BeamShape::kRay, Vote::kPerSweep);

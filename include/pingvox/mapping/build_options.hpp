@@ -54,7 +54,7 @@ struct LeftOut {
 /// What was read and what became of it.
 struct BuildReport {
   std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
-  std::size_t sweeps = 0;   ///< complete ones (or point scans)
+  std::size_t sweeps = 0;   ///< complete ones whose beams were all mapped (or point scans)
   std::size_t echoes = 0;   ///< within max_range_m; of point scans all points
   std::size_t skipped = 0;  ///< damaged, without a pose, or outside
   LeftOut no_pose;          ///< of those skipped, those heard when the pose is not known
