@@ -178,7 +178,6 @@ class TreeWords {
 
   unsigned add(const detail::Group& group, int depth) {
     std::uint16_t* const at = end_++;
-    if (depth + 1 == kBrickDepth) fetch_bricks(group);
     unsigned word = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) word |= add(group.child[octant], depth + 1) << (2 * octant);
     if (is_alike(word)) {
@@ -193,15 +192,6 @@ class TreeWords {
   /// Whether all that is known below a node is free: of most bricks that is told without their values, which lie in
   /// four times as much memory as the rest.
   bool is_all_free(const detail::Entry& entry) const { return has_maxima_ && state_of(LogOdds(entry.value)) == kFree; }
-
-  /// Asks for what is to be read of the bricks below a group.
-  void fetch_bricks(const detail::Group& group) const {
-    for (const detail::Entry& child : group.child) {
-      if (!child.is_inner()) continue;
-      const detail::BrickView brick = tree_.bricks[child.link];
-      is_all_free(child) ? __builtin_prefetch(&brick.known) : detail::fetch(brick);
-    }
-  }
 
   unsigned add(const detail::CellStates& cells) {
     const EightWords octants = words_of(cells.free, cells.occupied);

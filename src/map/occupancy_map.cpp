@@ -51,39 +51,17 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   }
 }
 
-/// The octants of a key, deepest lowest: three bits each.
-template <KeyWord W>
-class Octants {
- public:
-  explicit Octants(const BasicKey<W>& key) : key_(key) {}
-  std::size_t at(int level) const { return static_cast<std::size_t>(key_.octant(level)); }
-  std::size_t cell_in_brick() const { return static_cast<std::size_t>(detail::cell_in_brick(key_)); }
-
- private:
-  BasicKey<W> key_;
-};
-template <KeyWord W>
-  requires(sizeof(W) <= 2)
-class Octants<W> {
- public:
-  explicit Octants(const BasicKey<W>& key) : code_(detail::code_of(key)) {}
-  std::size_t at(int level) const { return static_cast<std::size_t>(code_ >> (3 * level) & 7); }
-  std::size_t cell_in_brick() const { return static_cast<std::size_t>(code_ & 63); }
-
- private:
-  std::uint64_t code_;
-};
-
 /// The deepest entry that holds a key.
 template <KeyWord W>
-inline detail::Entry entry_above(const detail::BrickTree& tree, const BasicKey<W>& key, const Octants<W>& octants) {
+inline detail::Entry entry_above(const detail::BrickTree& tree, const BasicKey<W>& key) {
   detail::Entry entry = tree.root;
   int level = tree.levels;
   if (const detail::Entry* const node = tree.shortcut ? tree.shortcut->node_of(key) : nullptr) {
     entry = *node;
     level = tree.shortcut->level;
   }
-  while (--level >= 2 && entry.is_inner()) entry = tree.groups[entry.link].child[octants.at(level)];
+  while (--level >= 2 && entry.is_inner())
+    entry = tree.groups[entry.link].child[static_cast<std::size_t>(key.octant(level))];
   return entry;
 }
 
@@ -288,12 +266,11 @@ std::optional<NodeView> OccupancyMap::node_at(const BasicKey<W>& key, int depth)
 
 template <KeyWord W>
 std::optional<LogOdds> OccupancyMap::at(const BasicKey<W>& key) const {
-  const Octants<W> octants(key);
-  const detail::Entry entry = entry_above(*tree_, key, octants);
+  const detail::Entry entry = entry_above(*tree_, key);
   if (entry.is_none()) return std::nullopt;
   if (entry.is_leaf()) return LogOdds(entry.value);
   const detail::BrickView brick = tree_->bricks[entry.link];
-  const std::size_t cell = octants.cell_in_brick();
+  const std::size_t cell = static_cast<std::size_t>(detail::cell_in_brick(key));
   if (((brick.known >> cell) & 1) == 0) return std::nullopt;
   return LogOdds(brick.value[cell]);
 }
@@ -307,13 +284,12 @@ std::optional<LogOdds> OccupancyMap::at(const Eigen::Vector3d& point_m) const {
 
 template <KeyWord W>
 Occupancy OccupancyMap::classify(const BasicKey<W>& key) const {
-  const Octants<W> octants(key);
-  const detail::Entry entry = entry_above(*tree_, key, octants);
+  const detail::Entry entry = entry_above(*tree_, key);
   float value = entry.value;
   unsigned is_known = entry.is_none() ? 0 : 1;
   if (entry.is_inner()) {
     const detail::BrickView brick = tree_->bricks[entry.link];
-    const std::size_t cell = octants.cell_in_brick();
+    const std::size_t cell = static_cast<std::size_t>(detail::cell_in_brick(key));
     value = brick.value[cell];
     is_known = static_cast<unsigned>(brick.known >> cell) & 1U;
   }

@@ -15,14 +15,6 @@ constexpr std::uint64_t spread_bits(std::uint64_t word) {
   return (word | word << 2) & 0x1249249249249249U;
 }
 
-/// The same for 16 bits, a step less.
-constexpr std::uint64_t spread_16_bits(std::uint16_t word) {
-  std::uint64_t bits = (word | std::uint64_t{word} << 16) & 0x1F0000FF0000FFU;
-  bits = (bits | bits << 8) & 0x100F00F00F00F00FU;
-  bits = (bits | bits << 4) & 0x10C30C30C30C30C3U;
-  return (bits | bits << 2) & 0x1249249249249249U;
-}
-
 /// Takes every third bit, from the lowest on.
 constexpr std::uint64_t gather_bits(std::uint64_t code) {
   code &= 0x1249249249249249U;
@@ -36,10 +28,7 @@ constexpr std::uint64_t gather_bits(std::uint64_t code) {
 /// The number of a key in the tree's order: three bits a level, its octant. REQUIRES components of up to 21 bits.
 template <KeyWord W>
 constexpr std::uint64_t code_of(const BasicKey<W>& key) {
-  const auto spread = [](W word) {
-    if constexpr (sizeof(W) <= 2) return spread_16_bits(word);
-    return spread_bits(static_cast<std::uint64_t>(word));
-  };
+  const auto spread = [](W word) { return spread_bits(static_cast<std::uint64_t>(word)); };
   return spread(key.x) | spread(key.y) << 1 | spread(key.z) << 2;
 }
 

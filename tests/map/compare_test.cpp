@@ -127,10 +127,10 @@ TEST(CompareMaps, ManyCellsSaturateInsteadOfWrapping) {
   b.edit().set(WideKey{}, 1, LogOdds(1.0F));
   const auto result = compare_maps(a, b, Sameness::kLogOdds);
   ASSERT_TRUE(result);
-  constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
-  EXPECT_EQ(result->same, kMost);
-  EXPECT_EQ(result->only_a, kMost);
-  EXPECT_EQ(result->cells(), kMost);
+  constexpr auto kMax = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_EQ(result->same, kMax);
+  EXPECT_EQ(result->only_a, kMax);
+  EXPECT_EQ(result->cells(), kMax);
 }
 
 TEST(CompareMaps, RefusesMapsOfDifferentCells) {

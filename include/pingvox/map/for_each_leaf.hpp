@@ -95,7 +95,6 @@ class LeafWalk {
       return;
     }
     const Group& group = tree_.groups[entry.link];
-    if (depth == lattice_depth_ - 3) fetch_bricks(tree_, group);
     for (std::size_t octant = 0; octant < 8; ++octant) visit(group.child[octant], below(key, depth, octant), depth + 1);
   }
 

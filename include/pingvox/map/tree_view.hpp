@@ -87,20 +87,6 @@ struct TreeView {
   bool pruned = true;    ///< whether eight equal cells are to be read as one leaf
 };
 
-/// Asks for a brick from memory.
-inline void fetch(BrickView brick) {
-  constexpr std::size_t kInLine = 64 / sizeof(float);
-  __builtin_prefetch(&brick.known);
-  for (std::size_t cell = 0; cell < brick.value.size(); cell += kInLine) __builtin_prefetch(&brick.value[cell]);
-}
-
-/// Asks for the bricks below a group: they lie anywhere, and are there when a walk over them comes to the next one.
-inline void fetch_bricks(const TreeView& tree, const Group& group) {
-  for (const Entry& child : group.child) {
-    if (child.is_inner()) fetch(tree.bricks[child.link]);
-  }
-}
-
 /// What an octant of a brick says of its cells. REQUIRES a known cell in it.
 float summary_of_octant(BrickView brick, int octant, Parents parents);
 /// The cells of those octants of which all cells are known, and equal.
