@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
@@ -14,6 +15,7 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/io/tum.hpp"
 #include "pingvox/map/slice.hpp"
 #include "pingvox/map/surface_map.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
@@ -100,6 +102,18 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
                      skipped > 0 ? fmt::format("; {} damaged records skipped", skipped) : "");
 }
 
+/// Writes where the vehicle was. @return what was written
+Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command) {
+  const Result<FileBytes> file = ByteStream::whole(std::move(stream));
+  if (!file) return tl::unexpected(file.error());
+  const Result<VehiclePath> path = vehicle_path(*file, 0.0, command.damage);
+  if (!path) return tl::unexpected(path.error());
+  const Result<void> written =
+      write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
+  if (!written) return tl::unexpected(written.error());
+  return nav_text(*path);
+}
+
 Error with_name(Error error, const std::string& name) {
   error.message = fmt::format("{}: {}", name, error.message);
   return error;
@@ -167,6 +181,8 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command);
+  if (from == FormatKind::kNav && to == FormatKind::kTrajectory)
+    return convert_nav_to_poses(std::move(stream), command);
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
   if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return conversion_error(stream.name(), format, command.format);
   const Result<FileBytes> file = ByteStream::whole(std::move(stream));

@@ -111,7 +111,16 @@ JsonObject threshold_json(const BuildReport& report) {
   return json.add("min", *report.min_threshold).add("max", *report.max_threshold);
 }
 
-std::string json_of(const Totals& totals, const OccupancyMap& map) {
+JsonObject nav_json(const VehiclePath& path) {
+  JsonObject json;
+  return json.add("attitude", path.nav->attitude)
+      .add("position", path.nav->position)
+      .add("poses", path.trajectory.poses().size())
+      .add("gaps", path.trajectory.gaps())
+      .add("skipped", path.nav->damaged);
+}
+
+std::string json_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
   const BuildReport& report = totals.report;
   const MapCounts counts = map.counts();
   JsonObject seconds;
@@ -146,10 +155,11 @@ std::string json_of(const Totals& totals, const OccupancyMap& map) {
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
       .add("map", held);
+  if (path.nav) json.add("nav", nav_json(path));
   return json.text() + "\n";
 }
 
-std::string text_of(const Totals& totals, const OccupancyMap& map, const MapCommand& command) {
+std::string text_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map, const MapCommand& command) {
   const std::string& output = command.output;
   const BuildReport& report = totals.report;
   const auto& s = report.seconds;
@@ -171,7 +181,8 @@ std::string text_of(const Totals& totals, const OccupancyMap& map, const MapComm
     beams = report_line("beam", beam_text(totals.beam)) +
             report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
-  return name + "\n" + report_line("read", read) + beams + map_text(map, map.counts()) +
+  return name + "\n" + report_line("read", read) + (path.nav ? report_line("nav", nav_text(path)) : "") + beams +
+         map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
@@ -184,8 +195,8 @@ Result<int> run(const MapCommand& command, Console& console) {
   const Stopwatch total;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const Result<Trajectory> trajectory = trajectory_of(command.poses);
-  if (!trajectory) return tl::unexpected(trajectory.error());
+  const Result<VehiclePath> path = vehicle_path(command.path, command.damage);
+  if (!path) return tl::unexpected(path.error());
 
   Totals totals;
   std::vector<std::string> kinds;
@@ -219,7 +230,7 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
                                     bytes_text(map->memory_bytes())));
       };
-      const Result<MappedLog> mapped = map_log(*log, name, *trajectory, command.build, command.head, *map, progress);
+      const Result<MappedLog> mapped = map_log(*log, name, *path, command.build, command.head, *map, progress);
       if (!mapped) return tl::unexpected(mapped.error());
       totals.add(*mapped, *log);
       if (!mapped->skipped_text.empty()) {
@@ -227,7 +238,8 @@ Result<int> run(const MapCommand& command, Console& console) {
         console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));
       }
       const bool has_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*log);
-      if (const auto beside = trajectory_beside(name); beside && has_beams && !command.poses) {
+      if (const auto beside = trajectory_beside(name);
+          beside && has_beams && !command.path.poses && !command.path.nav) {
         bar.clear();
         console.say(fmt::format("{}: mapped as if the vehicle did not move; its trajectory may be --poses {}", name,
                                 quote_for_shell(*beside)));
@@ -242,8 +254,8 @@ Result<int> run(const MapCommand& command, Console& console) {
   totals.total_s = total.seconds();
 
   const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(totals, *map))
-                                   : console.summarise(text_of(totals, *map, command), command.output);
+                                   ? console.print(json_of(totals, *path, *map))
+                                   : console.summarise(text_of(totals, *path, *map, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (map->empty() && totals.report.outside.count == 0) {
     console.say(

@@ -177,12 +177,12 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage dama
 Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, Damage damage) {
   Result<OccupancyMap> map = OccupancyMap::make(panel.map);
   if (!map) return map;
-  const Result<Trajectory> trajectory = trajectory_of(panel.poses);
-  if (!trajectory) return tl::unexpected(trajectory.error());
+  const Result<VehiclePath> path = vehicle_path(panel.path, damage);
+  if (!path) return tl::unexpected(path.error());
   const std::string name = file.name;
   const Result<Log> log = open_log(std::move(file), damage);
   if (!log) return tl::unexpected(log.error());
-  const Result<MappedLog> report = map_log(*log, name, *trajectory, panel.build, panel.head, *map);
+  const Result<MappedLog> report = map_log(*log, name, *path, panel.build, panel.head, *map);
   if (!report) return tl::unexpected(report.error());
   return map;
 }

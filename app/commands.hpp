@@ -52,12 +52,19 @@ struct HeadArgs {
   }
 };
 
+/// Where the vehicle was: at most one of the two files.
+struct PathArgs {
+  std::optional<std::string> poses;  ///< TUM lines
+  std::optional<std::string> nav;    ///< a navigation log
+  double nav_offset_s = 0.0;         ///< added to its times
+};
+
 struct MapCommand {
   OutputOptions output_options;
   std::vector<std::string> logs;  ///< at least one; "-" is standard input
   std::string output;             ///< "-" is standard output
   Format format = Format::kBt;
-  std::optional<std::string> poses;
+  PathArgs path;
   std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
   MapOptions map;
@@ -122,7 +129,7 @@ struct PanelCommand {
   MapOptions map;  ///< for logs that are mapped
   BuildOptions build;
   HeadArgs head;
-  std::optional<std::string> poses;
+  PathArgs path;
 };
 
 struct RenderCommand {

@@ -2,14 +2,20 @@
 
 #include <fmt/core.h>
 
+#include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
+#include "console.hpp"
+#include "nav_report.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -25,7 +31,7 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
 }
 
 /// "3036 outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log)"
-std::string text_of_skipped(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice) {
+std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, const Lattice& lattice) {
   std::string text;
   const auto add = [&text](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
     if (left_out.count == 0) return;
@@ -34,10 +40,11 @@ std::string text_of_skipped(const MappedLog& mapped, const Trajectory& trajector
     text += fmt::format(" ({})", advice);
   };
   add({mapped.damaged, std::nullopt}, "damaged", "--strict stops at the first one and says where it is");
-  const auto& poses = trajectory.poses();
+  const auto& poses = path.trajectory.poses();
   add(mapped.report.no_pose,
-      fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s", poses.front().time_s, poses.back().time_s),
-      "--poses must cover the log");
+      fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
+                  path.trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
+      path.nav ? "--nav must cover the log; --nav-offset corrects its clock" : "--poses must cover the log");
   add(mapped.report.outside,
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
@@ -59,6 +66,34 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, describe(*format)));
 }
 
+Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage) {
+  if (!path.nav)
+    return trajectory_of(path.poses).map([](Trajectory trajectory) {
+      return VehiclePath{std::move(trajectory), std::nullopt};
+    });
+  const Result<FileBytes> file = read_file(*path.nav);
+  if (!file) return tl::unexpected(file.error());
+  return vehicle_path(*file, path.nav_offset_s, damage);
+}
+
+Result<VehiclePath> vehicle_path(const FileBytes& nav, double offset_s, Damage damage) {
+  const Result<NavFile> read = read_nav(nav, damage);
+  if (!read) return tl::unexpected(read.error());
+  Result<NavTrajectory> made = nav_trajectory(read->log, offset_s);
+  if (!made) return fail(made.error().code, fmt::format("{}: {}", nav.name, made.error().message));
+  return VehiclePath{std::move(made->trajectory),
+                     VehiclePath::Nav{made->attitude, made->position, damaged_records(*read)}};
+}
+
+std::string nav_text(const VehiclePath& path) {
+  assert(path.nav);
+  std::string text = fmt::format("{} poses from {} and {}", path.trajectory.poses().size(),
+                                 on_one_line(path.nav->attitude), on_one_line(path.nav->position));
+  if (path.trajectory.gaps() > 0) text += fmt::format(", {} gaps", path.trajectory.gaps());
+  if (path.nav->damaged > 0) text += fmt::format("; {} damaged records skipped", path.nav->damaged);
+  return text;
+}
+
 Result<void> check_ranges(const BuildOptions& options) {
   const double nearest_m = options.echo.min_range_m.value_or(0.0);
   if (options.echo.max_range_m > nearest_m) return {};
@@ -68,12 +103,11 @@ Result<void> check_ranges(const BuildOptions& options) {
                   nearest_m == EchoOptions::kUsualBlanking_m ? " when it is not given" : "", options.echo.max_range_m));
 }
 
-Result<MappedLog> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
-                          const BuildOptions& options, const HeadArgs& head, OccupancyMap& map,
-                          const Progress& progress) {
+Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
+                          const HeadArgs& head, OccupancyMap& map, const Progress& progress) {
   const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
   const BuildOptions of_head = head.applied_to(options, beams != nullptr ? (*beams)->device() : nullptr);
-  Result<BuildReport> report = build(log, trajectory, of_head, map, progress);
+  Result<BuildReport> report = build(log, path.trajectory, of_head, map, progress);
   if (!report) {
     // Errors of the map itself name no file; those of options need none.
     const Error::Code code = report.error().code;
@@ -84,7 +118,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Traject
   mapped.report = *report;
   mapped.beam = of_head.model;
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
-  mapped.skipped_text = text_of_skipped(mapped, trajectory, map.lattice());
+  mapped.skipped_text = text_of_skipped(mapped, path, map.lattice());
   if (report->beams == 0) {
     const std::string reason = mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text;
     return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", name, reason));

@@ -14,6 +14,22 @@ namespace pingvox::app {
 /// The trajectory in a file of TUM lines; without one the vehicle stays at the origin.
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses);
 
+/// Where the vehicle was, and what a navigation log said of it.
+struct VehiclePath {
+  Trajectory trajectory;
+  struct Nav {
+    std::string attitude, position;  ///< its sources
+    std::size_t damaged = 0;         ///< records that could not be read
+  };
+  std::optional<Nav> nav;  ///< nullopt: it is not from a navigation log
+};
+/// Without a file the vehicle stays at the origin.
+Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage);
+/// From a navigation log. @param offset_s  added to its times
+Result<VehiclePath> vehicle_path(const FileBytes& nav, double offset_s, Damage damage);
+/// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
+std::string nav_text(const VehiclePath& path);
+
 /// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);
 
@@ -28,9 +44,8 @@ struct MappedLog {
 /// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
 /// @param name  of the log, for messages
 /// @param head  what the command line says of it
-Result<MappedLog> map_log(const Log& log, const std::string& name, const Trajectory& trajectory,
-                          const BuildOptions& options, const HeadArgs& head, OccupancyMap& map,
-                          const Progress& progress = {});
+Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
+                          const HeadArgs& head, OccupancyMap& map, const Progress& progress = {});
 
 /// A trajectory file beside a log that belongs to it by its name: "dive.tum" of "dive.csv".
 std::optional<std::string> trajectory_beside(const std::string& log);

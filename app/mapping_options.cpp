@@ -162,6 +162,15 @@ OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
   return group;
 }
 
+Result<PathArgs> BuildArgs::path() const {
+  if (!poses.empty() && !nav.empty()) return usage_error("--poses and --nav: exclude each other");
+  PathArgs path;
+  if (!poses.empty()) path.poses = poses;
+  if (!nav.empty()) path.nav = nav;
+  path.nav_offset_s = nav_offset_s;
+  return path;
+}
+
 OptionTable::Group map_group(BuildArgs& args) {
   MapOptions& map = args.map;
   BeamModelOptions& model = args.build.model;
@@ -192,6 +201,10 @@ OptionTable::Group sensor_group(BuildArgs& args) {
       "Sensor",
       {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "it does not move",
         into(args.poses)},
+       {"--nav", 0, "FILE", "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, CSV), instead of --poses",
+        "", into(args.nav)},
+       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
+        within({-1e10, 1e10}, into_number(args.nav_offset_s))},
        {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
         "0,0,0,0,0,0", into_mount(args.build.body_from_sensor)},
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
@@ -212,6 +225,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
     if (option.name == "--beam-width" || option.name == "--free-share" || option.name == "--device")
       option.only_with = {{"--beam", {"fan", "cone"}}};
     if (option.name == "--beam-height") option.only_with = {{"--beam", {"cone"}}};
+    if (option.name == "--nav-offset") option.only_with = {{"--nav"}};
   }
   return group;
 }

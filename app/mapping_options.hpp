@@ -40,7 +40,8 @@ struct BuildArgs {
   BuildOptions build;  ///< filter and echo: see `echoes`
   HeadArgs head;
   EchoArgs echoes;
-  std::string poses;
+  std::string poses, nav;
+  double nav_offset_s = 0.0;
 
   BuildOptions build_options() const {
     BuildOptions all = head.applied_to(build, nullptr);
@@ -48,6 +49,8 @@ struct BuildArgs {
     all.echo = echoes.echo;
     return all;
   }
+  /// kBadOption when both files are given.
+  Result<PathArgs> path() const;
 };
 
 /// All but whether the maximum range is beyond the minimum one, which scans of points need not have: `check_ranges`.

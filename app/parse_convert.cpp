@@ -14,11 +14,11 @@
 namespace pingvox::app {
 namespace {
 
-constexpr std::array kLogAndMapFormats = {Choice<Format>{"csv", Format::kCsv},   Choice<Format>{"bt", Format::kBt},
-                                          Choice<Format>{"ot", Format::kOt},     Choice<Format>{"pvx", Format::kPvx},
-                                          Choice<Format>{"ply", Format::kPly},   Choice<Format>{"pcd", Format::kPcd},
-                                          Choice<Format>{"xyz", Format::kXyz},   Choice<Format>{"pgm", Format::kGrid},
-                                          Choice<Format>{"yaml", Format::kGrid}, Choice<Format>{"asc", Format::kAsc}};
+constexpr std::array kLogAndMapFormats = {
+    Choice<Format>{"csv", Format::kCsv}, Choice<Format>{"bt", Format::kBt},    Choice<Format>{"ot", Format::kOt},
+    Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},  Choice<Format>{"pcd", Format::kPcd},
+    Choice<Format>{"xyz", Format::kXyz}, Choice<Format>{"pgm", Format::kGrid}, Choice<Format>{"yaml", Format::kGrid},
+    Choice<Format>{"asc", Format::kAsc}, Choice<Format>{"tum", Format::kTum}};
 constexpr std::array kSurfaces = {Choice<Surface>{"highest", Surface::kHighest},
                                   Choice<Surface>{"lowest", Surface::kLowest}};
 
@@ -62,13 +62,15 @@ Result<Command> convert_command(const Args& args) {
   const std::vector<std::string> maps = {std::string(kMaps), std::string(kMeshes)};
   OptionTable table{
       "convert",
-      "Writes a file in another format: a log of beams, its echoes or navigation as CSV; a map as another map, as\n"
-      "points, as a grid for ROS's map_server, or as heights; a mesh as the map of its surface.",
+      "Writes a file in another format: a log of beams, its echoes or navigation as CSV; navigation as poses; a map "
+      "as\n"
+      "another map, as points, as a grid for ROS's map_server, or as heights; a mesh as the map of its surface.",
       {{"IN", Positional::Count::kOne,
         "a log of beams or of navigation, a map or a mesh (OFF, PLY, STL); - is standard input", into(command.input)}},
       {{"Options",
         {output_option(command.output,
-                       "the output: .csv from a log; .bt .ot .pvx from a map or a mesh, .ply .pcd .xyz (occupied "
+                       "the output: .csv from a log; .tum (poses) from a navigation log; .bt .ot .pvx from a map or a "
+                       "mesh, .ply .pcd .xyz (occupied "
                        "cells as points), .yaml with its .pgm (map_server), .asc (ESRI grid of heights); - is standard "
                        "output"),
          {"--format", 0, choices_text(kLogAndMapFormats), "format of the output, if its name has no such suffix",
@@ -86,7 +88,8 @@ Result<Command> convert_command(const Args& args) {
          {"--height", 0, choices_text(kSurfaces), "the occupied cell of a column whose upper face .asc contains",
           choice_name(kSurfaces, command.surface), take_surface}}}},
       {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.mat --echoes -o echoes.csv",
-       "pingvox convert tank.bt -o tank.ply", "pingvox convert tank.bt -o layer.ply --z 0",
+       "pingvox convert dive.tlog -o dive.tum", "pingvox convert tank.bt -o tank.ply",
+       "pingvox convert tank.bt -o layer.ply --z 0",
        "pingvox convert harbour.bt -o harbour.yaml --min-z -0.5 --max-z 0.5", "pingvox convert seabed.ot -o seabed.asc",
        "pingvox convert hull.stl -o hull.bt --resolution 0.1"},
       "A column of a grid is occupied if any of its cells is, free if one is free and none is occupied, else unknown."};

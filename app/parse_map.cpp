@@ -91,6 +91,7 @@ Result<Command> map_command(const Args& args) {
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
+       "pingvox map dive.csv -o reef.ot --nav dive.tlog --nav-offset -1712333808.974",
        "pingvox map scans.graph -o scans.bt --resolution 0.1",
        "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
       "Point scans and clouds have no beam: only the options of the map (except --vote), --ray and --max-range apply.\n"
@@ -112,9 +113,12 @@ Result<Command> map_command(const Args& args) {
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
     }
-    if (!build.poses.empty()) command.poses = build.poses;
+    const Result<PathArgs> path = build.path();
+    if (!path) return tl::unexpected(path.error());
+    command.path = *path;
     Args inputs = command.logs;
     inputs.push_back(build.poses);
+    inputs.push_back(build.nav);
     if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;

@@ -149,7 +149,9 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   panel.map = args.build.map;
   panel.build = args.build.build_options();
   panel.head = args.build.head;
-  if (!args.build.poses.empty()) panel.poses = args.build.poses;
+  const Result<PathArgs> path = args.build.path();
+  if (!path) return tl::unexpected(path.error());
+  panel.path = *path;
   panel.map_picture.target_px = panel.echo_picture.target_px = args.size_px.value_or(usual_size_px);
   if (panel.view == PictureView::kSide) panel.map_picture.view = args.from;
   if (panel.view == PictureView::kSlice) {
@@ -266,7 +268,7 @@ Result<Command> render_command(const Args& args) {
     }
     Args files = inputs;
     for (const PanelArgs& setting : settings) {
-      if (setting.build.poses == "-") files.emplace_back("-");
+      if (setting.build.poses == "-" || setting.build.nav == "-") files.emplace_back("-");
     }
     if (const auto once = check_standard_input(files); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pingvox {
 
 Trajectory Trajectory::still(const Pose& map_from_body) {
-  return Trajectory({{0.0, map_from_body}}, true);
+  return Trajectory({{0.0, map_from_body}}, std::numeric_limits<double>::infinity(), true);
 }
 
-Result<Trajectory> Trajectory::make(std::vector<StampedPose> poses) {
+Result<Trajectory> Trajectory::make(std::vector<StampedPose> poses, double longest_step_s) {
   if (poses.empty()) return fail(Error::Code::kCorrupt, "a trajectory needs at least one pose");
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!std::isfinite(poses[i].time_s) || !poses[i].map_from_body.matrix().allFinite()) {
@@ -22,7 +23,7 @@ Result<Trajectory> Trajectory::make(std::vector<StampedPose> poses) {
                   fmt::format("pose {}: time {} s does not follow {} s", i, poses[i].time_s, poses[i - 1].time_s));
     }
   }
-  return Trajectory(std::move(poses), false);
+  return Trajectory(std::move(poses), longest_step_s, false);
 }
 
 std::optional<Pose> Trajectory::at(double time_s) const {
@@ -33,8 +34,17 @@ std::optional<Pose> Trajectory::at(double time_s) const {
   if (after->time_s == time_s) return after->map_from_body;
   if (after == poses_.begin()) return std::nullopt;
   const auto before = std::prev(after);
-  const double share = (time_s - before->time_s) / (after->time_s - before->time_s);
-  return interpolate(before->map_from_body, after->map_from_body, share);
+  const double step_s = after->time_s - before->time_s;
+  if (step_s > longest_step_s_) return std::nullopt;
+  return interpolate(before->map_from_body, after->map_from_body, (time_s - before->time_s) / step_s);
+}
+
+std::size_t Trajectory::gaps() const {
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < poses_.size(); ++i) {
+    if (poses_[i].time_s - poses_[i - 1].time_s > longest_step_s_) ++count;
+  }
+  return count;
 }
 
 }  // namespace pingvox

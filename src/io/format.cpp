@@ -167,7 +167,7 @@ std::optional<Format> format_for_writing(std::string_view path) {
       std::pair{std::string_view(".pcd"), Format::kPcd},  std::pair{std::string_view(".csv"), Format::kCsv},
       std::pair{std::string_view(".pgm"), Format::kGrid}, std::pair{std::string_view(".yaml"), Format::kGrid},
       std::pair{std::string_view(".asc"), Format::kAsc},  std::pair{std::string_view(".png"), Format::kPng},
-      std::pair{std::string_view(".xyz"), Format::kXyz}};
+      std::pair{std::string_view(".xyz"), Format::kXyz},  std::pair{std::string_view(".tum"), Format::kTum}};
   const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
   for (const auto& [suffix, format] : kSuffixes) {
     if (path.size() < suffix.size()) continue;

@@ -33,7 +33,7 @@ class DataflashNav {
     if (name == "ATT" || name == "AHR2") put_attitude(record);
     if (name.starts_with("XKF1") || name.starts_with("NKF1") || name == "NKF6") {
       put_attitude(record);
-      if (const auto ned = three(record, "PN", "PE", "PD")) put(kPosition, from_ned::world(*ned));
+      put_position(record);
     }
     if (name.starts_with("IMU")) {
       if (const auto rates = three(record, "GyrX", "GyrY", "GyrZ")) put(kTurnRate, from_ned::body(*rates));
@@ -77,6 +77,14 @@ class DataflashNav {
     if (const auto rpy_deg = three(record, "Roll", "Pitch", "Yaw")) {
       put(NavQuantity::kAttitude, from_ned::attitude(*rpy_deg * kRadPerDeg));
     }
+  }
+
+  /// The filter says 0, 0 as long as nothing tells it where it is.
+  void put_position(const DataflashRecord& record) {
+    const auto ned = three(record, "PN", "PE", "PD");
+    if (!ned) return;
+    NavSample* const sample = put(NavQuantity::kPosition, from_ned::world(*ned));
+    if (sample != nullptr) sample->valid = ned->x() != 0.0 || ned->y() != 0.0;
   }
 
   void put_range(const DataflashRecord& record) {

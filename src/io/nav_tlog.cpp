@@ -65,6 +65,13 @@ NavSample sample_of(const Eigen::Vector3d& value) {
   return sample;
 }
 
+/// A position of the autopilot's filter, which says 0, 0 as long as nothing tells it where it is.
+NavSample position_of(const Eigen::Vector3d& north_east_down) {
+  NavSample sample = sample_of(from_ned::world(north_east_down));
+  sample.valid = north_east_down.x() != 0.0 || north_east_down.y() != 0.0;
+  return sample;
+}
+
 /// A fix of integers of 1e-7 degrees; 0, 0 is what a receiver without satellites says.
 NavSample fix_of(std::int32_t latitude, std::int32_t longitude, double altitude_m) {
   NavSample sample = sample_of({latitude * 1e-7 * kRadPerDeg, longitude * 1e-7 * kRadPerDeg, altitude_m});
@@ -139,7 +146,7 @@ class TlogNav {
         return add_quaternion(fields, sender);
       case 32:
         has_boot_time(sender, fields.at<std::uint32_t>(0));
-        return put("LOCAL_POSITION_NED", kPosition, sample_of(from_ned::world(fields.three<float>(4))));
+        return put("LOCAL_POSITION_NED", kPosition, position_of(fields.three<float>(4)));
       case 33:
         has_boot_time(sender, fields.at<std::uint32_t>(0));
         put("GLOBAL_POSITION_INT", kDepth, sample_of({fields.at<std::int32_t>(16) * -1e-3, 0, 0}));

@@ -118,9 +118,9 @@ NavSummary summary_of(const NavSource& source) {
   if (steps_s.empty()) return summary;
   const double usual_s = median(steps_s);
   summary.rate_hz = 1.0 / usual_s;
-  const double longest_s = std::max(5.0 * usual_s, 0.5);
+  summary.longest_step_s = std::max(5.0 * usual_s, 0.5);
   summary.gaps = static_cast<std::size_t>(
-      std::count_if(steps_s.begin(), steps_s.end(), [&](double step_s) { return step_s > longest_s; }));
+      std::count_if(steps_s.begin(), steps_s.end(), [&](double step_s) { return step_s > summary.longest_step_s; }));
   return summary;
 }
 

@@ -54,6 +54,15 @@ TEST(Trajectory, IsReadBetweenItsPosesAndNowhereElse) {
   EXPECT_TRUE(Trajectory::still(pose_with_yaw(3.0, 1.0)).at(-1e9)->isApprox(pose_with_yaw(3.0, 1.0)));
 }
 
+TEST(Trajectory, HasNoPoseWithinAGap) {
+  const auto made = Trajectory::make(
+      {{10.0, pose_with_yaw(0.0, 0.0)}, {11.0, pose_with_yaw(1.0, 1.0)}, {12.5, pose_with_yaw(5.0, 1.0)}}, 1.0);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->gaps(), 1U);
+  EXPECT_TRUE(made->at(10.5) && made->at(11.0) && made->at(12.5)) << "a step of just this length is none";
+  EXPECT_FALSE(made->at(11.01) || made->at(12.49));
+}
+
 TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
   EXPECT_FALSE(Trajectory::make({}));
   for (const double second : {1.0, 0.5, std::nan("")}) {

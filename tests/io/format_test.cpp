@@ -126,6 +126,7 @@ TEST(Format, OfAFileToBeWrittenIsItsSuffix) {
   EXPECT_EQ(format_for_writing("map.pvx"), Format::kPvx);
   EXPECT_EQ(format_for_writing("map.ply"), Format::kPly);
   EXPECT_EQ(format_for_writing("log.csv"), Format::kCsv);
+  EXPECT_EQ(format_for_writing("dive.tum"), Format::kTum);
   EXPECT_EQ(format_for_writing("picture.png"), Format::kPng);
   EXPECT_EQ(format_for_writing("cloud.pcd"), Format::kPcd);
   EXPECT_EQ(format_for_writing("grid.yaml"), Format::kGrid);

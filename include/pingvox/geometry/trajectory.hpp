@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,17 +21,22 @@ class Trajectory {
   static Trajectory still(const Pose& map_from_body);
 
   /// @param poses  at least one; times finite and strictly rising
+  /// @param longest_step_s  poses farther apart in time have a gap between them
   /// @return kCorrupt naming the first pose (counted from 0) that breaks this
-  static Result<Trajectory> make(std::vector<StampedPose> poses);
+  static Result<Trajectory> make(std::vector<StampedPose> poses,
+                                 double longest_step_s = std::numeric_limits<double>::infinity());
 
-  /// map_from_body at a time; nullopt before the first pose and after the last.
+  /// map_from_body at a time; nullopt before the first pose, after the last, and within a gap.
   std::optional<Pose> at(double time_s) const;
 
   const std::vector<StampedPose>& poses() const { return poses_; }
+  std::size_t gaps() const;
 
  private:
-  Trajectory(std::vector<StampedPose> poses, bool still) : poses_(std::move(poses)), still_(still) {}
+  Trajectory(std::vector<StampedPose> poses, double longest_step_s, bool still)
+      : poses_(std::move(poses)), longest_step_s_(longest_step_s), still_(still) {}
   std::vector<StampedPose> poses_;
+  double longest_step_s_;
   bool still_;
 };
 

@@ -50,7 +50,7 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
 /// format, or none.
 std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning);
 
-/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .pgm .yaml .asc .png); nullopt:
+/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .tum .pgm .yaml .asc .png); nullopt:
 /// none that we write.
 std::optional<Format> format_for_writing(std::string_view path);
 

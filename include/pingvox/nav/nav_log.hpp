@@ -82,7 +82,9 @@ struct NavSummary {
   std::size_t samples = 0;
   std::size_t invalid = 0;  ///< of these, how many are not valid
   double rate_hz = 0.0;     ///< one over the median step of time; 0 for less than two different times
-  std::size_t gaps = 0;     ///< steps longer than five times the median and than half a second
+  /// Five times the median step of time, at least half a second; infinity for less than two different times.
+  double longest_step_s = std::numeric_limits<double>::infinity();
+  std::size_t gaps = 0;  ///< steps that are longer
   double from_s = 0.0, to_s = 0.0;
 };
 /// REQUIRES at least one sample.

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Where a vehicle was, as its log says.
+struct NavTrajectory {
+  /// From the body to the frame of the position: x east, y north, z up [m]. It has a pose at each time of either source
+  /// at which both are known, and a gap where one of them has one.
+  Trajectory trajectory;
+  std::string attitude, position;  ///< the names of the sources
+};
+
+/// Of each quantity the estimate of the autopilot's main filter, else the source with most valid samples. A position in
+/// metres is taken as it is; a log without one gives fixes as metres east and north of the first fix, at the depth
+/// where the log has it, else at the altitude relative to that fix.
+/// @param offset_s  added to all times
+/// @return kUnsupported when the log has no valid attitude or position, or never both at a time
+Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
+
+}  // namespace pingvox

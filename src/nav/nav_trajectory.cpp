@@ -1,0 +1,132 @@
+#include "pingvox/nav/nav_trajectory.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pingvox {
+namespace {
+
+/// The estimates that an ArduPilot vehicle itself steers by, in its telemetry and in its own log.
+constexpr std::array<std::string_view, 4> kMainEstimates = {"ATTITUDE", "ATT", "LOCAL_POSITION_NED",
+                                                            "GLOBAL_POSITION_INT"};
+
+/// Only its valid samples; nullopt: there are none.
+std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity) {
+  const NavSource* chosen = log.best(quantity);
+  if (chosen == nullptr) return std::nullopt;
+  for (const NavSource& source : log.sources()) {
+    const bool is_main = std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end();
+    if (source.quantity == quantity && is_main && std::ranges::any_of(source.samples, &NavSample::valid)) {
+      chosen = &source;
+    }
+  }
+  NavSource valid = *chosen;
+  std::erase_if(valid.samples, [](const NavSample& sample) { return !sample.valid; });
+  return valid;
+}
+
+/// What a source says, as poses. Of samples with the same time the first counts.
+template <class PoseOf>
+Result<Trajectory> trajectory_of(const NavSource& source, double offset_s, PoseOf pose_of) {
+  std::vector<StampedPose> poses;
+  for (const NavSample& sample : source.samples) {
+    const double time_s = sample.time_s + offset_s;
+    if (poses.empty() || time_s > poses.back().time_s) poses.push_back({time_s, pose_of(sample.value)});
+  }
+  return Trajectory::make(std::move(poses), summary_of(source).longest_step_s).map_error([&](Error error) {
+    error.message = fmt::format("{} of {}: {}", name_of(source.quantity), source.name, error.message);
+    return error;
+  });
+}
+
+Pose translation(const Eigen::Vector3d& position_m) {
+  return Pose(Eigen::Translation3d(position_m));
+}
+
+/// Turns fixes into positions: metres east and north of the first, on the ellipsoid of WGS 84.
+void make_positions(NavSource& fixes) {
+  constexpr double kEquator_m = 6'378'137.0, kEccentricity2 = 6.694379990141e-3;
+  const Eigen::Vector3d origin = fixes.samples.front().value;
+  const double sine = std::sin(origin.x()), curved = 1.0 - kEccentricity2 * sine * sine;
+  const double north_radius_m = kEquator_m * (1.0 - kEccentricity2) / (curved * std::sqrt(curved));
+  const double east_radius_m = kEquator_m / std::sqrt(curved) * std::cos(origin.x());
+  fixes.quantity = NavQuantity::kPosition;
+  for (NavSample& sample : fixes.samples) {
+    const Eigen::Vector3d moved = sample.value - origin;
+    sample.value = {std::remainder(moved.y(), 2.0 * std::numbers::pi) * east_radius_m, moved.x() * north_radius_m,
+                    moved.z()};
+  }
+}
+
+/// Puts positions at the depth of their time; those of which it is not known are left out.
+Result<void> set_depths(NavSource& positions, const NavSource& depth) {
+  const Result<Trajectory> depths =
+      trajectory_of(depth, 0.0, [](const Eigen::Vector3d& value) { return translation({0.0, 0.0, -value.x()}); });
+  if (!depths) return tl::unexpected(depths.error());
+  std::erase_if(positions.samples, [&](const NavSample& sample) { return !depths->at(sample.time_s); });
+  for (NavSample& sample : positions.samples) sample.value.z() = depths->at(sample.time_s)->translation().z();
+  return {};
+}
+
+/// nullopt: nothing says where the vehicle was.
+Result<std::optional<NavSource>> position_source(const NavLog& log) {
+  if (auto position = main_source(log, NavQuantity::kPosition)) return position;
+  std::optional<NavSource> fixes = main_source(log, NavQuantity::kFix);
+  if (!fixes) return std::nullopt;
+  make_positions(*fixes);
+  if (const auto depth = main_source(log, NavQuantity::kDepth)) {
+    if (const auto done = set_depths(*fixes, *depth); !done) return tl::unexpected(done.error());
+  }
+  if (fixes->samples.empty()) return std::nullopt;
+  return fixes;
+}
+
+}  // namespace
+
+Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
+  const std::optional<NavSource> attitude = main_source(log, NavQuantity::kAttitude);
+  const Result<std::optional<NavSource>> position = position_source(log);
+  if (!position) return tl::unexpected(position.error());
+  if (!attitude || !*position) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
+  }
+  const Result<Trajectory> rotations = trajectory_of(*attitude, offset_s, [](const Eigen::Vector3d& rpy) {
+    return pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z());
+  });
+  if (!rotations) return tl::unexpected(rotations.error());
+  const Result<Trajectory> translations = trajectory_of(**position, offset_s, translation);
+  if (!translations) return tl::unexpected(translations.error());
+
+  std::vector<double> times_s;
+  for (const Trajectory* trajectory : {&*rotations, &*translations}) {
+    for (const StampedPose& pose : trajectory->poses()) times_s.push_back(pose.time_s);
+  }
+  std::sort(times_s.begin(), times_s.end());
+  times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
+  std::vector<StampedPose> poses;
+  for (const double time_s : times_s) {
+    const std::optional<Pose> rotation = rotations->at(time_s), place = translations->at(time_s);
+    if (rotation && place) poses.push_back({time_s, *place * *rotation});
+  }
+  if (poses.empty()) {
+    return fail(Error::Code::kUnsupported, fmt::format("attitude ({}) and position ({}) are never known together",
+                                                       attitude->name, (*position)->name));
+  }
+  // A step with a gap in neither source is shorter than the limits of both, and one with a gap is longer than its
+  // limit.
+  const double longest_step_s = std::min(summary_of(*attitude).longest_step_s, summary_of(**position).longest_step_s);
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_step_s);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  return NavTrajectory{*std::move(trajectory), attitude->name, (*position)->name};
+}
+
+}  // namespace pingvox
