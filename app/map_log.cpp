@@ -89,8 +89,10 @@ std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
   std::string text = fmt::format("{} poses from {} and {}", path.trajectory.poses().size(),
                                  on_one_line(path.nav->attitude), on_one_line(path.nav->position));
-  if (path.trajectory.gaps() > 0) text += fmt::format(", {} gaps", path.trajectory.gaps());
-  if (path.nav->damaged > 0) text += fmt::format("; {} damaged records skipped", path.nav->damaged);
+  if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
+    text += fmt::format(", {} gap{}", gaps, gaps == 1 ? "" : "s");
+  }
+  if (path.nav->damaged > 0) text += fmt::format("; skipped {} damaged", path.nav->damaged);
   return text;
 }
 

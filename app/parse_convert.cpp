@@ -62,16 +62,16 @@ Result<Command> convert_command(const Args& args) {
   const std::vector<std::string> maps = {std::string(kMaps), std::string(kMeshes)};
   OptionTable table{
       "convert",
-      "Writes a file in another format: a log of beams, its echoes or navigation as CSV; navigation as poses; a map "
-      "as\n"
-      "another map, as points, as a grid for ROS's map_server, or as heights; a mesh as the map of its surface.",
+      "Writes a file in another format: a log of beams, its echoes or navigation as CSV; navigation as poses;\n"
+      "a map as another map, as points, as a grid for ROS's map_server, or as heights; a mesh as the map of its "
+      "surface.",
       {{"IN", Positional::Count::kOne,
         "a log of beams or of navigation, a map or a mesh (OFF, PLY, STL); - is standard input", into(command.input)}},
       {{"Options",
         {output_option(command.output,
                        "the output: .csv from a log; .tum (poses) from a navigation log; .bt .ot .pvx from a map or a "
-                       "mesh, .ply .pcd .xyz (occupied "
-                       "cells as points), .yaml with its .pgm (map_server), .asc (ESRI grid of heights); - is standard "
+                       "mesh, .ply .pcd .xyz (occupied cells as points), .yaml with its .pgm (map_server), .asc (ESRI "
+                       "grid of heights); - is standard "
                        "output"),
          {"--format", 0, choices_text(kLogAndMapFormats), "format of the output, if its name has no such suffix",
           "by suffix, else csv", format},

@@ -17,7 +17,7 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
-      options+=(--poses --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--poses --nav --nav-offset --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     info) options+=(--json --strict) ;;
@@ -30,7 +30,7 @@ _pingvox_options() {
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
-      options+=(--poses --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
       ;;
     simulate)
@@ -60,7 +60,7 @@ _pingvox_words() {
     --format)
       [[ $2 != convert ]] || echo csv
       printf '%s\n' bt ot pvx ply pcd xyz
-      [[ $2 != convert ]] || printf '%s\n' pgm yaml asc
+      [[ $2 != convert ]] || printf '%s\n' pgm yaml asc tum
       ;;
     --view) printf '%s\n' polar cartesian above side slice ;;
     --from) printf '%s\n' right left front behind ;;

@@ -8,6 +8,7 @@
 #include "fuzz/bodies/require.hpp"
 #include "pingvox/io/mavlink.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
 
 namespace pingvox::fuzz {
 
@@ -39,6 +40,9 @@ inline std::size_t nav(std::span<const std::uint8_t> bytes) {
   }
   for (const DamageKind& damage : read->damage) {
     require(damage.count > 0 && damage.first_byte < bytes.size(), "damage is in the file");
+  }
+  if (const auto path = nav_trajectory(read->log)) {
+    require(path->trajectory.poses().size() <= samples, "poses come from samples");
   }
   std::stringstream text;
   require(write_nav_csv(read->log, text).value_or(bytes.size() * 3) == samples, "what is read is written");

@@ -1,7 +1,11 @@
 // Navigation logs: what they hold, and as CSV.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
 
 #include "call.hpp"
 
@@ -45,6 +49,75 @@ TEST(Nav, BecomesCsvAndNothingElse) {
   EXPECT_THAT(here.read("again.csv"), HasSubstr("11,bar,depth,5,,,,,,1\n"));
   expect_complaint(here.call({"convert", "nav.csv", "-o", "map.bt"}), 2, {"nav.csv", "a navigation log"});
   expect_complaint(here.call({"map", "nav.csv", "-o", "map.bt"}), 1, {"nav.csv", "a navigation log"});
+}
+
+/// The poses of a TUM file as a sensor log would have them.
+std::string nav_of_poses(const std::string& tum, double clock_s) {
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  std::istringstream lines(tum);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#")) continue;
+    std::istringstream fields(line);
+    double t = 0, x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 0;
+    fields >> t >> x >> y >> z >> qx >> qy >> qz >> qw;
+    const double roll = std::atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy));
+    const double pitch = std::asin(2 * (qw * qy - qz * qx));
+    const double yaw = std::atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz));
+    nav += fmt::format("{0},ahrs,attitude,{1},{2},{3}\n{0},dvl,position,{4},{5},{6}\n", t + clock_s, roll, pitch, yaw,
+                       x, y, z);
+  }
+  return nav;
+}
+
+TEST(Nav, MapsAsTheSamePosesDo) {
+  const Workplace here;
+  ASSERT_EQ(
+      here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2", "--seed", "3"}).status,
+      0);
+  here.write("nav.csv", nav_of_poses(here.read("dive.tum"), -128.0));
+  ASSERT_EQ(here.call({"map", "dive.csv", "--poses", "dive.tum", "-o", "poses.ot"}).status, 0);
+  const Outcome mapped = here.call({"map", "dive.csv", "--nav", "nav.csv", "--nav-offset", "128", "-o", "nav.ot"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("from ahrs and dvl\n"));
+  EXPECT_EQ(mapped.err, "") << "no beam is skipped";
+  const Outcome same = here.call({"compare", "poses.ot", "nav.ot"});
+  EXPECT_EQ(same.status, 0) << same.out;
+
+  // Written as poses, it is a trajectory as any.
+  const Outcome written = here.call({"convert", "nav.csv", "-o", "nav.tum"});
+  EXPECT_EQ(written.status, 0) << written.err;
+  EXPECT_THAT(here.call({"info", "nav.tum", "--json"}).out, HasSubstr("\"kind\": \"trajectory\""));
+}
+
+TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--turns", "2"}).status, 0);
+  // A vehicle that is silent from 4 s to 12 s.
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 80; ++i) {
+    if (i > 16 && i < 48) continue;
+    nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", i * 0.25);
+  }
+  here.write("nav.csv", nav + "21,dvl,position\n");
+  const Outcome mapped = here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "map.bt"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("ahrs and dvl, 1 gap; skipped 1 damaged\n"));
+  EXPECT_THAT(mapped.err, HasSubstr("or in one of their gaps, the first at 4.0"));
+  EXPECT_THAT(mapped.err, HasSubstr("--nav-offset"));
+
+  const auto map = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"map", "dive.csv", "-o", "map.bt"};
+    words.insert(words.end(), more.begin(), more.end());
+    return here.call(words);
+  };
+  expect_complaint(map({"--nav", "nav.csv", "--nav-offset", "-900"}), 1, {"nothing could be mapped", "--nav-offset"});
+  expect_complaint(map({"--nav", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
+  expect_complaint(map({"--nav", "nav.csv", "--poses", "a.tum"}), 2, {"--poses and --nav"});
+  expect_complaint(map({"--nav-offset", "3"}), 2, {"--nav-offset"});
+  expect_complaint(map({"--nav", "dive.csv"}), 1, {"dive.csv", "not a navigation log"});
+  here.write("sky.csv", "time_s,source,quantity,x,y,z\n1,ahrs,attitude,0,0,0\n");
+  expect_complaint(map({"--nav", "sky.csv"}), 1, {"sky.csv", "no valid position"});
+  expect_complaint(here.call({"convert", "sky.csv", "-o", "sky.tum"}), 1, {"sky.csv", "no valid position"});
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {
@@ -114,6 +115,39 @@ TEST_P(RealDataflash, HasAsManyRecordsAsItsReadmeSays) {
     EXPECT_EQ(damage[0].what, "cut off at the end");
     EXPECT_EQ(damage[0].first_byte, file->bytes.size() - GetParam().tail_bytes);
   }
+}
+
+// The Doppler log measured velocities of the body: turned by the attitudes and added up, they are the way between two
+// positions only when all frames are right.
+TEST(RealDataflashPath, TheVehicleWentWhereItsDopplerLogSays) {
+  const std::filesystem::path path =
+      std::filesystem::path(PINGVOX_SHARED_DATA) / "bluerov2-dvl-dataflash/00000029_filtered.BIN";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const auto nav = read_file(path.string()).and_then([](const FileBytes& file) { return read_nav(file); });
+  ASSERT_TRUE(nav) << nav.error().message;
+  const auto made = nav_trajectory(nav->log);
+  ASSERT_TRUE(made) << made.error().message;
+  const Trajectory& trajectory = made->trajectory;
+  const NavSource* velocities = nav->log.best(NavQuantity::kVelocity);
+  ASSERT_NE(velocities, nullptr);
+  double from_s = trajectory.poses().front().time_s, before_s = from_s, length_m = 0.0;
+  Eigen::Vector3d moved = Eigen::Vector3d::Zero();
+  for (const NavSample& sample : velocities->samples) {
+    const auto pose = trajectory.at(sample.time_s);
+    if (!pose) continue;
+    const Eigen::Vector3d step = pose->linear() * sample.value * (sample.time_s - before_s);
+    before_s = sample.time_s;
+    moved += step;
+    length_m += step.norm();
+    if (sample.time_s - from_s < 20.0) continue;
+    const Eigen::Vector3d by_filter =
+        trajectory.at(sample.time_s)->translation() - trajectory.at(from_s)->translation();
+    EXPECT_LT((moved - by_filter).norm(), 0.3)
+        << "from " << from_s << " s: " << moved.transpose() << " and " << by_filter.transpose();
+    from_s = sample.time_s;
+    moved.setZero();
+  }
+  EXPECT_GT(length_m, 15.0) << "it moved far enough to tell";
 }
 
 INSTANTIATE_TEST_SUITE_P(

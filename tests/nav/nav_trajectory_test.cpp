@@ -1,0 +1,117 @@
+#include "pingvox/nav/nav_trajectory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace pingvox {
+namespace {
+
+struct Said {
+  double time_s;
+  Eigen::Vector3d value;
+  bool valid = true;
+};
+
+NavSource source_of(std::string name, NavQuantity quantity, const std::vector<Said>& said) {
+  NavSource source{std::move(name), quantity, {}};
+  for (const Said& one : said) {
+    NavSample sample;
+    sample.time_s = one.time_s;
+    sample.value = one.value;
+    sample.valid = one.valid;
+    source.samples.push_back(sample);
+  }
+  return source;
+}
+
+Result<NavTrajectory> trajectory_of(std::vector<NavSource> sources, double offset_s = 0.0) {
+  return NavLog::make(std::move(sources), NavClock::kBoot).and_then([&](const NavLog& log) {
+    return nav_trajectory(log, offset_s);
+  });
+}
+
+std::vector<double> times_of(const Trajectory& trajectory) {
+  std::vector<double> times_s;
+  for (const StampedPose& pose : trajectory.poses()) times_s.push_back(pose.time_s);
+  return times_s;
+}
+
+const NavSource kLevel = source_of("ahrs", NavQuantity::kAttitude, {{0, {0, 0, 0}}, {1, {0, 0, 1}}, {2, {0, 0, 0.5}}});
+
+TEST(NavTrajectory, HasAPoseAtEachTimeOfEitherSourceWhereBothAreKnown) {
+  const auto made =
+      trajectory_of({kLevel, source_of("dvl", NavQuantity::kPosition, {{0.5, {1, 2, 3}}, {1.5, {2, 2, 3}}})}, 100.0);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_THAT(times_of(made->trajectory), testing::ElementsAre(100.5, 101, 101.5));
+  EXPECT_EQ(made->attitude, "ahrs");
+  EXPECT_EQ(made->position, "dvl");
+  const Pose half = *made->trajectory.at(100.75);
+  EXPECT_TRUE(half.isApprox(pose_from_rpy({1.25, 2, 3}, 0, 0, 0.75), 1e-12)) << half.matrix();
+}
+
+TEST(NavTrajectory, TurnsRollPitchAndYawAsPosesDo) {
+  const auto made = trajectory_of({source_of("a", NavQuantity::kAttitude, {{0, {0.1, -0.2, 2.5}}}),
+                                   source_of("p", NavQuantity::kPosition, {{0, {1, 2, 3}}})});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->trajectory.at(0)->isApprox(pose_from_rpy({1, 2, 3}, 0.1, -0.2, 2.5), 1e-12));
+}
+
+TEST(NavTrajectory, HasAGapWhereTheSlowerSourceHasOne) {
+  NavSource fast{"ahrs", NavQuantity::kAttitude, {}}, slow{"usbl", NavQuantity::kPosition, {}};
+  for (int i = 0; i <= 1000; ++i) fast.samples.push_back({.time_s = i * 0.1});
+  // A fix every five seconds is no gap; thirty seconds without one are.
+  for (const double time_s : {0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 60.0, 65.0}) slow.samples.push_back({.time_s = time_s});
+  const auto made = trajectory_of({fast, slow});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->trajectory.gaps(), 1U);
+  for (const double time_s : {2.57, 24.99, 60.0, 64.9}) EXPECT_TRUE(made->trajectory.at(time_s)) << time_s;
+  for (const double time_s : {25.01, 40.0, 59.99, 65.1}) EXPECT_FALSE(made->trajectory.at(time_s)) << time_s;
+}
+
+TEST(NavTrajectory, PrefersTheMainFilterToWhatSpeaksMoreOften) {
+  const auto made =
+      trajectory_of({source_of("AHRS2", NavQuantity::kAttitude, {{0, {0, 0, 1}}, {1, {0, 0, 1}}, {2, {0, 0, 1}}}),
+                     source_of("ATTITUDE", NavQuantity::kAttitude, {{0, {0, 0, 0}}, {2, {0, 0, 0}}}),
+                     source_of("LOCAL_POSITION_NED", NavQuantity::kPosition, {{0, {9, 9, 9}, false}}),
+                     source_of("VISION_POSITION_ESTIMATE", NavQuantity::kPosition, {{0, {1, 0, 0}}, {1, {1, 0, 0}}})});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->attitude, "ATTITUDE");
+  EXPECT_EQ(made->position, "VISION_POSITION_ESTIMATE") << "a source without valid samples is none";
+  EXPECT_TRUE(made->trajectory.at(0)->isApprox(pose_from_rpy({1, 0, 0}, 0, 0, 0)));
+}
+
+TEST(NavTrajectory, MakesMetresOfFixesAlsoAcrossTheDateLine) {
+  // By tables a degree at 45 degrees north is 111.132 km long to the north, and 78.847 km to the east.
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const auto made = trajectory_of({kLevel, source_of("gps", NavQuantity::kFix,
+                                                     {{0, {45.0 * kDegree, 179.9995 * kDegree, 50}},
+                                                      {1, {45.001 * kDegree, -179.9995 * kDegree, 52}}})});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->trajectory.at(0)->translation().isZero());
+  const Eigen::Vector3d moved = made->trajectory.at(1)->translation();
+  EXPECT_NEAR(moved.x(), 78.847, 1e-3);
+  EXPECT_NEAR(moved.y(), 111.132, 1e-3);
+  EXPECT_NEAR(moved.z(), 2.0, 1e-9) << "without a depth the altitude counts";
+}
+
+TEST(NavTrajectory, PutsFixesAtTheDepthOfTheirTime) {
+  const auto made = trajectory_of({kLevel, source_of("usbl", NavQuantity::kFix, {{0, {0.8, 0, 50}}, {1, {0.8, 0, 52}}}),
+                                   source_of("bar", NavQuantity::kDepth, {{0.5, {4, 0, 0}}, {1.5, {6, 0, 0}}})});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_THAT(times_of(made->trajectory), testing::ElementsAre(1)) << "at 0 nobody knows the depth";
+  EXPECT_NEAR(made->trajectory.at(1)->translation().z(), -5.0, 1e-12);
+}
+
+TEST(NavTrajectory, SaysWhatIsMissing) {
+  const NavSource place = source_of("p", NavQuantity::kPosition, {{5, {1, 2, 3}}});
+  const auto error = [](const auto& made) { return made ? std::string("none") : made.error().message; };
+  EXPECT_THAT(error(trajectory_of({kLevel})), testing::HasSubstr("no valid position"));
+  EXPECT_THAT(error(trajectory_of({place})), testing::HasSubstr("no valid attitude"));
+  EXPECT_THAT(error(trajectory_of({kLevel, place})), testing::HasSubstr("never known together"));
+  EXPECT_EQ(trajectory_of({kLevel}).error().code, Error::Code::kUnsupported);
+}
+
+}  // namespace
+}  // namespace pingvox
