@@ -40,7 +40,7 @@ offers "--resolution" pingvox map --reso
 offers "ray|fan|cone" pingvox map --beam ""
 offers "cone" pingvox map tank.csv --beam c
 offers "ray|fan|cone" pingvox map --beam =
-offers "csv|bt|ot|pvx|ply|pcd|xyz|pgm|yaml|asc" pingvox convert --format ""
+offers "csv|bt|ot|pvx|ply|pcd|xyz|pgm|yaml|asc|tum" pingvox convert --format ""
 offers "ply" pingvox map --format pl
 offers "cone" pingvox map --beam = c
 offers "" pingvox map --resolution ""
