@@ -65,7 +65,7 @@ Result<OccupancyMap> map_of(const TankLog& log, Parents parents) {
   OccupancyMap map({.parents = parents});
   BuildOptions options;
   options.model.shape = BeamShape::kCone;
-  ListedBeams beams(log.beams);
+  BeamsInMemory beams(log.beams);
   const auto report = build_map(beams, Trajectory::still(Pose::Identity()), options, map);
   if (!report) return tl::unexpected(report.error());
   return map;

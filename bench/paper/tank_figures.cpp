@@ -43,7 +43,7 @@ Picture polar(const std::vector<Beam>& beams) {
 /// What the paper maps: the axes of one sweep's beams, each up to its echo.
 Result<Picture> map_picture(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& echo) {
   OccupancyMap map;
-  ListedBeams beams(sweep.beams);
+  BeamsInMemory beams(sweep.beams);
   const BuildOptions options{.filter = filter, .echo = echo, .model = {}};
   const auto report = build_map(beams, Trajectory::still(Pose::Identity()), options, map);
   if (!report) return tl::unexpected(report.error());

@@ -30,20 +30,6 @@ Result<std::optional<TankLog>> recorded_tank();
 /// The simulated tank, and the recorded one where it is there.
 Result<std::vector<TankLog>> tank_logs();
 
-/// Beams out of a list.
-class ListedBeams final : public BeamSource {
- public:
-  explicit ListedBeams(const std::vector<Beam>& beams) : beams_(beams) {}
-  Result<std::optional<Beam>> next() override {
-    if (at_ == beams_.size()) return std::optional<Beam>();
-    return std::optional<Beam>(beams_[at_++]);
-  }
-
- private:
-  const std::vector<Beam>& beams_;
-  std::size_t at_ = 0;
-};
-
 /// How the echoes of a log stand to its walls.
 struct EchoJudgement {
   std::size_t judged = 0;  ///< beams whose wall is known

@@ -72,25 +72,11 @@ void add_cpu_times(const std::vector<Beam>& beams, Replay& replay) {
   }
 }
 
-/// Gives out beams that are in memory.
-class Recorded final : public BeamSource {
- public:
-  explicit Recorded(const std::vector<Beam>& beams) : beams_(beams) {}
-  Result<std::optional<Beam>> next() override {
-    if (given_ == beams_.size()) return std::nullopt;
-    return beams_[given_++];
-  }
-
- private:
-  const std::vector<Beam>& beams_;
-  std::size_t given_ = 0;
-};
-
 /// The same cells must be known as by build_map, which hears each sweep to its end first: it takes the beams in another
 /// order, and where a belief was clamped in between it may be another.
 Result<double> share_of_other_classes(const std::vector<Beam>& beams, const OccupancyMap& live_map) {
   OccupancyMap map({.resolution_m = kCell_m});
-  Recorded source(beams);
+  BeamsInMemory source(beams);
   BuildOptions options = vehicle_options();
   options.timing = Timing::kBySweep;
   const auto built = build_map(source, Trajectory::still(Pose::Identity()), options, map);

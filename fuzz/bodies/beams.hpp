@@ -56,18 +56,7 @@ inline std::size_t beams(std::span<const std::uint8_t> bytes) {
   }
   if (lenient.beams.empty()) return 0;
 
-  class Again : public BeamSource {
-   public:
-    explicit Again(const std::vector<Beam>& beams) : beams_(beams) {}
-    Result<std::optional<Beam>> next() override {
-      if (next_ == beams_.size()) return std::nullopt;
-      return beams_[next_++];
-    }
-
-   private:
-    const std::vector<Beam>& beams_;
-    std::size_t next_ = 0;
-  } source(lenient.beams);
+  BeamsInMemory source(lenient.beams);
   std::stringstream text;
   require(write_csv(source, text) == lenient.beams.size(), "all beams are written");
   const std::string csv = text.str();

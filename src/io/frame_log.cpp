@@ -5,6 +5,7 @@
 #include <deque>
 #include <utility>
 
+#include "io/device_log.hpp"
 #include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 
@@ -72,24 +73,13 @@ class PlacesInFile {
   std::uint64_t end_ = 0;
 };
 
-class FrameLog : public BeamSource {
+class FrameLog final : public DeviceLog {
  public:
   FrameLog(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol, Damage damage)
       : container_(std::move(container)), protocol_(protocol), damage_(damage), finder_(protocol.check) {
-    // The first beam says which head it was, and that is asked for before any beam is.
-    first_ = read();
+    set_first(read());
   }
 
-  Result<std::optional<Beam>> next() override {
-    if (first_) return *std::exchange(first_, std::nullopt);
-    return read();
-  }
-
-  std::size_t skipped() const override {
-    std::size_t count = 0;
-    for (const DamageKind& kind : damage()) count += kind.count;
-    return count;
-  }
 
   std::vector<DamageKind> damage() const override {
     std::vector<DamageKind> kinds = container_->damage();
@@ -102,11 +92,10 @@ class FrameLog : public BeamSource {
     return kinds;
   }
 
-  const DeviceProfile* device() const override { return device_; }
   std::optional<double> share_read() const override { return container_->share_read(); }
 
  private:
-  Result<std::optional<Beam>> read() {
+  Result<std::optional<Beam>> read() override {
     for (;;) {
       const std::optional<FrameFinder::Frame> frame = finder_.next();
       note_places();
@@ -171,8 +160,6 @@ class FrameLog : public BeamSource {
   bool at_end_ = false;
   std::vector<std::uint64_t> first_bytes_;  ///< in the file, of the finder's kinds of damage
   std::vector<DamageKind> unusable_;        ///< right frames with values that make no beam
-  const DeviceProfile* device_ = nullptr;
-  std::optional<Result<std::optional<Beam>>> first_;
 };
 
 }  // namespace

@@ -92,11 +92,6 @@ class DumpLog : public BeamSource {
       }
     }
   }
-  std::size_t skipped() const override {
-    std::size_t count = 0;
-    for (const DamageKind& kind : kinds_) count += kind.count;
-    return count;
-  }
   std::vector<DamageKind> damage() const override { return kinds_; }
   const DeviceProfile* device() const override { return device_named("micron"); }
   std::optional<double> share_read() const override { return reader_.share_read(); }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/byte_reader.hpp"
+#include "io/device_log.hpp"
 #include "io/readers.hpp"
 #include "io/stream_reader.hpp"
 #include "io/text.hpp"
@@ -48,29 +49,17 @@ std::optional<std::size_t> record_size(Bytes bytes) {
   return size;
 }
 
-class V4Log : public BeamSource {
+class V4Log final : public DeviceLog {
  public:
   V4Log(StreamReader reader, std::optional<std::uint64_t> end, Damage damage)
       : reader_(std::move(reader)), end_(end), damage_(damage) {
-    // The first beam says which head it was, and that is asked for before any beam is.
-    first_ = read();
-  }
-
-  Result<std::optional<Beam>> next() override {
-    if (first_) return *std::exchange(first_, std::nullopt);
-    return read();
-  }
-  std::size_t skipped() const override {
-    std::size_t count = 0;
-    for (const DamageKind& kind : kinds_) count += kind.count;
-    return count;
+    set_first(read());
   }
   std::vector<DamageKind> damage() const override { return kinds_; }
-  const DeviceProfile* device() const override { return device_; }
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
  private:
-  Result<std::optional<Beam>> read() {
+  Result<std::optional<Beam>> read() override {
     while (!end_ || reader_.position() < *end_) {
       const Result<Bytes> bytes = reader_.peek(kLongest);
       if (!bytes) return tl::unexpected(bytes.error());
@@ -131,8 +120,6 @@ class V4Log : public BeamSource {
   Damage damage_;
   bool in_damage_ = false;
   std::vector<DamageKind> kinds_;
-  const DeviceProfile* device_ = nullptr;
-  std::optional<Result<std::optional<Beam>>> first_;
 };
 
 }  // namespace

@@ -29,6 +29,17 @@ double wrapped_bearing(double angle_rad) {
   return wrapped >= 0.0 && wrapped < kTurn ? wrapped : 0.0;
 }
 
+std::size_t BeamSource::skipped() const {
+  std::size_t count = 0;
+  for (const DamageKind& kind : damage()) count += kind.count;
+  return count;
+}
+
+Result<std::optional<Beam>> BeamsInMemory::next() {
+  if (next_ == beams_.size()) return std::nullopt;
+  return std::move(beams_[next_++]);
+}
+
 Result<std::vector<Beam>> read_all(BeamSource& source) {
   std::vector<Beam> beams;
   for (;;) {

@@ -33,19 +33,6 @@ std::vector<Beam> room(int beams) {
   return heard;
 }
 
-class Beams : public BeamSource {
- public:
-  explicit Beams(const std::vector<Beam>& beams) : beams_(beams) {}
-  Result<std::optional<Beam>> next() override {
-    if (given_ == beams_.size()) return std::nullopt;
-    return beams_[given_++];
-  }
-
- private:
-  const std::vector<Beam>& beams_;
-  std::size_t given_ = 0;
-};
-
 BuildOptions options_of(BeamShape shape, Vote vote) {
   BuildOptions options;
   options.model.shape = shape;
@@ -105,7 +92,7 @@ TEST(BeamMapper, MakesTheMapOfTheStagesOneByOneAndOfBuildMap) {
           expect_same(pushed, expected);
           EXPECT_EQ(mapper->report().beams, beams.size());
           EXPECT_EQ(mapper->report().sweeps, beams.size() == 530 ? 2U : 28U);
-          Beams source(beams);
+          BeamsInMemory source(beams);
           ASSERT_TRUE(build_map(source, Trajectory::still(Pose::Identity()), options, pulled));
           expect_same(pulled, expected);
         }
@@ -140,7 +127,7 @@ TEST(BeamMapper, MapsABeamWhenItsNeighboursAreHeard) {
   EXPECT_EQ(mapper->report().beams, 450U);
   options.timing = Timing::kBySweep;
   OccupancyMap other;
-  Beams source(beams);
+  BeamsInMemory source(beams);
   const auto by_sweep = build_map(source, Trajectory::still(Pose::Identity()), options, other);
   ASSERT_TRUE(by_sweep);
   EXPECT_EQ(mapper->report().echoes, by_sweep->echoes);

@@ -60,20 +60,6 @@ inline Everything<PointScan> all_scans(FileBytes file, Damage damage = Damage::k
   return everything_from<PointScan>(open_scans(std::move(file), damage));
 }
 
-/// Beams from memory.
-class BeamsInMemory : public BeamSource {
- public:
-  explicit BeamsInMemory(std::vector<Beam> beams) : beams_(std::move(beams)) {}
-  Result<std::optional<Beam>> next() override {
-    if (next_ == beams_.size()) return std::nullopt;
-    return beams_[next_++];
-  }
-
- private:
-  std::vector<Beam> beams_;
-  std::size_t next_ = 0;
-};
-
 inline bool same(const Beam& a, const Beam& b) {
   return a.time_s == b.time_s && a.bearing_rad == b.bearing_rad && a.bin_length_m == b.bin_length_m &&
          a.intensities == b.intensities;

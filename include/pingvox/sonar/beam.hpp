@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pingvox/result.hpp"
@@ -19,44 +20,55 @@ struct Beam {
   std::vector<std::uint8_t> intensities;  ///< bin i covers [i, i + 1) * bin_length_m from the transducer
 };
 
-/// The longest beam that a reader lets through: far above what these sonars do, and small enough that no damaged number
-/// turns into a ray that never ends.
+/// The longest beam that readers accept: far beyond these sonars, and short enough that a damaged number cannot make an
+/// endless ray.
 inline constexpr double kMaxBeamRange_m = 10'000.0;
 
-/// Checks what the comments of Beam promise, and the range. kCorrupt names the broken field. Readers call it on each
-/// beam, so that nobody behind them has to.
+/// Checks the ranges documented in Beam, and kMaxBeamRange_m. Readers call it on each beam, so that other code need not.
+/// @return kCorrupt naming the invalid field
 Result<void> validate(const Beam& beam);
 
 /// Any angle [rad] in [0, 2 pi). REQUIRES a finite angle.
 double wrapped_bearing(double angle_rad);
 
-/// One kind of damage that a source stepped over.
+/// One kind of damage that a source skipped.
 struct DamageKind {
   std::string_view what;         ///< in a few words, as in "wrong checksum"; lives as long as the program
-  std::size_t count = 0;         ///< how often it was met
-  std::uint64_t first_byte = 0;  ///< where in the log for the first time, from 0
+  std::size_t count = 0;         ///< number of occurrences
+  std::uint64_t first_byte = 0;  ///< position of the first one in the log, from 0
 };
 
 /// Beams in the order in which they were heard: a log, a simulator, later a live device.
 class BeamSource {
  public:
   virtual ~BeamSource() = default;
-  /// The next beam; nullopt at the end; an error when nothing more can be read. Damage that can be stepped over is
-  /// stepped over and counted.
+  /// The next beam; nullopt at the end; an error when nothing more can be read. Damaged records are skipped and counted
+  /// where that is possible.
   virtual Result<std::optional<Beam>> next() = 0;
-  /// Beams (or records that should have been one) left out so far because they were damaged.
-  virtual std::size_t skipped() const { return 0; }
-  /// The same by kind, in the order in which they were met; empty where the source does not tell them apart.
+  /// Beams (or records that should have been one) skipped so far because they were damaged: by default the sum of
+  /// damage().
+  virtual std::size_t skipped() const;
+  /// Skipped records by kind of damage, in order of first occurrence; empty where the source does not tell them apart.
   virtual std::vector<DamageKind> damage() const { return {}; }
-  /// The head that was heard, as far as the log says or its format tells; nullptr: nobody knows.
+  /// The sonar head, if the log or its format names it; else nullptr.
   virtual const DeviceProfile* device() const { return nullptr; }
-  /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: nobody knows.
+  /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };
 
-/// All beams that a source still has, at once. For what needs them all: a log of hours fits into memory, a live device
-/// has no end.
-/// @return the source's error when it does not come to its end
+/// Beams in memory as a source.
+class BeamsInMemory final : public BeamSource {
+ public:
+  explicit BeamsInMemory(std::vector<Beam> beams) : beams_(std::move(beams)) {}
+  Result<std::optional<Beam>> next() override;
+
+ private:
+  std::vector<Beam> beams_;
+  std::size_t next_ = 0;
+};
+
+/// Reads all remaining beams. Not for a live device, which has no end.
+/// @return the source's error if it fails before its end
 Result<std::vector<Beam>> read_all(BeamSource& source);
 
 }  // namespace pingvox
