@@ -182,7 +182,7 @@ class BeamSurvey {
   void take(const std::optional<Sweep>& sweep) {
     if (!sweep) return;
     ++sweeps_;
-    const auto echoes = detect_echoes(filtered(PolarImage(*sweep), FilterOptions{}), *sweep, EchoOptions{});
+    const auto echoes = detect_echoes(apply_filter(PolarImage(*sweep), FilterOptions{}), *sweep, EchoOptions{});
     echoes_ +=
         static_cast<std::size_t>(std::ranges::count_if(echoes, [](const auto& echo) { return echo.has_value(); }));
     thresholds_.add(echoes);

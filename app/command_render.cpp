@@ -49,7 +49,7 @@ void cut_beam(Beam& beam, double range_m) {
 
 ProcessedSweep process_sweep(std::size_t number, Sweep sweep, const PanelCommand& panel) {
   const PolarImage raw(sweep);
-  const PolarImage smooth = filtered(raw, panel.build.filter);
+  const PolarImage smooth = apply_filter(raw, panel.build.filter);
   std::vector<std::optional<Echo>> echoes;
   if (panel.marks == EchoMarks::kOn) {
     echoes = detect_echoes(smooth, sweep, panel.build.echo);

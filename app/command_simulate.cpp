@@ -85,7 +85,7 @@ Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, c
     return fail(Error::Code::kBadOption,
                 fmt::format("simulate: {} turns take {:.0f} s: longer than a built-in path", turns, duration));
   }
-  return Journey{travelled(*route, duration, command.travel), turns};
+  return Journey{follow_route(*route, duration, command.travel), turns};
 }
 
 Result<void> write_trajectory(const std::string& path, const Trajectory& trajectory) {
@@ -176,7 +176,7 @@ Result<int> run(const SimulateCommand& command, Console& console) {
                                     beams, on_one_line(command.world), sonar.range_m(), sonar.seed);
   if (journey->way.poses().size() > 1) {
     const std::string companion = std::filesystem::path(command.output).replace_extension(".tum").string();
-    const auto reports = write_trajectory(companion, reported(journey->way, command.drift));
+    const auto reports = write_trajectory(companion, add_drift(journey->way, command.drift));
     if (!reports) return tl::unexpected(reports.error());
     summary += fmt::format("{}: {} reported poses\n", on_one_line(companion), journey->way.poses().size());
   }

@@ -27,7 +27,7 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-std::string quoted(std::string_view text) {
+std::string quote(std::string_view text) {
   std::string out = "\"";
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
@@ -56,7 +56,7 @@ std::string number(double value) {
 
 JsonObject& JsonObject::add_text(std::string_view key, std::string_view json) {
   if (!members_.empty()) members_ += ", ";
-  members_ += quoted(key);
+  members_ += quote(key);
   members_ += ": ";
   members_ += json;
   return *this;
@@ -72,7 +72,7 @@ JsonObject& JsonObject::add(std::string_view key, int value) {
   return add_text(key, fmt::format("{}", value));
 }
 JsonObject& JsonObject::add(std::string_view key, std::string_view value) {
-  return add_text(key, quoted(value));
+  return add_text(key, quote(value));
 }
 JsonObject& JsonObject::add(std::string_view key, const Eigen::Vector3d& value) {
   return add_text(key, fmt::format("[{}, {}, {}]", number(value.x()), number(value.y()), number(value.z())));

@@ -26,7 +26,7 @@ struct EchoArgs {
   EchoOptions echo;
 
   FilterOptions filter_options() const {
-    const FilterOptions usual = usual_filter(echo.detector);
+    const FilterOptions usual = default_filter(echo.detector);
     return {filter, kernel.value_or(usual.kernel), sigma.value_or(usual.sigma)};
   }
 };

@@ -17,7 +17,7 @@ Result<Format> identify_format(const FileBytes& file) {
 
 Result<Format> identify_format(ByteStream& stream) {
   if (const auto streamed = streamed_format_of(stream.beginning())) return *streamed;
-  if (const Result<void> held = stream.hold_all(); !held) return tl::unexpected(held.error());
+  if (const Result<void> held = stream.load_all(); !held) return tl::unexpected(held.error());
   return identify_format(stream.held());
 }
 

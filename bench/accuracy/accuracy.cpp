@@ -205,7 +205,7 @@ class Measurement {
   }
 
  private:
-  static constexpr double kBlanking_m = EchoOptions::kUsualBlanking_m;
+  static constexpr double kBlanking_m = EchoOptions::kDefaultBlanking_m;
 
   Result<void> maps(Extent extent, double resolution_m, std::vector<Row>& rows) const {
     if (options_.say != nullptr) {

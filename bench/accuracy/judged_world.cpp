@@ -51,7 +51,7 @@ Result<MapAgreement> JudgedWorld::score(const OccupancyMap& map, const Threshold
 Echoes detect(const Recording& recording, const FilterOptions& filter, const EchoOptions& options) {
   Echoes all;
   for (const Sweep& sweep : recording.sweeps) {
-    const Echoes echoes = detect_echoes(filtered(PolarImage(sweep), filter), sweep, options);
+    const Echoes echoes = detect_echoes(apply_filter(PolarImage(sweep), filter), sweep, options);
     all.insert(all.end(), echoes.begin(), echoes.end());
   }
   return all;

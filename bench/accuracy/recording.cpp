@@ -36,7 +36,7 @@ Trajectory way_of(const RecordingOptions& options, const Scene& scene, const Son
   if (!route) return Trajectory::still(Pose::Identity());
   const double duration_s =
       static_cast<double>(options.turns) * static_cast<double>(sonar.beams_per_turn) / sonar.beams_per_s;
-  const Trajectory way = travelled(*route, duration_s, {.speed_m_s = options.speed_m_s});
+  const Trajectory way = follow_route(*route, duration_s, {.speed_m_s = options.speed_m_s});
   return options.heave_m > 0.0 ? add_heave(way, options.heave_m) : way;
 }
 

@@ -42,7 +42,7 @@ struct PaperCount {
 };
 
 std::size_t first_bin_of(const Beam& beam) {
-  return static_cast<std::size_t>(std::ceil(EchoOptions::kUsualBlanking_m / beam.bin_length_m));
+  return static_cast<std::size_t>(std::ceil(EchoOptions::kDefaultBlanking_m / beam.bin_length_m));
 }
 
 /// Of their program: 0.3 m.
@@ -54,7 +54,7 @@ PaperCount paper_count(const TankLog& log, const FilterOptions& filter, int thre
                        std::size_t (*first_bin)(const Beam&) = &first_bin_of) {
   PaperCount count;
   for (const Sweep& sweep : log.sweeps) {
-    const PolarImage image = filtered(PolarImage(sweep), filter);
+    const PolarImage image = apply_filter(PolarImage(sweep), filter);
     for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
       const Beam& beam = sweep.beams[n];
       const auto edge = paper_edge(image.row(n).first(image.bins_in(n)), first_bin(beam), threshold);
@@ -100,7 +100,7 @@ OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, in
   ScanUpdate scan(map.lattice());
   const BeamModelOptions model{.hit_from = HitFrom::kFixed};
   for (const Sweep& sweep : log.sweeps) {
-    const PolarImage image = filtered(PolarImage(sweep), filter);
+    const PolarImage image = apply_filter(PolarImage(sweep), filter);
     scan.clear();
     for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
       const Beam& beam = sweep.beams[n];
@@ -242,8 +242,8 @@ Result<std::vector<Row>> paper_canny(const BenchOptions&) {
   if (!logs) return tl::unexpected(logs.error());
   std::vector<Row> rows;
   for (const TankLog& log : *logs) {
-    const EchoJudgement canny =
-        judge_echoes(log, usual_filter(Detector::kCanny), EchoOptions{.detector = Detector::kCanny, .threshold = 113});
+    const EchoJudgement canny = judge_echoes(log, default_filter(Detector::kCanny),
+                                             EchoOptions{.detector = Detector::kCanny, .threshold = 113});
     const EchoJudgement rise = judge_echoes(log, {}, EchoOptions{.threshold = 70});
     rows.push_back(echo_row(log, "figure-21-canny", "9", "interesting", canny, Holds::kNotJudged));
     rows.push_back(echo_row(log, "figure-21-rise-beside", "9", {}, rise, Holds::kNotJudged));

@@ -90,7 +90,7 @@ class Figures {
 Result<std::vector<TankFigure>> tank_figures(const TankLog& log) {
   if (log.sweeps.size() < 2) return fail(Error::Code::kCorrupt, log.name + ": has no second sweep");
   const Sweep& sweep = log.sweeps[1];
-  const PolarImage raw(sweep), smooth = filtered(raw, {});
+  const PolarImage raw(sweep), smooth = apply_filter(raw, {});
   Figures figures;
   figures.add("figure-2-4", "2.1", "a sweep in Cartesian coordinates, without and with interpolation",
               {{cartesian(sweep, raw, {}, BetweenBeams::kNothing), "2: without interpolation"},
@@ -106,7 +106,7 @@ Result<std::vector<TankFigure>> tank_figures(const TankLog& log) {
   for (const auto& [filter, name] : {std::pair{Filter::kMean, "mean"}, std::pair{Filter::kMedian, "median"},
                                      std::pair{Filter::kGaussian, "Gaussian"}}) {
     const FilterOptions options{.filter = filter, .kernel = 5, .sigma = 1.0};
-    filters.push_back({cartesian(sweep, filtered(raw, options), {}), fmt::format("15: {} of 5 by 5", name)});
+    filters.push_back({cartesian(sweep, apply_filter(raw, options), {}), fmt::format("15: {} of 5 by 5", name)});
   }
   figures.add("figure-15", "8.1", "mean suffers from outliers; median and Gaussian satisfy", filters);
   figures.add("figure-16", "8.1", "a stripe at the left: the vehicle's own reflections",
@@ -121,7 +121,7 @@ Result<std::vector<TankFigure>> tank_figures(const TankLog& log) {
   figures.add("figure-17-20", "8.2", "70 is best: low enough for all obstacles, high enough for noise", thresholds);
 
   const EchoOptions canny{.detector = Detector::kCanny, .threshold = 113};
-  const PolarImage smoother = filtered(raw, usual_filter(Detector::kCanny));
+  const PolarImage smoother = apply_filter(raw, default_filter(Detector::kCanny));
   const EchoOptions rise{.threshold = 70};
   figures.add("figure-21", "9", "Canny reduces noise; to be explored",
               {{cartesian(sweep, smoother, detect_echoes(smoother, sweep, canny)), "21: first edges by Canny"},

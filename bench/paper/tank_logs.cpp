@@ -77,7 +77,7 @@ void EchoJudgement::add(std::optional<double> wall_m, std::optional<double> echo
 EchoJudgement judge_echoes(const TankLog& log, const FilterOptions& filter, const EchoOptions& echo) {
   EchoJudgement judgement;
   for (const Sweep& sweep : log.sweeps) {
-    const auto echoes = detect_echoes(filtered(PolarImage(sweep), filter), sweep, echo);
+    const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), filter), sweep, echo);
     for (std::size_t n = 0; n < echoes.size(); ++n) {
       judgement.add(log.wall_m(sweep.beams[n].bearing_rad),
                     echoes[n] ? std::optional(echoes[n]->range_m) : std::nullopt);

@@ -50,7 +50,7 @@ std::unique_ptr<octomap::Pointcloud> scan_world(const World& world, const Pose& 
 Result<void> write_graph(const std::string& path) {
   const Scene scene = harbour_scene({});
   const double duration_s = length_m(scene.loop) / TravelOptions{}.speed_m_s;
-  const Trajectory way = travelled(scene.loop, duration_s, {});
+  const Trajectory way = follow_route(scene.loop, duration_s, {});
   Random random(14);
   octomap::ScanGraph graph;
   for (std::size_t i = 0; i < kScans; ++i) {

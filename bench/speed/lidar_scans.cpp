@@ -36,7 +36,7 @@ std::vector<RayCloud> lidar_scans(const LidarOptions& options) {
   const Scene scene = harbour_scene({.length_m = 60.0, .width_m = 40.0, .water_above_m = 10.0, .water_below_m = 2.0});
   const double way_m = kWay_m * static_cast<double>(options.scans);
   const TravelOptions travel;
-  const Trajectory trajectory = travelled(scene.loop, way_m / travel.speed_m_s, travel);
+  const Trajectory trajectory = follow_route(scene.loop, way_m / travel.speed_m_s, travel);
   std::vector<RayCloud> scans;
   for (std::size_t i = 0; i < options.scans; ++i) {
     const double time_s = trajectory.poses().front().time_s + static_cast<double>(i) * kWay_m / travel.speed_m_s;

@@ -19,7 +19,7 @@ std::vector<std::vector<BeamEcho>> echoes_of(std::span<const Beam> beams) {
   std::vector<std::vector<BeamEcho>> sweeps;
   for (const Sweep& sweep : sweeps_of(beams)) {
     if (sweep.extent == Sweep::Extent::kCut) continue;
-    const PolarImage image = filtered(PolarImage(sweep), usual_filter(Detector::kRise));
+    const PolarImage image = apply_filter(PolarImage(sweep), default_filter(Detector::kRise));
     const auto echoes = detect_echoes(image, sweep, {});
     auto& found = sweeps.emplace_back();
     for (std::size_t i = 0; i < echoes.size(); ++i) {

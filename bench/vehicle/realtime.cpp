@@ -22,7 +22,7 @@ constexpr int kReplays = 5;
 /// A vehicle wants each beam in its map at once: each updates it as it comes.
 BuildOptions vehicle_options() {
   BuildOptions options;
-  options.filter = usual_filter(Detector::kRise);
+  options.filter = default_filter(Detector::kRise);
   options.model.shape = BeamShape::kCone;
   options.vote = Vote::kPerBeam;
   options.timing = Timing::kByBeam;

@@ -6,21 +6,21 @@
 
 namespace pingvox {
 
-/// Why something that may fail did: one sentence for a person, naming file, place and reason where they exist.
+/// An error with a message for people that names file, place and reason where they exist.
 struct Error {
   enum class Code {
-    kBadOption,    ///< the caller's options do not make sense
-    kIo,           ///< the operating system refused: no such file, no right, disk full
-    kCorrupt,      ///< the bytes are not what their format promises
-    kUnsupported,  ///< well-formed, but nothing that this version (or this format) can hold
-    kLimit,        ///< a limit that the caller set would be passed; what it is for was not changed
-    kNoMemory,     ///< memory ran out; what was changed until then, the function's comment says
+    kBadOption,    ///< invalid options
+    kIo,           ///< error of the operating system: file not found, no permission, disk full
+    kCorrupt,      ///< data that violate their format
+    kUnsupported,  ///< well-formed, but not supported by this version (or format)
+    kLimit,        ///< would exceed a limit set by the caller; the target is unchanged
+    kNoMemory,     ///< out of memory; the function documents what may have changed
   } code;
   std::string message;
 };
 
-/// The value, or why there is none. A function that returns a Result throws nothing; the others throw nothing but
-/// std::bad_alloc, as containers of the standard library do.
+/// A value or an error. Functions that return a Result do not throw; others throw nothing but std::bad_alloc, as
+/// standard containers do.
 template <class T>
 using Result = tl::expected<T, Error>;
 

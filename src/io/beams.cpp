@@ -11,7 +11,7 @@
 namespace pingvox {
 namespace {
 
-std::string_view described(Format format) {
+std::string_view description_of(Format format) {
   switch (format) {
     case Format::kMat:
       return "a MATLAB file of beams";
@@ -58,9 +58,10 @@ std::string_view described(Format format) {
   return "a picture";
 }
 
-tl::unexpected<Error> not_this(const std::string& name, std::string_view wanted, std::optional<Format> format) {
-  return fail(Error::Code::kUnsupported, format ? fmt::format("{}: not {} (it is {})", name, wanted, described(*format))
-                                                : fmt::format("{}: not {} that we know", name, wanted));
+tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wanted, std::optional<Format> format) {
+  return fail(Error::Code::kUnsupported,
+              format ? fmt::format("{}: not {} (it is {})", name, wanted, description_of(*format))
+                     : fmt::format("{}: not {} that we know", name, wanted));
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage)
   if (format == Format::kMat) return open_mat(std::move(file), damage);
   if (format == Format::kCsv) return open_csv(std::move(file), damage);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
-  return not_this(file.name, "a log of beams", format);
+  return wrong_format(file.name, "a log of beams", format);
 }
 
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage) {
@@ -95,11 +96,11 @@ Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
   if (format == Format::kPcd) return open_pcd(std::move(file), damage, cloud_origin_m);
   if (format == Format::kXyz) return open_xyz(std::move(file), damage, cloud_origin_m);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
-  return not_this(file.name, "a log of scans", format);
+  return wrong_format(file.name, "a log of scans", format);
 }
 
-Result<void> skipped_or_failed(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
-                               const std::string& reason) {
+Result<void> handle_damage(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
+                           const std::string& reason) {
   ++skipped;
   if (damage == Damage::kSkip) return {};
   return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, reason));

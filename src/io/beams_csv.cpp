@@ -70,7 +70,7 @@ double bearing_of(Column column, double number) {
   if (column == Column::kBearingDeg) number *= kRadPerDeg;
   if (column == Column::kBearingClockwiseDeg) number *= -kRadPerDeg;
   // Nothing is done to what is in order, so that what was written is read back to the last bit.
-  return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrapped_bearing(number);
+  return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrap_bearing(number);
 }
 
 std::optional<std::uint8_t> intensity_in(std::string_view field) {
@@ -123,14 +123,14 @@ class CsvSource : public BeamSource {
         return std::move(*beam);
       }
       const auto damaged =
-          skipped_or_failed(damage_, skipped_, file_.name, fmt::format("line {}", lines_.number()), beam.error());
+          handle_damage(damage_, skipped_, file_.name, fmt::format("line {}", lines_.number()), beam.error());
       if (!damaged) return tl::unexpected(damaged.error());
     }
     return std::nullopt;
   }
 
   std::size_t skipped() const override { return skipped_; }
-  std::optional<double> share_read() const override { return share_without(lines_.left(), file_.bytes.size()); }
+  std::optional<double> share_read() const override { return read_share(lines_.left(), file_.bytes.size()); }
 
  private:
   FileBytes file_;

@@ -33,7 +33,7 @@ tl::expected<Beam, std::string> beam_in(const std::array<std::optional<mat5::Num
 
   Beam beam;
   beam.time_s = numbers[kTime];
-  beam.bearing_rad = wrapped_bearing(-numbers[kAngle] * (std::numbers::pi / 180.0));
+  beam.bearing_rad = wrap_bearing(-numbers[kAngle] * (std::numbers::pi / 180.0));
   beam.bin_length_m = numbers[kStepDist];
   const mat5::NumericArray& intensities = *fields[kIntensities];
   beam.intensities.reserve(intensities.size());
@@ -66,14 +66,14 @@ class MatSource : public BeamSource {
       tl::expected<Beam, std::string> beam = beam_in(fields);
       if (beam) return std::move(*beam);
       const auto damaged =
-          skipped_or_failed(damage_, skipped_, name_, fmt::format("{}({})", kVariable, record_), beam.error());
+          handle_damage(damage_, skipped_, name_, fmt::format("{}({})", kVariable, record_), beam.error());
       if (!damaged) return tl::unexpected(damaged.error());
     }
     return std::nullopt;
   }
 
   std::size_t skipped() const override { return skipped_; }
-  std::optional<double> share_read() const override { return share_without(records_.elements_left(), beams_); }
+  std::optional<double> share_read() const override { return read_share(records_.elements_left(), beams_); }
 
  private:
   std::string name_;

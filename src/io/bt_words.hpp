@@ -24,7 +24,7 @@ constexpr unsigned children_of(unsigned word) {
 }
 
 /// Whether all children are in the same state, and have no children.
-constexpr bool is_alike(unsigned word) {
+constexpr bool is_uniform(unsigned word) {
   return word == 0 || word == kAllFree || word == kAllOccupied;
 }
 
@@ -76,8 +76,8 @@ inline EightWords words_of(std::uint64_t free, std::uint64_t occupied) {
   return spread_bytes(free) | spread_bytes(occupied) << 1;
 }
 
-/// All bits set of the words that are not is_alike.
-inline EightWords mixed(const EightWords& words) {
+/// All bits set of the words that are not is_uniform.
+inline EightWords mixed_words(const EightWords& words) {
   return reinterpret_cast<EightWords>((words != 0) & (words != kAllFree) & (words != kAllOccupied));
 }
 

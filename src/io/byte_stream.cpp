@@ -16,14 +16,14 @@
 
 namespace pingvox {
 
-/// What is behind the beginning of a file, a pipe or a device.
+/// The rest of a file, a pipe or a device after the beginning.
 class ByteStream::Source {
  public:
-  /// @param size  of a regular file; nullopt: nobody knows
+  /// @param size  of a regular file; nullopt: unknown
   Source(Descriptor owned, int fd, std::optional<std::uint64_t> size)
       : owned_(std::move(owned)), fd_(fd), size_(size) {}
 
-  /// How many bytes were read, 0 at the end, or the reason why there are none.
+  /// Number of bytes read, 0 at the end, or errno.
   tl::expected<std::size_t, int> read(std::span<std::uint8_t> to) {
     for (;;) {
       const ssize_t got = ::read(fd_, to.data(), to.size());
@@ -38,7 +38,7 @@ class ByteStream::Source {
   std::optional<std::uint64_t> size() const { return size_; }
 
  private:
-  Descriptor owned_;  ///< standard input is not ours to close
+  Descriptor owned_;  ///< empty for standard input, which stays open
   int fd_;
   std::optional<std::uint64_t> size_;
   std::uint64_t read_ = 0;
@@ -56,12 +56,12 @@ Result<ByteStream> ByteStream::open(const std::string& path) {
   FileBytes beginning{standard_input ? "standard input" : path, {}};
 
   Descriptor opened(standard_input ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!standard_input && !opened.valid()) return refused(beginning.name, errno);
+  if (!standard_input && !opened.valid()) return os_error(beginning.name, errno);
   const int fd = standard_input ? STDIN_FILENO : opened.get();
 
   struct stat status = {};
-  if (::fstat(fd, &status) != 0) return refused(beginning.name, errno);
-  if (S_ISDIR(status.st_mode)) return refused(beginning.name, EISDIR);
+  if (::fstat(fd, &status) != 0) return os_error(beginning.name, errno);
+  if (S_ISDIR(status.st_mode)) return os_error(beginning.name, EISDIR);
   std::optional<std::uint64_t> size;
   if (S_ISREG(status.st_mode)) size = static_cast<std::uint64_t>(status.st_size);
 
@@ -70,7 +70,7 @@ Result<ByteStream> ByteStream::open(const std::string& path) {
   std::size_t filled = 0;
   while (filled < kBeginning) {
     const auto got = rest->read(std::span(beginning.bytes).subspan(filled));
-    if (!got) return refused(beginning.name, got.error());
+    if (!got) return os_error(beginning.name, got.error());
     if (*got == 0) break;
     filled += *got;
   }
@@ -92,7 +92,7 @@ Result<std::size_t> ByteStream::read(std::span<std::uint8_t> to) {
   }
   if (!rest_) return std::size_t{0};
   const auto got = rest_->read(to);
-  if (!got) return refused(name(), got.error());
+  if (!got) return os_error(name(), got.error());
   return *got;
 }
 
@@ -100,27 +100,27 @@ std::optional<double> ByteStream::share_read() const {
   std::uint64_t all = held_.bytes.size(), read = taken_;
   if (rest_) {
     if (!rest_->size() || *rest_->size() == 0) return std::nullopt;
-    // Of a file that grows while it is read more was read than there was.
+    // A file may grow while it is read.
     all = std::max(*rest_->size(), rest_->bytes_read());
     read += rest_->bytes_read() - held_.bytes.size();
   }
   return all > 0 ? static_cast<double>(read) / static_cast<double>(all) : 1.0;
 }
 
-Result<void> ByteStream::hold_all() {
+Result<void> ByteStream::load_all() {
   assert(taken_ == 0);
   if (!rest_) return {};
   const auto too_large = [&] { return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", name())); };
   constexpr std::size_t kChunk = std::size_t{1} << 20;
   std::vector<std::uint8_t>& bytes = held_.bytes;
   try {
-    // One byte more than the file has, so that its end is seen without growing.
+    // One byte more than the file, so that its end is read without reallocation.
     bytes.reserve(static_cast<std::size_t>(rest_->size().value_or(0)) + 1);
     for (std::size_t size = bytes.size();;) {
       const std::size_t room = bytes.capacity() - size;
       bytes.resize(size + (room > 0 ? std::min(room, kChunk) : kChunk));
       const auto got = rest_->read(std::span(bytes).subspan(size));
-      if (!got) return refused(name(), got.error());
+      if (!got) return os_error(name(), got.error());
       size += *got;
       if (*got == 0) {
         bytes.resize(size);
@@ -136,7 +136,7 @@ Result<void> ByteStream::hold_all() {
 }
 
 Result<FileBytes> ByteStream::whole(ByteStream stream) {
-  if (const Result<void> held = stream.hold_all(); !held) return tl::unexpected(held.error());
+  if (const Result<void> held = stream.load_all(); !held) return tl::unexpected(held.error());
   return std::move(stream.held_);
 }
 

@@ -20,9 +20,9 @@ bool is_nan(std::string_view word) {
 }
 
 /// The words of a line that are coordinates; NaN where there is none that is finite.
-class LineOfPoint {
+class PointLine {
  public:
-  explicit LineOfPoint(const std::array<TextCloud::Column, 3>& xyz)
+  explicit PointLine(const std::array<TextCloud::Column, 3>& xyz)
       : xyz_(xyz), words_(std::max({xyz[0].word, xyz[1].word, xyz[2].word}) + 1) {}
 
   Eigen::Vector3d point_in(std::string_view line) {
@@ -34,7 +34,7 @@ class LineOfPoint {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const auto& [place, type] = xyz_[static_cast<std::size_t>(axis)];
         if (place != i) continue;
-        const auto value = type == Scalar::kFloat ? widened(float_in(*word)) : number_in(*word);
+        const auto value = type == Scalar::kFloat ? to_double(float_in(*word)) : number_in(*word);
         if (value) point[axis] = *value;
         has_nan_ = has_nan_ || is_nan(*word);
       }
@@ -45,7 +45,7 @@ class LineOfPoint {
   bool has_nan() const { return has_nan_; }
 
  private:
-  static std::optional<double> widened(std::optional<float> value) {
+  static std::optional<double> to_double(std::optional<float> value) {
     return value ? std::optional<double>(*value) : std::nullopt;
   }
 
@@ -75,13 +75,13 @@ class CloudSource : public ScanSource {
   virtual Result<void> read_points(std::vector<Eigen::Vector3d>& points_m) = 0;
 
   /// @param has_nan  the point is none because one of its coordinates is NaN
-  Result<void> left_out(const std::string& place, bool has_nan) {
+  Result<void> skip_point(const std::string& place, bool has_nan) {
     const bool is_usual = has_nan && nan_ == NanPoint::kNoReturn;
-    return skipped_or_failed(is_usual ? Damage::kSkip : damage_, skipped_, name_, place,
-                             "is not a point of three finite numbers");
+    return handle_damage(is_usual ? Damage::kSkip : damage_, skipped_, name_, place,
+                         "is not a point of three finite numbers");
   }
-  Result<void> cut_off(std::uint64_t points, std::uint64_t wanted) {
-    return skipped_or_failed(damage_, skipped_, name_, "end", fmt::format("holds {} of {} points", points, wanted));
+  Result<void> report_missing(std::uint64_t points, std::uint64_t wanted) {
+    return handle_damage(damage_, skipped_, name_, "end", fmt::format("holds {} of {} points", points, wanted));
   }
 
  private:
@@ -100,7 +100,7 @@ class TextCloudSource : public CloudSource {
 
  private:
   Result<void> read_points(std::vector<Eigen::Vector3d>& points_m) override {
-    LineOfPoint reader(cloud_.xyz);
+    PointLine reader(cloud_.xyz);
     std::uint64_t count = 0;
     for (; !cloud_.points || count < *cloud_.points; ++count) {
       const auto line = lines_.next_with_content();
@@ -110,10 +110,10 @@ class TextCloudSource : public CloudSource {
         points_m.push_back(point);
         continue;
       }
-      const auto counted = left_out(fmt::format("line {}", lines_.number()), reader.has_nan());
+      const auto counted = skip_point(fmt::format("line {}", lines_.number()), reader.has_nan());
       if (!counted) return counted;
     }
-    if (cloud_.points && count < *cloud_.points) return cut_off(count, *cloud_.points);
+    if (cloud_.points && count < *cloud_.points) return report_missing(count, *cloud_.points);
     return {};
   }
 
@@ -137,7 +137,7 @@ class ByteCloudSource : public CloudSource {
         points_m.push_back(point);
         continue;
       }
-      const auto counted = left_out(fmt::format("point {}", n), point.hasNaN());
+      const auto counted = skip_point(fmt::format("point {}", n), point.hasNaN());
       if (!counted) return counted;
     }
     return {};

@@ -175,7 +175,8 @@ Result<std::array<std::size_t, 3>> fields_of_xyz(const std::string& file, const 
 }
 
 /// All of the bytes behind the header, decompressed.
-Result<std::vector<std::uint8_t>> decompressed(const FileBytes& file, const PcdHeader& header, std::uint64_t wanted) {
+Result<std::vector<std::uint8_t>> decompress_points(const FileBytes& file, const PcdHeader& header,
+                                                    std::uint64_t wanted) {
   ByteReader reader(file.view().subspan(header.size));
   const auto compressed_size = reader.read<std::uint32_t>();
   const auto size = reader.read<std::uint32_t>();
@@ -190,7 +191,7 @@ Result<std::vector<std::uint8_t>> decompressed(const FileBytes& file, const PcdH
                                           *size, wanted));
   }
   const auto broken = [&] { return corrupt(file.name, fmt::format("byte {}: broken LZF data", header.size + 8)); };
-  if (*size / kLzfMostExpansion > compressed->size()) return broken();
+  if (*size / kLzfMaxExpansion > compressed->size()) return broken();
   std::vector<std::uint8_t> bytes(*size);
   if (!lzf_decompress(*compressed, bytes)) return broken();
   return bytes;
@@ -242,7 +243,7 @@ Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, cons
   std::uint64_t record = 0;
   for (const Field& field : fields) record += bytes_in(field);
   const std::uint64_t left = file.bytes.size() - header->size;
-  const std::uint64_t most = is_compressed ? left * kLzfMostExpansion : left;
+  const std::uint64_t most = is_compressed ? left * kLzfMaxExpansion : left;
   if (points > most / record) {
     return corrupt(file.name, fmt::format("byte {}: {} points of {} bytes do not fit into the {} left", header->size,
                                           points, record, left));
@@ -263,7 +264,7 @@ Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, cons
     std::string name = file.name;
     return byte_cloud(std::move(name), std::move(file.bytes), cloud, damage, origin);
   }
-  auto bytes = decompressed(file, *header, points * record);
+  auto bytes = decompress_points(file, *header, points * record);
   if (!bytes) return tl::unexpected(bytes.error());
   return byte_cloud(file.name, *std::move(bytes), cloud, damage, origin);
 }

@@ -30,21 +30,21 @@ std::optional<std::uint64_t> bytes_of(const PlyElement& element) {
 Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage, const CloudOrigin& origin_m) {
   const Result<PlyHeader> header = read_ply_header(file.name, file.view());
   if (!header) return tl::unexpected(header.error());
-  const auto refused = [&file](Error::Code code, std::string_view what) {
+  const auto error = [&file](Error::Code code, std::string_view what) {
     return fail(code, fmt::format("{}: {}", file.name, what));
   };
   const auto vertices = std::find_if(header->elements.begin(), header->elements.end(),
                                      [](const PlyElement& element) { return element.name == "vertex"; });
-  if (vertices == header->elements.end()) return refused(Error::Code::kCorrupt, "has no vertices");
+  if (vertices == header->elements.end()) return error(Error::Code::kCorrupt, "has no vertices");
   std::array<std::optional<std::size_t>, 3> place;  // of x, y, z among the properties
   for (std::size_t i = 0; i < vertices->properties.size(); ++i) {
     const PlyProperty& property = vertices->properties[i];
-    if (property.list_count) return refused(Error::Code::kUnsupported, "vertices with lists are not read");
+    if (property.list_count) return error(Error::Code::kUnsupported, "vertices with lists are not read");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (property.name == kAxes[axis]) place[axis] = i;
     }
   }
-  if (!place[0] || !place[1] || !place[2]) return refused(Error::Code::kCorrupt, "its vertices have no x, y and z");
+  if (!place[0] || !place[1] || !place[2]) return error(Error::Code::kCorrupt, "its vertices have no x, y and z");
   const Eigen::Vector3d origin = origin_m.value_or(Eigen::Vector3d::Zero());
 
   if (header->format == PlyFormat::kText) {
@@ -67,16 +67,16 @@ Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage
   const std::uint64_t size = file.bytes.size();
   for (auto before = header->elements.begin(); before != vertices; ++before) {
     const auto bytes = bytes_of(*before);
-    if (!bytes) return refused(Error::Code::kUnsupported, "lists before the vertices are not read");
+    if (!bytes) return error(Error::Code::kUnsupported, "lists before the vertices are not read");
     if (*bytes > 0 && before->count > (size - at) / *bytes) {
-      return refused(Error::Code::kCorrupt, "ends before its vertices");
+      return error(Error::Code::kCorrupt, "ends before its vertices");
     }
     at += before->count * *bytes;
   }
   const std::uint64_t step = bytes_of(*vertices).value_or(0);
   if (vertices->count > (size - at) / step) {
-    return refused(Error::Code::kCorrupt, fmt::format("byte {}: {} vertices of {} bytes do not fit into the {} left",
-                                                      at, vertices->count, step, size - at));
+    return error(Error::Code::kCorrupt, fmt::format("byte {}: {} vertices of {} bytes do not fit into the {} left", at,
+                                                    vertices->count, step, size - at));
   }
   ByteCloud cloud;
   cloud.points = static_cast<std::size_t>(vertices->count);

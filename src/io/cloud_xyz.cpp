@@ -9,7 +9,7 @@ namespace pingvox {
 
 bool looks_like_xyz(std::span<const std::uint8_t> bytes) {
   // More are the bins of a beam whose columns nobody named.
-  constexpr std::size_t kMostWords = 16;
+  constexpr std::size_t kMaxWords = 16;
   constexpr int kLines = 10;
   Lines lines(text_of(bytes));
   for (int looked_at = 0; looked_at < kLines; ++looked_at) {
@@ -17,7 +17,7 @@ bool looks_like_xyz(std::span<const std::uint8_t> bytes) {
     if (!line) return looked_at > 0;
     std::size_t count = 0;
     while (const auto word = cut_word(*line)) {
-      if (++count > kMostWords || (looked_at == 0 && !number_in(*word))) return false;
+      if (++count > kMaxWords || (looked_at == 0 && !number_in(*word))) return false;
     }
     if (looked_at == 0 && count < 3) return false;
   }

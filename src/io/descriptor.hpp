@@ -12,12 +12,12 @@
 
 namespace pingvox {
 
-/// What the operating system says, with the file's name.
-inline tl::unexpected<Error> refused(std::string_view name, int error) {
+/// kIo with the file's name and the message of an errno value.
+inline tl::unexpected<Error> os_error(std::string_view name, int error) {
   return fail(Error::Code::kIo, fmt::format("{}: {}", name, std::system_category().message(error)));
 }
 
-/// A file descriptor that closes itself.
+/// Owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -28,7 +28,7 @@ class Descriptor {
 
   int get() const { return fd_; }
   bool valid() const { return fd_ >= 0; }
-  /// 0, or why what was written may be lost (network file systems say so only here).
+  /// 0 or errno: network file systems report failed writes only here.
   int close() {
     const int fd = std::exchange(fd_, -1);
     return fd >= 0 && ::close(fd) != 0 && errno != EINTR ? errno : 0;

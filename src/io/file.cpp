@@ -23,8 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A stream's buffer on a file descriptor: std::ofstream gives neither the descriptor, which must be synced, nor the
-/// reason why a write failed.
+/// A stream buffer on a file descriptor: std::ofstream has neither the descriptor, needed for fsync, nor errno.
 class DescriptorBuffer : public std::streambuf {
  public:
   explicit DescriptorBuffer(int fd) : fd_(fd) { reset(); }
@@ -70,15 +69,14 @@ Result<void> write_to(int fd, std::string_view name, const Writer& write) {
   std::ostream out(&buffer);
   Result<void> written = write(out);
   out.flush();
-  // The cause first: a writer can only say that its stream failed.
-  if (buffer.error() != 0) return refused(name, buffer.error());
+  // The cause first: the writer only knows that its stream failed.
+  if (buffer.error() != 0) return os_error(name, buffer.error());
   if (!written) return written;
   if (!out) return fail(Error::Code::kIo, fmt::format("{}: could not be written", name));
   return {};
 }
 
-/// Whether a path names the file that is open. A file that lost its name, or whose name was given to another, is not
-/// it.
+/// Whether `path` still names the open file.
 bool is_at(int fd, const fs::path& path) {
   struct stat open = {}, named = {};
   return ::fstat(fd, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
@@ -92,8 +90,8 @@ int lock(int fd, int operation) {
   return status;
 }
 
-/// A file beside the one that it shall become, which disappears again unless it is moved there. It is locked while it
-/// lives: a file of its kind without a lock was left by a process that was killed.
+/// A temporary file beside its target, removed unless it is moved there. It is locked while in use: one without a lock
+/// was left by a killed process.
 class TemporaryFile {
  public:
   TemporaryFile() = default;
@@ -106,26 +104,26 @@ class TemporaryFile {
 
   /// A descriptor to write to, or -1 with errno.
   int create_for(const fs::path& target) {
-    // So few write one file at once that none is left beyond these.
+    // Fewer processes write one file at once.
     for (int number = 0; number < 16; ++number) remove_abandoned(path_for(target, number));
     for (int number = 0; number < 1000; ++number) {
       const fs::path path = path_for(target, number);
       const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (fd < 0 && errno == EEXIST) continue;
       if (fd < 0) return -1;
-      // File systems without locks: nobody can lock the file, so nobody removes it.
+      // On file systems without locks no process removes files of others.
       if (lock(fd, LOCK_EX) != 0 || is_at(fd, path)) {
         path_ = path;
         locked_ = fd;
         return ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
       }
-      ::close(fd);  // taken for abandoned in the moment before it was locked
+      ::close(fd);  // removed by another process before it was locked
     }
     errno = EEXIST;
     return -1;
   }
 
-  /// 0, or the reason why the file did not move.
+  /// 0 or errno.
   int move_to(const fs::path& target) {
     if (::rename(path_.c_str(), target.c_str()) != 0) return errno;
     path_.clear();
@@ -140,7 +138,7 @@ class TemporaryFile {
   }
 
   static void remove_abandoned(const fs::path& path) {
-    // Open for writing: network file systems lock no other.
+    // Open for writing, as network file systems require for a lock.
     const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
     if (file.valid() && lock(file.get(), LOCK_EX | LOCK_NB) == 0 && is_at(file.get(), path)) ::unlink(path.c_str());
   }
@@ -149,41 +147,41 @@ class TemporaryFile {
   int locked_ = -1;
 };
 
-/// 0, or why the content may not be on disk. What cannot be synced at all (some network and FUSE file systems) is none.
+/// 0 or errno. File systems without fsync (some network and FUSE ones) are no error.
 int sync_to_disk(int fd) {
   if (::fsync(fd) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP || errno == EROFS) return 0;
   return errno;
 }
 
-/// Where a chain of symbolic links ends, so that the rename replaces the file and not the link.
+/// Target of a chain of symbolic links, so that the rename replaces the file, not the link.
 Result<fs::path> end_of_links(const std::string& name) {
   fs::path path = name;
   for (int links = 0; links < 40; ++links) {
     std::error_code error;
     if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
     const fs::path next = fs::read_symlink(path, error);
-    if (error) return refused(name, error.value());
+    if (error) return os_error(name, error.value());
     path = next.is_absolute() ? next : path.parent_path() / next;
   }
-  return refused(name, ELOOP);
+  return os_error(name, ELOOP);
 }
 
 Result<void> replace(const fs::path& target, std::optional<mode_t> mode, const std::string& name, const Writer& write) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   TemporaryFile temporary;
   Descriptor file(temporary.create_for(target));
-  if (!file.valid()) return refused(name, errno);
-  if (mode && ::fchmod(file.get(), *mode) != 0) return refused(name, errno);
+  if (!file.valid()) return os_error(name, errno);
+  if (mode && ::fchmod(file.get(), *mode) != 0) return os_error(name, errno);
 
   if (const Result<void> written = write_to(file.get(), name, write); !written) return written;
-  if (const int error = sync_to_disk(file.get())) return refused(name, error);
-  if (const int error = file.close()) return refused(name, error);
-  if (const int error = temporary.move_to(target)) return refused(name, error);
+  if (const int error = sync_to_disk(file.get())) return os_error(name, error);
+  if (const int error = file.close()) return os_error(name, error);
+  if (const int error = temporary.move_to(target)) return os_error(name, error);
 
-  // The rename is on disk when the folder is. One that we may write but not read cannot be opened: nothing to be done.
+  // Sync the folder, which holds the rename. It may be writable but not readable; then it cannot be synced.
   const Descriptor opened_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!opened_folder.valid()) return {};
-  if (const int error = sync_to_disk(opened_folder.get())) return refused(name, error);
+  if (const int error = sync_to_disk(opened_folder.get())) return os_error(name, error);
   return {};
 }
 
@@ -204,18 +202,18 @@ Result<void> write_file(const std::string& path, const Writer& write) {
 
   struct stat status = {};
   const bool exists = ::stat(target->c_str(), &status) == 0;
-  if (!exists && errno != ENOENT) return refused(path, errno);
+  if (!exists && errno != ENOENT) return os_error(path, errno);
   if (!exists) return replace(*target, std::nullopt, path, write);
-  if (S_ISDIR(status.st_mode)) return refused(path, EISDIR);
-  // A rename would ask for the folder's rights only, and take a write protection for nothing.
-  if (::faccessat(AT_FDCWD, target->c_str(), W_OK, AT_EACCESS) != 0) return refused(path, errno);
+  if (S_ISDIR(status.st_mode)) return os_error(path, EISDIR);
+  // A rename needs permission for the folder only, and would ignore a write protection of the file.
+  if (::faccessat(AT_FDCWD, target->c_str(), W_OK, AT_EACCESS) != 0) return os_error(path, errno);
   if (S_ISREG(status.st_mode)) return replace(*target, status.st_mode & 0777, path, write);
 
-  // A device or a pipe is written where it is: a rename would put a file into its place.
+  // Devices and pipes are written in place: a rename would replace them by a file.
   Descriptor device(::open(target->c_str(), O_WRONLY | O_CLOEXEC));
-  if (!device.valid()) return refused(path, errno);
+  if (!device.valid()) return os_error(path, errno);
   if (const Result<void> written = write_to(device.get(), path, write); !written) return written;
-  if (const int error = device.close()) return refused(path, error);
+  if (const int error = device.close()) return os_error(path, error);
   return {};
 }
 

@@ -33,7 +33,7 @@ const DeviceProfile* seanet_device_of(std::span<const std::uint8_t> frame) {
   return line ? device_of(*line) : nullptr;
 }
 
-/// Where the bytes of a stream stand in the file, and when they came.
+/// Maps positions of the byte stream to positions in the file and times.
 class PlacesInFile {
  public:
   void add(const FrameContainer::Piece& piece) {
@@ -41,7 +41,7 @@ class PlacesInFile {
     pieces_.push_back({end_, piece});
     end_ += piece.bytes.size();
   }
-  /// Nothing before will be asked for.
+  /// Drops pieces before a position.
   void forget_before(std::uint64_t place) {
     while (pieces_.size() > 1 && pieces_[1].from <= place) pieces_.pop_front();
   }
@@ -80,7 +80,6 @@ class FrameLog final : public DeviceLog {
     set_first(read());
   }
 
-
   std::vector<DamageKind> damage() const override {
     std::vector<DamageKind> kinds = container_->damage();
     for (std::size_t i = 0; i < finder_.damage().size(); ++i) {
@@ -108,7 +107,7 @@ class FrameLog final : public DeviceLog {
       auto beam = protocol_.beam_in(frame->bytes, places_.time_s(frame->end() - 1));
       if (!beam) {
         add_damage(unusable_, "impossible values", places_.file_byte(frame->at));
-        if (damage_ == Damage::kFail) return damaged(unusable_.front().first_byte, beam.error());
+        if (damage_ == Damage::kFail) return damage_error(unusable_.front().first_byte, beam.error());
       } else if (*beam) {
         if (device_ == nullptr) device_ = protocol_.device_of(frame->bytes);
         places_.forget_before(frame->end());
@@ -132,7 +131,7 @@ class FrameLog final : public DeviceLog {
     return {};
   }
 
-  /// Before the pieces are forgotten.
+  /// Stores positions in the file before the pieces are dropped.
   void note_places() {
     for (std::size_t i = first_bytes_.size(); i < finder_.damage().size(); ++i) {
       first_bytes_.push_back(places_.file_byte(finder_.damage()[i].first_byte));
@@ -142,13 +141,13 @@ class FrameLog final : public DeviceLog {
   Result<void> check_damage() const {
     if (damage_ == Damage::kSkip) return {};
     if (!container_->damage().empty()) {
-      return damaged(container_->damage().front().first_byte, std::string(container_->damage().front().what));
+      return damage_error(container_->damage().front().first_byte, std::string(container_->damage().front().what));
     }
-    if (!first_bytes_.empty()) return damaged(first_bytes_.front(), std::string(finder_.damage().front().what));
+    if (!first_bytes_.empty()) return damage_error(first_bytes_.front(), std::string(finder_.damage().front().what));
     return {};
   }
 
-  tl::unexpected<Error> damaged(std::uint64_t byte, const std::string& what) const {
+  tl::unexpected<Error> damage_error(std::uint64_t byte, const std::string& what) const {
     return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", container_->name(), byte, what));
   }
 
@@ -158,8 +157,8 @@ class FrameLog final : public DeviceLog {
   FrameFinder finder_;
   PlacesInFile places_;
   bool at_end_ = false;
-  std::vector<std::uint64_t> first_bytes_;  ///< in the file, of the finder's kinds of damage
-  std::vector<DamageKind> unusable_;        ///< right frames with values that make no beam
+  std::vector<std::uint64_t> first_bytes_;  ///< positions in the file of the finder's damage
+  std::vector<DamageKind> unusable_;        ///< valid frames with invalid values
 };
 
 }  // namespace

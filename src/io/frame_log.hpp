@@ -15,41 +15,41 @@
 
 namespace pingvox {
 
-/// A log that holds the bytes of a serial line: they come in pieces, whose ends have nothing to do with frames.
+/// A log file that holds the bytes of a serial line, in pieces whose ends are unrelated to frames.
 class FrameContainer {
  public:
   struct Piece {
-    std::span<const std::uint8_t> bytes;  ///< until the next call
-    std::uint64_t file_byte = 0;          ///< where the first of them stands in the file
-    unsigned file_step = 1;               ///< how far apart they stand there: 3 in hexadecimal text
-    double time_s = 0.0;                  ///< when the first of them came
-    double time_step_s = 0.0;             ///< how much later each next one did
+    std::span<const std::uint8_t> bytes;  ///< valid until the next call
+    std::uint64_t file_byte = 0;          ///< position of the first byte in the file
+    unsigned file_step = 1;               ///< distance of bytes in the file: 3 in hexadecimal text
+    double time_s = 0.0;                  ///< time of the first byte
+    double time_step_s = 0.0;             ///< time from byte to byte
   };
 
   virtual ~FrameContainer() = default;
   virtual const std::string& name() const = 0;
   virtual Result<std::optional<Piece>> next() = 0;  ///< nullopt: the end
   virtual std::optional<double> share_read() const = 0;
-  /// Of the container itself, with places in the file.
+  /// Damage of the container itself, with positions in the file.
   const std::vector<DamageKind>& damage() const { return damage_; }
 
  protected:
   std::vector<DamageKind> damage_;
 };
 
-/// How a protocol's frames are found and what they say.
+/// A serial protocol of a sonar.
 struct FrameProtocol {
   CheckFrame check;
-  /// The frame's beam; nullopt: it is another message; an error: what is wrong with it.
+  /// The frame's beam; nullopt: another message; error: reason why it is invalid.
   tl::expected<std::optional<Beam>, std::string> (*beam_in)(std::span<const std::uint8_t> frame, double time_s);
-  /// The head that sent a frame with a beam.
+  /// The head that sent a beam.
   const DeviceProfile* (*device_of)(std::span<const std::uint8_t> frame);
 };
 
 const FrameProtocol& ping_protocol();
 const FrameProtocol& seanet_protocol();
 
-/// The beams of a container's frames; the time of each is that of the piece that has its frame's last byte.
+/// The beams in a container; the time of each is that of its frame's last byte.
 std::unique_ptr<BeamSource> beams_of(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol,
                                      Damage damage);
 

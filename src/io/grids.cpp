@@ -14,7 +14,7 @@ namespace {
 
 constexpr char kOccupied = '\0', kFree = '\xfe', kUnknown = '\xcd';  // 0, 254, 205
 
-Result<void> finished(std::ostream& out) {
+Result<void> check_stream(std::ostream& out) {
   if (!out.flush()) return fail(Error::Code::kIo, "the grid could not be written");
   return {};
 }
@@ -31,7 +31,7 @@ std::string decimal(double value_m) {
 }
 
 /// A file's name as a string of YAML.
-std::string quoted(std::string_view name) {
+std::string quote(std::string_view name) {
   std::string out = "\"";
   for (const char c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -62,7 +62,7 @@ Result<void> write_grid_pgm(const Raster<Occupancy>& slice, std::ostream& out) {
     }
     out.write(line.data(), static_cast<std::streamsize>(line.size()));
   }
-  return finished(out);
+  return check_stream(out);
 }
 
 Result<void> write_grid_yaml(const Raster<Occupancy>& slice, std::string_view image, std::ostream& out) {
@@ -70,9 +70,9 @@ Result<void> write_grid_yaml(const Raster<Occupancy>& slice, std::string_view im
   out << fmt::format(
       "image: {}\nmode: trinary\nresolution: {}\norigin: [{}, {}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
       "free_thresh: 0.196\n",
-      is_plain(image) ? std::string(image) : quoted(image), decimal(slice.cell_m), decimal(slice.corner_m.x()),
+      is_plain(image) ? std::string(image) : quote(image), decimal(slice.cell_m), decimal(slice.corner_m.x()),
       decimal(slice.corner_m.y()));
-  return finished(out);
+  return check_stream(out);
 }
 
 Result<void> write_heights_asc(const Raster<float>& heights, std::ostream& out) {
@@ -93,7 +93,7 @@ Result<void> write_heights_asc(const Raster<float>& heights, std::ostream& out) 
     line.push_back('\n');
     out.write(line.data(), static_cast<std::streamsize>(line.size()));
   }
-  return finished(out);
+  return check_stream(out);
 }
 
 }  // namespace pingvox

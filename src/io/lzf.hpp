@@ -7,7 +7,7 @@
 namespace pingvox {
 
 /// The most bytes that LZF makes of one: three say to repeat 264.
-inline constexpr std::size_t kLzfMostExpansion = 264 / 3;
+inline constexpr std::size_t kLzfMaxExpansion = 264 / 3;
 
 /// Undoes LZF (Marc Lehmann's liblzf), with which PCL compresses point clouds.
 /// @return whether `compressed` is whole and filled exactly `out`

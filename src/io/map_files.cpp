@@ -6,7 +6,7 @@
 
 namespace pingvox {
 
-tl::unexpected<Error> damaged(const FileBytes& file, std::size_t byte, std::string_view reason) {
+tl::unexpected<Error> damage_error(const FileBytes& file, std::size_t byte, std::string_view reason) {
   return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", file.name, byte, reason));
 }
 
@@ -32,7 +32,7 @@ WideKey child_key(const WideKey& parent, int depth, int levels, int octant) {
 }
 
 Result<void> LeafBuilder::add(const WideKey& key, int depth, float belief, std::size_t byte) {
-  if (!std::isfinite(belief)) return damaged(file_, byte, fmt::format("a log-odds of {}", belief));
+  if (!std::isfinite(belief)) return damage_error(file_, byte, fmt::format("a log-odds of {}", belief));
   editor_.set(key, depth, LogOdds(belief));
   if (memory_limit_bytes_ > 0 && map_.memory_bytes() > memory_limit_bytes_) {
     return over_limit(file_, byte, memory_limit_bytes_);

@@ -18,7 +18,7 @@ namespace pingvox {
 inline constexpr int kOctomapDepth = 16;
 
 /// kCorrupt: the file, the place in it, the reason.
-tl::unexpected<Error> damaged(const FileBytes& file, std::size_t byte, std::string_view reason);
+tl::unexpected<Error> damage_error(const FileBytes& file, std::size_t byte, std::string_view reason);
 
 /// kLimit: the file, the place in it, the limit [bytes] that its map would pass.
 tl::unexpected<Error> over_limit(const FileBytes& file, std::size_t byte, std::size_t limit);

@@ -140,7 +140,7 @@ std::optional<NumericArray> numeric_array_in(std::span<const std::uint8_t> matri
 enum class Inflated { kAll, kStart };
 
 /// @param limit  kAll: more than this is an error; kStart: stop there
-Result<std::vector<std::uint8_t>> inflated(std::span<const std::uint8_t> data, Inflated part, std::uint64_t limit) {
+Result<std::vector<std::uint8_t>> inflate_data(std::span<const std::uint8_t> data, Inflated part, std::uint64_t limit) {
   z_stream stream = {};
   if (inflateInit(&stream) != Z_OK) return fail(Error::Code::kIo, "there is not enough memory to inflate its data");
   const auto end = [](z_stream* s) { inflateEnd(s); };
@@ -216,11 +216,11 @@ Result<std::vector<std::uint8_t>> find_variable(const FileBytes& file, std::endi
       if (name == variable) return std::vector<std::uint8_t>(with_tag.begin(), with_tag.end());
     } else if (element->type == kCompressed) {
       // A large variable that is not ours is not worth inflating.
-      const auto beginning = inflated(element->data, Inflated::kStart, std::uint64_t{1} << 12);
+      const auto beginning = inflate_data(element->data, Inflated::kStart, std::uint64_t{1} << 12);
       if (!beginning) return in_place(beginning.error());
       name = name_in(*beginning, order);
       if (name == variable) {
-        auto all = inflated(element->data, Inflated::kAll, kMaxInflation * element->data.size() + kAlwaysInflated);
+        auto all = inflate_data(element->data, Inflated::kAll, kMaxInflation * element->data.size() + kAlwaysInflated);
         if (!all) return in_place(all.error());
         return std::move(*all);
       }

@@ -77,7 +77,7 @@ class Words {
     return point;
   }
   /// The rest of the line does not matter.
-  void drop_line() { line_ = {}; }
+  void skip_line() { line_ = {}; }
 
  private:
   Lines lines_;
@@ -98,7 +98,7 @@ Result<TriangleMesh> read_off(const FileBytes& file) {
   for (std::uint64_t n = 0; n < counts[0]; ++n) {
     const auto point = words.point();
     if (!point || is_full(mesh)) return corrupt(file.name, words.place(), fmt::format("vertex {} is broken", n));
-    words.drop_line();
+    words.skip_line();
     mesh.vertices_m.push_back(*point);
   }
   std::vector<std::uint64_t> corners;
@@ -114,7 +114,7 @@ Result<TriangleMesh> read_off(const FileBytes& file) {
       corners.push_back(*index);
     }
     if (const auto wrong = add_face(corners, mesh)) return corrupt(file.name, words.place(), *wrong);
-    words.drop_line();
+    words.skip_line();
   }
   return mesh;
 }
@@ -124,7 +124,7 @@ Result<TriangleMesh> read_stl_text(const FileBytes& file) {
   TriangleMesh mesh;
   std::size_t corners = 0;
   words.next();
-  words.drop_line();  // solid, and its name
+  words.skip_line();  // solid, and its name
   while (const auto word = words.next()) {
     if (*word == "vertex") {
       const auto point = words.point();
@@ -137,7 +137,7 @@ Result<TriangleMesh> read_stl_text(const FileBytes& file) {
       mesh.triangles.push_back({end - 3, end - 2, end - 1});
       corners = 0;
     } else if (*word == "facet" || *word == "solid" || *word == "endsolid") {
-      words.drop_line();  // a normal, a name
+      words.skip_line();  // a normal, a name
     } else if (*word != "outer" && *word != "loop" && *word != "endfacet") {
       return corrupt(file.name, words.place(), fmt::format("'{}' belongs in no STL file", printable(*word)));
     }

@@ -43,9 +43,11 @@ class TreeReader {
       root = *read;
     }
     if (nodes_ != nodes) {
-      return damaged(file_, position(), fmt::format("the tree has {} nodes and the header says {}", nodes_, nodes));
+      return damage_error(file_, position(),
+                          fmt::format("the tree has {} nodes and the header says {}", nodes_, nodes));
     }
-    if (reader_.left() > 0) return damaged(file_, position(), fmt::format("{} bytes after the tree", reader_.left()));
+    if (reader_.left() > 0)
+      return damage_error(file_, position(), fmt::format("{} bytes after the tree", reader_.left()));
     return tree_.finish(root);
   }
 
@@ -61,8 +63,8 @@ class TreeReader {
   }
   /// Why the last word is none. Apart from reading it: an error for each word takes as long as the rest of its work.
   tl::unexpected<Error> bad_word() const {
-    if (is_at_end_) return damaged(file_, position(), "the file ends inside of the tree");
-    return damaged(file_, position() - sizeof(std::uint16_t), "an inner node without children");
+    if (is_at_end_) return damage_error(file_, position(), "the file ends inside of the tree");
+    return damage_error(file_, position() - sizeof(std::uint16_t), "an inner node without children");
   }
 
   /// The node at `depth` whose word is next, with all below it.
@@ -82,7 +84,7 @@ class TreeReader {
       if (!child) return child;
       group.child[octant] = *child;
     }
-    return within_limit(tree_.add(group), at);
+    return check_limit(tree_.add(group), at);
   }
 
   /// The node of a brick, whose word is next, and its cells.
@@ -98,13 +100,13 @@ class TreeReader {
       if (octant_word == 0) return bad_word();
       const States below = states_of(octant_word);
       if ((below.free & below.occupied) != 0) {
-        return damaged(file_, position(), "an inner node below the 16th level");
+        return damage_error(file_, position(), "an inner node below the 16th level");
       }
       const int shift = std::countr_zero(rest) * 8;
       cells.free |= std::uint64_t{below.free} << shift;
       cells.occupied |= std::uint64_t{below.occupied} << shift;
     }
-    return within_limit(tree_.add(cells), at);
+    return check_limit(tree_.add(cells), at);
   }
 
   float belief_of(unsigned state) const {
@@ -112,7 +114,7 @@ class TreeReader {
   }
 
   /// The entry, when the tree with it is within the limit.
-  Result<detail::Entry> within_limit(detail::Entry entry, std::size_t byte) const {
+  Result<detail::Entry> check_limit(detail::Entry entry, std::size_t byte) const {
     const std::size_t limit = options_.memory_limit_bytes;
     if (limit > 0 && tree_.bytes() > limit) return over_limit(file_, byte, limit);
     return entry;
@@ -162,9 +164,9 @@ class TreeWords {
  private:
   /// More than there may be, so that no word is added with care.
   static std::unique_ptr<std::uint16_t[]> room_for(const detail::TreeView& tree) {
-    constexpr std::size_t kMostBrickWords = 9;  // its own and those of its octants
-    return std::make_unique_for_overwrite<std::uint16_t[]>(tree.group_count + tree.brick_count * kMostBrickWords +
-                                                           kMostBrickWords);
+    constexpr std::size_t kMaxBrickWords = 9;  // its own and those of its octants
+    return std::make_unique_for_overwrite<std::uint16_t[]>(tree.group_count + tree.brick_count * kMaxBrickWords +
+                                                           kMaxBrickWords);
   }
 
   /// The state of a node, after its words and those below it, if there are any.
@@ -180,7 +182,7 @@ class TreeWords {
     std::uint16_t* const at = end_++;
     unsigned word = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) word |= add(group.child[octant], depth + 1) << (2 * octant);
-    if (is_alike(word)) {
+    if (is_uniform(word)) {
       assert(end_ == at + 1);
       end_ = at;
       return word & 3U;
@@ -195,9 +197,9 @@ class TreeWords {
 
   unsigned add(const detail::CellStates& cells) {
     const EightWords octants = words_of(cells.free, cells.occupied);
-    const EightWords are_inner = mixed(octants);
+    const EightWords are_inner = mixed_words(octants);
     const unsigned word = word_above(octants, are_inner);
-    if (is_alike(word)) return word & 3U;
+    if (is_uniform(word)) return word & 3U;
     std::uint16_t* end = end_;
     *end++ = static_cast<std::uint16_t>(word);
     for (std::size_t octant = 0; octant < 8; ++octant) {
@@ -235,7 +237,7 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
   if (const auto version = oldest.read<std::int32_t>(); version == 3) {
     const auto resolution_m = oldest.read<double>();
     const auto nodes = oldest.read<std::uint32_t>();
-    if (!resolution_m || !nodes) return damaged(file, file.bytes.size(), "the file ends inside of the header");
+    if (!resolution_m || !nodes) return damage_error(file, file.bytes.size(), "the file ends inside of the header");
     header = {.id = "OcTree", .nodes = *nodes, .resolution_m = *resolution_m, .tree_at = oldest.position()};
   } else {
     auto read = read_octomap_header(file, kBtFirstLine);

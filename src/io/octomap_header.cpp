@@ -42,7 +42,8 @@ class HeaderWords {
 
 Result<OctomapHeader> read_octomap_header(const FileBytes& file, std::string_view first_line) {
   const std::string_view text = text_of(file.view());
-  if (!text.starts_with(first_line)) return damaged(file, 0, fmt::format("the first line is not '{}'", first_line));
+  if (!text.starts_with(first_line))
+    return damage_error(file, 0, fmt::format("the first line is not '{}'", first_line));
   HeaderWords words(text);
   words.skip_line();
   OctomapHeader header;
@@ -51,24 +52,24 @@ Result<OctomapHeader> read_octomap_header(const FileBytes& file, std::string_vie
   while (true) {
     const std::string_view word = words.next();
     const std::size_t at = words.position() - word.size();
-    if (word.empty()) return damaged(file, text.size(), "the header does not end with 'data'");
+    if (word.empty()) return damage_error(file, text.size(), "the header does not end with 'data'");
     if (word == "id") {
       header.id = words.next();
     } else if (word == "size") {
       nodes = count_in(words.next());
-      if (!nodes) return damaged(file, at, "size is not a number of nodes");
+      if (!nodes) return damage_error(file, at, "size is not a number of nodes");
     } else if (word == "res") {
       resolution_m = number_in(words.next());
-      if (!resolution_m) return damaged(file, at, "res is not a number");
+      if (!resolution_m) return damage_error(file, at, "res is not a number");
     } else {
       words.skip_line();
       if (word == "data") break;
     }
   }
   const std::size_t end = words.position();
-  if (header.id.empty()) return damaged(file, end, "the header names no id");
-  if (!nodes) return damaged(file, end, "the header names no size");
-  if (!resolution_m) return damaged(file, end, "the header names no res");
+  if (header.id.empty()) return damage_error(file, end, "the header names no id");
+  if (!nodes) return damage_error(file, end, "the header names no size");
+  if (!resolution_m) return damage_error(file, end, "the header names no res");
   header.nodes = *nodes;
   header.resolution_m = *resolution_m;
   header.tree_at = end;

@@ -28,9 +28,11 @@ class TreeReader {
       if (const auto done = read_node(WideKey{}, 0); !done) return done;
     }
     if (nodes_ != nodes) {
-      return damaged(file_, position(), fmt::format("the tree has {} nodes and the header says {}", nodes_, nodes));
+      return damage_error(file_, position(),
+                          fmt::format("the tree has {} nodes and the header says {}", nodes_, nodes));
     }
-    if (reader_.left() > 0) return damaged(file_, position(), fmt::format("{} bytes after the tree", reader_.left()));
+    if (reader_.left() > 0)
+      return damage_error(file_, position(), fmt::format("{} bytes after the tree", reader_.left()));
     return {};
   }
 
@@ -42,11 +44,11 @@ class TreeReader {
     const auto belief = reader_.read<float>();
     const auto colour = reader_.take(colour_bytes_);
     const auto children = reader_.read<std::uint8_t>();
-    if (!belief || !colour || !children) return damaged(file_, at, "the file ends inside of the tree");
+    if (!belief || !colour || !children) return damage_error(file_, at, "the file ends inside of the tree");
     ++nodes_;
     if (*children == 0) return builder_.add(key, depth, *belief, at);
-    if (!std::isfinite(*belief)) return damaged(file_, at, fmt::format("a log-odds of {}", *belief));
-    if (depth == kOctomapDepth) return damaged(file_, at, "an inner node below the 16th level");
+    if (!std::isfinite(*belief)) return damage_error(file_, at, fmt::format("a log-odds of {}", *belief));
+    if (depth == kOctomapDepth) return damage_error(file_, at, "an inner node below the 16th level");
     for (int octant = 0; octant < 8; ++octant) {
       if (((*children >> octant) & 1) == 0) continue;
       const auto done = read_node(child_key(key, depth, kOctomapDepth, octant), depth + 1);

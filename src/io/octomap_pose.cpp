@@ -20,12 +20,12 @@ Quaternionf product(const Quaternionf& a, const Quaternionf& b) {
           a[1] * b[2] - b[1] * a[2] + a[0] * b[3] + b[0] * a[3]};
 }
 
-Point3f rotated(const Quaternionf& rotation, const Point3f& p) {
+Point3f rotate(const Quaternionf& rotation, const Point3f& p) {
   const Quaternionf result = product(product(rotation, {0.0F, p[0], p[1], p[2]}), conjugate(rotation));
   return {result[1], result[2], result[3]};
 }
 
-Quaternionf normalised(Quaternionf q) {
+Quaternionf normalize(Quaternionf q) {
   // Each square is rounded to float, their sum is not.
   double squares = 0.0;
   for (const float c : q) squares += static_cast<double>(c * c);
@@ -68,13 +68,13 @@ OctomapPose OctomapPose::from_rpy(const Point3f& translation, float roll_rad, fl
 }
 
 Point3f OctomapPose::transform(const Point3f& point) const {
-  return sum(rotated(rotation, point), translation);
+  return sum(rotate(rotation, point), translation);
 }
 
 Point3f OctomapPose::ray_origin() const {
   OctomapPose inverse;
-  inverse.rotation = normalised(conjugate(rotation));
-  inverse.translation = rotated(inverse.rotation, {-translation[0], -translation[1], -translation[2]});
+  inverse.rotation = normalize(conjugate(rotation));
+  inverse.translation = rotate(inverse.rotation, {-translation[0], -translation[1], -translation[2]});
   return transform(inverse.transform(translation));
 }
 

@@ -15,7 +15,7 @@ using Verdict = FrameCheck::Verdict;
 
 constexpr std::size_t kHeader = 8, kChecksum = 2;
 /// More than any message has; without it a damaged length would hold back several frames.
-constexpr std::size_t kLongestPayload = 4096;
+constexpr std::size_t kMaxPayload = 4096;
 
 constexpr std::uint16_t kDeviceData = 2300, kAutoDeviceData = 2301;
 
@@ -46,7 +46,7 @@ FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 4) return {Verdict::kIncomplete};
 
   const std::size_t payload = u16_at(bytes, 2);
-  if (payload > kLongestPayload) return {Verdict::kBroken, 4, "impossible length"};
+  if (payload > kMaxPayload) return {Verdict::kBroken, 4, "impossible length"};
   const std::size_t size = kHeader + payload + kChecksum;
   if (bytes.size() < size) return {Verdict::kIncomplete};
   const std::span<const std::uint8_t> summed = bytes.first(size - kChecksum);
@@ -77,7 +77,7 @@ tl::expected<Beam, std::string> beam_of(const Ping360Ping& ping, double time_s) 
   if (ping.angle_grad > kTurn_grad) return tl::unexpected(fmt::format("angle {} of 400 a turn", ping.angle_grad));
   Beam beam;
   beam.time_s = time_s;
-  beam.bearing_rad = wrapped_bearing((kAhead_grad - ping.angle_grad) * (2.0 * std::numbers::pi / kTurn_grad));
+  beam.bearing_rad = wrap_bearing((kAhead_grad - ping.angle_grad) * (2.0 * std::numbers::pi / kTurn_grad));
   beam.bin_length_m = kAssumedSoundSpeed_m_s * (ping.period_25ns * kTick_s) / 2.0;
   beam.intensities.assign(ping.data.begin(), ping.data.end());
   if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);

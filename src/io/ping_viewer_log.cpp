@@ -13,13 +13,13 @@
 #include "io/readers.hpp"
 #include "io/stream_reader.hpp"
 
-// Logs of Ping Viewer: a header, then records of a time and what was read from the serial line (docs/formats.md).
+// Logs of Ping Viewer: a header, then records of a time and bytes of the serial line (docs/formats.md).
 namespace pingvox {
 namespace {
 
 constexpr std::string_view kMagic = "PingViewer sensor log file";
 
-/// How the strings of a log are stored: as Qt does it, or as scripts that write such logs do.
+/// Encoding of strings: of Qt, or of scripts that write such logs.
 enum class Encoding { kUtf16, kUtf8 };
 
 using Bytes = std::span<const std::uint8_t>;
@@ -28,7 +28,7 @@ std::uint32_t u32_at(Bytes bytes, std::size_t place) {
   return value_from<std::uint32_t>(bytes.subspan(place, 4), std::endian::big);
 }
 
-/// The next character, cut off the front; nullopt: what stands there is none that a time could have.
+/// Removes and returns the first character; nullopt: none that may occur in a time.
 std::optional<std::uint32_t> cut_character(Bytes& text, Encoding encoding) {
   if (text.empty()) return std::nullopt;
   std::size_t size = 2;
@@ -47,8 +47,7 @@ std::optional<std::uint32_t> cut_character(Bytes& text, Encoding encoding) {
   return character;
 }
 
-/// The value of a decimal digit of any script with a place in the first 2^16 characters; -1: it is none. Times are
-/// written with the digits of the writer's locale.
+/// Value of a decimal digit of any script (times use the digits of the writer's locale); -1: no digit.
 int digit_value(std::uint32_t character) {
   constexpr std::array<std::uint32_t, 22> kZeros = {0x30,   0x660,  0x6f0,  0x7c0,  0x966,  0x9e6, 0xa66, 0xae6,
                                                     0xb66,  0xbe6,  0xc66,  0xce6,  0xd66,  0xe50, 0xed0, 0xf20,
@@ -81,18 +80,18 @@ std::optional<double> time_in(Bytes text, Encoding encoding) {
   return (hours * 60 + minutes) * 60 + seconds + milliseconds / 1000.0;
 }
 
-/// What stands before a record's data.
+/// Header of a record.
 struct RecordHeader {
   double time_s;
-  std::size_t size;  ///< of the header itself
+  std::size_t size;  ///< of the header [bytes]
   std::uint32_t data;
 };
 
-constexpr std::uint32_t kMostData = 1U << 16;
-/// The times of 12 characters, of at most three bytes each, and two counts.
-constexpr std::size_t kLongestHeader = 4 + 36 + 4;
+constexpr std::uint32_t kMaxData = 1U << 16;
+/// A time of 12 characters of at most three bytes each, and two counts.
+constexpr std::size_t kMaxHeader = 4 + 36 + 4;
 
-/// nullopt: no header that one could believe stands here.
+/// nullopt: not a plausible header.
 std::optional<RecordHeader> record_header_in(Bytes bytes, Encoding encoding) {
   if (bytes.size() < 4) return std::nullopt;
   const std::uint32_t text = u32_at(bytes, 0);
@@ -100,7 +99,7 @@ std::optional<RecordHeader> record_header_in(Bytes bytes, Encoding encoding) {
   if (!is_time || bytes.size() < 4 + text + 4) return std::nullopt;
   const std::optional<double> time_s = time_in(bytes.subspan(4, text), encoding);
   const std::uint32_t data = u32_at(bytes, 4 + text);
-  if (!time_s || data > kMostData) return std::nullopt;
+  if (!time_s || data > kMaxData) return std::nullopt;
   return RecordHeader{*time_s, 4 + text + 4, data};
 }
 
@@ -112,11 +111,11 @@ class PingViewerRecords : public FrameContainer {
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
   Result<std::optional<Piece>> next() override {
-    const Result<Bytes> start = reader_.peek(kLongestHeader);
+    const Result<Bytes> start = reader_.peek(kMaxHeader);
     if (!start) return tl::unexpected(start.error());
     if (start->empty()) return std::nullopt;
     const std::optional<RecordHeader> header = record_header_in(*start, encoding_);
-    if (!header) return next_behind_damage();
+    if (!header) return next_after_damage();
     in_damage_ = false;
 
     const Result<Bytes> record = reader_.peek(header->size + header->data);
@@ -131,22 +130,22 @@ class PingViewerRecords : public FrameContainer {
   }
 
  private:
-  /// The bytes up to the next record that one could believe: they may hold frames too.
-  Result<std::optional<Piece>> next_behind_damage() {
-    constexpr std::size_t kAtOnce = 4096;
-    const Result<Bytes> bytes = reader_.peek(kAtOnce + kLongestHeader);
+  /// The bytes up to the next plausible record, which may hold frames too.
+  Result<std::optional<Piece>> next_after_damage() {
+    constexpr std::size_t kBlock = 4096;
+    const Result<Bytes> bytes = reader_.peek(kBlock + kMaxHeader);
     if (!bytes) return tl::unexpected(bytes.error());
     if (!in_damage_) add_damage(damage_, "damaged record", reader_.position());
     in_damage_ = true;
     std::size_t passed = 1;
-    const std::size_t most = bytes->size() < kAtOnce + kLongestHeader ? bytes->size() : kAtOnce;
+    const std::size_t most = bytes->size() < kBlock + kMaxHeader ? bytes->size() : kBlock;
     while (passed < most && !record_header_in(bytes->subspan(passed), encoding_)) ++passed;
     const Piece piece{bytes->first(passed), reader_.position(), 1, time_s_, 0.0};
     reader_.skip(passed);
     return piece;
   }
 
-  /// Times count from the log's start and begin again after a day.
+  /// Unwraps times, which restart after a day.
   void set_time(double time_s) {
     constexpr double kDay_s = 86400.0;
     if (time_s + days_s_ < time_s_ - kDay_s / 2) days_s_ += kDay_s;

@@ -81,7 +81,7 @@ Result<PlyHeader> read_ply_header(std::string_view file, std::span<const std::ui
       std::string_view type_name = cut_word(rest).value_or("");
       if (type_name == "list") {
         property.list_count = type_named(cut_word(rest).value_or(""));
-        if (!property.list_count || !is_whole(*property.list_count)) {
+        if (!property.list_count || !is_integer(*property.list_count)) {
           return off("a list needs a whole number for its length");
         }
         type_name = cut_word(rest).value_or("");

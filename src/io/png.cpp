@@ -18,10 +18,10 @@ void write_bytes(png_structp png, png_bytep bytes, std::size_t count) {
 void flush(png_structp) {}
 
 // libpng prints its errors unless it is told not to.
-[[noreturn]] void jump_out(png_structp png, png_const_charp) {
+[[noreturn]] void raise_error(png_structp png, png_const_charp) {
   png_longjmp(png, 1);
 }
-void keep_quiet(png_structp, png_const_charp) {}
+void ignore_warning(png_structp, png_const_charp) {}
 
 /// False: libpng gave up. It leaves by longjmp, so nothing in here may need a destructor.
 bool encode(png_structp png, png_infop info, std::size_t width, std::size_t height, const std::uint8_t* rgb,
@@ -45,7 +45,7 @@ bool encode(png_structp png, png_infop info, std::size_t width, std::size_t heig
 Result<void> write_png(std::size_t width, std::size_t height, std::span<const std::uint8_t> rgb, std::ostream& out) {
   assert(width > 0 && width < (std::size_t{1} << 31) && height > 0 && height < (std::size_t{1} << 31));
   assert(rgb.size() == width * height * 3);
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, jump_out, keep_quiet);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, raise_error, ignore_warning);
   if (png == nullptr) return fail(Error::Code::kNoMemory, "out of memory: the picture was not written");
   png_infop info = png_create_info_struct(png);
   const bool done = info != nullptr && encode(png, info, width, height, rgb.data(), out);

@@ -50,14 +50,14 @@ Result<Header> read_header(const FileBytes& file, std::size_t memory_limit_bytes
   header.inner = *reader.read<std::uint64_t>();
   header.leaves = *reader.read<std::uint64_t>();
   header.options.memory_limit_bytes = memory_limit_bytes;
-  if (parents > 1) return damaged(file, 17, fmt::format("no rule for parents has the number {}", parents));
+  if (parents > 1) return damage_error(file, 17, fmt::format("no rule for parents has the number {}", parents));
   header.options.parents = parents == 0 ? Parents::kMax : Parents::kMean;
   if (header.root != kNothing && header.root != kLeaf && header.root != kInner) {
-    return damaged(file, 18, fmt::format("the root is of no kind that there is ({})", header.root));
+    return damage_error(file, 18, fmt::format("the root is of no kind that there is ({})", header.root));
   }
-  if (reserved != 0) return damaged(file, 19, "the reserved bytes are not 0");
+  if (reserved != 0) return damage_error(file, 19, "the reserved bytes are not 0");
   if (const auto valid = header.options.validate(); !valid) {
-    return damaged(file, 16, "the header does not make sense: " + valid.error().message);
+    return damage_error(file, 16, "the header does not make sense: " + valid.error().message);
   }
   return header;
 }
@@ -74,9 +74,9 @@ class TreeReader {
   Result<void> read(const Header& header) {
     if (const auto done = read_node(header.root, WideKey{}, 0); !done) return done;
     if (inner_ != header.inner || leaves_ != header.leaves) {
-      return damaged(file_, position(),
-                     fmt::format("the tree has {} inner nodes and {} leaves, and the header says {} and {}", inner_,
-                                 leaves_, header.inner, header.leaves));
+      return damage_error(file_, position(),
+                          fmt::format("the tree has {} inner nodes and {} leaves, and the header says {} and {}",
+                                      inner_, leaves_, header.inner, header.leaves));
     }
     return {};
   }
@@ -89,15 +89,15 @@ class TreeReader {
     if (state == kNothing) return {};
     if (state == kLeaf) {
       const auto belief = reader_.read<float>();
-      if (!belief) return damaged(file_, at, "the tree needs more bytes than the header says");
+      if (!belief) return damage_error(file_, at, "the tree needs more bytes than the header says");
       ++leaves_;
       return builder_.add(key, depth, *belief, at);
     }
-    if (state != kInner) return damaged(file_, at, "a child of no kind that there is");
-    if (depth == levels_) return damaged(file_, at, "an inner node below the last level");
+    if (state != kInner) return damage_error(file_, at, "a child of no kind that there is");
+    if (depth == levels_) return damage_error(file_, at, "an inner node below the last level");
     const auto word = reader_.read<std::uint16_t>();
-    if (!word) return damaged(file_, at, "the tree needs more bytes than the header says");
-    if (*word == 0) return damaged(file_, at, "an inner node without children");
+    if (!word) return damage_error(file_, at, "the tree needs more bytes than the header says");
+    if (*word == 0) return damage_error(file_, at, "an inner node without children");
     ++inner_;
     for (int octant = 0; octant < 8; ++octant) {
       const unsigned child = (*word >> (2 * octant)) & 3U;
@@ -137,18 +137,19 @@ void write_node(const NodeView& node, ByteWriter& writer) {
 
 Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) {
   const auto bytes = file.view();
-  if (!text_of(bytes).starts_with(kMagic)) return damaged(file, 0, "the file does not begin with PINGVOXM");
+  if (!text_of(bytes).starts_with(kMagic)) return damage_error(file, 0, "the file does not begin with PINGVOXM");
   ByteReader reader(bytes.subspan(kMagic.size()));
   const auto version = reader.read<std::uint32_t>();
   if (version && *version != kVersion) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: a map of version {}; this program reads version {}", file.name, *version, kVersion));
   }
-  if (bytes.size() < kHeaderBytes + kCrcBytes) return damaged(file, bytes.size(), "the file ends inside of the header");
+  if (bytes.size() < kHeaderBytes + kCrcBytes)
+    return damage_error(file, bytes.size(), "the file ends inside of the header");
   const std::size_t crc_at = bytes.size() - kCrcBytes;
   const auto crc = value_from<std::uint32_t>(bytes.subspan(crc_at), std::endian::little);
   if (crc32_z(crc32_z(0, nullptr, 0), bytes.data(), crc_at) != crc) {
-    return damaged(file, crc_at, "the checksum does not fit: the file was cut off or changed");
+    return damage_error(file, crc_at, "the checksum does not fit: the file was cut off or changed");
   }
   const auto header = read_header(file, memory_limit_bytes);
   if (!header) return tl::unexpected(header.error());
@@ -157,7 +158,7 @@ Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) 
   const bool fits = header->made_by_bytes <= left && header->inner <= left / kInnerBytes &&
                     header->leaves <= left / kLeafBytes &&
                     header->made_by_bytes + header->inner * kInnerBytes + header->leaves * kLeafBytes == left;
-  if (!fits) return damaged(file, kHeaderBytes, "the header's lengths are not those of the file");
+  if (!fits) return damage_error(file, kHeaderBytes, "the header's lengths are not those of the file");
 
   auto map = OccupancyMap::make(header->options);
   if (!map) return tl::unexpected(map.error());

@@ -11,7 +11,7 @@
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/bytes.hpp"
 
-// The readers behind open_beams, open_scans and read_mesh, and how format_of knows their formats.
+// One reader per format, for open_beams, open_scans and read_mesh, and its test of content, for format_of.
 namespace pingvox {
 
 bool looks_like_mat(std::span<const std::uint8_t> bytes);
@@ -20,7 +20,7 @@ Result<std::unique_ptr<BeamSource>> open_mat(FileBytes file, Damage damage);
 bool looks_like_csv(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage);
 
-// Logs that are read as a stream: their beginning tells what they are.
+// Logs that are read as streams, recognised by their beginning.
 bool looks_like_ping_viewer(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage);
 
@@ -44,7 +44,7 @@ Result<std::unique_ptr<ScanSource>> open_scan_log(FileBytes file, Damage damage)
 
 bool looks_like_tum(std::span<const std::uint8_t> bytes);
 
-/// Clouds: one scan, seen from `origin_m` (map frame), or from where the file says, or from 0, 0, 0.
+/// Clouds are one scan. Origin of the rays (map frame); nullopt: that of the file, else 0, 0, 0.
 using CloudOrigin = std::optional<Eigen::Vector3d>;
 
 Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage, const CloudOrigin& origin_m);
@@ -59,12 +59,12 @@ bool looks_like_off(std::span<const std::uint8_t> bytes);
 bool looks_like_binary_stl(std::span<const std::uint8_t> bytes);
 bool looks_like_stl_text(std::span<const std::uint8_t> bytes);
 
-/// What happened to a damaged piece of a log: nothing (it is counted) or, with Damage::kFail, the error.
-Result<void> skipped_or_failed(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
-                               const std::string& reason);
+/// Handles a damaged record: counts it, or returns an error with Damage::kFail.
+Result<void> handle_damage(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
+                           const std::string& reason);
 
-/// What share_read() says when `left` of `all` have not been read.
-inline double share_without(std::uint64_t left, std::uint64_t all) {
+/// Fraction read when `left` of `all` remain.
+inline double read_share(std::uint64_t left, std::uint64_t all) {
   return all > 0 ? 1.0 - static_cast<double>(left) / static_cast<double>(all) : 1.0;
 }
 

@@ -8,7 +8,7 @@ namespace pingvox {
 /// A number as files of points and meshes keep it.
 enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat, kDouble };
 
-inline constexpr bool is_whole(Scalar type) {
+inline constexpr bool is_integer(Scalar type) {
   return type != Scalar::kFloat && type != Scalar::kDouble;
 }
 

@@ -23,7 +23,7 @@ constexpr std::size_t kRestOfNodeBytes = kVectorBytes + kRotationBytes + 4;
 
 /// The values behind a count that must be N.
 template <std::size_t N>
-std::optional<std::array<float, N>> counted_values(std::span<const std::uint8_t> bytes) {
+std::optional<std::array<float, N>> read_vector(std::span<const std::uint8_t> bytes) {
   if (value_from<std::uint32_t>(bytes, std::endian::little) != N) return std::nullopt;
   std::array<float, N> values;
   for (std::size_t i = 0; i < N; ++i) {
@@ -50,29 +50,29 @@ class ScanGraphSource : public ScanSource {
     while (node_ < nodes_) {
       const std::size_t node = node_++;
       const auto points = take_points(reader_);
-      const auto translation = counted_values<kVectorCount>(*reader_.take(kVectorBytes));
-      const auto rotation = counted_values<kRotationCount>(*reader_.take(kRotationBytes));
+      const auto translation = read_vector<kVectorCount>(*reader_.take(kVectorBytes));
+      const auto rotation = read_vector<kRotationCount>(*reader_.take(kRotationBytes));
       reader_.take(4);
 
       const std::string place = fmt::format("scan {}", node);
       if (!translation || !rotation || !is_rotation(*rotation)) {
-        const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, place, "its pose is damaged");
+        const auto damaged = handle_damage(damage_, skipped_, file_.name, place, "its pose is damaged");
         if (!damaged) return tl::unexpected(damaged.error());
         continue;
       }
       ScanBuilder scan({*translation, *rotation});
       if (!scan.origin_is_finite()) {
-        const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, place, "its pose is not finite");
+        const auto damaged = handle_damage(damage_, skipped_, file_.name, place, "its pose is not finite");
         if (!damaged) return tl::unexpected(damaged.error());
         continue;
       }
       const std::size_t count = points->size() / kVectorBytes;
       scan.reserve(count);
       for (std::size_t i = 0; i < count; ++i) {
-        const auto point = counted_values<kVectorCount>(points->subspan(i * kVectorBytes, kVectorBytes));
+        const auto point = read_vector<kVectorCount>(points->subspan(i * kVectorBytes, kVectorBytes));
         if (point && scan.add(*point)) continue;
-        const auto damaged = skipped_or_failed(damage_, skipped_, file_.name, fmt::format("scan {}, point {}", node, i),
-                                               point ? "is not finite" : "is damaged");
+        const auto damaged = handle_damage(damage_, skipped_, file_.name, fmt::format("scan {}, point {}", node, i),
+                                           point ? "is not finite" : "is damaged");
         if (!damaged) return tl::unexpected(damaged.error());
       }
       return std::move(scan).finish();
@@ -81,7 +81,7 @@ class ScanGraphSource : public ScanSource {
   }
 
   std::size_t skipped() const override { return skipped_; }
-  std::optional<double> share_read() const override { return share_without(reader_.left(), file_.bytes.size()); }
+  std::optional<double> share_read() const override { return read_share(reader_.left(), file_.bytes.size()); }
 
  private:
   FileBytes file_;

@@ -17,7 +17,7 @@ constexpr std::string_view kNode = "NODE";
 enum class LineKind { kNothing, kScan, kPoint, kIndented };
 
 LineKind kind_of_line(std::string_view line) {
-  if (trimmed(line).empty() || line.starts_with('#')) return LineKind::kNothing;
+  if (trim(line).empty() || line.starts_with('#')) return LineKind::kNothing;
   if (line.starts_with(kNode)) return LineKind::kScan;
   // log2graph takes these for comments.
   return line.starts_with(' ') ? LineKind::kIndented : LineKind::kPoint;
@@ -28,7 +28,7 @@ template <std::size_t N>
 std::optional<std::array<float, N>> numbers_in(std::string_view text) {
   std::array<float, N> numbers;
   for (float& number : numbers) {
-    text = trimmed(text);
+    text = trim(text);
     const std::string_view word = text.substr(0, text.find_first_of(" \t"));
     text.remove_prefix(word.size());
     const std::optional<float> value = float_in(word);
@@ -64,7 +64,7 @@ class ScanLogSource : public ScanSource {
         reason = "NODE must be followed by six finite numbers: x y z roll pitch yaw";
       }
       if (!scan) {
-        if (const auto damaged = damaged_line(reason); !damaged) return tl::unexpected(damaged.error());
+        if (const auto damaged = report_line(reason); !damaged) return tl::unexpected(damaged.error());
       }
       advance();
     }
@@ -80,7 +80,7 @@ class ScanLogSource : public ScanSource {
         reason = "is a point that is not finite in the frame of the map";
       }
       if (!reason.empty()) {
-        if (const auto damaged = damaged_line(reason); !damaged) return tl::unexpected(damaged.error());
+        if (const auto damaged = report_line(reason); !damaged) return tl::unexpected(damaged.error());
       }
       advance();
     }
@@ -88,7 +88,7 @@ class ScanLogSource : public ScanSource {
   }
 
   std::size_t skipped() const override { return skipped_; }
-  std::optional<double> share_read() const override { return share_without(lines_.left(), file_.bytes.size()); }
+  std::optional<double> share_read() const override { return read_share(lines_.left(), file_.bytes.size()); }
 
  private:
   /// To the next line that says anything.
@@ -98,9 +98,8 @@ class ScanLogSource : public ScanSource {
     } while (line_ && kind_of_line(*line_) == LineKind::kNothing);
   }
 
-  Result<void> damaged_line(std::string_view reason) {
-    return skipped_or_failed(damage_, skipped_, file_.name, fmt::format("line {}", lines_.number()),
-                             std::string(reason));
+  Result<void> report_line(std::string_view reason) {
+    return handle_damage(damage_, skipped_, file_.name, fmt::format("line {}", lines_.number()), std::string(reason));
   }
 
   FileBytes file_;

@@ -5,7 +5,7 @@
 namespace pingvox {
 namespace {
 
-Eigen::Vector3d widened(const Point3f& p) {
+Eigen::Vector3d to_double(const Point3f& p) {
   return Eigen::Vector3f(p[0], p[1], p[2]).cast<double>();
 }
 
@@ -18,11 +18,11 @@ bool is_rotation(const std::array<float, 4>& quaternion) {
 }
 
 ScanBuilder::ScanBuilder(const OctomapPose& pose) : pose_(pose) {
-  scan_.origin_m = widened(pose_.ray_origin());
+  scan_.origin_m = to_double(pose_.ray_origin());
 }
 
 bool ScanBuilder::add(const Point3f& point) {
-  const Eigen::Vector3d moved = widened(pose_.transform(point));
+  const Eigen::Vector3d moved = to_double(pose_.transform(point));
   if (!moved.allFinite()) return false;
   scan_.points_m.push_back(moved);
   return true;

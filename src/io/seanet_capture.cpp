@@ -15,14 +15,13 @@
 #include "io/text.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 
-// What went over the serial line of a SeaNet head: the bytes themselves, or as UDP packets in hexadecimal text
-// (docs/formats.md).
+// Captures of the serial line of a SeaNet head: raw bytes, or UDP packets in hexadecimal text (docs/formats.md).
 namespace pingvox {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// Whether a line of an imaging head is in there.
+/// Whether `bytes` hold a line of an imaging head.
 bool holds_seanet_line(Bytes bytes) {
   FrameFinder finder(check_seanet_frame);
   finder.push(bytes);
@@ -40,7 +39,7 @@ class SerialCapture : public FrameContainer {
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
   Result<std::optional<Piece>> next() override {
-    // The line has no clock. Of its usual speed, 115,200 bits/s, a byte takes ten bits.
+    // Raw captures have no times: assume the default rate of 115,200 bits/s, ten bits a byte.
     constexpr double kByte_s = 10.0 / 115200.0;
     constexpr std::size_t kAtOnce = std::size_t{1} << 16;
     const Result<Bytes> bytes = reader_.peek(kAtOnce);
@@ -79,9 +78,9 @@ constexpr std::array<int, 256> kHexDigits = [] {
   return digits;
 }();
 
-/// The bytes of "0F 11 0F"; false: it is no such text.
+/// Appends the bytes of "0F 11 0F"; false if the text is not of this form.
 bool add_bytes_of(std::string_view hex, std::vector<std::uint8_t>& to) {
-  hex = trimmed(hex);
+  hex = trim(hex);
   if (hex.empty()) return true;
   if (hex.size() % 3 != 2) return false;
   for (std::size_t i = 0; i < hex.size(); i += 3) {
@@ -93,7 +92,7 @@ bool add_bytes_of(std::string_view hex, std::vector<std::uint8_t>& to) {
   return true;
 }
 
-/// The port whose packets hold lines of an imaging head.
+/// Port whose packets hold lines of an imaging head.
 std::optional<std::string> sonar_port(Bytes beginning) {
   std::vector<std::pair<std::string, std::vector<std::uint8_t>>> ports;
   Lines lines(text_of(beginning));
@@ -124,7 +123,7 @@ class UdpCapture : public FrameContainer {
       const Result<std::optional<std::string_view>> line = reader_.next_line();
       if (!line) return tl::unexpected(line.error());
       if (!*line) return std::nullopt;
-      if (trimmed(**line).empty()) continue;
+      if (trim(**line).empty()) continue;
       const std::optional<Packet> packet = packet_in(**line);
       if (packet && packet->from != port_) continue;
       bytes_.clear();
@@ -146,7 +145,7 @@ class UdpCapture : public FrameContainer {
 }  // namespace
 
 bool looks_like_seanet_capture(Bytes beginning) {
-  // The longest frame has 4096 bytes: of a capture that begins within one, the next one is whole.
+  // A frame has at most 4096 bytes: if the capture begins within one, the next one is complete.
   constexpr std::size_t kTwoFrames = 8192;
   return holds_seanet_line(beginning.first(std::min(beginning.size(), kTwoFrames)));
 }

@@ -15,7 +15,7 @@
 #include "io/text.hpp"
 #include "pingvox/io/frame_finder.hpp"
 
-// What Tritech's SeanetDumpLog makes of its logs: a line for each ping (docs/formats.md).
+// Text of Tritech's SeanetDumpLog: a line for each ping (docs/formats.md).
 namespace pingvox {
 namespace {
 
@@ -79,7 +79,7 @@ class DumpLog : public BeamSource {
       const Result<std::optional<std::string_view>> line = reader_.next_line();
       if (!line) return tl::unexpected(line.error());
       if (!*line) return std::nullopt;
-      // Other devices of the same log have other words in front.
+      // Lines of other devices.
       if (!(*line)->starts_with("SON,")) continue;
       tl::expected<Beam, std::string> beam = beam_in(**line);
       if (beam) {
@@ -97,7 +97,7 @@ class DumpLog : public BeamSource {
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
  private:
-  /// Times have no date and begin again at midnight.
+  /// Unwraps times of day at midnight.
   void set_time(Beam& beam) {
     constexpr double kDay_s = 86400.0;
     if (beam.time_s + days_s_ < last_s_ - kDay_s / 2) days_s_ += kDay_s;

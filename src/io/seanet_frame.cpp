@@ -16,15 +16,16 @@ namespace {
 
 using Verdict = FrameCheck::Verdict;
 
-/// Of a frame: what its length does not count, the device block of mtHeadData, and what stands around its samples.
+/// Of a frame: bytes that its length does not count, offset of the device block of mtHeadData, bytes around the
+/// samples.
 constexpr std::size_t kUncounted = 6, kDeviceBlock = 15, kAroundSamples = 45;
-constexpr std::size_t kShortestLength = 8, kLongestLength = 4090;
+constexpr std::size_t kMinLength = 8, kMaxLength = 4090;
 constexpr std::size_t kBlockHeader = 29;  ///< bytes of the device block before its samples
 
 constexpr std::uint8_t kHeadData = 2, kSinglePacket = 0x80;
 constexpr std::uint8_t kMessageBehind = 0x80;  ///< of the head's status
 
-/// Messages of one length.
+/// Messages of fixed length.
 constexpr std::array kFrameSizes = {std::pair{1, 25},  std::pair{4, 22},  std::pair{16, 14},
                                     std::pair{23, 14}, std::pair{24, 14}, std::pair{25, 18}};
 
@@ -32,19 +33,19 @@ std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
   return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
 }
 
-/// -1: no digit of those that heads write.
+/// Value of an upper-case hexadecimal digit; -1: none.
 int hex_digit(std::uint8_t c) {
   if (c >= '0' && c <= '9') return c - '0';
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// Whether the frame has the length that its message prescribes, as far as we know.
+/// Whether the frame has the length of its message, if that is known.
 bool fits_message(std::span<const std::uint8_t> frame) {
   const std::uint8_t id = frame[10];
   for (const auto& [known, size] : kFrameSizes) {
     if (id == known) return frame.size() == static_cast<std::size_t>(size);
   }
-  // A part of a message that was cut into several has no length of its own.
+  // Parts of a split message have no fixed length.
   if (id != kHeadData || frame[11] != kSinglePacket) return true;
   if (frame.size() < kAroundSamples) return false;
   const std::size_t around = u16_at(frame, 42) + kAroundSamples;
@@ -67,7 +68,7 @@ FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes) {
   }
   if (bytes.size() < 7) return {Verdict::kIncomplete};
   const std::size_t again = u16_at(bytes, 5);
-  if (length < kShortestLength || length > kLongestLength) return {Verdict::kNothing, 1};
+  if (length < kMinLength || length > kMaxLength) return {Verdict::kNothing, 1};
   if (length != again) return {Verdict::kBroken, 7, "two lengths that differ"};
   const std::size_t size = length + kUncounted;
   if (bytes.size() < size) return {Verdict::kIncomplete};
@@ -127,7 +128,7 @@ tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s) {
 const DeviceProfile* device_of(const SeanetLine& line) {
   constexpr std::uint8_t kDst = 0x11;
   constexpr double kHz = 32e6 / 4294967296.0;
-  // A DST head chirps: what it reports is no frequency. The Micron is by far the most common one.
+  // A DST head chirps, so its frequency does not identify it; assume the most common one.
   if (line.head_type == kDst) return device_named("micron");
   return device_named(line.transmit * kHz < 500e3 && line.transmit != 0 ? "seaking-325" : "miniking");
 }

@@ -22,8 +22,8 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::string_view kMagic = "SeaNetV4 Log File V";
 
-/// Of a record: where its time, its message and mtHeadData's device block stand, and its least and greatest size.
-constexpr std::size_t kTime = 2, kMessage = 12, kDeviceBlock = 17, kShortest = 17, kLongest = 4096;
+/// Of a record: offsets of its time, its message and mtHeadData's device block; minimum and maximum size.
+constexpr std::size_t kTime = 2, kMessage = 12, kDeviceBlock = 17, kMinRecord = 17, kMaxRecord = 4096;
 constexpr std::uint8_t kHeadData = 2;
 
 template <class T>
@@ -31,19 +31,19 @@ T value_at(Bytes bytes, std::size_t place) {
   return value_from<T>(bytes.subspan(place, sizeof(T)), std::endian::little);
 }
 
-/// Seconds since 1970 of days since the end of 1899; nullopt: not of our times.
+/// Seconds since 1970 from days since the end of 1899; nullopt: before 1970 or after 2100.
 std::optional<double> time_s_of(double days) {
   constexpr double kDaysTo1970 = 25569.0, kDaysTo2100 = 73051.0;
   if (!(days > kDaysTo1970 && days < kDaysTo2100)) return std::nullopt;
   return (days - kDaysTo1970) * 86400.0;
 }
 
-/// The size of a record that one could believe.
+/// Size of the record at the start of `bytes`; nullopt: not a plausible record.
 std::optional<std::size_t> record_size(Bytes bytes) {
-  if (bytes.size() < kShortest) return std::nullopt;
+  if (bytes.size() < kMinRecord) return std::nullopt;
   const std::size_t size = value_at<std::uint16_t>(bytes, 0);
-  if (size < kShortest || size > kLongest || !time_s_of(value_at<double>(bytes, kTime))) return std::nullopt;
-  // What a head says of its own length.
+  if (size < kMinRecord || size > kMaxRecord || !time_s_of(value_at<double>(bytes, kTime))) return std::nullopt;
+  // mtHeadData also holds its own length.
   const bool is_line = bytes[kMessage] == kHeadData;
   if (is_line && value_at<std::uint16_t>(bytes, kDeviceBlock - 2) + kDeviceBlock - 2U != size) return std::nullopt;
   return size;
@@ -61,11 +61,11 @@ class V4Log final : public DeviceLog {
  private:
   Result<std::optional<Beam>> read() override {
     while (!end_ || reader_.position() < *end_) {
-      const Result<Bytes> bytes = reader_.peek(kLongest);
+      const Result<Bytes> bytes = reader_.peek(kMaxRecord);
       if (!bytes) return tl::unexpected(bytes.error());
       if (bytes->empty()) {
         if (end_) {
-          if (const auto counted = damaged(FrameFinder::kCutOff, "records are missing"); !counted) {
+          if (const auto counted = report_damage(FrameFinder::kCutOff, "records are missing"); !counted) {
             return tl::unexpected(counted.error());
           }
         }
@@ -74,9 +74,9 @@ class V4Log final : public DeviceLog {
       const std::optional<std::size_t> size = record_size(*bytes);
       if (!size || *size > bytes->size()) {
         if (!in_damage_) {
-          const bool is_cut = bytes->size() < kLongest && (size || bytes->size() < kShortest);
-          const auto counted = is_cut ? damaged(FrameFinder::kCutOff, "a record is cut off")
-                                      : damaged("damaged record", "its length or its time is damaged");
+          const bool is_cut = bytes->size() < kMaxRecord && (size || bytes->size() < kMinRecord);
+          const auto counted = is_cut ? report_damage(FrameFinder::kCutOff, "a record is cut off")
+                                      : report_damage("damaged record", "its length or its time is damaged");
           if (!counted) return tl::unexpected(counted.error());
         }
         in_damage_ = true;
@@ -88,7 +88,7 @@ class V4Log final : public DeviceLog {
       if (record[kMessage] == kHeadData) {
         tl::expected<Beam, std::string> beam = beam_in(record);
         if (!beam) {
-          if (const auto counted = damaged("impossible values", beam.error()); !counted) {
+          if (const auto counted = report_damage("impossible values", beam.error()); !counted) {
             return tl::unexpected(counted.error());
           }
         }
@@ -108,15 +108,15 @@ class V4Log final : public DeviceLog {
     return beam_of(*line, *time_s_of(value_at<double>(record, kTime)));
   }
 
-  /// Of what stands at the reader's place.
-  Result<void> damaged(std::string_view kind, std::string_view reason) {
+  /// Counts damage at the reader's position, or fails.
+  Result<void> report_damage(std::string_view kind, std::string_view reason) {
     add_damage(kinds_, kind, reader_.position());
     if (damage_ == Damage::kSkip) return {};
     return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", reader_.name(), reader_.position(), reason));
   }
 
   StreamReader reader_;
-  std::optional<std::uint64_t> end_;  ///< of the records; nullopt: they go on to the end of the file
+  std::optional<std::uint64_t> end_;  ///< end of the records; nullopt: end of the file
   Damage damage_;
   bool in_damage_ = false;
   std::vector<DamageKind> kinds_;
@@ -136,17 +136,17 @@ Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage)
   const auto damaged = [&] {
     return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", reader.name()));
   };
-  if (header->size() < kHeader) return damaged();
+  if (header->size() < kHeader) return report_damage();
   const auto first = value_at<std::uint32_t>(*header, kFirstRecord);
   const auto end = value_at<std::uint32_t>(*header, kEndOfRecords);
-  if (first < kHeader) return damaged();
+  if (first < kHeader) return report_damage();
   while (reader.position() < first) {
     const Result<Bytes> settings = reader.peek(std::min<std::size_t>(first - reader.position(), 4096));
     if (!settings) return tl::unexpected(settings.error());
-    if (settings->empty()) return damaged();
+    if (settings->empty()) return report_damage();
     reader.skip(settings->size());
   }
-  // A log that was not closed has no end written in it.
+  // Logs that were not closed hold no end.
   return std::make_unique<V4Log>(std::move(reader), end > first ? std::optional<std::uint64_t>(end) : std::nullopt,
                                  damage);
 }

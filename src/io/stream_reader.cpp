@@ -34,14 +34,14 @@ void StreamReader::skip(std::size_t count) {
 
 Result<std::optional<std::string_view>> StreamReader::next_line() {
   constexpr std::size_t kUsual = 4096;
-  for (std::size_t wanted = kUsual;; wanted = std::min(2 * wanted, kLongestLine)) {
+  for (std::size_t wanted = kUsual;; wanted = std::min(2 * wanted, kMaxLine)) {
     const auto bytes = peek(wanted);
     if (!bytes) return tl::unexpected(bytes.error());
     if (bytes->empty()) return std::nullopt;
     std::string_view line = text_of(*bytes);
     const std::size_t end = line.find('\n');
     const bool is_last = bytes->size() < wanted;
-    if (end == std::string_view::npos && !is_last && wanted < kLongestLine) continue;
+    if (end == std::string_view::npos && !is_last && wanted < kMaxLine) continue;
     line_has_end_ = end != std::string_view::npos;
     skip(line_has_end_ ? end + 1 : line.size());
     line = line.substr(0, end);

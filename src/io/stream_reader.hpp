@@ -13,24 +13,24 @@
 
 namespace pingvox {
 
-/// Reads forward through a stream and holds no more of it than is asked for.
+/// Reads forward through a stream, buffering only what is requested.
 class StreamReader {
  public:
   explicit StreamReader(ByteStream stream) : stream_(std::move(stream)) {}
 
   const std::string& name() const { return stream_.name(); }
-  /// The next `count` bytes, or as many as there are; they stay until the next call.
+  /// The next `count` bytes, or fewer at the end; valid until the next call.
   Result<std::span<const std::uint8_t>> peek(std::size_t count);
-  /// Goes on behind the next `count` bytes. REQUIRES that peek() showed them.
+  /// Skips `count` bytes. REQUIRES that peek() returned them.
   void skip(std::size_t count);
-  /// How many bytes were skipped so far.
+  /// Number of bytes skipped so far.
   std::uint64_t position() const { return position_; }
 
-  /// Skips the next line and gives it without its LF or CR LF, until the next call; nullopt: there is none. A line of
-  /// more than kLongestLine comes in pieces.
+  /// Skips and returns the next line without its LF or CR LF, valid until the next call; nullopt at the end. A line of
+  /// more than kMaxLine bytes is returned in pieces.
   Result<std::optional<std::string_view>> next_line();
-  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
-  /// Whether the last line had its end.
+  static constexpr std::size_t kMaxLine = std::size_t{1} << 20;
+  /// Whether the last line was terminated.
   bool line_has_end() const { return line_has_end_; }
 
   std::optional<double> share_read() const { return stream_.share_read(); }
@@ -38,7 +38,7 @@ class StreamReader {
  private:
   ByteStream stream_;
   std::vector<std::uint8_t> bytes_;
-  std::size_t start_ = 0, end_ = 0;  ///< in bytes_: what was read and not skipped
+  std::size_t start_ = 0, end_ = 0;  ///< buffered part of bytes_
   std::uint64_t position_ = 0;
   bool at_end_ = false;
   bool line_has_end_ = false;

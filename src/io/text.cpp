@@ -7,7 +7,7 @@ namespace pingvox {
 namespace {
 
 template <class T>
-std::optional<T> parsed(std::string_view text) {
+std::optional<T> parse(std::string_view text) {
   // from_chars takes a minus but no plus.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   T value = 0;
@@ -17,7 +17,7 @@ std::optional<T> parsed(std::string_view text) {
   if (error == std::errc::result_out_of_range) {
     // Too large is damage; too small is as good as zero.
     if constexpr (sizeof(T) < sizeof(double)) {
-      const std::optional<double> wide = parsed<double>(text);
+      const std::optional<double> wide = parse<double>(text);
       if (wide && std::fabs(*wide) < 1.0) return static_cast<T>(*wide);
     }
     return std::nullopt;
@@ -52,13 +52,13 @@ std::optional<std::string_view> Lines::next() {
 
 std::optional<std::string_view> Lines::next_with_content() {
   while (const std::optional<std::string_view> line = next()) {
-    const std::string_view text = trimmed(*line);
+    const std::string_view text = trim(*line);
     if (!text.empty() && !text.starts_with('#')) return line;
   }
   return std::nullopt;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
@@ -69,7 +69,7 @@ std::optional<std::string_view> cut_field(std::string_view& rest, char separator
   const std::size_t end = rest.find(separator);
   const std::string_view field = rest.substr(0, end);
   rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-  return trimmed(field);
+  return trim(field);
 }
 
 std::optional<std::string_view> cut_word(std::string_view& rest) {
@@ -83,19 +83,19 @@ std::optional<std::string_view> cut_word(std::string_view& rest) {
 }
 
 std::string printable(std::string_view text) {
-  constexpr std::size_t kMost = 40;
-  std::string shown(text.substr(0, kMost));
+  constexpr std::size_t kMaxLength = 40;
+  std::string shown(text.substr(0, kMaxLength));
   for (char& c : shown) {
     if (c < ' ' || c > '~') c = '?';
   }
-  return text.size() > kMost ? shown + "..." : shown;
+  return text.size() > kMaxLength ? shown + "..." : shown;
 }
 
 std::optional<double> number_in(std::string_view text) {
-  return parsed<double>(text);
+  return parse<double>(text);
 }
 std::optional<float> float_in(std::string_view text) {
-  return parsed<float>(text);
+  return parse<float>(text);
 }
 std::optional<std::uint64_t> count_in(std::string_view text) {
   std::uint64_t value = 0;

@@ -12,21 +12,21 @@ namespace pingvox {
 /// Bytes as characters, without a copy.
 std::string_view text_of(std::span<const std::uint8_t> bytes);
 
-/// The lines of a text, one after the other, without their LF or CR LF. A UTF-8 mark at the start is left out, and the
-/// last line needs no end.
+/// The lines of a text, one after the other, without their LF or CR LF. Skips a UTF-8 byte order mark; the last line
+/// needs no terminator.
 class Lines {
  public:
   explicit Lines(std::string_view text);
 
-  /// nullopt: there are no more.
+  /// nullopt at the end.
   std::optional<std::string_view> next();
-  /// The next one that is neither blank nor a comment (after blanks, `#`).
+  /// The next line that is neither blank nor a comment (`#` after blanks).
   std::optional<std::string_view> next_with_content();
-  /// The number, from 1, of the line that next() gave last.
+  /// Number of the last line, from 1.
   std::size_t number() const { return number_; }
-  /// Whether that line has its end (a CR counts); the last one of a text may not.
+  /// Whether the last line was terminated (a CR counts).
   bool has_end() const { return has_end_; }
-  /// Characters behind that line.
+  /// Characters after that line.
   std::size_t left() const { return rest_.size(); }
 
  private:
@@ -35,23 +35,23 @@ class Lines {
   bool has_end_ = false;
 };
 
-/// Without blanks and tabs at both ends.
-std::string_view trimmed(std::string_view text);
+/// Removes blanks and tabs at both ends.
+std::string_view trim(std::string_view text);
 
-/// Cuts the next field off the front of `rest`, up to the separator or the end, and trims it. nullopt: `rest` is used
-/// up (its data() is null then), which an empty last field is not.
+/// Cuts the next field off the front of `rest`, up to the separator or the end, and trims it. nullopt: no field is left
+/// (rest.data() is null; an empty last field is one).
 std::optional<std::string_view> cut_field(std::string_view& rest, char separator);
 
-/// Cuts the next word off the front of `rest`: what stands between blanks, tabs and commas. nullopt: none is left.
+/// Cuts the next word, between blanks, tabs and commas, off the front of `rest`. nullopt: none is left.
 std::optional<std::string_view> cut_word(std::string_view& rest);
 
-/// The beginning of something from a file, for a message: nothing in it breaks the line or speaks to the terminal.
+/// The first characters of text from a file, for messages: without line breaks and control characters.
 std::string printable(std::string_view text);
 
-/// All of `text` as a finite decimal number, rounded once to the type, in any locale. nullopt: it is none.
+/// Parses all of `text` as a finite decimal number, independent of the locale, rounded once. nullopt: invalid.
 std::optional<double> number_in(std::string_view text);
 std::optional<float> float_in(std::string_view text);
-/// All of `text` as a whole number without a sign. nullopt: it is none.
+/// Parses all of `text` as an unsigned integer. nullopt: invalid.
 std::optional<std::uint64_t> count_in(std::string_view text);
 
 }  // namespace pingvox

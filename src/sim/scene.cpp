@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
 
-/// The scenes themselves are drawn from one seed: they never change.
+/// One fixed seed, so that the scenes never change.
 constexpr std::uint64_t kSceneSeed = 2014;
 
 constexpr Material kConcrete = {.scatter = 0.8, .glint = 0.6, .mirror = 0.3};
@@ -32,7 +32,7 @@ constexpr Material kMud = {.scatter = 0.15, .glint = 0.3, .mirror = 0.1};
 constexpr Material kSand = {.scatter = 0.5, .glint = 0.3, .mirror = 0.1};
 constexpr Material kRock = {.scatter = 1.0, .glint = 0.2, .mirror = 0.1};
 
-/// Gathers what is wrong with options.
+/// Collects the errors of options.
 class Check {
  public:
   template <class Value>
@@ -64,7 +64,7 @@ Route lanes(const Vector3d& from, const Vector3d& to, int count) {
   return route;
 }
 
-/// A rectangle, counter-clockwise, its corners cut by no more than a vehicle needs to turn.
+/// A rectangle, counter-clockwise, with cut corners for the vehicle to turn.
 Route round(const Vector3d& low, const Vector3d& high) {
   const double cut = std::min(0.25 * std::min(high.x() - low.x(), high.y() - low.y()), 1.2);
   const double z = low.z();
@@ -79,7 +79,7 @@ Route round(const Vector3d& low, const Vector3d& high) {
           Route::End::kStarts};
 }
 
-/// A grid of points that closes to tubes: `rows` rings of `around` points each, the last one of a ring being its first.
+/// A tube: `rows` rings of `around` points each; the last point of a ring is its first.
 template <class PointAt>
 TriangleMesh tube(std::size_t rows, std::size_t around, const PointAt& point_at) {
   TriangleMesh mesh;
@@ -98,7 +98,7 @@ TriangleMesh tube(std::size_t rows, std::size_t around, const PointAt& point_at)
   return mesh;
 }
 
-/// Waves that run in random directions: a smooth, uneven function of two coordinates, about -1..1.
+/// Sum of waves in random directions: a smooth random function of two coordinates, about -1..1.
 class Waves {
  public:
   Waves(Random& random, double longest) {
@@ -210,7 +210,7 @@ Scene harbour_scene(const HarbourOptions& o) {
   world.add(Rectangle{{-x, 0.0, middle_z}, {0.0, y, 0.0}, half_height}, kConcrete);
   world.add(Rectangle{{0.0, 0.0, -o.water_below_m}, {x, 0.0, 0.0}, {0.0, y, 0.0}}, kMud);
   for (std::size_t n = 0; n < o.piles; ++n) {
-    // From the corner on, two metres apart, three and a half before the wall.
+    // From the corner on, 2 m apart, 3.5 m from the wall.
     world.add(
         Cylinder{
             {-x + 2.0 + 2.0 * static_cast<double>(n), y - 3.5, -o.water_below_m}, {0.0, 0.0, height}, o.pile_radius_m},
@@ -249,7 +249,7 @@ Scene seabed_scene(const SeabedOptions& o) {
   Random random(kSceneSeed);
   const double half = 0.5 * o.side_m;
   const Waves waves(random, 7.0);
-  // Where it would rise above a depth at which the vehicle still has room, the bottom goes on flat.
+  // The bottom is cut off flat where it would leave the vehicle no room.
   const auto bottom = [&](double x, double y) {
     return std::min(-o.depth_m + o.slope * y + 0.3 * o.ripples * waves.at(x, y), -0.7);
   };

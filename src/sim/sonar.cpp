@@ -16,27 +16,27 @@ using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
 
-/// Amplitudes are kept in whole steps of 1 / kScale and the noise is made of whole numbers and square roots, so
-/// that the last bit of a machine's exp() or cos() does not decide about a byte.
+/// Amplitudes are rounded to 1 / kScale, and noise uses integers and square roots only, so that the last bit of exp()
+/// or cos(), which differs between machines, does not change a byte.
 constexpr double kScale = 256.0;
 
-/// Amplitude, of 255 that can be shown, of a wall of scatter 1 that fills the whole beam at the range of one bin. No
-/// wall does. This, the ringing and the default options are such that a tank sounds like that of the paper's recording.
+/// Amplitude (255: full scale) of a hypothetical wall of scatter 1 that fills the whole beam in one bin. Tuned, like
+/// the ringing and the default options, to the paper's recording of a tank.
 constexpr double kFullAmplitude = 150.0;
 constexpr double kRingingAmplitude = 50.0;
-/// How fast the ringing dies away where it ends.
+/// Decay length of the ringing.
 constexpr double kRingingDecay_m = 0.02;
 constexpr double kPulse_bins = 1.5;  ///< standard deviation of the received pulse
-/// Echoes are placed in finer cells than bins before the pulse is laid over them.
+/// Energies are collected in cells finer than bins, then convolved with the pulse.
 constexpr int kCellsPerBin = 4;
-constexpr double kNoiseBin_m = 0.0125;  ///< the bin length that SonarOptions::noise speaks of
-constexpr int kMostBounces = 3;
-/// An angle of incidence at which the glint has fallen to 1 / e.
+constexpr double kNoiseBin_m = 0.0125;  ///< bin length that SonarOptions::noise refers to
+constexpr int kMaxBounces = 3;
+/// Angle of incidence at which the glint has fallen to 1 / e.
 constexpr double kGlintWidth_rad = 0.17;
-/// What comes back weaker than this share of the beam's axis is not followed.
-constexpr double kLeastGain = 1e-7;
+/// Rays weaker than this, relative to the beam's axis, are ignored.
+constexpr double kMinGain = 1e-7;
 
-/// Directions of the bundle: to either side of the axis, past the first side lobe.
+/// Rays of the bundle to either side of the axis, past the first side lobe.
 constexpr int kAcross = 14, kUp = 22;
 constexpr double kAcrossEnd_widths = 2.25, kUpEnd_heights = 1.75, kUpEnd_rad = 1.45;
 
@@ -45,7 +45,7 @@ Vector3d direction_of(double bearing_rad, double elevation_rad) {
           std::sin(elevation_rad)};
 }
 
-/// Amplitude, one way, of an evenly driven face that is `width` wide at half power, `off` its axis: sin(u) / u.
+/// One-way amplitude of a uniform transducer of half-power width `width`, at `off` from its axis: sin(u) / u.
 double amplitude(double off_rad, double width_rad, double side_lobes) {
   constexpr double kHalfPower = 1.391557;  // sin(u) / u = sqrt(1 / 2)
   const double u = std::abs(kHalfPower * std::sin(off_rad) / std::sin(0.5 * width_rad));
@@ -53,7 +53,7 @@ double amplitude(double off_rad, double width_rad, double side_lobes) {
   return std::sin(u) / u * (u > kPi ? side_lobes : 1.0);
 }
 
-/// Power, both ways.
+/// Two-way power.
 double two_way(double one_way_amplitude) {
   const double power = one_way_amplitude * one_way_amplitude;
   return power * power;
@@ -64,7 +64,7 @@ double scattered(const Material& material, double cosine) {
   return material.scatter * cosine + material.glint * std::exp(-off * off);
 }
 
-/// What is left of an amplitude after the way out and back, 1 at 1 m, before the receiver's gain.
+/// Two-way transmission loss as a factor of amplitude, 1 at 1 m, before the receiver's gain.
 double loss(const SonarOptions& o, double range_m) {
   const double range = std::max(range_m, 0.1);
   return std::pow(10.0, -2.0 * o.absorption_db_per_m * (range - 1.0) / 20.0) / range;
@@ -84,8 +84,8 @@ void add_evenly(double from, double to, double energy, std::vector<double>& cell
   }
 }
 
-/// Lays the pulse over the cells and sums them to bins.
-std::vector<double> heard(const std::vector<double>& cells, std::size_t bins) {
+/// Convolves the cells with the pulse and samples them at the bins.
+std::vector<double> sum_to_bins(const std::vector<double>& cells, std::size_t bins) {
   constexpr int kReach = static_cast<int>(4.0 * kPulse_bins * kCellsPerBin);
   std::vector<double> pulse;
   for (int off = -kReach; off <= kReach; ++off) {
@@ -94,7 +94,7 @@ std::vector<double> heard(const std::vector<double>& cells, std::size_t bins) {
   }
   std::vector<double> energies(bins);
   for (std::size_t bin = 0; bin < bins; ++bin) {
-    // The middle of a bin lies between two cells: the pulse around it takes as many of either side.
+    // The centre of a bin lies between two cells: take as many on either side.
     const std::ptrdiff_t middle = static_cast<std::ptrdiff_t>(bin) * kCellsPerBin + kCellsPerBin / 2;
     const std::ptrdiff_t first = middle - kReach;
     double sum = 0.0;
@@ -108,7 +108,7 @@ std::vector<double> heard(const std::vector<double>& cells, std::size_t bins) {
   return energies;
 }
 
-/// What comes back of one beam, bin by bin.
+/// Noise-free beam, bin by bin.
 std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_sensor, double bearing_rad,
                                       const SonarOptions& o) {
   const double across_step = kAcrossEnd_widths * o.beam_width_rad / kAcross;
@@ -126,23 +126,23 @@ std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_s
       const double gain =
           two_way(up_amplitude * amplitude(azimuth, o.beam_width_rad, o.side_lobes)) * std::cos(elevation);
       all += gain;
-      if (gain < kLeastGain) continue;
+      if (gain < kMinGain) continue;
       const double bearing = bearing_rad + azimuth;
-      // How the direction changes from one ray of the bundle to the next, to either side and upwards.
+      // Steps of direction between neighbouring rays, sideways and upwards.
       Vector3d sideways = map_from_sensor.linear() * Vector3d(-std::sin(bearing), std::cos(bearing), 0.0) *
                           (across_step * std::cos(elevation));
       Vector3d upwards = map_from_sensor.linear() * direction_of(bearing, elevation + 0.5 * kPi) * up_step;
       SoundRay ray{map_from_sensor.translation(), map_from_sensor.linear() * direction_of(bearing, elevation)};
       double way = 0.0;
       double share = gain;
-      // What it meets first, and what surfaces mirror into it after that. The way back is the way there.
-      for (int bounce = 0; bounce < kMostBounces && share >= kLeastGain; ++bounce) {
+      // The first surface, then those seen by mirroring. Sound returns on the path that it came.
+      for (int bounce = 0; bounce < kMaxBounces && share >= kMinGain; ++bounce) {
         const auto hit = world.first(ray, farthest_m - way);
         if (!hit) break;
         way += hit->range_m;
         const Material& material = world.material(hit->surface);
         const double cosine = -hit->normal.dot(ray.direction);
-        // The ray stands for the patch up to half way to its neighbours, which a slanting surface spreads over range.
+        // The ray covers the patch half way to its neighbours, which a slanting surface spreads over range.
         const double slant = way / std::max(cosine, 0.01);
         const double spread =
             std::max((std::abs(hit->normal.dot(sideways)) + std::abs(hit->normal.dot(upwards))) * slant / cell_m, 1.0);
@@ -159,7 +159,7 @@ std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_s
       }
     }
   }
-  const std::vector<double> energies = heard(cells, o.bins);
+  const std::vector<double> energies = sum_to_bins(cells, o.bins);
   std::vector<std::uint32_t> clean(o.bins);
   for (std::size_t bin = 0; bin < o.bins; ++bin) {
     const double heard_here = std::min(kFullAmplitude * std::sqrt(energies[bin] / all), 1e6);
@@ -205,7 +205,7 @@ TrueRange true_range(const World& world, const Pose& map_from_sensor, double bea
   const double half_height = 0.5 * options.beam_height_rad;
   double nearest = options.range_m();
   bool is_met = false;
-  // A point of the unit disc as a direction of the cone. `nearest` is the limit: only what is nearer is an answer.
+  // A point of the unit disc as a direction within the cone. `nearest` is the limit of the ray.
   const auto look = [&](double x, double y) {
     const Vector3d direction = direction_of(bearing_rad + x * half_width, y * half_height);
     const auto hit = world.first({map_from_sensor.translation(), map_from_sensor.linear() * direction}, nearest);
@@ -231,7 +231,7 @@ TrueRange true_range(const World& world, const Pose& map_from_sensor, double bea
       }
     }
   }
-  // From the best of them downhill, in ever smaller steps.
+  // Descent from the best of them with decreasing steps.
   for (double step = 0.5 / kRings; step > 1e-4;) {
     bool is_better = false;
     for (const auto& [dx, dy] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
@@ -269,8 +269,8 @@ SonarSimulator::SonarSimulator(World world, Trajectory map_from_body, const Sona
     const double middle_m = (static_cast<double>(bin) + 0.5) * options.bin_length_m;
     const double ringing = kRingingAmplitude * std::exp(-std::max(middle_m - options.ringing_m, 0.0) / kRingingDecay_m);
     ringing_.push_back(static_cast<std::uint32_t>(std::lround(options.ringing_m > 0.0 ? kScale * ringing : 0.0)));
-    // Part of the noise comes in before the gain and is raised with it. Longer pulses are heard in a narrower band: as
-    // many times less noise as there is more of the echo.
+    // Noise arises before and after the gain. Longer pulses need less bandwidth, so noise falls as the length of a bin
+    // grows.
     const double growth = (1.0 + std::pow(loss(options, middle_m), -options.gain)) * kNoiseBin_m / options.bin_length_m;
     background_.push_back(static_cast<std::uint32_t>(std::lround(kScale * std::min(options.noise * growth, 255.0))));
   }
@@ -288,13 +288,12 @@ Result<std::optional<Beam>> SonarSimulator::next() {
 
     const std::size_t direction = sent_ % options_.beams_per_turn;
     const double turned = 2.0 * kPi * static_cast<double>(direction) / static_cast<double>(options_.beams_per_turn);
-    ping_ = {time, pose, wrapped_bearing(-turned)};
+    ping_ = {time, pose, wrap_bearing(-turned)};
     const double step = options_.bearing_step_rad;
-    Beam beam{
-        .time_s = time,
-        .bearing_rad = step > 0.0 ? wrapped_bearing(std::round(ping_.bearing_rad / step) * step) : ping_.bearing_rad,
-        .bin_length_m = options_.bin_length_m,
-        .intensities = {}};
+    Beam beam{.time_s = time,
+              .bearing_rad = step > 0.0 ? wrap_bearing(std::round(ping_.bearing_rad / step) * step) : ping_.bearing_rad,
+              .bin_length_m = options_.bin_length_m,
+              .intensities = {}};
     Clean& clean = clean_[direction];
     if (clean.intensities.empty() || clean.map_from_sensor.matrix() != pose.matrix()) {
       clean = {pose, clean_beam(world_, pose, ping_.bearing_rad, options_)};

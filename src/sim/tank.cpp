@@ -12,7 +12,7 @@
 namespace pingvox {
 namespace {
 
-/// A ray in the tank's frame: origin in the middle of the square, axes along its walls.
+/// A ray in the tank's frame: origin at the centre of the square, axes along its walls.
 struct PlaneRay {
   double x, y;
   double dx, dy;
@@ -23,7 +23,7 @@ PlaneRay ray_at(const TankOptions& o, double bearing_rad) {
   return {o.sensor_x_m, o.sensor_y_m, std::cos(angle), std::sin(angle)};
 }
 
-/// Along one axis: how far until the wall at +half or -half.
+/// Distance along one axis to the wall at +half or -half.
 double wall_distance(double from, double direction, double half) {
   if (direction == 0.0) return std::numeric_limits<double>::infinity();
   return ((direction > 0.0 ? half : -half) - from) / direction;

@@ -8,19 +8,19 @@
 namespace pingvox {
 namespace {
 
-constexpr std::uint32_t kMostInLeaf = 4;
-/// Neighbours share an edge up to rounding: a ray must not slip through between them.
+constexpr std::uint32_t kMaxInLeaf = 4;
+/// Tolerance at shared edges, so that no ray passes between two triangles.
 constexpr double kEdge = 1e-9;
 
 }  // namespace
 
-bool meets(const SoundRay& ray, const Eigen::Array3d& inverse, const Eigen::AlignedBox3d& box, double limit_m) {
+bool intersects(const SoundRay& ray, const Eigen::Array3d& inverse, const Eigen::AlignedBox3d& box, double limit_m) {
   double from = 0.0;
   double to = limit_m;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double a = (box.min()[axis] - ray.origin_m[axis]) * inverse[axis];
     const double b = (box.max()[axis] - ray.origin_m[axis]) * inverse[axis];
-    // A ray inside of a face's plane gives NaN: std::max and std::min keep their first argument then.
+    // A ray in the plane of a face gives NaN: std::max and std::min then keep their first argument.
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   }
@@ -48,7 +48,7 @@ TriangleTree::TriangleTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
     parts.pop_back();
     Node node{.box = {}, .first = part.first, .count = part.count};
     for (std::uint32_t i = 0; i < part.count; ++i) node.box.extend(box_of(part.first + i));
-    if (part.count > kMostInLeaf) {
+    if (part.count > kMaxInLeaf) {
       Eigen::Index axis = 0;
       node.box.sizes().maxCoeff(&axis);
       const auto first = mesh_.triangles.begin() + part.first;
@@ -61,7 +61,7 @@ TriangleTree::TriangleTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
       parts.push_back({nodes_.size() + 1, part.first + half, part.count - half});
       nodes_.resize(nodes_.size() + 2);
     }
-    // A ray that runs in the plane of a face is inside.
+    // Count rays in the plane of a face as inside.
     node.box.min().array() -= kEdge;
     node.box.max().array() += kEdge;
     nodes_[part.node] = node;
@@ -70,13 +70,13 @@ TriangleTree::TriangleTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
 
 void TriangleTree::cross(const SoundRay& ray, double& limit_m, const Found& found) const {
   const Eigen::Array3d inverse = ray.direction.array().inverse();
-  // Halves of halves of at most 2^32 triangles: no deeper than 32, and one sibling waits on each level.
+  // At most 32 levels, as each halves up to 2^32 triangles, with one waiting sibling on each.
   std::array<std::uint32_t, 64> waiting{};
   std::size_t count = 0;
   waiting[count++] = 0;
   while (count > 0) {
     const Node& node = nodes_[waiting[--count]];
-    if (!meets(ray, inverse, node.box, limit_m)) continue;
+    if (!intersects(ray, inverse, node.box, limit_m)) continue;
     if (node.count == 0) {
       assert(count + 2 <= waiting.size());
       waiting[count++] = node.first;
@@ -97,7 +97,7 @@ void TriangleTree::cross(const SoundRay& ray, double& limit_m, const Found& foun
       const double v = ray.direction.dot(q) / determinant;
       if (!(u >= -kEdge && v >= -kEdge && u + v <= 1.0 + kEdge)) continue;
       const double range = ac.dot(q) / determinant;
-      if (range > kLeastRange_m && range <= limit_m) found(range, ab.cross(ac).normalized(), limit_m);
+      if (range > kMinRange_m && range <= limit_m) found(range, ab.cross(ac).normalized(), limit_m);
     }
   }
 }

@@ -17,14 +17,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A route's curve by points close to each other, and how far each is from the start.
+/// A route's curve as closely spaced points with their distance from the start.
 struct Curve {
   std::vector<Vector3d> points_m;
   std::vector<double> lengths_m;
 };
 
-/// Through all waypoints, as a centripetal Catmull-Rom curve (Yuksel, Schaefer, Keyser 2011): it makes no loops, and
-/// stays near the straight way where legs of different lengths meet.
+/// Through all waypoints, as a centripetal Catmull-Rom curve (Yuksel, Schaefer, Keyser 2011): no loops, and close to
+/// the straight line where legs of different lengths meet.
 Curve curve_of(const Route& route) {
   constexpr int kPerLeg = 32;
   const auto& w = route.waypoints_m;
@@ -32,7 +32,7 @@ Curve curve_of(const Route& route) {
   const auto count = static_cast<std::ptrdiff_t>(w.size());
   const auto waypoint = [&](std::ptrdiff_t i) -> Vector3d {
     if (is_round) return w[static_cast<std::size_t>((i + count) % count)];
-    // Before the first and behind the last leg it would go on straight.
+    // The curve is extrapolated straight before the first and after the last waypoint.
     if (i < 0) return 2.0 * w[0] - w[1];
     if (i >= count) return 2.0 * w[w.size() - 1] - w[w.size() - 2];
     return w[static_cast<std::size_t>(i)];
@@ -44,7 +44,7 @@ Curve curve_of(const Route& route) {
     for (std::size_t i = 1; i < 4; ++i) knot[i] = knot[i - 1] + std::sqrt((p[i] - p[i - 1]).norm());
     for (int step = 1; step <= kPerLeg; ++step) {
       const double t = knot[1] + (knot[2] - knot[1]) * step / kPerLeg;
-      // Barry and Goldman 1988: the curve as straight lines between straight lines.
+      // Barry and Goldman 1988: repeated linear interpolation.
       std::array<Vector3d, 4> q = p;
       for (std::size_t level = 1; level < 4; ++level) {
         for (std::size_t i = 0; i + level < 4; ++i) {
@@ -61,7 +61,7 @@ Curve curve_of(const Route& route) {
   return curve;
 }
 
-Eigen::Matrix3d turned(double yaw_rad) {
+Eigen::Matrix3d rotate(double yaw_rad) {
   return Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
 }
 
@@ -84,7 +84,7 @@ double length_m(const Route& route) {
   return curve_of(route).lengths_m.back();
 }
 
-Trajectory travelled(const Route& route, double duration_s, const TravelOptions& options) {
+Trajectory follow_route(const Route& route, double duration_s, const TravelOptions& options) {
   assert(options.validate() && route.waypoints_m.size() >= 2);
   const Curve curve = curve_of(route);
   const double whole = curve.lengths_m.back();
@@ -99,7 +99,7 @@ Trajectory travelled(const Route& route, double duration_s, const TravelOptions&
     const double share = (along - curve.lengths_m[i - 1]) / step.norm();
     StampedPose pose{.time_s = time, .map_from_body = Pose::Identity()};
     pose.map_from_body.translation() = curve.points_m[i - 1] + share * step;
-    pose.map_from_body.linear() = turned(std::atan2(step.y(), step.x()));
+    pose.map_from_body.linear() = rotate(std::atan2(step.y(), step.x()));
     poses.push_back(pose);
   }
   auto trajectory = Trajectory::make(std::move(poses));
@@ -120,7 +120,7 @@ Result<void> DriftOptions::validate() const {
   return fail(Error::Code::kBadOption, "drift:" + bad);
 }
 
-Trajectory reported(const Trajectory& truth, const DriftOptions& options) {
+Trajectory add_drift(const Trajectory& truth, const DriftOptions& options) {
   assert(options.validate());
   const std::vector<StampedPose>& all = truth.poses();
   if (all.size() < 2) return truth;
@@ -133,8 +133,8 @@ Trajectory reported(const Trajectory& truth, const DriftOptions& options) {
     if (n > 0) {
       const double share = std::sqrt((all[n].time_s - all[n - 1].time_s) / 60.0);
       const Vector3d step = now.translation() - all[n - 1].map_from_body.translation();
-      position += turned(heading_error) * step;
-      // One after the other: compilers order arguments as they like.
+      position += rotate(heading_error) * step;
+      // In separate statements, as the order of evaluation of arguments is unspecified.
       const double x = random.normal();
       const double y = random.normal();
       position += share * options.position_m * Vector3d(x, y, 0.0);
@@ -142,7 +142,7 @@ Trajectory reported(const Trajectory& truth, const DriftOptions& options) {
     }
     StampedPose pose{.time_s = all[n].time_s, .map_from_body = Pose::Identity()};
     pose.map_from_body.translation() = Vector3d(position.x(), position.y(), now.translation().z());
-    pose.map_from_body.linear() = turned(heading_error) * now.linear();
+    pose.map_from_body.linear() = rotate(heading_error) * now.linear();
     poses.push_back(pose);
   }
   auto trajectory = Trajectory::make(std::move(poses));

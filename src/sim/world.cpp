@@ -14,7 +14,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-// --- Crossings: each tells `found(range, normal)` of all there are; who asks sorts out those that are too near or far.
+// --- Crossings: each function calls `found(range, normal)` for all of them; the caller applies the limits.
 
 template <class Found>
 void cross(const Rectangle& r, const SoundRay& ray, const Found& found) {
@@ -30,7 +30,7 @@ void cross(const Rectangle& r, const SoundRay& ray, const Found& found) {
 
 template <class Found>
 void cross(const Cuboid& c, const SoundRay& ray, const Found& found) {
-  // In the box's frame: between the three pairs of planes.
+  // Slab method in the frame of the box.
   const Pose cuboid_from_map = c.map_from_cuboid.inverse();
   const Vector3d origin = cuboid_from_map * ray.origin_m;
   const Vector3d direction = cuboid_from_map.linear() * ray.direction;
@@ -60,7 +60,7 @@ void cross(const Cuboid& c, const SoundRay& ray, const Found& found) {
   found(leave, Vector3d(c.map_from_cuboid.linear().col(leave_axis)));
 }
 
-/// The two places where |origin + range * direction| is 1: a ray and the unit sphere (or circle).
+/// Intersections of a ray and the unit sphere (or circle): |origin + range * direction| = 1.
 std::optional<std::array<double, 2>> unit_crossings(double dd, double od, double oo) {
   const double discriminant = od * od - dd * (oo - 1.0);
   if (dd == 0.0 || discriminant < 0.0) return std::nullopt;
@@ -112,7 +112,7 @@ void cross(const Ellipsoid& e, const SoundRay& ray, const Found& found) {
   }
 }
 
-/// Crossings of any solid with kLeastRange_m < range <= limit_m.
+/// Crossings of any solid with kMinRange_m < range <= limit_m.
 template <class Solid, class Found>
 void cross_any(const Solid& solid, const SoundRay& ray, double& limit_m, const Found& found) {
   std::visit(
@@ -121,7 +121,7 @@ void cross_any(const Solid& solid, const SoundRay& ray, double& limit_m, const F
           s->cross(ray, limit_m, found);
         } else {
           cross(s, ray, [&](double range, const Vector3d& normal) {
-            if (range > kLeastRange_m && range <= limit_m) found(range, normal, limit_m);
+            if (range > kMinRange_m && range <= limit_m) found(range, normal, limit_m);
           });
         }
       },
@@ -144,7 +144,7 @@ void append(const TriangleMesh& part, TriangleMesh& mesh) {
   for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({base + a, base + b, base + c});
 }
 
-/// Pieces of a circle whose chords stay within `tolerance` of it.
+/// Number of segments of a circle whose chords stay within `tolerance` of it.
 std::size_t pieces_of(double radius, double tolerance) {
   const double share = std::min(1.0, tolerance / radius);
   const double pieces = std::ceil(std::numbers::pi / std::acos(1.0 - share));
@@ -191,7 +191,7 @@ TriangleMesh mesh_of(const Cylinder& c, double tolerance) {
   const Vector3d u = c.axis_m.unitOrthogonal() * c.radius_m;
   const Vector3d v = c.axis_m.normalized().cross(u);
   const std::size_t pieces = pieces_of(c.radius_m, tolerance);
-  // Four rings, two of them shrunk to the middle of an end.
+  // Four rings, two of them degenerate at the centre of an end.
   std::vector<Vector3d> vertices;
   for (const auto& [along, radius] : {std::pair{0.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}, {1.0, 0.0}}) {
     for (std::size_t i = 0; i <= pieces; ++i) {
@@ -203,7 +203,7 @@ TriangleMesh mesh_of(const Cylinder& c, double tolerance) {
 }
 
 TriangleMesh mesh_of(const Ellipsoid& e, double tolerance) {
-  // Half of the tolerance for either of the two directions in which it is round.
+  // Half of the tolerance for each of the two curved directions.
   const std::size_t pieces = pieces_of(e.radii_m.maxCoeff(), 0.5 * tolerance);
   const std::size_t rows = pieces / 2;
   std::vector<Vector3d> vertices;
@@ -226,19 +226,19 @@ TriangleMesh mesh_of(const std::shared_ptr<const TriangleTree>& tree, double) {
   return tree->mesh();
 }
 
-/// A shape's box, from corners that hold it.
+/// Bounding box of a shape.
 AlignedBox3d bounds_of(const Sphere& s) {
   return {s.centre_m - Vector3d::Constant(s.radius_m), s.centre_m + Vector3d::Constant(s.radius_m)};
 }
-AlignedBox3d turned(const Pose& pose, const Vector3d& half) {
+AlignedBox3d rotate(const Pose& pose, const Vector3d& half) {
   const Vector3d reach = pose.linear().cwiseAbs() * half;
   return {pose.translation() - reach, pose.translation() + reach};
 }
 AlignedBox3d bounds_of(const Cuboid& c) {
-  return turned(c.map_from_cuboid, c.half_m);
+  return rotate(c.map_from_cuboid, c.half_m);
 }
 AlignedBox3d bounds_of(const Ellipsoid& e) {
-  return turned(e.map_from_ellipsoid, e.radii_m);
+  return rotate(e.map_from_ellipsoid, e.radii_m);
 }
 AlignedBox3d bounds_of(const Rectangle& r) {
   const Vector3d reach = r.half_u_m.cwiseAbs() + r.half_v_m.cwiseAbs();
@@ -280,7 +280,7 @@ void World::add(Shape shape, const Material& material) {
       },
       std::move(shape));
   AlignedBox3d bounds = std::visit([](const auto& s) { return bounds_of(s); }, solid);
-  // Rounding must not put a flat surface beside its own box.
+  // Padded, so that rounding does not put a flat surface outside of its box.
   bounds.min().array() -= 1e-9;
   bounds.max().array() += 1e-9;
   surfaces_.push_back({std::move(solid), material, bounds});
@@ -290,7 +290,7 @@ std::optional<Crossing> World::first(const SoundRay& ray, double limit_m) const 
   const Eigen::Array3d inverse = ray.direction.array().inverse();
   std::optional<Crossing> nearest;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    if (!meets(ray, inverse, surfaces_[i].bounds, limit_m)) continue;
+    if (!intersects(ray, inverse, surfaces_[i].bounds, limit_m)) continue;
     cross_any(surfaces_[i].solid, ray, limit_m, [&](double range, const Vector3d& normal, double& limit) {
       limit = range;
       nearest = Crossing{range, against(ray, normal), i};
@@ -303,7 +303,7 @@ std::vector<Crossing> World::all(const SoundRay& ray, double limit_m) const {
   const Eigen::Array3d inverse = ray.direction.array().inverse();
   std::vector<Crossing> crossings;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    if (!meets(ray, inverse, surfaces_[i].bounds, limit_m)) continue;
+    if (!intersects(ray, inverse, surfaces_[i].bounds, limit_m)) continue;
     cross_any(surfaces_[i].solid, ray, limit_m, [&](double range, const Vector3d& normal, double&) {
       crossings.push_back({range, against(ray, normal), i});
     });

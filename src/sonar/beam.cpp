@@ -22,7 +22,7 @@ Result<void> validate(const Beam& beam) {
   return {};
 }
 
-double wrapped_bearing(double angle_rad) {
+double wrap_bearing(double angle_rad) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const double wrapped = angle_rad - kTurn * std::floor(angle_rad / kTurn);
   // A tiny negative angle rounds up to a whole turn.

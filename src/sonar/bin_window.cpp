@@ -11,7 +11,7 @@ namespace {
 // 0.75 m / 0.0125 m may come out as 60.000000000000007, which is bin 60 and not 61.
 constexpr double kRounding_bins = 1e-6;
 
-/// How many of a beam's bins end within a range.
+/// Number of a beam's bins that end within a range.
 std::size_t bins_within(double range_m, double bin_length_m, double bins) {
   return static_cast<std::size_t>(std::clamp(std::floor(range_m / bin_length_m + kRounding_bins), 0.0, bins));
 }
@@ -32,7 +32,7 @@ std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, c
   return windows;
 }
 
-std::vector<BinWindow> windows_up_to(double max_range_m, std::vector<BinWindow> windows, const Sweep& sweep) {
+std::vector<BinWindow> clip_windows(double max_range_m, std::vector<BinWindow> windows, const Sweep& sweep) {
   for (std::size_t n = 0; n < windows.size(); ++n) {
     std::size_t& end = windows[n].end;
     end = bins_within(max_range_m, sweep.beams[n].bin_length_m, static_cast<double>(end));

@@ -11,16 +11,16 @@
 namespace pingvox {
 namespace {
 
-constexpr std::size_t kFewestBeams = 32;
+constexpr std::size_t kMinBeams = 32;
 
-/// What the share `low` of the beams do not exceed, and what half of them do not, bin by bin.
+/// Lowest decile and median of the beams, bin by bin.
 struct Profile {
   std::vector<int> low;
   std::vector<int> median;
 };
 
 Profile profile_of(const PolarImage& image) {
-  constexpr std::size_t kLowShare = 10;  // one beam of so many may lack what is there in "every" beam
+  constexpr std::size_t kLowShare = 10;  // one beam in ten may lack the ringing
   Profile profile;
   std::vector<std::uint8_t> column;
   for (std::size_t i = 0; i < image.columns(); ++i) {
@@ -28,7 +28,7 @@ Profile profile_of(const PolarImage& image) {
     for (std::size_t n = 0; n < image.rows(); ++n) {
       if (i < image.bins_in(n)) column.push_back(image.row(n)[i]);
     }
-    if (column.size() < kFewestBeams) break;
+    if (column.size() < kMinBeams) break;
     std::ranges::sort(column);
     profile.low.push_back(column[column.size() / kLowShare]);
     profile.median.push_back(column[column.size() / 2]);
@@ -48,7 +48,7 @@ double blanking_range_m(const PolarImage& image, const Sweep& sweep) {
   assert(image.rows() == sweep.beams.size());
   const Profile profile = profile_of(image);
   const std::size_t bins = profile.low.size();
-  if (bins == 0) return EchoOptions::kUsualBlanking_m;
+  if (bins == 0) return EchoOptions::kDefaultBlanking_m;
   const double bin_length_m = sweep.beams.front().bin_length_m;
 
   // The ringing begins at the transducer, or as soon as the receiver is switched on: in the first eighth.
@@ -62,7 +62,7 @@ double blanking_range_m(const PolarImage& image, const Sweep& sweep) {
   auto i = static_cast<std::size_t>(strongest - begin);
   while (i < farthest && profile.low[i] >= level) ++i;
 
-  // It fades: on as long as the typical beam still falls, until nothing is left of it.
+  // The decay ends where the median beam stops falling, or is down to a sixteenth.
   const int nothing = *strongest / 16;
   const std::size_t ahead = std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(0.05 / bin_length_m)));
   while (i + ahead < farthest && profile.median[i] > nothing && profile.median[i + ahead] < profile.median[i]) ++i;

@@ -14,8 +14,8 @@
 namespace pingvox {
 namespace {
 
-/// The image with `margin` rows more at either end: those across the seam, or the outermost repeated. What is no
-/// evidence is painted over with the nearest bin that is, so that no edge stands at the border between them.
+/// The image with `margin` more rows at either end: from across the seam, or the outermost row repeated. Bins outside
+/// of the window get the value of the nearest bin inside, so that its border makes no edge.
 class Rows {
  public:
   Rows(const PolarImage& image, const std::vector<BinWindow>& windows, std::size_t margin)
@@ -39,7 +39,7 @@ class Rows {
   const cv::Mat& pixels() const { return pixels_; }
   std::size_t size() const { return rows_ + 2 * margin_; }
 
-  /// The row of the image that stands at this place.
+  /// Row of the image that is copied to row `at`.
   std::size_t source_of(std::size_t at) const {
     const auto rows = static_cast<std::ptrdiff_t>(rows_);
     const auto n = static_cast<std::ptrdiff_t>(at) - static_cast<std::ptrdiff_t>(margin_);
@@ -53,7 +53,7 @@ class Rows {
   cv::Mat pixels_;
 };
 
-/// Which edges count: the strong ones, and those that are linked to one by at most `link` steps.
+/// Hysteresis: strong edges, and weak ones linked to a strong one by at most `link` steps.
 class Links {
  public:
   Links(std::size_t rows, std::size_t columns) : rows_(rows), columns_(columns), state_(rows * columns, kNoEdge) {}
@@ -102,7 +102,7 @@ Links edges_of(const Rows& rows, const std::vector<BinWindow>& windows, const st
   cv::Mat thin;
   cv::Sobel(rows.pixels(), along, CV_16S, 1, 0, 3, 1.0, 0.0, cv::BORDER_REPLICATE);
   cv::Sobel(rows.pixels(), across, CV_16S, 0, 1, 3, 1.0, 0.0, cv::BORDER_REPLICATE);
-  // With both thresholds alike it links nothing: what is left is all local maxima above the lower one.
+  // Equal thresholds switch off the linking: all local maxima above the lower threshold remain.
   cv::Canny(along, across, thin, options.low, options.low, false);
   Links links(rows.size(), static_cast<std::size_t>(thin.cols));
   for (std::size_t at = 0; at < rows.size(); ++at) {
@@ -144,7 +144,7 @@ std::vector<std::optional<std::size_t>> first_edges(const PolarImage& image, con
       }
     }
   } catch (const cv::Exception&) {
-    // For valid arguments it has only one reason: no memory. Then the same happens as when a vector of ours gets none.
+    // With valid arguments OpenCV throws only when memory runs out.
     throw std::bad_alloc();
   }
   return first;

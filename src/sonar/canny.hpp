@@ -9,11 +9,11 @@
 
 namespace pingvox {
 
-/// How many beams to either side decide about the edges of one: the link, the thinning and the gradient.
+/// Beams to either side that affect the edges of one beam: link, thinning and gradient.
 std::size_t canny_reach_beams(const CannyOptions& options);
 
 /// The nearest rising edge of each beam.
-/// @param strong  of each beam: the gradient that a strong edge exceeds
+/// @param strong  for each beam: the gradient that a strong edge must exceed
 std::vector<std::optional<std::size_t>> first_edges(const PolarImage& image, const std::vector<BinWindow>& windows,
                                                     const std::vector<int>& strong, const CannyOptions& options);
 

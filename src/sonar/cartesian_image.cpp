@@ -22,7 +22,7 @@ struct Axis {
 std::vector<Axis> axes_of(const Sweep& sweep) {
   std::vector<Axis> axes;
   axes.reserve(sweep.beams.size());
-  for (std::size_t n = 0; n < sweep.beams.size(); ++n) axes.push_back({wrapped_bearing(sweep.beams[n].bearing_rad), n});
+  for (std::size_t n = 0; n < sweep.beams.size(); ++n) axes.push_back({wrap_bearing(sweep.beams[n].bearing_rad), n});
   std::ranges::sort(axes, {}, [](const Axis& axis) { return std::pair(axis.bearing_rad, axis.beam); });
   return axes;
 }
@@ -34,7 +34,7 @@ void dot_axes(const PolarImage& image, const Sweep& sweep, CartesianImage& out) 
     const Beam& beam = sweep.beams[n];
     const double ahead = std::cos(beam.bearing_rad), left = std::sin(beam.bearing_rad);
     for (std::size_t i = 0; i < image.bins_in(n); ++i) {
-      // Divided first: the inverse of a tiny pixel is no number.
+      // Divide first: the inverse of a tiny pixel is infinite.
       const double range_px = (static_cast<double>(i) + 0.5) * beam.bin_length_m / out.pixel_m;
       const auto row = static_cast<std::size_t>(std::clamp(half - range_px * ahead, 0.0, last));
       const auto column = static_cast<std::size_t>(std::clamp(half - range_px * left, 0.0, last));
@@ -44,7 +44,7 @@ void dot_axes(const PolarImage& image, const Sweep& sweep, CartesianImage& out) 
   }
 }
 
-/// The weighted mean at one place of the beams that reach there.
+/// Weighted mean of the beams that reach a point.
 class Interpolation {
  public:
   Interpolation(const PolarImage& image, const Sweep& sweep, double beam_width_rad)
@@ -52,10 +52,10 @@ class Interpolation {
 
   std::uint8_t at(double x_m, double y_m) const {
     const double range_m = std::hypot(x_m, y_m);
-    const double bearing_rad = wrapped_bearing(std::atan2(y_m, x_m));
+    const double bearing_rad = wrap_bearing(std::atan2(y_m, x_m));
     Sum sum;
     add(bearing_rad, range_m, sum);
-    // The same place, seen from the other side of bearing 0.
+    // The same bearing plus a whole turn.
     if (bearing_rad < reach_rad_) add(bearing_rad + kTurn_rad, range_m, sum);
     if (bearing_rad > kTurn_rad - reach_rad_) add(bearing_rad - kTurn_rad, range_m, sum);
     if (sum.weights == 0.0) return 0;

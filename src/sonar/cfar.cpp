@@ -8,8 +8,8 @@
 namespace pingvox {
 namespace {
 
-/// Rayleigh amplitudes have exponentially distributed squares; each rate below is the share of squares that exceed
-/// `times` the noise that is made of the squares of the training bins.
+/// Rayleigh amplitudes have exponentially distributed squares; each rate below is the fraction of squares that exceed
+/// `times` the noise estimated from the squares of the training bins.
 
 /// Finn and Johnson 1968: T = times the mean of n.
 double rate_averaging(double times, std::size_t n) {
@@ -36,7 +36,7 @@ double rate_ordered(double times, std::size_t k, std::size_t n) {
   return rate;
 }
 
-/// Which one of n, in ascending order and counted from 1, the ordered statistic takes.
+/// Rank of the ordered statistic among n values in ascending order, from 1.
 std::size_t rank_of(std::size_t n) {
   return std::max<std::size_t>(1, n * 3 / 4);
 }
@@ -54,7 +54,7 @@ double rate(double times, const CfarOptions& options) {
   return rate_ordered(times, rank_of(n), n);
 }
 
-/// The bins before and behind one that the noise is taken from.
+/// Training bins before and after a bin.
 struct Training {
   std::span<const std::uint8_t> before;
   std::span<const std::uint8_t> behind;
@@ -68,7 +68,7 @@ Training training_of(std::span<const std::uint8_t> bins, std::size_t i, const Cf
   return {bins.subspan(before_begin, before_end - before_begin), bins.subspan(behind_begin, behind_end - behind_begin)};
 }
 
-/// Sums of squares, so that the training bins of all bins cost no more than one pass.
+/// Prefix sums of squares: the noise of all bins in one pass.
 class Squares {
  public:
   explicit Squares(std::span<const std::uint8_t> bins) : bins_(bins), up_to_(bins.size() + 1) {
@@ -86,7 +86,7 @@ class Squares {
   std::vector<std::uint64_t> up_to_;
 };
 
-/// nullopt: there is nothing to train on.
+/// nullopt: no training bins.
 std::optional<double> noise_of(const Training& training, const Squares& squares, CfarOptions::Noise noise) {
   const std::size_t n = training.before.size() + training.behind.size();
   if (n == 0) return std::nullopt;

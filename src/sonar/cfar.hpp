@@ -9,12 +9,12 @@
 
 namespace pingvox {
 
-/// How many times the noise (as a root mean square, or the ordered bin) a bin must be so that the wanted share of bins
-/// of Rayleigh noise passes. REQUIRES valid options.
+/// Ratio to the noise (root mean square, or the ordered bin) that the wanted fraction of bins of Rayleigh noise
+/// exceeds. REQUIRES valid options.
 double cfar_scale(const CfarOptions& options);
 
-/// The first rising bin that is `scale` times the noise of its training bins, and stands `least` above it.
-/// @param bins  those that are evidence; they alone are trained on
+/// The first rising bin that is at least `scale` times the noise of its training bins, and `least` above it.
+/// @param bins  the window of the beam; also the only training bins
 std::optional<std::size_t> first_above_noise(std::span<const std::uint8_t> bins, double scale, double least,
                                              const CfarOptions& options);
 

@@ -12,19 +12,19 @@
 namespace pingvox {
 namespace {
 
-/// What is to be heard in one beam.
+/// Signal and noise of one beam.
 struct Loudness {
-  int rise;      ///< the largest one within kRise_bins
-  double noise;  ///< median difference of bins a few apart, where the beam is noisy
+  int rise;      ///< largest rise within kRise_bins
+  double noise;  ///< median difference of bins kLag_bins apart, in the noisy part of the beam
 };
 
-// Of noise alone the largest rise is 5 to 9.5 times itself, of the tank recording 11 to 17 times.
-constexpr double kUsualOfNoise = 9.7, kMiddleOfNoise = 8.5, kAboveNoise = 15.0;
-constexpr std::size_t kApart_bins = 6;  // beyond the usual filter's window
+// Upper quartile of the rises / noise: 5 to 9.5 in pure noise, 11 to 17 in the tank recording.
+constexpr double kQuartileNoiseRatio = 9.7, kMedianNoiseRatio = 8.5, kEchoNoiseRatio = 15.0;
+constexpr std::size_t kLag_bins = 6;  // beyond the default filter's window
 
 int largest_rise(std::span<const std::uint8_t> bins) {
   int largest = 0;
-  std::deque<std::size_t> valleys;  // of the last kRise_bins: each lower than all those before it are gone
+  std::deque<std::size_t> valleys;  // within the last kRise_bins, in ascending order
   for (std::size_t i = 0; i < bins.size(); ++i) {
     while (!valleys.empty() && bins[valleys.back()] >= bins[i]) valleys.pop_back();
     valleys.push_back(i);
@@ -34,14 +34,14 @@ int largest_rise(std::span<const std::uint8_t> bins) {
   return largest;
 }
 
-/// Between whole numbers too: smoothed noise is often less than 2.
+/// Interpolated between integers, since smoothed noise is often less than 2.
 double median_difference(std::span<const std::uint8_t> bins) {
-  if (bins.size() <= kApart_bins) return 0.0;
+  if (bins.size() <= kLag_bins) return 0.0;
   std::array<std::size_t, 256> counts{};
-  for (std::size_t i = kApart_bins; i < bins.size(); ++i) {
-    ++counts[static_cast<std::size_t>(std::abs(bins[i] - bins[i - kApart_bins]))];
+  for (std::size_t i = kLag_bins; i < bins.size(); ++i) {
+    ++counts[static_cast<std::size_t>(std::abs(bins[i] - bins[i - kLag_bins]))];
   }
-  const double half = 0.5 * static_cast<double>(bins.size() - kApart_bins);
+  const double half = 0.5 * static_cast<double>(bins.size() - kLag_bins);
   double below = 0.0;
   std::size_t value = 0;
   while (below + static_cast<double>(counts[value]) < half) below += static_cast<double>(counts[value++]);
@@ -50,38 +50,39 @@ double median_difference(std::span<const std::uint8_t> bins) {
 }
 
 template <class T>
-T ranked(std::vector<T>& values, std::size_t rank) {
+T nth_smallest(std::vector<T>& values, std::size_t rank) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::ranges::nth_element(values, place);
   return *place;
 }
 
-/// Noise grows with the range, as the gain does: of four parts of the beam (fewer of a short one) the noisiest but one,
-/// so that it is not the wall's own.
+/// Noise grows with the range, as the gain does. The second noisiest of four parts of the beam (fewer if it is short):
+/// the noisiest may hold the wall.
 double noise_of(std::span<const std::uint8_t> bins) {
-  constexpr std::size_t kLeastPart_bins = 60, kMostParts = 4;
-  std::vector<double> noises(std::clamp<std::size_t>(bins.size() / kLeastPart_bins, 1, kMostParts));
+  constexpr std::size_t kMinPart_bins = 60, kMaxParts = 4;
+  std::vector<double> noises(std::clamp<std::size_t>(bins.size() / kMinPart_bins, 1, kMaxParts));
   for (std::size_t part = 0; part < noises.size(); ++part) {
     const std::size_t first = bins.size() * part / noises.size();
     noises[part] = median_difference(bins.subspan(first, bins.size() * (part + 1) / noises.size() - first));
   }
-  return ranked(noises, std::max<std::size_t>(noises.size(), 2) - 2);
+  return nth_smallest(noises, std::max<std::size_t>(noises.size(), 2) - 2);
 }
 
 int contrast_of(std::vector<int>& rises, std::vector<double>& noises) {
-  constexpr int kLeastRise = 14;  // of 255, where there is no noise at all
-  if (rises.empty()) return kLeastRise;
-  const int rise = ranked(rises, rises.size() * 3 / 4);
-  const double noise = ranked(noises, noises.size() / 2);
-  const int half = std::max(kLeastRise, (rise + 1) / 2);
-  // Where most beams hear something, what comes before is no echo of noise. Elsewhere each beam must tell one.
-  if (rise >= kUsualOfNoise * noise && ranked(rises, rises.size() / 2) >= kMiddleOfNoise * noise) return half;
-  return std::max(half, static_cast<int>(std::ceil(kAboveNoise * noise)));
+  constexpr int kMinRise = 14;  // of 255, for beams without noise
+  if (rises.empty()) return kMinRise;
+  const int rise = nth_smallest(rises, rises.size() * 3 / 4);
+  const double noise = nth_smallest(noises, noises.size() / 2);
+  const int half = std::max(kMinRise, (rise + 1) / 2);
+  // Most beams hear an echo: half of the usual rise. Else noise only: well above the noise.
+  if (rise >= kQuartileNoiseRatio * noise && nth_smallest(rises, rises.size() / 2) >= kMedianNoiseRatio * noise)
+    return half;
+  return std::max(half, static_cast<int>(std::ceil(kEchoNoiseRatio * noise)));
 }
 
 }  // namespace
 
-std::vector<int> usual_contrasts(const PolarImage& image, const std::vector<BinWindow>& windows) {
+std::vector<int> contrasts_by_gain(const PolarImage& image, const std::vector<BinWindow>& windows) {
   std::vector<std::optional<Loudness>> heard(image.rows());
   for (std::size_t n = 0; n < image.rows(); ++n) {
     const auto [begin, end] = windows[n];

@@ -8,16 +8,16 @@
 
 namespace pingvox {
 
-/// The bins over which a rise is measured: longer than any wall's; a background that grows with the range is none.
+/// Maximum length of a rise: longer than a wall's, shorter than that of a background that grows with the range.
 inline constexpr std::size_t kRise_bins = 48;
 
-/// How many beams to either side decide about one beam's contrast.
+/// Beams to either side that affect one beam's contrast.
 inline constexpr std::size_t kContrastReach_beams = 16;
 
-/// The rise of intensity that makes an echo, by the gain that each beam was heard with: half of the largest rise of
-/// the beams around it (their upper quartile), which is about 70 in the paper's recording. Where that is not 9.7 times
-/// the noise (the median difference of bins six apart), or the middle one of their rises not 8.5 times, most beams hear
-/// only noise, and an echo needs a rise of 15 times the noise. 14 or more.
-std::vector<int> usual_contrasts(const PolarImage& image, const std::vector<BinWindow>& windows);
+/// Contrast of each beam: the rise of intensity that makes an echo at the beam's gain. Half of the upper quartile of
+/// the largest rises of the beams around, about 70 in the paper's recording. If that quartile is below 9.7 times the
+/// noise (median difference of bins six apart), or the median rise below 8.5 times, most beams hear only noise, and the
+/// contrast is 15 times the noise. At least 14.
+std::vector<int> contrasts_by_gain(const PolarImage& image, const std::vector<BinWindow>& windows);
 
 }  // namespace pingvox

@@ -20,20 +20,19 @@ namespace {
 
 using Bins = std::span<const std::uint8_t>;
 
-/// Whether an echo with its top here has ended there.
-bool fell_from(Bins bins, std::size_t top, std::size_t i, int contrast) {
+/// Whether an echo with its peak at `top` has ended before bin i.
+bool has_ended(Bins bins, std::size_t top, std::size_t i, int contrast) {
   return 2 * (bins[top] - bins[i]) > contrast;
 }
 
-/// How far the middle of a crest lies behind the wall [bins]: the pulse rises before it is highest, and what a beam
-/// hears of a wall beside its nearest point comes later, never sooner. In simulated tank and harbour it is 1.4 to 1.5
-/// bins, in the tank recording 0.9 behind lines fitted to its ridges.
+/// Lag of the centre of a crest behind the wall [bins]: the pulse rises before its maximum, and the parts of a wall
+/// beside its nearest point are heard later. 1.4 to 1.5 bins in the simulated tank and harbour, 0.9 in the tank
+/// recording.
 constexpr double kCrestLag_bins = 1.0;
 
-/// Where the wall is [bins]: the middle of the echo's crest, less its lag. Of the bins as they were heard, smoothed
-/// along the beam only: a window across beams mixes in where a slanting wall is for the neighbours. Each weighs as much
-/// as it stands above half of the contrast below the highest, so that a bin of speckle decides hardly anything. An echo
-/// without a rise of its own is where its first bin is.
+/// Position of the wall [bins]: the centre of the echo's crest less its lag (see Detector). Unfiltered bins smoothed
+/// along the beam only, because a window across beams moves slanting walls. An echo without a crest is at its first
+/// bin.
 double wall_of(Bins heard, const Echo& echo, int contrast) {
   constexpr std::array<int, 5> kPulse = {1, 4, 6, 4, 1};  // a Gaussian of sigma 1
   constexpr int kSum = 16;
@@ -55,19 +54,19 @@ double wall_of(Bins heard, const Echo& echo, int contrast) {
   return std::max(moment / weights - kCrestLag_bins, static_cast<double>(echo.first) + 0.5);
 }
 
-/// The echo whose first bin this is, without its range.
+/// The echo that begins at `first`, without its range.
 Echo echo_from(Bins bins, BinWindow window, std::size_t first, int contrast) {
   Echo echo{.first = first, .peak = first, .last = first};
-  for (std::size_t i = first + 1; i < window.end && !fell_from(bins, echo.peak, i, contrast); ++i) {
+  for (std::size_t i = first + 1; i < window.end && !has_ended(bins, echo.peak, i, contrast); ++i) {
     if (bins[i] > bins[echo.peak]) echo.peak = i;
     echo.last = i;
   }
   return echo;
 }
 
-/// @param longest  a rise over more bins than these is none
+/// @param longest  maximum length of a rise [bins]
 std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold, std::size_t longest) {
-  // Adding up the differences since the valley gives the height above it, so only valley and top have to be known.
+  // The sum of the differences since the valley is the height above it.
   std::size_t valley = window.begin;
   std::size_t top = window.begin;
   for (std::size_t i = window.begin + 1; i < window.end; ++i) {
@@ -76,7 +75,7 @@ std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold
       valley = i - longest + static_cast<std::size_t>(std::ranges::min_element(recent) - recent.begin());
     }
     if (bins[i] - bins[valley] >= threshold) return i;
-    if (bins[i] <= bins[valley] || fell_from(bins, top, i, threshold)) {
+    if (bins[i] <= bins[valley] || has_ended(bins, top, i, threshold)) {
       valley = top = i;
     } else if (bins[i] > bins[top]) {
       top = i;
@@ -85,8 +84,8 @@ std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold
   return std::nullopt;
 }
 
-/// A level that the beam's own background does not reach. REQUIRES a window that is not empty.
-int usual_level(Bins bins, BinWindow window, int contrast) {
+/// Level above the beam's background: its lower quartile plus the contrast. REQUIRES a window that is not empty.
+int default_level(Bins bins, BinWindow window, int contrast) {
   const Bins seen = bins.subspan(window.begin, window.end - window.begin);
   std::vector<std::uint8_t> values(seen.begin(), seen.end());
   const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
@@ -109,14 +108,14 @@ std::optional<std::size_t> start_of_strongest(Bins bins, BinWindow window, int l
   }
   if (bins[peak] < level) return std::nullopt;
   std::size_t first = peak;
-  while (first > window.begin && !fell_from(bins, peak, first - 1, contrast)) --first;
+  while (first > window.begin && !has_ended(bins, peak, first - 1, contrast)) --first;
   return first;
 }
 
-/// The first bins of echoes, each detector in its own way.
+/// First bins of echoes, by detector.
 class FirstBins {
  public:
-  /// @param heard    what tells how loud each beam is  @param windows  where its echo is looked for, within that
+  /// @param heard    bins that set the contrast  @param windows  bins that are searched, within those
   FirstBins(const PolarImage& image, const std::vector<BinWindow>& heard, const std::vector<BinWindow>& windows,
             const std::vector<int>& contrasts, const EchoOptions& options)
       : heard_(heard), windows_(windows), contrasts_(contrasts), options_(options) {
@@ -124,7 +123,7 @@ class FirstBins {
     if (options.detector != Detector::kCanny) return;
     std::vector<int> strong;
     strong.reserve(contrasts.size());
-    for (const int contrast : contrasts) strong.push_back(options.threshold.value_or(usual_gradient(contrast)));
+    for (const int contrast : contrasts) strong.push_back(options.threshold.value_or(default_gradient(contrast)));
     edges_ = first_edges(image, windows, strong, options.canny);
   }
 
@@ -132,7 +131,7 @@ class FirstBins {
   int threshold_of(std::size_t n, Bins bins) const {
     if (options_.threshold) return *options_.threshold;
     const Detector detector = options_.detector;
-    if (detector == Detector::kCanny) return usual_gradient(contrasts_[n]);
+    if (detector == Detector::kCanny) return default_gradient(contrasts_[n]);
     if (detector == Detector::kLevel || detector == Detector::kMax) return level_of(n, bins, contrasts_[n]);
     return contrasts_[n];
   }
@@ -143,7 +142,7 @@ class FirstBins {
     const int contrast = contrasts_[n];
     switch (options_.detector) {
       case Detector::kRise:
-        // A contrast is what rises over some bins, a given threshold whatever rises.
+        // A given threshold may be reached over any number of bins.
         return first_rise(bins, window, contrast, options_.threshold ? bins.size() : kRise_bins);
       case Detector::kLevel:
         return first_at_level(bins, window, level_of(n, bins, contrast));
@@ -163,10 +162,10 @@ class FirstBins {
   }
 
  private:
-  static int usual_gradient(int contrast) { return (8 * contrast + 2) / 5; }
+  static int default_gradient(int contrast) { return (8 * contrast + 2) / 5; }
 
   int level_of(std::size_t n, Bins bins, int contrast) const {
-    return options_.threshold ? *options_.threshold : usual_level(bins, heard_[n], contrast);
+    return options_.threshold ? *options_.threshold : default_level(bins, heard_[n], contrast);
   }
 
   const std::vector<BinWindow>& heard_;
@@ -177,7 +176,7 @@ class FirstBins {
   std::vector<std::optional<std::size_t>> edges_;  ///< kCanny
 };
 
-/// Whether the contrast is what the call says, and no beam around a beam decides about it.
+/// Whether the contrast is a given threshold and does not depend on other beams.
 bool has_given_contrast(const EchoOptions& options) {
   return options.detector == Detector::kRise && options.threshold;
 }
@@ -185,7 +184,7 @@ bool has_given_contrast(const EchoOptions& options) {
 std::vector<int> contrasts_of(const PolarImage& image, const std::vector<BinWindow>& windows,
                               const EchoOptions& options) {
   if (has_given_contrast(options)) return std::vector<int>(image.rows(), *options.threshold);
-  std::vector<int> contrasts = usual_contrasts(image, windows);
+  std::vector<int> contrasts = contrasts_by_gain(image, windows);
   if (options.threshold && options.detector != Detector::kCanny) {
     for (int& contrast : contrasts) contrast = std::min(contrast, *options.threshold);
   }
@@ -224,7 +223,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
   assert(image.rows() == sweep.beams.size());
   const std::vector<BinWindow> heard = windows_of(image, sweep, options);
   const std::vector<int> contrasts = contrasts_of(image, heard, options);
-  const std::vector<BinWindow> windows = windows_up_to(options.max_range_m, heard, sweep);
+  const std::vector<BinWindow> windows = clip_windows(options.max_range_m, heard, sweep);
   const FirstBins first_bins(image, heard, windows, contrasts, options);
 
   std::vector<std::optional<Echo>> echoes(image.rows());
@@ -242,7 +241,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
   return echoes;
 }
 
-FilterOptions usual_filter(Detector detector) {
+FilterOptions default_filter(Detector detector) {
   FilterOptions filter;
   if (detector == Detector::kCanny) {
     filter.kernel = 11;

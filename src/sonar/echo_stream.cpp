@@ -14,9 +14,9 @@ struct Found {
   std::vector<std::optional<Echo>> echoes, beyond;
 };
 
-/// @return of each beam its echo, or what was heard beyond max_range_m
+/// The echo of each beam, or the one beyond max_range_m.
 Found echoes_of(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& options) {
-  const PolarImage image = filtered(PolarImage(sweep), filter);
+  const PolarImage image = apply_filter(PolarImage(sweep), filter);
   Found found{detect_echoes(image, sweep, options), std::vector<std::optional<Echo>>(sweep.beams.size())};
   if (!std::isfinite(options.max_range_m)) return found;
   EchoOptions anywhere = options;
@@ -45,13 +45,13 @@ EchoStream::EchoStream(const FilterOptions& filter, const EchoOptions& echo, Wai
 std::vector<EchoStream::Heard> EchoStream::add(Beam beam) {
   std::vector<Heard> heard;
   if (std::optional<Sweep> finished = assembler_.add(std::move(beam))) heard = rest_of(std::move(*finished));
-  const std::span<const Beam> gathered = assembler_.gathered();
-  if (!delay_ || gathered.size() <= 2 * *delay_) return heard;
-  // Nothing beyond these beams decides about the one in their middle, so they may as well be all there are.
-  const std::span<const Beam> around = gathered.last(2 * *delay_ + 1);
+  const std::span<const Beam> pending = assembler_.pending();
+  if (!delay_ || pending.size() <= 2 * *delay_) return heard;
+  // The beam in the middle of this window depends on no beam outside of it.
+  const std::span<const Beam> around = pending.last(2 * *delay_ + 1);
   const Sweep window{.extent = Sweep::Extent::kCut, .beams = {around.begin(), around.end()}};
   const Found found = echoes_of(window, filter_, echo_);
-  const std::uint64_t number = first_ + gathered.size() - 1 - *delay_;
+  const std::uint64_t number = first_ + pending.size() - 1 - *delay_;
   heard.push_back({number, around[*delay_], found.echoes[*delay_], found.beyond[*delay_]});
   ++settled_;
   return heard;

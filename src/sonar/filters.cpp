@@ -22,8 +22,8 @@ std::optional<std::size_t> row_at(const PolarImage& image, std::ptrdiff_t offset
   return static_cast<std::size_t>(offset);
 }
 
-/// Fills the bins that row `n` lacks: from the nearest row within `reach` that has them, beyond that with its last one.
-void fill_up(const PolarImage& image, std::size_t n, std::ptrdiff_t reach, std::span<std::uint8_t> filled) {
+/// Fills the bins that row `n` lacks: from the nearest row within `reach` that has them, else with its own last bin.
+void fill_row(const PolarImage& image, std::size_t n, std::ptrdiff_t reach, std::span<std::uint8_t> filled) {
   std::size_t known = image.bins_in(n);
   for (std::ptrdiff_t distance = 1; distance <= reach && known < image.columns(); ++distance) {
     for (const std::ptrdiff_t side : {-distance, distance}) {
@@ -39,14 +39,14 @@ void fill_up(const PolarImage& image, std::size_t n, std::ptrdiff_t reach, std::
   std::ranges::fill(filled.subspan(known), last);
 }
 
-/// The image with `margin` rows more at either end: those across the seam, or the outermost repeated.
-cv::Mat with_margins(const PolarImage& image, int margin) {
+/// The image with `margin` more rows at either end: from across the seam, or the outermost row repeated.
+cv::Mat pad_rows(const PolarImage& image, int margin) {
   cv::Mat out(static_cast<int>(image.rows()) + 2 * margin, static_cast<int>(image.columns()), CV_8U);
   const auto row_of = [&out, &image](int n) { return std::span(out.ptr<std::uint8_t>(n), image.columns()); };
   for (int n = 0; n < static_cast<int>(image.rows()); ++n) {
     const auto row = static_cast<std::size_t>(n);
     std::ranges::copy(image.row(row), row_of(n + margin).begin());
-    if (image.bins_in(row) < image.columns()) fill_up(image, row, margin, row_of(n + margin));
+    if (image.bins_in(row) < image.columns()) fill_row(image, row, margin, row_of(n + margin));
   }
   for (int n = 0; n < margin; ++n) {
     for (const int row : {n, margin + static_cast<int>(image.rows()) + n}) {
@@ -59,7 +59,7 @@ cv::Mat with_margins(const PolarImage& image, int margin) {
   return out;
 }
 
-cv::Mat smoothed(const cv::Mat& source, const FilterOptions& options) {
+cv::Mat smooth(const cv::Mat& source, const FilterOptions& options) {
   const cv::Size window(options.kernel, options.kernel);
   cv::Mat out;
   switch (options.filter) {
@@ -69,7 +69,7 @@ cv::Mat smoothed(const cv::Mat& source, const FilterOptions& options) {
       cv::blur(source, out, window, cv::Point(-1, -1), cv::BORDER_REPLICATE);
       break;
     case Filter::kMedian:
-      cv::medianBlur(source, out, options.kernel);  // it knows no other border than the outermost value repeated
+      cv::medianBlur(source, out, options.kernel);  // its only border mode repeats the outermost value
       break;
     case Filter::kGaussian:
       cv::GaussianBlur(source, out, window, options.sigma, options.sigma, cv::BORDER_REPLICATE);
@@ -78,13 +78,13 @@ cv::Mat smoothed(const cv::Mat& source, const FilterOptions& options) {
   return out;
 }
 
-PolarImage smoothed(const PolarImage& image, const FilterOptions& options) {
+PolarImage smooth(const PolarImage& image, const FilterOptions& options) {
   const int margin = options.kernel / 2;
-  const cv::Mat smooth = smoothed(with_margins(image, margin), options);
+  const cv::Mat smoothed = smooth(pad_rows(image, margin), options);
   PolarImage out = image;
   for (std::size_t n = 0; n < out.rows(); ++n) {
-    const auto* row = smooth.ptr<std::uint8_t>(static_cast<int>(n) + margin);
-    std::copy_n(row, out.bins_in(n), out.row(n).begin());  // behind a beam's end it stays black
+    const auto* row = smoothed.ptr<std::uint8_t>(static_cast<int>(n) + margin);
+    std::copy_n(row, out.bins_in(n), out.row(n).begin());  // 0 beyond the end of a beam
   }
   return out;
 }
@@ -100,15 +100,15 @@ Result<void> FilterOptions::validate() const {
   return fail(Error::Code::kBadOption, "filter:" + bad);
 }
 
-PolarImage filtered(const PolarImage& image, const FilterOptions& options) {
+PolarImage apply_filter(const PolarImage& image, const FilterOptions& options) {
   assert(options.validate());
   const bool fits = image.rows() < INT_MAX / 2 && image.columns() < INT_MAX;  // OpenCV counts in int
   assert(fits);
   if (options.filter == Filter::kNone || image.rows() == 0 || image.columns() == 0 || !fits) return image;
   try {
-    return smoothed(image, options);
+    return smooth(image, options);
   } catch (const cv::Exception&) {
-    // For valid arguments it has only one reason: no memory. Then the same happens as when a vector of ours gets none.
+    // With valid arguments OpenCV throws only when memory runs out.
     throw std::bad_alloc();
   }
 }

@@ -18,7 +18,7 @@ constexpr double kJitter_steps = 0.25;
 
 /// The shorter way from one bearing to the other, in (-pi, pi].
 double shortest_turn(double from_rad, double to_rad) {
-  const double ahead = wrapped_bearing(to_rad - from_rad);
+  const double ahead = wrap_bearing(to_rad - from_rad);
   return ahead > std::numbers::pi ? ahead - kTurn_rad : ahead;
 }
 
@@ -32,15 +32,15 @@ double SweepAssembler::larger_step_rad() const {
   return std::max(steps_rad_[0], steps_rad_[1]);
 }
 
-bool SweepAssembler::was_jitter(double delta_rad) const {
-  // One step from here to the other side of the first beam, and much further than the head had gone on this side.
+bool SweepAssembler::is_jitter(double delta_rad) const {
+  // One step across the first beam, after a much longer way around.
   const double turned = std::copysign(1.0, furthest_rad_) * (turned_rad_ + delta_rad);
   return furthest_rad_ != 0.0 && -turned > std::abs(furthest_rad_) / kJitter_steps;
 }
 
-std::optional<Sweep::Extent> SweepAssembler::ended_by(const Beam& beam, double delta_rad) const {
-  const Beam& first = gathered_.beams.front();
-  const std::size_t beams = gathered_.beams.size() + 1;
+std::optional<Sweep::Extent> SweepAssembler::end_by(const Beam& beam, double delta_rad) const {
+  const Beam& first = pending_.beams.front();
+  const std::size_t beams = pending_.beams.size() + 1;
   const std::size_t longest = std::max(longest_, beam.intensities.size());
   if (beams > kMaxBeams || longest > kMaxPixels / beams) return Sweep::Extent::kCut;
   if (std::abs(beam.bin_length_m - first.bin_length_m) > 0.01 * first.bin_length_m) return Sweep::Extent::kCut;
@@ -50,7 +50,7 @@ std::optional<Sweep::Extent> SweepAssembler::ended_by(const Beam& beam, double d
     const bool flew_back = std::abs(shortest_turn(first.bearing_rad, beam.bearing_rad)) <= 0.5 * larger;
     return flew_back ? Sweep::Extent::kSector : Sweep::Extent::kCut;
   }
-  if (furthest_rad_ == 0.0 || was_jitter(delta_rad)) return std::nullopt;
+  if (furthest_rad_ == 0.0 || is_jitter(delta_rad)) return std::nullopt;
   const double furthest = std::abs(furthest_rad_);
   const double turned = std::copysign(1.0, furthest_rad_) * (turned_rad_ + delta_rad);
   if (furthest - turned > std::max(kSameBearing_rad, kJitter_steps * larger)) return Sweep::Extent::kSector;
@@ -62,13 +62,13 @@ std::optional<Sweep::Extent> SweepAssembler::ended_by(const Beam& beam, double d
 
 std::optional<Sweep> SweepAssembler::add(Beam beam) {
   std::optional<Sweep> finished;
-  if (!gathered_.beams.empty()) {
-    const double delta = shortest_turn(gathered_.beams.back().bearing_rad, beam.bearing_rad);
-    const std::optional<Sweep::Extent> extent = ended_by(beam, delta);
+  if (!pending_.beams.empty()) {
+    const double delta = shortest_turn(pending_.beams.back().bearing_rad, beam.bearing_rad);
+    const std::optional<Sweep::Extent> extent = end_by(beam, delta);
     if (extent) {
       finished = close(*extent);
     } else {
-      if (was_jitter(delta)) {
+      if (is_jitter(delta)) {
         furthest_rad_ = 0.0;
         steps_rad_ = {};
       }
@@ -82,7 +82,7 @@ std::optional<Sweep> SweepAssembler::add(Beam beam) {
     }
   }
   longest_ = std::max(longest_, beam.intensities.size());
-  gathered_.beams.push_back(std::move(beam));
+  pending_.beams.push_back(std::move(beam));
   return finished;
 }
 
@@ -95,7 +95,7 @@ std::optional<Sweep> SweepAssembler::finish() {
 }
 
 std::optional<Sweep> SweepAssembler::close(Sweep::Extent extent) {
-  Sweep sweep = std::exchange(gathered_, Sweep{});
+  Sweep sweep = std::exchange(pending_, Sweep{});
   longest_ = 0;
   turned_rad_ = furthest_rad_ = 0.0;
   if (sweep.beams.empty()) return std::nullopt;

@@ -18,7 +18,7 @@ std::vector<Tick> linear_ticks(const AxisScale& scale, std::size_t most) {
   if (!std::isfinite(span) || !(span > 0.0) || span < 1e-12 * std::max(std::abs(low), std::abs(high))) return {};
   const double step = round_length_above(span / static_cast<double>(most));
   if (!(step > 0.0) || !std::isfinite(step)) return {};
-  // As many digits as tell neighbours apart.
+  // Enough digits to distinguish neighbours.
   const double places = std::log10(std::max(std::abs(low), std::abs(high)) / step);
   const int digits = std::clamp(static_cast<int>(std::ceil(places)) + 1, 6, 15);
   std::vector<Tick> ticks;
@@ -43,7 +43,7 @@ std::vector<Tick> logarithmic_ticks(const AxisScale& scale, std::size_t most) {
   const int last = static_cast<int>(std::floor(high + 1e-9));
   for (int power = static_cast<int>(std::floor(low)); power <= last; power += skip) {
     add(std::pow(10.0, power));
-    // Few powers leave room for what lies between them.
+    // Few powers leave room for ticks between them.
     if (2 * powers < most) add(2.0 * std::pow(10.0, power));
     if (2 * powers < most) add(5.0 * std::pow(10.0, power));
   }
@@ -54,7 +54,7 @@ std::ptrdiff_t place_of(const Area& area, const Tick& tick) {
   return area.x + static_cast<std::ptrdiff_t>(std::lround(tick.share * static_cast<double>(area.width)));
 }
 
-/// Whether the texts of two neighbours would run into each other.
+/// Whether the labels of two neighbours overlap.
 bool do_touch(const Area& area, const std::vector<Tick>& ticks) {
   for (std::size_t i = 1; i < ticks.size(); ++i) {
     const std::ptrdiff_t wide =
@@ -67,7 +67,7 @@ bool do_touch(const Area& area, const std::vector<Tick>& ticks) {
 }  // namespace
 
 double AxisScale::share_of(double value) const {
-  // By halves, and by differences of logarithms: what is between the largest numbers is itself no number.
+  // Halves and differences of logarithms, so that the difference of very large numbers does not overflow.
   const auto place = [this](double number) { return spacing == Spacing::kLinear ? 0.5 * number : std::log(number); };
   const double share = (place(value) - place(at_start)) / (place(at_end) - place(at_start));
   return std::isfinite(share) ? share : 0.0;

@@ -10,13 +10,13 @@
 
 namespace pingvox {
 
-/// Numbers along one side of a picture.
+/// Range of an axis.
 struct AxisScale {
   double at_start = 0.0;  ///< left or bottom; may be more than at_end
   double at_end = 1.0;
   Spacing spacing = Spacing::kLinear;  ///< kLogarithmic REQUIRES ends above 0
 
-  /// Where a value is: 0 at the start, 1 at the end.
+  /// Position of a value: 0 at the start, 1 at the end.
   double share_of(double value) const;
 };
 
@@ -25,23 +25,23 @@ struct Tick {
   std::string text;
 };
 
-/// Round numbers along the axis, at most about `most`; none when its ends are not finite, or too close together for
-/// doubles to tell numbers between them.
+/// Round numbers along the axis, at most about `most`; none if its ends are not finite or too close together for
+/// doubles.
 std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most);
 
 inline constexpr std::ptrdiff_t kTextScale = 2, kTick = 8, kGap = 6;
-/// Height of what stands below an area: ticks, their texts (in two rows at most), a title.
+/// Height of a bottom axis: ticks, labels (at most two rows), a title.
 inline constexpr std::ptrdiff_t kBottomAxis = 68;
 
-/// Width of what stands left of an area.
+/// Width of a left axis.
 std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks);
 
-/// Ticks and their texts below the area, by turns in two rows where they would touch, and the title below them.
+/// Ticks and labels below the area, alternating between two rows where they would overlap, and the title.
 void draw_bottom_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title);
-/// The same left of the area, the title turned.
+/// The same left of the area, the title rotated.
 void draw_left_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title);
 
-/// Text with its middle at x.
+/// Text centred at x.
 void draw_centred(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::string_view text, Rgb colour);
 
 }  // namespace pingvox

@@ -22,13 +22,13 @@ struct Style {
   Marker marker;
 };
 
-/// Neighbours are far apart in lightness (L* 11, 57, 34, 78, 46, 67), and no two need red told from green.
-constexpr std::array<Style, Chart::kMostSeries> kStyles = {{{{16, 24, 72}, Marker::kDisc},
-                                                            {{222, 100, 0}, Marker::kSquare},
-                                                            {{110, 50, 130}, Marker::kTriangle},
-                                                            {{235, 184, 60}, Marker::kDiamond},
-                                                            {{0, 116, 128}, Marker::kCross},
-                                                            {{90, 172, 220}, Marker::kRing}}};
+/// Neighbours differ in lightness (L* 11, 57, 34, 78, 46, 67), readable without colour.
+constexpr std::array<Style, Chart::kMaxSeries> kStyles = {{{{16, 24, 72}, Marker::kDisc},
+                                                           {{222, 100, 0}, Marker::kSquare},
+                                                           {{110, 50, 130}, Marker::kTriangle},
+                                                           {{235, 184, 60}, Marker::kDiamond},
+                                                           {{0, 116, 128}, Marker::kCross},
+                                                           {{90, 172, 220}, Marker::kRing}}};
 
 bool is_shown(double value, Spacing spacing) {
   return std::isfinite(value) && (spacing == Spacing::kLinear || value > 0.0);
@@ -45,7 +45,7 @@ struct Extent {
   bool empty() const { return low > high; }
 };
 
-/// The axis around numbers, its ends moved out to round ones.
+/// An axis around numbers, with round ends.
 AxisScale scale_around(Extent extent, Spacing spacing) {
   if (extent.empty()) extent = {spacing == Spacing::kLinear ? 0.0 : 1.0, spacing == Spacing::kLinear ? 1.0 : 10.0};
   if (spacing == Spacing::kLogarithmic) {
@@ -63,7 +63,7 @@ AxisScale scale_around(Extent extent, Spacing spacing) {
   return {std::floor(extent.low / step + 1e-9) * step, std::ceil(extent.high / step - 1e-9) * step, spacing};
 }
 
-/// The chart laid out: where its axes are and how numbers get onto them.
+/// Positions of the axes and the mapping of numbers to pixels.
 struct Layout {
   AxisScale x, y;
   std::vector<Tick> x_ticks, y_ticks;
@@ -81,7 +81,7 @@ std::ptrdiff_t legend_width(const Series& series) {
   return kSwatch + kGap + label_width(series.name, kTextScale) + 4 * kGap;
 }
 
-/// The legend's names in rows as wide as the chart: first one of each row, and one behind the last.
+/// Legend rows as wide as the chart: first and past-the-end series of each.
 std::vector<std::pair<std::size_t, std::size_t>> legend_rows(const Chart& chart) {
   std::vector<std::pair<std::size_t, std::size_t>> rows;
   std::ptrdiff_t used = 0;
@@ -114,7 +114,7 @@ Layout layout_of(const Chart& chart) {
   layout.x = scale_around(x, chart.x_spacing);
   layout.y = scale_around(y, chart.y_spacing);
 
-  // The numbers on the bars need room.
+  // Room for the labels of the bars.
   if (chart.kind == Chart::Kind::kBars && !y.empty()) {
     const double room = 0.06;
     if (chart.y_spacing == Spacing::kLogarithmic) {
@@ -147,16 +147,16 @@ Layout layout_of(const Chart& chart) {
   return layout;
 }
 
-/// A rectangle in the pattern of a series: plain, striped one way, the other, across, along, plain.
+/// A rectangle in the pattern of a series: plain or striped in one of four directions.
 void fill_bar(Picture& picture, const Area& bar, std::size_t series) {
-  const Rgb colour = kStyles[series].colour, pale = mixed(colour, kPaper, 0.55);
+  const Rgb colour = kStyles[series].colour, pale = mix(colour, kPaper, 0.55);
   constexpr std::ptrdiff_t kPeriod = 10, kStripe = 3;
   for (std::ptrdiff_t y = bar.y; y < bar.bottom(); ++y) {
     for (std::ptrdiff_t x = bar.x; x < bar.right(); ++x) {
-      // Counted from the corner, so that bars of one series look alike.
+      // Relative to the corner, so that bars of one series look alike.
       const std::ptrdiff_t dx = x - bar.x, dy = bar.bottom() - y;
-      const std::array<std::ptrdiff_t, Chart::kMostSeries> along = {kStripe, dx + dy, dx + kPeriod * 1000 - dy,
-                                                                    kStripe, dy,      dx};
+      const std::array<std::ptrdiff_t, Chart::kMaxSeries> along = {kStripe, dx + dy, dx + kPeriod * 1000 - dy,
+                                                                   kStripe, dy,      dx};
       picture.set(x, y, along[series] % kPeriod < kStripe ? pale : colour);
     }
   }
@@ -203,7 +203,7 @@ void draw_lines(Picture& picture, const Chart& chart, const Layout& layout) {
       before = spot;
       spots.push_back(spot);
     }
-    // So many marks as can stand beside each other.
+    // As many markers as fit beside each other.
     const std::size_t every = spots.size() / 40 + 1;
     for (std::size_t i = 0; i < spots.size(); i += every) {
       draw_marker(picture, kStyles[s].marker, spots[i], 7.0, kStyles[s].colour);
@@ -251,8 +251,8 @@ Result<void> Chart::validate() const {
   std::string bad;
   if (width < 320 || width > Picture::kMaxSide) bad += fmt::format(" width must be in 320..4096, is {};", width);
   if (height < 240 || height > Picture::kMaxSide) bad += fmt::format(" height must be in 240..4096, is {};", height);
-  if (series.empty() || series.size() > kMostSeries) {
-    bad += fmt::format(" there must be 1..{} series, not {};", kMostSeries, series.size());
+  if (series.empty() || series.size() > kMaxSeries) {
+    bad += fmt::format(" there must be 1..{} series, not {};", kMaxSeries, series.size());
   }
   for (const Series& one : series) {
     if (kind == Kind::kLines && one.x.size() != one.y.size()) {

@@ -9,8 +9,8 @@ namespace pingvox {
 
 inline constexpr Rgb kPaper{255, 255, 255}, kInk{40, 44, 52}, kPaleInk{214, 218, 224};
 
-/// `share` 0 is a, 1 is b.
-inline Rgb mixed(Rgb a, Rgb b, double share) {
+/// Linear interpolation: `share` 0 is a, 1 is b.
+inline Rgb mix(Rgb a, Rgb b, double share) {
   const auto part = [&](std::uint8_t from, std::uint8_t to) {
     return static_cast<std::uint8_t>(std::lround(from + (to - from) * share));
   };

@@ -11,7 +11,7 @@ namespace {
 
 struct Letter {
   char name;
-  std::string_view rows;  ///< of five pixels, from the top; a blank between them. Two rows hang below the line.
+  std::string_view rows;  ///< of five pixels, from the top, separated by blanks. The last two rows are descenders.
 };
 
 constexpr std::array kLetters = {
@@ -141,7 +141,7 @@ double round_length(double most) {
 double round_length_above(double least) {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    // What rounding put a little above counts as equal.
+    // Tolerance for rounding.
     if (factor * power >= least * (1.0 - 1e-9)) return factor * power;
   }
   return 10.0 * power;

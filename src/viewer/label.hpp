@@ -8,7 +8,7 @@
 
 namespace pingvox {
 
-/// A letter's box, the gap to the next one included, at scale 1.
+/// Size of a letter including the gap, at scale 1.
 inline constexpr std::ptrdiff_t kLetterWidth = 6;
 inline constexpr std::ptrdiff_t kLetterHeight = 9;
 
@@ -18,11 +18,11 @@ inline std::ptrdiff_t label_width(std::string_view text, std::ptrdiff_t scale) {
 
 enum class Reads {
   kRightwards,
-  kUpwards,  ///< turned to the left, for the axis at the left side
+  kUpwards,  ///< rotated, for a left axis
 };
 
-/// Writes ASCII text. Rightwards its upper left corner is at (x, y), upwards its lower left one, where the first letter
-/// stands. Characters without a shape ('`', '$', '{', '}', '\\', and all beyond ASCII) leave a gap.
+/// Writes ASCII text. (x, y) is the upper left corner of the text, upwards the lower left one. Characters without a
+/// glyph ('`', '$', '{', '}', '\\', and all beyond ASCII) leave a gap.
 void draw_label(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::string_view text, std::ptrdiff_t scale,
                 Rgb colour, Reads reads = Reads::kRightwards);
 

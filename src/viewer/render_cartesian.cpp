@@ -19,10 +19,10 @@
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kMargin = 24, kFooterRow = 28, kRim = 44, kLeastWidth = 400;
+constexpr std::ptrdiff_t kMargin = 24, kFooterRow = 28, kRim = 44, kMinWidth = 400;
 constexpr Rgb kRing{110, 170, 220};
 
-/// Where the head is, and the farthest range on the picture around it.
+/// Position of the head and the largest range in the picture.
 struct Disc {
   Spot middle;
   double radius_px = 0.0, range_m = 0.0;
@@ -33,7 +33,7 @@ struct Disc {
   }
 };
 
-/// How far the beams reach in each direction, to tell silence from what nobody listened to.
+/// Range of the beams by direction, to distinguish silence from directions without a beam.
 class Reach {
  public:
   Reach(const Sweep& sweep, double beam_width_rad) : range_m_(kDirections, 0.0) {
@@ -79,12 +79,12 @@ void draw_image(Picture& picture, const Area& area, const CartesianImage& image,
   }
 }
 
-/// How far apart rings of range are [m]: five at most, and so that their labels have room.
+/// Spacing of range rings [m]: at most five, with room for their labels.
 double ring_step_m(const Disc& disc) {
   return round_length_above(disc.range_m * std::max(0.2, 40.0 / disc.radius_px));
 }
 
-/// Rings of range with their metres, and spokes at the rim with their degrees.
+/// Range rings, and spokes at the rim with their degrees.
 void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
   const double step_m = ring_step_m(disc);
   for (int n = 1; n * step_m < disc.range_m * (1.0 + 1e-9); ++n) {
@@ -108,10 +108,10 @@ void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
   }
 }
 
-/// What the rings are, on a dark patch so that it can be read on any grey.
+/// Labels of the rings, on a dark patch to be readable on any grey.
 void draw_ring_labels(Picture& picture, const Disc& disc) {
   const double step_m = ring_step_m(disc);
-  // Between two spokes, where walls seldom are.
+  // Between two spokes.
   const double bearing_rad = 345.0 * std::numbers::pi / 180.0;
   for (int n = 1; n * step_m < disc.range_m * (1.0 - 1e-9); ++n) {
     const std::string text = length_text(n * step_m) + " m";
@@ -152,7 +152,7 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
   const CartesianImage drawn =
       cartesian_image(image, sweep, {options.between, options.look.target_px, options.beam_width_rad});
   const auto size = static_cast<std::ptrdiff_t>(drawn.size_px);
-  const std::ptrdiff_t inner = std::max(size + 2 * kRim, kLeastWidth);
+  const std::ptrdiff_t inner = std::max(size + 2 * kRim, kMinWidth);
   const Area area{kMargin + (inner - size) / 2, kMargin + kRim, size, size};
   Picture picture(static_cast<std::size_t>(inner + 2 * kMargin),
                   static_cast<std::size_t>(area.bottom() + kRim + 2 * kFooterRow + kMargin / 2), kPaper);

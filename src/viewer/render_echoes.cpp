@@ -18,11 +18,11 @@ namespace pingvox {
 namespace {
 
 constexpr std::ptrdiff_t kLeft = 110, kRight = 126, kTop = 24, kBottom = 96;
-constexpr std::size_t kMostRows = 2000, kHighEnough = 800;
-constexpr std::size_t kLeastWidth = static_cast<std::size_t>(kEchoLegendWidth);
+constexpr std::size_t kMaxRows = 2000, kMinHeight = 800;
+constexpr std::size_t kMinWidth = static_cast<std::size_t>(kEchoLegendWidth);
 constexpr std::ptrdiff_t kMarkWidth = 3;
 
-/// Where beams and ranges are in the picture.
+/// Mapping of beams and ranges to pixels.
 struct Scale {
   std::size_t beams = 0;
   double range_m = 0.0;     ///< of the longest beam
@@ -46,20 +46,20 @@ Scale scale_of(std::span<const Beam> beams, std::size_t target_px) {
     bins = std::max(bins, beam.intensities.size());
   }
   if (bins == 0) return scale;
-  // A whole number of pixels for each bin, as long as all beams are alike.
+  // A whole number of pixels a bin, if all beams have the same bins.
   scale.columns = bins <= target_px ? target_px / bins * bins : target_px;
-  scale.rows = std::min(beams.size(), kMostRows);
-  if (beams.size() > kMostRows) {
-    const std::size_t shared = (beams.size() + kMostRows - 1) / kMostRows;
+  scale.rows = std::min(beams.size(), kMaxRows);
+  if (beams.size() > kMaxRows) {
+    const std::size_t shared = (beams.size() + kMaxRows - 1) / kMaxRows;
     scale.rows = (beams.size() + shared - 1) / shared;
   }
-  scale.row_px = std::clamp<std::size_t>(kHighEnough / scale.rows, 1, 16);
+  scale.row_px = std::clamp<std::size_t>(kMinHeight / scale.rows, 1, 16);
   return scale;
 }
 
 constexpr int kNothing = -1;
 
-/// The loudest intensity of each pixel, kNothing where no beam reaches.
+/// Maximum intensity of each pixel, kNothing where no beam reaches.
 std::vector<int> loudest(std::span<const Beam> beams, const Scale& scale) {
   std::vector<int> pixels(scale.columns * scale.rows, kNothing);
   for (std::size_t b = 0; b < beams.size(); ++b) {
@@ -111,7 +111,7 @@ void draw_axes(Picture& picture, const Scale& scale) {
   draw_label(picture, kGap, below + kTick + kGap, "beam", kTextScale, kInk);
 }
 
-/// A bearing [degrees, counter-clockwise, 0..359] by its side, so that nobody has to know which way it is counted.
+/// A bearing [degrees, counter-clockwise, 0..359] with its side, port or starboard.
 std::string side_text(long degrees) {
   if (degrees == 0) return "ahead";
   if (degrees == 180) return "astern";
@@ -122,11 +122,11 @@ double turned_by(const Beam& from, const Beam& to) {
   return std::remainder(to.bearing_rad - from.bearing_rad, 2.0 * std::numbers::pi);
 }
 
-/// Round bearings at the right, each where the head passes it.
+/// Round bearings at the right, at the beams where the head passes them.
 void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& scale) {
   double turned_rad = 0.0;
   for (std::size_t b = 1; b < beams.size(); ++b) turned_rad += std::abs(turned_by(beams[b - 1], beams[b]));
-  // So many degrees apart that about ten are passed.
+  // A step that gives about ten labels.
   constexpr double kDegree_rad = std::numbers::pi / 180.0;
   constexpr std::array kSteps = {10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0};
   double step_rad = kSteps.back() * kDegree_rad;
@@ -145,13 +145,13 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
     draw_label(picture, x + kTick + kGap, y - 6, side_text(degrees < 0 ? degrees + 360 : degrees), kTextScale, kInk);
     free_from = y + kRoom;
   };
-  // The bearing goes on counting beyond a turn, so that passing 0 is like passing any other.
+  // Unwrapped bearing, so that 0 is no special case.
   double bearing = beams.empty() ? 0.0 : beams[0].bearing_rad / step_rad;
   if (!beams.empty() && std::abs(bearing - std::round(bearing)) < 1e-6) mark(0, std::round(bearing));
   for (std::size_t b = 1; b < beams.size(); ++b) {
     const double before = bearing;
     bearing += turned_by(beams[b - 1], beams[b]) / step_rad;
-    // A beam on a round bearing is where it is passed, whatever rounding says.
+    // Tolerance for a beam exactly on a round bearing.
     constexpr double kNear = 1e-6;
     const bool is_rising = bearing >= before;
     const double passed = is_rising ? std::floor(bearing + kNear) : std::ceil(bearing - kNear);
@@ -184,7 +184,7 @@ Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional
   }
   const std::array<Rgb, 256> greys = greys_of(options);
   const std::size_t height = scale.rows * scale.row_px;
-  Picture picture(std::max(kLeft + scale.columns + kRight, kLeastWidth), kTop + height + kBottom, kPaper);
+  Picture picture(std::max(kLeft + scale.columns + kRight, kMinWidth), kTop + height + kBottom, kPaper);
   const auto row_px = static_cast<std::ptrdiff_t>(scale.row_px);
   const std::vector<int> pixels = loudest(beams, scale);
   for (std::size_t row = 0; row < scale.rows; ++row) {

@@ -21,18 +21,19 @@ namespace {
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 constexpr std::ptrdiff_t kMargin = 24, kNote = 26, kFooterRow = 28, kBorder = 2;
-constexpr std::ptrdiff_t kLeastWidth = 480;  ///< room for scale bar and legend
+constexpr std::ptrdiff_t kMinWidth = 480;  ///< room for scale bar and legend
 constexpr Rgb kCross{230, 120, 0};
 
-/// Which axes of the map frame (0 x, 1 y, 2 z) lie across and up in the picture; up always grows upwards.
-struct Look {
+/// Axes of the map frame (0 x, 1 y, 2 z) that are horizontal and vertical in the picture; vertical always grows
+/// upwards.
+struct ViewAxes {
   std::size_t across, up;
   enum class Across { kGrowsRightwards, kGrowsLeftwards } grows;
   std::string_view note;
 };
 
-Look look_of(MapView view) {
-  using enum Look::Across;
+ViewAxes view_axes(MapView view) {
+  using enum ViewAxes::Across;
   switch (view) {
     case MapView::kRight:
       return {0, 2, kGrowsRightwards, "from the right"};
@@ -52,8 +53,7 @@ WideWord word_along(const WideKey& key, std::size_t axis) {
   return axis == 0 ? key.x : (axis == 1 ? key.y : key.z);
 }
 
-/// The highest belief of each line of cells along the look. Cells are square, (0, 0) is the lowest; kNothing is
-/// unknown.
+/// Maximum log-odds of each column of cells along the view. (0, 0) is the lowest cell; kNothing is unknown.
 struct Columns {
   std::size_t across = 0, up = 0;  ///< how many
   double cell_m = 0.0;
@@ -63,10 +63,10 @@ struct Columns {
   float at(std::size_t a, std::size_t u) const { return belief[u * across + a]; }
 };
 
-/// Cells of one size: those of the next finer grid in fours. A leaf is one entry of the grid of its own size, so a leaf
-/// that covers the whole picture costs as little as a small one.
+/// One level of a pyramid of grids, each cell covering four of the next finer one. A leaf is entered in the grid of its
+/// own size, so large leaves cost no more than small ones.
 struct Grid {
-  WideWord least_across, least_up;  ///< words of the lowest cell
+  WideWord least_across, least_up;  ///< key components of the lowest cell
   std::size_t across, up;
   std::vector<float> belief;
 
@@ -76,12 +76,12 @@ struct Grid {
   }
 };
 
-/// Words shifted by as many bits as a word has would be undefined: at 128 levels the root is such a cell.
-WideWord shifted(WideWord word, int bits) {
+/// `word >> bits`, 0 for a shift by the width of the word (undefined in C++), which happens at the root of 128 levels.
+WideWord shift_right(WideWord word, int bits) {
   return bits < kMaxDepth ? word >> bits : 0;
 }
 
-/// The heights of the layer of cells that holds `z_m`; nullopt outside of the lattice.
+/// Lower and upper height of the layer of cells at `z_m`; nullopt outside of the lattice.
 std::optional<std::pair<double, double>> layer_at(const Lattice& lattice, double z_m) {
   const auto key = lattice.key_of<WideWord>({0.0, 0.0, z_m});
   if (!key) return std::nullopt;
@@ -96,7 +96,7 @@ void for_each_shown(const OccupancyMap& map, const MapPictureOptions& options, V
   if (options.layer_z_m) {
     const auto layer = layer_at(map.lattice(), *options.layer_z_m);
     if (!layer) return;
-    // Half way up, so that no rounding reaches a neighbour.
+    // The middle of the layer, safe from rounding.
     const double middle_m = layer->first + 0.5 * (layer->second - layer->first);
     query.box = Box{{-inf, -inf, middle_m}, {inf, inf, middle_m}};
   } else if (options.min_z_m || options.max_z_m) {
@@ -105,7 +105,7 @@ void for_each_shown(const OccupancyMap& map, const MapPictureOptions& options, V
   for_each_leaf(map, query, visit);
 }
 
-/// The lowest and the highest cell of the shown part.
+/// Lowest and highest cell of the shown part.
 struct Corners {
   WideKey low, high;
 };
@@ -124,8 +124,8 @@ std::optional<Corners> corners_of(const OccupancyMap& map, const MapPictureOptio
   return Corners{low, high};
 }
 
-/// Corners moved out to a box, as far as the lattice reaches.
-Corners widened(const Corners& corners, const Box& box, const Lattice& lattice) {
+/// Expands corners to include a box, within the lattice.
+Corners expand(const Corners& corners, const Box& box, const Lattice& lattice) {
   Corners wide = corners;
   const auto low = lattice.key_of<WideWord>(box.min);
   // The upper face belongs to the cells beyond it.
@@ -136,32 +136,32 @@ Corners widened(const Corners& corners, const Box& box, const Lattice& lattice) 
   return wide;
 }
 
-/// Columns of the shown part, at most `most` of them along each side.
+/// Columns of the shown part, at most `most` along each side.
 Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
-  const Look look = look_of(options.view);
+  const ViewAxes look = view_axes(options.view);
   const Lattice& lattice = map.lattice();
   const int levels = lattice.depth();
   const std::optional<Corners> known = corners_of(map, options);
   if (!known) return {};
-  const auto [low, high] = options.at_least ? widened(*known, *options.at_least, lattice) : *known;
+  const auto [low, high] = options.at_least ? expand(*known, *options.at_least, lattice) : *known;
 
   const WideWord low_across = word_along(low, look.across), low_up = word_along(low, look.up);
   const WideWord high_across = word_along(high, look.across), high_up = word_along(high, look.up);
   int shift = 0;
-  const auto cells = [&](WideWord from, WideWord to) { return shifted(to, shift) - shifted(from, shift); };
+  const auto cells = [&](WideWord from, WideWord to) { return shift_right(to, shift) - shift_right(from, shift); };
   while (cells(low_across, high_across) >= most || cells(low_up, high_up) >= most) ++shift;
 
   std::vector<Grid> grids;
   for (int bits = shift; bits <= levels; ++bits) {
-    const WideWord least_across = shifted(low_across, bits), least_up = shifted(low_up, bits);
-    const auto across = static_cast<std::size_t>(shifted(high_across, bits) - least_across) + 1;
-    const auto up = static_cast<std::size_t>(shifted(high_up, bits) - least_up) + 1;
+    const WideWord least_across = shift_right(low_across, bits), least_up = shift_right(low_up, bits);
+    const auto across = static_cast<std::size_t>(shift_right(high_across, bits) - least_across) + 1;
+    const auto up = static_cast<std::size_t>(shift_right(high_up, bits) - least_up) + 1;
     grids.push_back({least_across, least_up, across, up, std::vector<float>(across * up, kNothing)});
   }
   for_each_shown(map, options, [&](const Leaf& leaf) {
     const int bits = std::max(levels - leaf.depth, shift);
-    grids[static_cast<std::size_t>(bits - shift)].raise(shifted(word_along(leaf.key, look.across), bits),
-                                                        shifted(word_along(leaf.key, look.up), bits),
+    grids[static_cast<std::size_t>(bits - shift)].raise(shift_right(word_along(leaf.key, look.across), bits),
+                                                        shift_right(word_along(leaf.key, look.up), bits),
                                                         leaf.belief.value());
   });
   for (std::size_t g = grids.size() - 1; g > 0; --g) {
@@ -187,7 +187,7 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
           std::move(grids[0].belief)};
 }
 
-/// How far `belief` has come from `from` (0) to `to` (1).
+/// Position of `belief` between `from` (0) and `to` (1).
 double share_of(LogOdds belief, LogOdds from, LogOdds to) {
   const double way = static_cast<double>(to.value()) - static_cast<double>(from.value());
   if (!(std::fabs(way) > 0.0)) return 1.0;
@@ -198,18 +198,18 @@ Rgb colour_of(float belief, const MapOptions& map, const MapColours& colours) {
   if (belief == kNothing) return colours.unknown;
   switch (classify(LogOdds(belief), map.thresholds)) {
     case Occupancy::kOccupied:
-      return mixed(colours.barely_occupied, colours.surely_occupied,
-                   share_of(LogOdds(belief), map.thresholds.upper, map.clamp.highest));
+      return mix(colours.barely_occupied, colours.surely_occupied,
+                 share_of(LogOdds(belief), map.thresholds.upper, map.clamp.highest));
     case Occupancy::kFree:
-      return mixed(colours.barely_free, colours.surely_free,
-                   share_of(LogOdds(belief), map.thresholds.lower, map.clamp.lowest));
+      return mix(colours.barely_free, colours.surely_free,
+                 share_of(LogOdds(belief), map.thresholds.lower, map.clamp.lowest));
     case Occupancy::kUnknown:
       break;
   }
   return colours.undecided;
 }
 
-/// An orange cross with a dark edge, to be seen on light and dark cells alike.
+/// An orange cross with a dark edge, visible on light and dark cells.
 void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
   constexpr std::ptrdiff_t kArm = 11;
   picture.fill(x - kArm - 1, y - 2, 2 * kArm + 3, 5, kPaper);
@@ -220,7 +220,7 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
 
 void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, double metres_per_pixel) {
   constexpr double kLongest = 200.0;  // pixels
-  // A lattice may be larger than doubles can say.
+  // The extent of a deep lattice may overflow a double.
   if (!std::isfinite(metres_per_pixel * kLongest)) return;
   const double length_m = round_length(metres_per_pixel * kLongest);
   const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
@@ -245,7 +245,7 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const M
   }
   for (const Entry& entry : legend) {
     for (std::ptrdiff_t i = 0; i < kSwatch; ++i) {
-      picture.fill(x + i, top, 1, kHigh, mixed(entry.from, entry.to, static_cast<double>(i) / (kSwatch - 1)));
+      picture.fill(x + i, top, 1, kHigh, mix(entry.from, entry.to, static_cast<double>(i) / (kSwatch - 1)));
     }
     draw_frame(picture, {x, top, kSwatch, kHigh}, 1, kInk);
     draw_label(picture, x + kSwatch + 8, top + 2, entry.text, kTextScale, kInk);
@@ -253,12 +253,12 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const M
   }
 }
 
-/// What of the map is shown, for people.
-std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, const Look& look) {
+/// Caption: which part of the map is shown.
+std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, const ViewAxes& look) {
   if (!options.layer_z_m) return std::string(look.note);
   const auto layer = layer_at(map.lattice(), *options.layer_z_m);
   if (!layer) return fmt::format("z = {:.6g} m, outside of the map", *options.layer_z_m);
-  // A corner that should be at 0 may be off by a rounding.
+  // Rounds tiny values to 0.
   const auto tidy = [&](double z_m) { return std::abs(z_m) < 1e-6 * map.lattice().resolution_m() ? 0.0 : z_m; };
   return fmt::format("{}, layer z = {:.6g} to {:.6g} m", look.note, tidy(layer->first), tidy(layer->second));
 }
@@ -291,19 +291,19 @@ std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& 
 
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
-  const Look look = look_of(options.view);
+  const ViewAxes look = view_axes(options.view);
   const Columns columns = columns_of(map, options, options.target_px);
   const std::size_t longer = std::max({columns.across, columns.up, std::size_t{1}});
-  // A little longer than asked for is better than half of it; and a single cell need not fill the picture.
+  // Up to 15% larger than requested rather than half as large; a single cell need not fill the picture.
   const auto zoom = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(options.target_px * 23 / 20 / longer, 1, 64));
   const auto across = static_cast<std::ptrdiff_t>(columns.across), up = static_cast<std::ptrdiff_t>(columns.up);
-  // Something unknown is left around what is known, so that its outline shows.
+  // A margin of unknown around the known part shows its outline.
   const std::ptrdiff_t halo = std::max<std::ptrdiff_t>(zoom, 8);
-  const std::ptrdiff_t width = std::max(across * zoom + 2 * halo, kLeastWidth), height = up * zoom + 2 * halo;
+  const std::ptrdiff_t width = std::max(across * zoom + 2 * halo, kMinWidth), height = up * zoom + 2 * halo;
 
-  // From the corner of the area, in pixels.
+  // Relative to the corner of the area, in pixels.
   const std::ptrdiff_t known_left = (width - across * zoom) / 2;
-  const bool is_mirrored = look.grows == Look::Across::kGrowsLeftwards;
+  const bool is_mirrored = look.grows == ViewAxes::Across::kGrowsLeftwards;
   const double metres_per_pixel = columns.cell_m / static_cast<double>(zoom);
   const auto metres = [&](std::ptrdiff_t pixels) { return static_cast<double>(pixels) * metres_per_pixel; };
   const std::ptrdiff_t known_right = width - known_left - across * zoom;

@@ -16,12 +16,12 @@
 namespace pingvox {
 namespace {
 
-constexpr double kFarthest = 1099511627776.0;  // 2^40: doubles still tell a thousandth of a cell there
+constexpr double kMaxCoordinate = 1099511627776.0;  // 2^40: doubles still resolve a thousandth of a cell
 constexpr Rgb kMarkedCell{120, 168, 214}, kBeyondCell{34, 52, 110}, kSegment{20, 20, 20}, kMissedCell{222, 100, 0};
 
 enum class State { kNone, kMarked, kMissed, kBeyond };
 
-/// The part of the grid that is drawn, one cell more to each side.
+/// The drawn part of the grid, with a margin of one cell.
 struct Grid {
   std::int64_t x, y, nx, ny;
 };
@@ -41,8 +41,7 @@ Grid grid_of(const RayFigure& figure) {
   return {low_x - 1, low_y - 1, high_x - low_x + 3, high_y - low_y + 3};
 }
 
-/// Whether the segment goes through the inside of a cell; touching an edge or a corner is not enough, but an end that
-/// lies on its lower edges is.
+/// Whether the segment crosses the interior of a cell, or ends on one of its lower edges; touching is not enough.
 bool crosses(const RayFigure& figure, std::int64_t x, std::int64_t y) {
   if (std::floor(figure.from.x()) == static_cast<double>(x) && std::floor(figure.from.y()) == static_cast<double>(y)) {
     return true;
@@ -99,7 +98,7 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, const std
 }  // namespace
 
 Result<void> RayFigure::validate() const {
-  const auto is_near = [](double at) { return std::abs(at) < kFarthest; };
+  const auto is_near = [](double at) { return std::abs(at) < kMaxCoordinate; };
   if (!is_near(from.x()) || !is_near(from.y()) || !is_near(to.x()) || !is_near(to.y())) {
     return fail(Error::Code::kBadOption, "ray figure: the segment's ends must be numbers below 2^40");
   }
@@ -109,9 +108,9 @@ Result<void> RayFigure::validate() const {
     }
   }
   const Grid grid = grid_of(*this);
-  if (grid.nx > kMostCells || grid.ny > kMostCells) {
+  if (grid.nx > kMaxCells || grid.ny > kMaxCells) {
     return fail(Error::Code::kBadOption,
-                fmt::format("ray figure: {} x {} cells, {} along an axis are the most", grid.nx, grid.ny, kMostCells));
+                fmt::format("ray figure: {} x {} cells, {} along an axis are the most", grid.nx, grid.ny, kMaxCells));
   }
   return {};
 }
@@ -142,9 +141,9 @@ Picture render_ray(const RayFigure& figure, std::size_t target_px) {
   const Grid grid = grid_of(figure);
   const auto longer = static_cast<std::size_t>(std::max(grid.nx, grid.ny));
   const auto edge = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(target_px / longer, 4, 64));
-  constexpr std::ptrdiff_t kMargin = 24, kLegend = 3 * 26 + 10, kLeastWidth = 18 + 8 + 24 * 12;
+  constexpr std::ptrdiff_t kMargin = 24, kLegend = 3 * 26 + 10, kMinWidth = 18 + 8 + 24 * 12;
   const Area area{kMargin, kMargin, grid.nx * edge, grid.ny * edge};
-  Picture picture(static_cast<std::size_t>(std::max(area.width, kLeastWidth) + 2 * kMargin),
+  Picture picture(static_cast<std::size_t>(std::max(area.width, kMinWidth) + 2 * kMargin),
                   static_cast<std::size_t>(area.bottom() + kMargin + kLegend), kPaper);
 
   const auto count = static_cast<std::size_t>(grid.nx * grid.ny);

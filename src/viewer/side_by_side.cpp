@@ -15,11 +15,11 @@ namespace pingvox {
 namespace {
 
 constexpr std::size_t kEdge = 24, kBetween = 16;
-/// Wider rows are broken if they can be: smaller on a screen, nobody could read the letters.
-constexpr std::size_t kWidest = 2600;
+/// Maximum width of a row: wider ones would be unreadable on a screen.
+constexpr std::size_t kMaxWidth = 2600;
 constexpr std::size_t kLine = static_cast<std::size_t>(kTextScale * kLetterHeight) + 6;
 
-/// The text in lines of at most `width` pixels, broken between words, and within those that are longer than a line.
+/// Wraps text to `width` pixels, between words, or within words longer than a line.
 std::vector<std::string> lines_of(std::string_view text, std::size_t width) {
   const std::size_t most = std::max<std::size_t>(width / static_cast<std::size_t>(kTextScale * kLetterWidth), 1);
   std::vector<std::string> lines;
@@ -36,13 +36,13 @@ std::vector<std::string> lines_of(std::string_view text, std::size_t width) {
   return lines;
 }
 
-/// Room for text below or above what is so wide.
+/// Width of text below or above a picture of this width.
 std::size_t text_width(std::size_t width) {
   return width > 2 * kEdge ? width - 2 * kEdge : 1;
 }
 
 struct Row {
-  std::size_t first, last;            ///< panels, one behind the end
+  std::size_t first, last;            ///< range of panels
   std::size_t width = 0;              ///< of all, with the gaps between
   std::size_t height = 0, lines = 0;  ///< of the highest picture; of the longest caption
 };
@@ -58,7 +58,7 @@ Row row_of(std::span<const Panel> panels, std::size_t first, std::size_t last) {
   return row;
 }
 
-/// Where everything goes when the panels stand in so many rows.
+/// Layout of the panels in a number of rows.
 struct Layout {
   std::vector<Row> rows;
   std::vector<std::string> heading;
@@ -115,7 +115,7 @@ Result<Picture> side_by_side(std::span<const Panel> panels, std::string_view tit
   for (std::size_t count = 1; count <= panels.size(); ++count) {
     Layout layout = layout_of(panels, title, count);
     if (layout.width > Picture::kMaxSide || layout.height > Picture::kMaxSide) continue;
-    const bool is_readable = layout.width <= kWidest;
+    const bool is_readable = layout.width <= kMaxWidth;
     if (!chosen || is_readable) chosen = std::move(layout);
     if (is_readable) break;
   }

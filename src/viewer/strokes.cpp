@@ -12,7 +12,7 @@ Area whole(const Picture& picture) {
   return {0, 0, static_cast<std::ptrdiff_t>(picture.width()), static_cast<std::ptrdiff_t>(picture.height())};
 }
 
-/// Colours what `inside` (a distance to the edge in pixels, positive inside) says, with an edge one pixel soft.
+/// Fills a shape given by `inside` (signed distance to its edge in pixels, positive inside), with antialiasing.
 template <class Inside>
 void paint(Picture& picture, Spot least, Spot most, const Area& within, Rgb colour, double share, Inside inside) {
   const Area all = whole(picture);
@@ -29,12 +29,12 @@ void paint(Picture& picture, Spot least, Spot most, const Area& within, Rgb colo
           std::clamp(inside(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5) + 0.5, 0.0, 1.0) * share;
       if (!(covered > 0.0)) continue;
       const Rgb below = picture.at(static_cast<std::size_t>(x), static_cast<std::size_t>(y));
-      picture.set(x, y, mixed(below, colour, covered));
+      picture.set(x, y, mix(below, colour, covered));
     }
   }
 }
 
-/// Distance to the edge of a convex shape of straight sides around the origin, each a direction and how far out it is.
+/// One side of a convex polygon around the origin: its normal and distance.
 struct Side {
   double x, y, out;
 };

@@ -36,7 +36,7 @@ TEST(BtWords, OfABrickAreThoseOfItsOctants) {
     std::mt19937_64 random(seed);
     const auto [free, occupied] = random_masks(random);
     const EightWords words = words_of(free, occupied);
-    const EightWords are_mixed = mixed(words);
+    const EightWords are_mixed = mixed_words(words);
     unsigned above = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) {
       const unsigned word =
@@ -44,9 +44,9 @@ TEST(BtWords, OfABrickAreThoseOfItsOctants) {
       ASSERT_EQ(words[octant], word);
       ASSERT_EQ(states_of(word).free, byte_of(free, octant));
       ASSERT_EQ(states_of(word).occupied, byte_of(occupied, octant));
-      ASSERT_EQ(are_mixed[octant], is_alike(word) ? 0 : 0xFFFF);
-      above |= (is_alike(word) ? word & 3U : kInner) << (2 * octant);
-      alike += is_alike(word);
+      ASSERT_EQ(are_mixed[octant], is_uniform(word) ? 0 : 0xFFFF);
+      above |= (is_uniform(word) ? word & 3U : kInner) << (2 * octant);
+      alike += is_uniform(word);
     }
     ASSERT_EQ(word_above(words, are_mixed), above);
     all_mixed += above == 0xFFFF;

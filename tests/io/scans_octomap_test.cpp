@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Eigen::Vector3d widened(const octomap::point3d& p) {
+Eigen::Vector3d to_double(const octomap::point3d& p) {
   return Eigen::Vector3f(p.x(), p.y(), p.z()).cast<double>();
 }
 
@@ -32,8 +32,8 @@ std::vector<PointScan> scans_by_octomap(octomap::ScanGraph& graph) {
     const octomap::point3d sensor_origin = pose.inv().transform(node->pose.trans());
     node->scan->transform(pose);
     PointScan scan;
-    scan.origin_m = widened(pose.transform(sensor_origin));
-    for (const octomap::point3d& point : *node->scan) scan.points_m.push_back(widened(point));
+    scan.origin_m = to_double(pose.transform(sensor_origin));
+    for (const octomap::point3d& point : *node->scan) scan.points_m.push_back(to_double(point));
     scans.push_back(std::move(scan));
   }
   return scans;

@@ -45,7 +45,7 @@ BuildOptions options_of(BeamShape shape, Vote vote) {
 OccupancyMap by_stages(const std::vector<Beam>& beams, const BuildOptions& options) {
   OccupancyMap map;
   for (const Sweep& sweep : sweeps_of(beams)) {
-    const auto echoes = detect_echoes(filtered(PolarImage(sweep), options.filter), sweep, options.echo);
+    const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), options.filter), sweep, options.echo);
     ScanUpdate scan(map.lattice(), options.miss);
     for (std::size_t i = 0; i < echoes.size(); ++i) {
       trace_beam(options.body_from_sensor, sweep.beams[i], echoes[i], options.model, scan);

@@ -79,7 +79,7 @@ TEST(PaperDetector, OfTheFourThresholdsSeventyIsBestWhereItsDifferencesAreAddedU
     for (const int other : {20, 40, 140}) EXPECT_GT(right(70), right(other)) << other;
     std::size_t found = 0;
     for (const Sweep& sweep : log.sweeps) {
-      const PolarImage image = filtered(PolarImage(sweep), {});
+      const PolarImage image = apply_filter(PolarImage(sweep), {});
       for (std::size_t n = 0; n < image.rows(); ++n) {
         found += paper_edge(image.row(n).first(image.bins_in(n)), 60, 70) ? 1U : 0U;
       }

@@ -49,8 +49,8 @@ TEST(Scenes, TheirWaysHitNothingAndStayInTheWater) {
       const Route* route = scene.route(motion);
       ASSERT_EQ(route == nullptr, motion == Motion::kStill);
       if (!route && name == "mesh") continue;
-      const Trajectory way =
-          route ? travelled(*route, length_m(*route) / 0.5, {.speed_m_s = 0.5}) : Trajectory::still(Pose::Identity());
+      const Trajectory way = route ? follow_route(*route, length_m(*route) / 0.5, {.speed_m_s = 0.5})
+                                   : Trajectory::still(Pose::Identity());
       for (std::size_t n = 0; n < way.poses().size(); ++n) {
         const Vector3d at = way.poses()[n].map_from_body.translation();
         ASSERT_TRUE(scene.water_m.contains(at)) << at.transpose();

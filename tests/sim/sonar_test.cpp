@@ -254,7 +254,7 @@ TEST(SonarSimulator, TurnsOnWhileTheVehicleMoves) {
   SonarOptions options = noiseless();
   options.beams_per_turn = 50;
   options.beams_per_s = 50.0;
-  const auto all = heard_in(world, travelled(route, 5.0, {.speed_m_s = 0.5}), options, 5);
+  const auto all = heard_in(world, follow_route(route, 5.0, {.speed_m_s = 0.5}), options, 5);
   ASSERT_EQ(all.size(), 250U);
   for (std::size_t turn = 0; turn < 5; ++turn) {
     const Heard& ahead = all[turn * 50];
@@ -362,7 +362,7 @@ TEST(SonarSimulator, GivesTheDefaultDetectorTheTruthOfATank) {
     ASSERT_TRUE(recording);
     for (const Sweep& sweep : sweeps_of(*recording)) {
       EXPECT_EQ(sweep.extent, Sweep::Extent::kTurn);
-      const auto echoes = detect_echoes(filtered(PolarImage(sweep), {}), sweep, {});
+      const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), {}), sweep, {});
       for (std::size_t n = 0; n < echoes.size(); ++n) {
         ++beams;
         if (!echoes[n]) continue;

@@ -16,7 +16,7 @@ double yaw_of(const Pose& pose) {
 
 TEST(Travelled, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
   const Route route{{{0.0, 0.0, -1.0}, {4.0, 0.0, -1.0}, {4.0, 4.0, -2.0}}, Route::End::kStays};
-  const Trajectory way = travelled(route, 60.0, {.speed_m_s = 0.5, .pose_every_s = 0.1});
+  const Trajectory way = follow_route(route, 60.0, {.speed_m_s = 0.5, .pose_every_s = 0.1});
   EXPECT_EQ(way.poses().front().time_s, 0.0);
   EXPECT_GE(way.poses().back().time_s, 60.0);
   for (const Vector3d& waypoint : route.waypoints_m) {
@@ -45,7 +45,7 @@ TEST(Travelled, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
 TEST(Travelled, GoesRoundAndRound) {
   const Route route{{{0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, {4.0, 4.0, 0.0}, {0.0, 4.0, 0.0}}, Route::End::kStarts};
   const double round_s = length_m(route) / 0.5;
-  const Trajectory way = travelled(route, 3.0 * round_s, {.speed_m_s = 0.5});
+  const Trajectory way = follow_route(route, 3.0 * round_s, {.speed_m_s = 0.5});
   for (const double time : {1.0, 7.0, 20.0}) {
     const Pose first = *way.at(time);
     const Pose later = *way.at(time + 2.0 * round_s);
@@ -55,8 +55,8 @@ TEST(Travelled, GoesRoundAndRound) {
 
 TEST(Reported, IsTheTruthWithoutDrift) {
   const Route route{{{0.0, 0.0, 0.0}, {4.0, 1.0, 0.0}, {4.0, 4.0, -1.0}}, Route::End::kStays};
-  const Trajectory truth = travelled(route, 40.0, {});
-  const Trajectory told = reported(truth, {});
+  const Trajectory truth = follow_route(route, 40.0, {});
+  const Trajectory told = add_drift(truth, {});
   ASSERT_EQ(told.poses().size(), truth.poses().size());
   for (std::size_t n = 0; n < truth.poses().size(); ++n) {
     EXPECT_TRUE(told.poses()[n].map_from_body.isApprox(truth.poses()[n].map_from_body, 1e-12)) << n;
@@ -72,7 +72,7 @@ TEST(Reported, StraysAsFarAsOrdered) {
   constexpr int kWalks = 400;
   for (int seed = 0; seed < kWalks; ++seed) {
     const Trajectory told =
-        reported(truth, {.seed = static_cast<std::uint64_t>(seed), .position_m = 0.5, .heading_rad = 0.1});
+        add_drift(truth, {.seed = static_cast<std::uint64_t>(seed), .position_m = 0.5, .heading_rad = 0.1});
     EXPECT_TRUE(told.poses().front().map_from_body.isApprox(truth.poses().front().map_from_body)) << "it starts true";
     const Vector3d off = told.poses().back().map_from_body.translation() - Vector3d(1.0, 2.0, 3.0);
     const double heading = yaw_of(told.poses().back().map_from_body);
@@ -91,8 +91,8 @@ TEST(Reported, StraysAsFarAsOrdered) {
 
 TEST(Reported, AWrongHeadingTurnsTheWayOn) {
   const Route route{{{0.0, 0.0, 0.0}, {30.0, 0.0, 0.0}}, Route::End::kStays};
-  const Trajectory truth = travelled(route, 60.0, {.speed_m_s = 0.5});
-  const Trajectory told = reported(truth, {.seed = 3, .heading_rad = 0.3});
+  const Trajectory truth = follow_route(route, 60.0, {.speed_m_s = 0.5});
+  const Trajectory told = add_drift(truth, {.seed = 3, .heading_rad = 0.3});
   const Pose end = told.poses().back().map_from_body;
   EXPECT_GT(std::abs(end.translation().y()), 0.2);
   // Each step is as long as the true one.

@@ -18,10 +18,10 @@ TEST(WrappedBearing, NeverReturnsAWholeTurn) {
   for (const double angle :
        {-1e-300, -1e-17, -1e-9, kTurn, -kTurn, 1e15, -1e15, std::nextafter(kTurn, 0.0), 3 * kTurn}) {
     SCOPED_TRACE(angle);
-    EXPECT_GE(wrapped_bearing(angle), 0.0);
-    EXPECT_LT(wrapped_bearing(angle), kTurn);
+    EXPECT_GE(wrap_bearing(angle), 0.0);
+    EXPECT_LT(wrap_bearing(angle), kTurn);
   }
-  EXPECT_DOUBLE_EQ(wrapped_bearing(-std::numbers::pi / 2), 1.5 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(wrap_bearing(-std::numbers::pi / 2), 1.5 * std::numbers::pi);
 }
 
 TEST(ValidateBeam, RefusesWhatItsCommentsRuleOut) {

@@ -77,9 +77,9 @@ TEST(BlankingRange, IsNoneWithoutRingingAndUsualInAFewBeams) {
   const Sweep silent = ringing_turn(random, 0, 0);
   EXPECT_EQ(blanking_range_m(PolarImage(silent), silent), 0.0);
   const Sweep few = ringing_turn(random, 20, 100, 31);
-  EXPECT_EQ(blanking_range_m(PolarImage(few), few), EchoOptions::kUsualBlanking_m);
+  EXPECT_EQ(blanking_range_m(PolarImage(few), few), EchoOptions::kDefaultBlanking_m);
   const Sweep none;
-  EXPECT_EQ(blanking_range_m(PolarImage(none), none), EchoOptions::kUsualBlanking_m);
+  EXPECT_EQ(blanking_range_m(PolarImage(none), none), EchoOptions::kDefaultBlanking_m);
 }
 
 TEST(BlankingRange, IsAtMostHalfOfTheRange) {
@@ -99,7 +99,7 @@ TEST(BlankingRange, FoundInTheTankRecordingEndsBetweenTheRingingAndTheWalls) {
     SCOPED_TRACE(turn);
     const auto first = beams.begin() + static_cast<std::ptrdiff_t>(200 * turn);
     const Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = {first, first + 200}};
-    const double found_m = blanking_range_m(filtered(PolarImage(sweep), {}), sweep);
+    const double found_m = blanking_range_m(apply_filter(PolarImage(sweep), {}), sweep);
     EXPECT_GT(found_m, 0.3);
     EXPECT_LT(found_m, 1.2);
   }

@@ -22,7 +22,7 @@ Sweep turn_of(std::size_t beams, std::size_t bins, Intensity intensity) {
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(beams)};
   for (std::size_t n = 0; n < beams; ++n) {
     // Clockwise, as heads turn: bearings fall, and jump once.
-    const double bearing = wrapped_bearing(-2.0 * kPi * static_cast<double>(n) / static_cast<double>(beams));
+    const double bearing = wrap_bearing(-2.0 * kPi * static_cast<double>(n) / static_cast<double>(beams));
     sweep.beams[n] = {.time_s = 0.0, .bearing_rad = bearing, .bin_length_m = 0.1, .intensities = {}};
     for (std::size_t i = 0; i < bins; ++i) sweep.beams[n].intensities.push_back(intensity(bearing, i));
   }
@@ -108,7 +108,7 @@ TEST(CartesianImage, OfATurnedSweepIsTheTurnedImage) {
   }
   const CartesianOptions options{.size_px = 100, .beam_width_rad = 0.5};
   const CartesianImage image = cartesian_image(PolarImage(sweep), sweep, options);
-  for (Beam& beam : sweep.beams) beam.bearing_rad = wrapped_bearing(beam.bearing_rad + kPi / 2.0);
+  for (Beam& beam : sweep.beams) beam.bearing_rad = wrap_bearing(beam.bearing_rad + kPi / 2.0);
   const CartesianImage turned = cartesian_image(PolarImage(sweep), sweep, options);
   for (std::size_t row = 0; row < 100; ++row) {
     for (std::size_t column = 0; column < 100; ++column) {

@@ -23,7 +23,7 @@ std::vector<int> contrasts_in(const Sweep& sweep) {
   const PolarImage image(sweep);
   std::vector<BinWindow> windows;
   for (std::size_t n = 0; n < image.rows(); ++n) windows.push_back({0, image.bins_in(n)});
-  return usual_contrasts(image, windows);
+  return contrasts_by_gain(image, windows);
 }
 
 // Kills a rise that is measured over a bin more or less.

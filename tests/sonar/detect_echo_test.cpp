@@ -50,7 +50,7 @@ TEST(Rise, TakesTheRangeFromTheBeamsOwnBins) {
   EchoOptions options;
   options.threshold = 70;
   options.min_range_m = 0.0;
-  const auto echoes = detect_echoes(filtered(PolarImage(sweep), {}), sweep, options);
+  const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), {}), sweep, options);
   ASSERT_TRUE(echoes[3]);
   EXPECT_NEAR(echoes[3]->range_m, 0.1 * (29 + 2.5 - 1.0), 0.03);
 }

@@ -327,13 +327,13 @@ TEST(UsualContrast, FollowsTheGainAndSeesNoEchoInNoise) {
       Sweep noise = wall;
       for (Beam& beam : wall.beams) beam.intensities = noisy_wall(random, 200, 120.0, height);
       for (Beam& beam : noise.beams) beam.intensities = noisy_wall(random, 200, 120.0, 0.0);
-      const FilterOptions filter = usual_filter(detector);
-      for (const auto& echo : detect_echoes(filtered(PolarImage(wall), filter), wall, options_of(detector))) {
+      const FilterOptions filter = default_filter(detector);
+      for (const auto& echo : detect_echoes(apply_filter(PolarImage(wall), filter), wall, options_of(detector))) {
         ASSERT_TRUE(echo);
         EXPECT_NEAR(echo->range_m, 11.95, 0.2);  // the rise, not the crest one bin behind it
         ++walls;
       }
-      for (const auto& echo : detect_echoes(filtered(PolarImage(noise), filter), noise, options_of(detector))) {
+      for (const auto& echo : detect_echoes(apply_filter(PolarImage(noise), filter), noise, options_of(detector))) {
         EXPECT_FALSE(echo);
         ++noises;
       }
@@ -348,7 +348,8 @@ TEST(UsualContrast, IsThePapersThresholdOnItsRecording) {
   if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
   beams.resize(200);
   const Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::move(beams)};
-  std::vector<int> contrasts = usual_contrasts(filtered(PolarImage(sweep), {}), std::vector<BinWindow>(200, {60, 399}));
+  std::vector<int> contrasts =
+      contrasts_by_gain(apply_filter(PolarImage(sweep), {}), std::vector<BinWindow>(200, {60, 399}));
   std::ranges::sort(contrasts);
   EXPECT_NEAR(contrasts[100], 70, 5);
 }

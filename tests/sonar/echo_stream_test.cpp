@@ -27,7 +27,7 @@ std::vector<Way> all_ways() {
     for (const Detector detector :
          {Detector::kRise, Detector::kLevel, Detector::kMax, Detector::kCanny, Detector::kCfar}) {
       for (const std::optional<int> threshold : {std::optional<int>{}, std::optional<int>{60}}) {
-        Way way{.filter = usual_filter(detector), .echo = {}};
+        Way way{.filter = default_filter(detector), .echo = {}};
         way.filter.filter = filter;
         way.echo.detector = detector;
         way.echo.threshold = threshold;
@@ -58,8 +58,8 @@ Count check(const std::vector<Beam>& beams, const Way& way) {
   EchoOptions anywhere = way.echo;
   anywhere.max_range_m = std::numeric_limits<double>::infinity();
   for (const Sweep& sweep : sweeps_of(beams)) {
-    const auto echoes = detect_echoes(filtered(PolarImage(sweep), way.filter), sweep, way.echo);
-    const auto all = detect_echoes(filtered(PolarImage(sweep), way.filter), sweep, anywhere);
+    const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), way.filter), sweep, way.echo);
+    const auto all = detect_echoes(apply_filter(PolarImage(sweep), way.filter), sweep, anywhere);
     for (std::size_t n = 0; n < echoes.size(); ++n) {
       wanted[sweep.beams[n].time_s] = echoes[n];
       const bool is_beyond = !echoes[n] && all[n] && all[n]->range_m > way.echo.max_range_m;
@@ -109,7 +109,7 @@ std::vector<Beam> random_beams(std::mt19937_64& random) {
     const std::size_t to_and_fro = n % (2 * width) < width ? n % (2 * width) : 2 * width - 1 - n % (2 * width);
     const double turn = static_cast<double>(sector ? to_and_fro : n) / static_cast<double>(per_turn);
     Beam beam{.time_s = static_cast<double>(n),
-              .bearing_rad = wrapped_bearing(-2.0 * std::numbers::pi * turn),
+              .bearing_rad = wrap_bearing(-2.0 * std::numbers::pi * turn),
               .bin_length_m = 0.05,
               .intensities = {}};
     const std::size_t bins = random() % 8 == 0 ? random() % 60 : 58 + random() % 3;
@@ -172,11 +172,11 @@ TEST(EchoStream, ReturnsABeamAfterItsDelayAndTheEndsWithTheSweep) {
   EXPECT_EQ(stream.delay_beams(), 4U);
   EXPECT_EQ(EchoStream({.filter = Filter::kNone}, way.echo).delay_beams(), 0U);
   EXPECT_EQ(EchoStream({}, {}).delay_beams(), 20U);
-  EXPECT_EQ(EchoStream(usual_filter(Detector::kCanny), {.detector = Detector::kCanny}).delay_beams(), 36U);
+  EXPECT_EQ(EchoStream(default_filter(Detector::kCanny), {.detector = Detector::kCanny}).delay_beams(), 36U);
   for (std::size_t n = 0; n <= 100; ++n) {
     SCOPED_TRACE(n);
     const Beam beam{.time_s = static_cast<double>(n),
-                    .bearing_rad = wrapped_bearing(0.02 * std::numbers::pi * static_cast<double>(n)),
+                    .bearing_rad = wrap_bearing(0.02 * std::numbers::pi * static_cast<double>(n)),
                     .bin_length_m = 0.1,
                     .intensities = std::vector<std::uint8_t>(20)};
     const auto heard = stream.add(beam);

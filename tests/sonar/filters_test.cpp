@@ -76,7 +76,7 @@ TEST(Filtered, IsWhatItsNameSaysAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel
                                 .kernel = static_cast<int>(1 + 2 * (random() % 8)),
                                 .sigma = 0.5 + static_cast<double>(random() % 30) / 10.0};
     SCOPED_TRACE(testing::Message() << rows << " x " << columns << ", " << options.kernel << ", " << options.sigma);
-    const PolarImage out = filtered(image, options);
+    const PolarImage out = apply_filter(image, options);
     ASSERT_EQ(out.rows(), rows);
     ASSERT_EQ(out.columns(), columns);
     EXPECT_EQ(out.wrap(), image.wrap());
@@ -98,9 +98,9 @@ TEST(Filtered, TakesTheLargestKernelOnTheSmallestImages) {
       PolarImage image({1}, 1, wrap);
       image.row(0)[0] = 200;
       const FilterOptions options{.filter = filter, .kernel = 99, .sigma = 30.0};
-      EXPECT_THAT(filtered(image, options).row(0), Each(200));
-      EXPECT_EQ(filtered(PolarImage({}, 0, wrap), options).rows(), 0U);
-      EXPECT_EQ(filtered(PolarImage({0, 0}, 0, wrap), options).rows(), 2U);
+      EXPECT_THAT(apply_filter(image, options).row(0), Each(200));
+      EXPECT_EQ(apply_filter(PolarImage({}, 0, wrap), options).rows(), 0U);
+      EXPECT_EQ(apply_filter(PolarImage({0, 0}, 0, wrap), options).rows(), 2U);
     }
   }
 }
@@ -108,7 +108,7 @@ TEST(Filtered, TakesTheLargestKernelOnTheSmallestImages) {
 TEST(Filtered, LeavesTheImageAloneWithoutAFilter) {
   std::mt19937_64 random(7);
   const PolarImage image = random_image(random, 5, 9, Wrap::kAround);
-  const PolarImage out = filtered(image, {.filter = Filter::kNone, .kernel = 5, .sigma = 1.0});
+  const PolarImage out = apply_filter(image, {.filter = Filter::kNone, .kernel = 5, .sigma = 1.0});
   for (std::size_t n = 0; n < image.rows(); ++n) EXPECT_TRUE(std::ranges::equal(out.row(n), image.row(n)));
 }
 
@@ -116,7 +116,7 @@ TEST(Filtered, DoesNotDarkenTheEndsOfShortBeamsNorTheirNeighbours) {
   PolarImage image({8, 3, 0, 8, 5, 5, 5, 5, 5, 5, 5}, 8, Wrap::kAround);
   for (std::size_t n = 0; n < image.rows(); ++n) std::ranges::fill(image.row(n).first(image.bins_in(n)), 100);
   for (const Filter filter : kFilters) {
-    const PolarImage out = filtered(image, {.filter = filter, .kernel = 5, .sigma = 1.0});
+    const PolarImage out = apply_filter(image, {.filter = filter, .kernel = 5, .sigma = 1.0});
     for (std::size_t n = 0; n < out.rows(); ++n) {
       SCOPED_TRACE(n);
       EXPECT_THAT(out.row(n).first(out.bins_in(n)), Each(100));
@@ -139,9 +139,9 @@ TEST(Filtered, DependsOnNoBeamBeyondItsReach) {
     for (std::size_t n = 0; n < image.rows(); ++n) {
       for (std::uint8_t& pixel : image.row(n).first(bins[n])) pixel = static_cast<std::uint8_t>(random() % 256);
     }
-    const PolarImage before = filtered(image, options);
+    const PolarImage before = apply_filter(image, options);
     for (std::uint8_t& pixel : image.row(15)) pixel = static_cast<std::uint8_t>(255 - pixel);
-    const PolarImage after = filtered(image, options);
+    const PolarImage after = apply_filter(image, options);
     for (std::size_t n = 0; n < image.rows(); ++n) {
       const bool same = std::ranges::equal(before.row(n), after.row(n));
       changed += same ? 0U : 1U;

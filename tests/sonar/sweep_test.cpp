@@ -19,7 +19,7 @@ using testing::IsEmpty;
 
 Beam beam_at(double degrees, std::size_t bins = 3, double bin_length_m = 0.0125) {
   return {.time_s = 0.0,
-          .bearing_rad = wrapped_bearing(degrees * std::numbers::pi / 180.0),
+          .bearing_rad = wrap_bearing(degrees * std::numbers::pi / 180.0),
           .bin_length_m = bin_length_m,
           .intensities = std::vector<std::uint8_t>(bins)};
 }

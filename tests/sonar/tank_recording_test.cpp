@@ -69,7 +69,7 @@ TEST_F(OnTheTankRecording, TheDefaultsFindTheWallsAndTheFloater) {
   std::size_t on_wall = 0;
   std::map<long, std::vector<double>> ranges_at;
   for (const Sweep& sweep : sweeps_) {
-    const auto echoes = detect_echoes(filtered(PolarImage(sweep), {}), sweep, {});
+    const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), {}), sweep, {});
     for (std::size_t n = 0; n < echoes.size(); ++n) {
       ++beams;
       const double clockwise = 2.0 * std::numbers::pi - sweep.beams[n].bearing_rad;

@@ -35,8 +35,7 @@ inline void expect_same(const std::vector<Beam>& beams, const std::vector<Record
   for (std::size_t i = 0; i < beams.size(); ++i) {
     SCOPED_TRACE(i);
     EXPECT_EQ(beams[i].time_s, static_cast<double>(records[i].time));
-    EXPECT_EQ(beams[i].bearing_rad,
-              wrapped_bearing(-static_cast<double>(records[i].angle) * (std::numbers::pi / 180.0)));
+    EXPECT_EQ(beams[i].bearing_rad, wrap_bearing(-static_cast<double>(records[i].angle) * (std::numbers::pi / 180.0)));
     EXPECT_EQ(beams[i].bin_length_m, static_cast<double>(records[i].step_dist));
     EXPECT_EQ(beams[i].intensities, records[i].intensities);
   }

@@ -87,7 +87,7 @@ class TankRecording {
       }
       const double clockwise_deg = number<float>(fields[1].begin);
       Beam beam{.time_s = number<float>(fields[0].begin),
-                .bearing_rad = wrapped_bearing(-clockwise_deg * std::numbers::pi / 180.0),
+                .bearing_rad = wrap_bearing(-clockwise_deg * std::numbers::pi / 180.0),
                 .bin_length_m = number<float>(fields[2].begin),
                 .intensities = {}};
       for (const char c : bytes_.substr(fields[3].begin, fields[3].bytes)) {

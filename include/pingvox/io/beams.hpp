@@ -13,27 +13,28 @@
 
 namespace pingvox {
 
-/// What to do about damage in a log.
+/// Handling of damage in a log.
 enum class Damage {
-  kSkip,  ///< leave the record out and count it
+  kSkip,  ///< skip the record and count it
   kFail,  ///< the first one is an error (--strict)
 };
 
-/// Any log that holds beams, told by content. kUnsupported when it holds none, kCorrupt when its frame is broken. Logs
-/// of devices are read as the beams are asked for, in memory that does not grow with them; the others as a whole.
+/// Opens a log of beams; its content tells the format. Device logs are read as streams in constant memory, others as a
+/// whole.
+/// @return kUnsupported when it holds no beams, kCorrupt when its header is damaged
 Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage = Damage::kSkip);
-/// The same of bytes in memory.
+/// The same for bytes in memory.
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = Damage::kSkip);
 
-/// Any log that holds point scans, told by content, or a cloud of points (PLY, PCD, XYZ), which is one scan.
-/// @param cloud_origin_m  from where the points of a cloud were seen (map frame); nullopt: what a PCD's VIEWPOINT says,
-///                        else 0, 0, 0. Logs know the places of their scans, and nothing happens to those
+/// Opens a log of point scans, or a point cloud (PLY, PCD, XYZ) as one scan; its content tells the format.
+/// @param cloud_origin_m  origin of a cloud's rays (map frame); nullopt: a PCD's VIEWPOINT, else 0, 0, 0. Ignored for
+/// logs,
+///                        which hold the origins of their scans
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip,
                                                const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);
 
-/// Writes all beams of a source as CSV (docs/formats.md). Numbers are written so that reading gives the same beams to
-/// the last bit.
-/// @return how many there were; the source's error; kIo when `out` fails
+/// Writes all beams of a source as CSV (docs/formats.md). Reading them back gives exactly the same beams.
+/// @return the number of beams; the source's error; kIo when `out` fails
 Result<std::size_t> write_csv(BeamSource& beams, std::ostream& out);
 
 }  // namespace pingvox

@@ -12,16 +12,16 @@
 
 namespace pingvox {
 
-/// The bytes of a file, a pipe or a piece of memory, read as they are needed. Its beginning is always at hand, since it
-/// tells the format.
+/// The bytes of a file, a pipe or memory, read as they are needed. The beginning stays in memory, because it tells the
+/// format.
 class ByteStream {
  public:
   static constexpr std::size_t kBeginning = std::size_t{1} << 16;
 
   /// Bytes in memory.
-  ByteStream(FileBytes file);  // NOLINT(google-explicit-constructor): whoever takes a stream takes a file's bytes too
+  ByteStream(FileBytes file);  // NOLINT(google-explicit-constructor): functions of streams accept bytes in memory
   /// @param path  "-" is standard input
-  /// @return kIo when it cannot be opened or read: not there, no right, a directory; the message names it
+  /// @return kIo when it cannot be opened or read (not found, no permission, a directory); the message names it
   static Result<ByteStream> open(const std::string& path);
 
   ByteStream(ByteStream&&) noexcept;
@@ -29,21 +29,21 @@ class ByteStream {
   ~ByteStream();
 
   const std::string& name() const { return held_.name; }
-  /// The first bytes, at most kBeginning, whatever has been read since.
+  /// The first bytes, at most kBeginning, also after reading on.
   std::span<const std::uint8_t> beginning() const;
 
-  /// Puts the next bytes at the front of `to`.
-  /// @return how many, 0 only at the end; kIo when the operating system refuses
+  /// Copies the next bytes to the front of `to`.
+  /// @return their number, 0 only at the end; kIo when the operating system reports an error
   /// REQUIRES a `to` that is not empty
   Result<std::size_t> read(std::span<std::uint8_t> to);
-  /// How much was read so far, 0..1; nullopt: nobody knows how much there is.
+  /// Fraction read so far, 0..1; nullopt if the size is unknown.
   std::optional<double> share_read() const;
 
-  /// Reads all there is into memory. REQUIRES that read() was not called.
-  Result<void> hold_all();
-  /// What is in memory: the beginning at least, all of it after hold_all().
+  /// Reads everything into memory. REQUIRES that read() was not called.
+  Result<void> load_all();
+  /// The bytes in memory: at least the beginning, everything after load_all().
   const FileBytes& held() const { return held_; }
-  /// All of it, as hold_all. REQUIRES the same.
+  /// Everything, as load_all(). REQUIRES the same.
   static Result<FileBytes> whole(ByteStream stream);
 
  private:

@@ -10,15 +10,14 @@
 
 namespace pingvox {
 
-/// Reads a whole file, or standard input for "-". kIo: not there, no right, a directory; the message names it.
+/// Reads a whole file, or standard input for "-". kIo: not found, no permission, a directory; the message names it.
 Result<FileBytes> read_file(const std::string& path);
 
-/// Writes a file beside its name and renames it into place when it is complete and on disk: whatever goes wrong, the
-/// old file stays as it was and nothing is left beside it. What a killed process left there is removed when the same
-/// file is written again; processes that write it at once do not disturb each other: the last one's stays. "-" writes
-/// to standard output.
+/// Writes a temporary file and renames it into place when it is complete and on disk: on failure the old file stays and
+/// the temporary one is removed. Those of killed processes are removed when the same file is written again. Several
+/// processes may write it at once: the last one wins. "-" writes to standard output.
 /// @param write  writes the content; its error is passed on
-/// @return kIo when the operating system refuses (no right, disk full)
+/// @return kIo when the operating system reports an error (no permission, disk full)
 Result<void> write_file(const std::string& path, const std::function<Result<void>(std::ostream&)>& write);
 
 }  // namespace pingvox

@@ -8,20 +8,20 @@
 
 namespace pingvox {
 
-/// The kinds of files that we know.
+/// Known file formats.
 enum class Format {
   kMat,            ///< MATLAB 5: beams
   kCsv,            ///< beams as text (docs/formats.md)
   kPingViewer,     ///< Ping Viewer's log of a Ping360: beams
-  kSeanetCapture,  ///< what a SeaNet head sent over its serial line: beams
+  kSeanetCapture,  ///< capture of the serial line of a SeaNet head: beams
   kUdpCapture,     ///< the same in UDP packets as hexadecimal text: beams
-  kV4log,          ///< the log of Tritech's own program: beams
-  kDumplog,        ///< the text that SeanetDumpLog makes of it: beams
+  kV4log,          ///< log of Tritech's program: beams
+  kDumplog,        ///< text that SeanetDumpLog makes of a V4LOG: beams
   kScanGraph,      ///< OctoMap's binary scan graph: point scans
-  kScanLog,        ///< OctoMap's text form of it, NODE x y z roll pitch yaw: point scans
+  kScanLog,        ///< OctoMap's scan graph as text, NODE x y z roll pitch yaw: point scans
   kBt,             ///< OctoMap's binary tree: occupied or free
   kOt,             ///< OctoMap's tree with log-odds
-  kPvx,            ///< our own map: any depth, log-odds, how it was made (docs/formats.md)
+  kPvx,            ///< pingvox map: any depth, log-odds, options (docs/formats.md)
   kTum,            ///< a trajectory
   kTlog,           ///< MAVLink telemetry log of a ground station: navigation
   kDataflash,      ///< log that an ArduPilot autopilot keeps: navigation
@@ -33,7 +33,7 @@ enum class Format {
   kOff,            ///< a mesh, read only
   kStl,            ///< a mesh, read only
   kGrid,           ///< a slice of a map for ROS's map_server, written only: a picture (PGM) and a YAML file beside it
-  kAsc,            ///< heights over a grid, ESRI's ASCII form, written only
+  kAsc,            ///< heights as an ESRI ASCII grid, written only
   kPng,            ///< pictures, written only
 };
 
@@ -43,11 +43,10 @@ FormatKind kind_of(Format format);
 /// Short lower-case name, as in "csv".
 std::string_view name_of(Format format);
 
-/// Told by content, not by name (in which order, says docs/formats.md). nullopt: none of those that we read.
+/// Format by content, not by name (docs/formats.md gives the order). nullopt: unknown file.
 std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
 
-/// The same for logs that are read as a stream, by their beginning (ByteStream::beginning) alone. nullopt: another
-/// format, or none.
+/// The same for logs that are read as streams, by ByteStream::beginning() alone. nullopt: another format, or unknown.
 std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning);
 
 /// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .tum .pgm .yaml .asc .png); nullopt:

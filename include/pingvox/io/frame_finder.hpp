@@ -11,45 +11,45 @@
 
 namespace pingvox {
 
-/// What stands at some place of a stream of frames.
+/// Result of checking for a frame at some position of a stream.
 struct FrameCheck {
   enum class Verdict {
-    kFrame,       ///< a frame of `size` bytes, with everything right that can be checked
-    kIncomplete,  ///< what may become one when more bytes come
-    kBroken,      ///< what says that it is a frame of `size` bytes, and is not right
-    kNothing,     ///< `size` bytes where no frame begins
+    kFrame,       ///< a valid frame of `size` bytes
+    kIncomplete,  ///< possibly a frame; needs more bytes
+    kBroken,      ///< claims to be a frame of `size` bytes but is damaged
+    kNothing,     ///< no frame begins within `size` bytes
   };
   Verdict verdict = Verdict::kNothing;
-  std::size_t size = 0;       ///< > 0, but for kIncomplete
-  std::string_view why = {};  ///< of kBroken: what is wrong, as in "wrong checksum"
+  std::size_t size = 0;       ///< > 0, except for kIncomplete
+  std::string_view why = {};  ///< kBroken: reason, as in "wrong checksum"
 };
 
-/// Looks at the bytes from some place on, at least one.
+/// Checks for a frame at the start of `bytes`. REQUIRES at least one byte.
 using CheckFrame = FrameCheck (*)(std::span<const std::uint8_t> bytes);
 
-/// Finds the frames of a serial protocol in bytes that come in pieces of any size, from a log or from a device. Behind
-/// anything that is no right frame it looks again one byte farther on, not behind the end that a damaged frame claims,
-/// so that no right frame is lost. It holds one frame and what was pushed last.
+/// Finds the frames of a serial protocol in a stream pushed in pieces of any size. After a damaged frame it continues
+/// one byte further, not at the end that the frame claims, so that no valid frame is lost. Holds at most one frame and
+/// the last push.
 class FrameFinder {
  public:
   explicit FrameFinder(CheckFrame check) : check_(check) {}
 
   struct Frame {
-    std::uint64_t at;                     ///< where in the stream it begins, in bytes from the first one pushed
-    std::span<const std::uint8_t> bytes;  ///< all of it; gone with the next push()
+    std::uint64_t at;                     ///< position in the stream [bytes]
+    std::span<const std::uint8_t> bytes;  ///< valid until the next push()
     std::uint64_t end() const { return at + bytes.size(); }
   };
 
-  /// More of the stream.
+  /// Appends bytes of the stream.
   void push(std::span<const std::uint8_t> bytes);
-  /// No more will come: what may have become a frame has not.
+  /// Ends the stream: an incomplete frame is now damaged.
   void end() { ended_ = true; }
-  /// The next frame; nullopt: none until more is pushed.
+  /// The next frame; nullopt: needs more bytes.
   std::optional<Frame> next();
 
-  /// What was no frame, by kind, with places in the stream: broken frames, and bytes between frames.
+  /// Damaged frames and bytes between frames, by kind, with positions in the stream.
   const std::vector<DamageKind>& damage() const { return damage_; }
-  /// All that is before this place has been looked at.
+  /// Position in the stream up to which bytes were processed.
   std::uint64_t position() const { return position_; }
 
   static constexpr std::string_view kBetween = "bytes between frames";
@@ -60,15 +60,15 @@ class FrameFinder {
 
   CheckFrame check_;
   std::vector<std::uint8_t> bytes_;
-  std::size_t start_ = 0;           ///< of what has not been looked at, in bytes_
+  std::size_t start_ = 0;           ///< of the unprocessed bytes, in bytes_
   std::uint64_t position_ = 0;      ///< the same in the stream
-  bool in_damage_ = false;          ///< what was passed last is no frame
-  std::uint64_t broken_until_ = 0;  ///< the last broken frame claims what lies before
+  bool in_damage_ = false;          ///< the last bytes were no frame
+  std::uint64_t broken_until_ = 0;  ///< end that the last damaged frame claims
   bool ended_ = false;
   std::vector<DamageKind> damage_;
 };
 
-/// Counts one more of this kind.
+/// Counts one more damage of this kind.
 void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::uint64_t at_byte);
 
 }  // namespace pingvox

@@ -11,26 +11,26 @@
 
 namespace pingvox {
 
-/// A map as it was read, and what its file says beside it.
+/// A map with the metadata of its file.
 struct MapFile {
   Format format = Format::kPvx;
   OccupancyMap map;
-  std::string made_by;  ///< kPvx: how the map was made, free text; else empty
+  std::string made_by;  ///< kPvx: free text about how the map was made; else empty
 };
 
-/// Any map that we read, told by content. On failure nothing is kept. kCorrupt names the place and the reason.
-/// @param memory_limit_bytes  0: none; else kLimit when the tree would pass it
+/// Reads a map; its content tells the format. kCorrupt names the place and the reason.
+/// @param memory_limit_bytes  0: none; else kLimit when the tree would exceed it
 Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes = 0);
 
-/// Writes a map in any format of maps and clouds. The map stays as it is. kUnsupported when the format cannot hold it
-/// (.bt and .ot: depth 16 only), with the name of one that can.
+/// Writes a map in any format of maps and clouds. kUnsupported when the format cannot hold it (.bt and .ot: depth 16
+/// only); the message names one that can.
 Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out);
 
-/// Writes a map to a file, or to standard output for "-"; every message names the file.
+/// Writes a map to a file, or to standard output for "-"; errors name the file.
 Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, const std::string& path);
 
 /// The same in the format that the suffix names: `write_map(map, "harbour.bt")`.
-/// @return kUnsupported when the suffix is none of a map or cloud
+/// @return kUnsupported when the suffix is not of a map or cloud
 Result<void> write_map(const OccupancyMap& map, const std::string& path, std::string_view made_by = {});
 
 }  // namespace pingvox

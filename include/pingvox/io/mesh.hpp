@@ -8,10 +8,10 @@
 
 namespace pingvox {
 
-/// Reads a mesh, told by content: OFF (text), PLY (text, binary of either order), STL (text, binary). Lengths are taken
-/// to be metres. Faces of more than three corners become fans of triangles; colours, normals and the like are left out.
-/// @return kCorrupt naming the place: a number that is missing or not finite, a corner that does not exist, no
-///         triangle at all; kUnsupported for a file that is no mesh
+/// Reads a mesh: OFF (text), PLY (text, binary of either byte order) or STL (text, binary), by content. Units are
+/// metres. Faces of more than three corners become fans of triangles; colours, normals and the like are ignored.
+/// @return kCorrupt naming the place: a missing or non-finite number, an index out of range, no triangle;
+///         kUnsupported if the file is not a mesh
 Result<TriangleMesh> read_mesh(const FileBytes& file);
 
 /// Writes a mesh as PLY, binary little-endian: double x, y, z, and faces as lists of uint.

@@ -9,14 +9,14 @@
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/sonar/beam.hpp"
 
-// The SeaNet protocol of Tritech's scanning heads, as far as imaging sonars need it (docs/formats.md).
+// The SeaNet protocol of Tritech's scanning heads, as used by imaging sonars (docs/formats.md).
 namespace pingvox {
 
-/// For a FrameFinder: one frame of the protocol, its two lengths, its end and the length that its message prescribes.
-/// There is no checksum: a changed sample is not seen.
+/// For FrameFinder: checks a frame, its two lengths, its end and the length of its message. The protocol has no
+/// checksum, so changed samples are not detected.
 FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes);
 
-/// One line of an imaging head (mtHeadData), in its own units.
+/// One line of an imaging head (mtHeadData), in raw units.
 struct SeanetLine {
   std::uint8_t head_type = 0;          ///< 2 or 0x11 (DST)
   std::uint8_t status = 0;             ///< bits: 0 no power, 1 motor lost its step, 4 8-bit samples, 7 message behind
@@ -26,20 +26,20 @@ struct SeanetLine {
   std::uint8_t gain = 0;               ///< 0..210
   std::uint16_t interval_640ns = 0;    ///< from sample to sample; 0: by the range scale
   std::uint16_t bearing = 0;           ///< 1/16 gradian clockwise, 3200 is ahead
-  std::span<const std::uint8_t> data;  ///< a sample a byte, or two with the nearer one in the high bits
+  std::span<const std::uint8_t> data;  ///< one sample per byte, or two, the nearer in the high bits
 };
 
-/// nullopt: the frame is another message, or a part of one. REQUIRES a frame that is right.
+/// nullopt: another message, or part of one. REQUIRES a valid frame.
 std::optional<SeanetLine> seanet_line(std::span<const std::uint8_t> frame);
 
-/// What follows mtHeadData's own length, from its device type on, as V4LOG files hold it too. nullopt: too short.
+/// Parses the device block of mtHeadData, from its device type on, which V4LOG files hold too. nullopt: too short.
 std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_block);
 
-/// The line as a beam of the sensor's frame, heard at kAssumedSoundSpeed_m_s; the error says what is wrong with it.
-/// Samples of 4 bits are spread over 0..255.
+/// Converts to a beam in the sensor frame, assuming kAssumedSoundSpeed_m_s; the error is the reason why it is invalid.
+/// Samples of 4 bits are scaled to 0..255.
 tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s);
 
-/// The head that sends such lines, as far as its type and frequency tell.
+/// The head by type and frequency of a line; nullptr if unknown.
 const DeviceProfile* device_of(const SeanetLine& line);
 
 }  // namespace pingvox

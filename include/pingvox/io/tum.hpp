@@ -9,7 +9,7 @@
 namespace pingvox {
 
 /// Reads a trajectory in the format of the TUM RGB-D benchmark: `t x y z qx qy qz qw` in each line, seconds and metres,
-/// the pose of the body in the map frame. Blanks, tabs or commas between the numbers; `#` begins a comment line.
+/// the pose of the body in the map frame. Separators are blanks, tabs or commas; lines with `#` are comments.
 /// @return kCorrupt naming the first line that has not eight finite numbers, whose quaternion has not length 1 +-
 /// 0.001,
 ///         or whose time does not come after the one before; kCorrupt when there is no pose

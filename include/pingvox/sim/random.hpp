@@ -5,7 +5,7 @@
 
 namespace pingvox {
 
-/// Random numbers that are the same on every machine: whole numbers, and square roots, which IEEE 754 rounds exactly.
+/// Random numbers that are the same on every machine: integers and square roots only, which IEEE 754 rounds exactly.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -22,7 +22,7 @@ class Random {
   /// At least 0 and less than 1.
   double uniform() { return static_cast<double>(bits() >> 11U) * 0x1p-53; }
 
-  /// Nearly a standard normal number, in steps of 1 / 65536: the sum of twelve uniform ones in steps of 16 bits.
+  /// Approximately standard normal: the sum of twelve uniform numbers of 16 bits.
   double normal() {
     std::int64_t sum = 0;
     for (int word = 0; word < 3; ++word) {
@@ -32,7 +32,7 @@ class Random {
     return static_cast<double>(sum - std::int64_t{6} * 65535) / 65536.0;
   }
 
-  /// A Rayleigh number of mean 1: the amplitude of many small echoes that add up at random.
+  /// Rayleigh-distributed with mean 1: the amplitude of many small echoes with random phases.
   double rayleigh() {
     const double a = normal();
     const double b = normal();

@@ -13,21 +13,21 @@
 
 namespace pingvox {
 
-/// What a vehicle does in a scene.
+/// Motion of the vehicle in a scene.
 enum class Motion {
-  kStill,      ///< it stands at the origin of the map frame and looks along x
-  kLine,       ///< once straight through
-  kLawnMower,  ///< to and fro in lanes
-  kLoop,       ///< round and round
+  kStill,      ///< at the origin of the map frame, heading along x
+  kLine,       ///< straight through the scene, once
+  kLawnMower,  ///< parallel lanes, to and fro
+  kLoop,       ///< closed loop, repeated
 };
 
-/// A world with what belongs to it: where there is water, and ways through it on which nothing is hit.
-/// The map frame's origin is in the water, and z = 0 is the depth at which the vehicles go.
+/// A world, its water and collision-free routes. The origin of the map frame is in the water, and z = 0 is the depth of
+/// the routes.
 struct Scene {
   World world;
-  Eigen::AlignedBox3d water_m;  ///< what a surface does not shut off from the vehicle is water within, nothing beyond
+  Eigen::AlignedBox3d water_m;  ///< the water is the part of this box that surfaces do not cut off from the vehicle
   Route line, lawn_mower, loop;
-  double sonar_range_m = 5.0;  ///< to which a sonar is set here
+  double sonar_range_m = 5.0;  ///< recommended range of the sonar
 
   /// nullptr for kStill.
   const Route* route(Motion motion) const;
@@ -36,13 +36,13 @@ struct Scene {
 /// REQUIRES valid options.
 Scene tank_scene(const TankOptions& options);
 
-/// Three quay walls around a basin that is open to the right, a bottom of mud, a row of piles, and a ship's hull at the
-/// wall to the left.
+/// Three quay walls around a basin that is open to the right, a muddy bottom, a row of piles, and a ship's hull at the
+/// left wall.
 struct HarbourOptions {
   double length_m = 20.0;       ///< along x, 16..200
   double width_m = 14.0;        ///< along y, 12..200
-  double water_above_m = 2.0;   ///< of the vehicle, 0.5..50
-  double water_below_m = 3.0;   ///< 0.5..50
+  double water_above_m = 2.0;   ///< above the vehicle, 0.5..50
+  double water_below_m = 3.0;   ///< below the vehicle, 0.5..50
   std::size_t piles = 4;        ///< 0..6
   double pile_radius_m = 0.25;  ///< > 0, at most 0.5
   double hull_length_m = 8.0;   ///< >= 0, less than half the length; 0: none
@@ -54,13 +54,13 @@ struct HarbourOptions {
 /// REQUIRES valid options.
 Scene harbour_scene(const HarbourOptions& options);
 
-/// A bottom that rises to the left, with ripples and boulders, some as tall as the vehicle's depth.
+/// A bottom that rises to the left, with ripples and boulders, some of which reach up to the vehicle's depth.
 struct SeabedOptions {
   double side_m = 24.0;       ///< of the square, 20..200
   double depth_m = 1.8;       ///< of the bottom below the vehicle at the origin, 1.5..50
-  double slope = 0.05;        ///< rise over way, -0.1..0.1
+  double slope = 0.05;        ///< rise over run, -0.1..0.1
   double ripples = 1.0;       ///< 0: smooth; at most 2
-  std::size_t boulders = 40;  ///< beside the six tall ones; at most 1000
+  std::size_t boulders = 40;  ///< besides six tall ones; at most 1000
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
@@ -71,16 +71,16 @@ Scene seabed_scene(const SeabedOptions& options);
 struct CaveOptions {
   double length_m = 18.0;  ///< 10..500
   double radius_m = 2.2;   ///< 1.5..50
-  double bumps = 0.15;     ///< as a share of the radius, 0..0.3
+  double bumps = 0.15;     ///< fraction of the radius, 0..0.3
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 /// REQUIRES valid options.
 Scene cave_scene(const CaveOptions& options);
 
-/// Any mesh, as it stands in its file. The built-in ways go along, over and around its box: who wants to go into it
-/// brings a trajectory.
-/// @return kBadOption when there is no triangle, or it is too large to be measured in metres (over 10 km)
+/// Any mesh, in the coordinates of its file. The routes go along, over and around its bounding box; to go inside, use a
+/// trajectory of your own.
+/// @return kBadOption without triangles, or when it is larger than 10 km (not in metres?)
 Result<Scene> mesh_scene(TriangleMesh mesh);
 
 }  // namespace pingvox

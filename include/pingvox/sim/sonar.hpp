@@ -15,32 +15,32 @@
 
 namespace pingvox {
 
-/// A turning head in water (docs/simulator.md). Defaults: about that of the paper's recording.
+/// A mechanically scanning sonar (docs/simulator.md). Defaults: similar to that of the paper's recording.
 struct SonarOptions {
-  std::uint64_t seed = 1;  ///< of speckle, noise and dropouts; what is there does not depend on it
+  std::uint64_t seed = 1;  ///< of speckle, noise and dropouts, not of the world
 
   // The head.
-  std::size_t beams_per_turn = 200;                          ///< 4..6400; it turns clockwise, from straight ahead
-  std::size_t bins = 399;                                    ///< 1..10,000
-  double bin_length_m = 0.0125;                              ///< > 0; the pulse is as long as the bins ask for
-  double beams_per_s = 23.0;                                 ///< > 0
-  double beam_width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontally, to half power, one way; > 0, at most 1
-  double beam_height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertically; > 0, at most 2
-  double side_lobes = 1.0;  ///< amplitude, as a share of those of an evenly driven rectangular face; 0: none
-  double bearing_step_rad = 2.0 * std::numbers::pi / 6400.0;  ///< to which it rounds reported bearings; 0: it does not
-  double ringing_m = 0.45;  ///< the head's own reflection fills the bins up to here; >= 0
-  double gain = 1.0;        ///< share of the loss with range that the receiver makes up for, 0..1
-  double compression =
-      0.6;  ///< exponent by which amplitudes are shown as 8 bits: 1 linear; less brings out the faint; 0.1..1
+  std::size_t beams_per_turn = 200;  ///< 4..6400; clockwise, starting ahead
+  std::size_t bins = 399;            ///< 1..10,000
+  double bin_length_m = 0.0125;      ///< > 0; also sets the length of the pulse
+  double beams_per_s = 23.0;         ///< > 0
+  double beam_width_rad =
+      3.0 * std::numbers::pi / 180.0;  ///< horizontal, full angle at half power, one way; > 0, at most 1
+  double beam_height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, the same; > 0, at most 2
+  double side_lobes = 1.0;  ///< amplitude relative to those of a uniform rectangular transducer; 0: none
+  double bearing_step_rad = 2.0 * std::numbers::pi / 6400.0;  ///< rounding of the reported bearings; 0: none
+  double ringing_m = 0.45;                                    ///< range of the transducer ringing; >= 0
+  double gain = 1.0;         ///< time-varied gain: fraction of the transmission loss compensated, 0..1
+  double compression = 0.6;  ///< gamma of the 8-bit intensities: 1 linear, less amplifies faint echoes; 0.1..1
 
   // The water.
   double absorption_db_per_m = 0.2;  ///< one way; 0..10
   double speckle = 0.4;              ///< 0: none; 1: full Rayleigh fading of each bin
   double noise = 1.5;  ///< mean background next to the head in bins of 1.25 cm, as an amplitude (255: the highest that
                        ///< can be shown); the gain raises it; 0..255
-  double multipath = 1.0;  ///< share of what surfaces mirror that goes on; 0: no second echoes
-  double silent = 0.002;   ///< share of beams in which nothing but ringing and noise is heard (bubbles); 0..1
-  double lost = 0.0;       ///< share of beams that never arrive in the log; less than 1
+  double multipath = 1.0;  ///< fraction of specular reflection that is followed; 0: no second echoes
+  double silent = 0.002;   ///< fraction of beams with only ringing and noise (bubbles); 0..1
+  double lost = 0.0;       ///< fraction of beams missing from the log; less than 1
 
   Pose body_from_sensor = Pose::Identity();  ///< the mount: pose of the head on the vehicle
 
@@ -48,41 +48,40 @@ struct SonarOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// How far it is to the first surface, by geometry alone; nullopt where there is none within the bins.
+/// Ground truth: distance to the first surface; nullopt if there is none within the bins.
 struct TrueRange {
-  std::optional<double> axis_m;  ///< along the middle of the beam
-  std::optional<double> cone_m;  ///< the least within the cone of half power (one way) around it
+  std::optional<double> axis_m;  ///< along the axis of the beam
+  std::optional<double> cone_m;  ///< smallest within the half-power cone (one way)
 };
 
-/// @param bearing_rad  where the head looked, sensor frame
+/// @param bearing_rad  of the beam, sensor frame
 /// REQUIRES valid options.
 TrueRange true_range(const World& world, const Pose& map_from_sensor, double bearing_rad, const SonarOptions& options);
 
-/// The turning head in a world as a source of beams. It knows nothing of beam models or detectors: it adds up what
-/// comes back from each direction of the beam pattern, both ways, and lays noise over it. The same options give the
-/// same bytes.
+/// Simulates a scanning sonar in a world. Independent of the beam models and detectors: it sums the returns of all
+/// directions of the two-way beam pattern and adds noise. The same options give the same bytes.
 class SonarSimulator final : public BeamSource {
  public:
-  /// Where the head was when it sent a beam, and where it looked: what a log cannot know.
+  /// True pose and bearing of the head for one beam.
   struct Ping {
     double time_s = 0.0;
     Pose map_from_sensor = Pose::Identity();
     double bearing_rad = 0.0;  ///< not rounded, in [0, 2 pi)
   };
 
-  /// @param map_from_body    the vehicle's path; the first beam is sent at its first pose
-  /// @param turns            of the head; it stops before when the trajectory ends
+  /// @param map_from_body    trajectory of the vehicle; the first beam is sent at its first pose
+  /// @param turns            of the head; ends earlier with the trajectory
   /// REQUIRES valid options.
   SonarSimulator(World world, Trajectory map_from_body, const SonarOptions& options, std::size_t turns);
 
   Result<std::optional<Beam>> next() override;
 
-  /// The ping of the beam that `next` gave last. REQUIRES that there was one.
+  /// The ping of the last beam from `next`. REQUIRES that there was one.
   const Ping& ping() const { return ping_; }
   const World& world() const { return world_; }
 
  private:
-  /// What one direction sounds like from one place, without noise, kept as long as the head stays there.
+  /// Cached noise-free beam of one direction, valid while the head stays in place.
   struct Clean {
     Pose map_from_sensor = Pose::Identity();
     std::vector<std::uint32_t> intensities;
@@ -91,12 +90,12 @@ class SonarSimulator final : public BeamSource {
   World world_;
   Trajectory map_from_body_;
   SonarOptions options_;
-  std::size_t beams_;                      ///< to be sent in all
+  std::size_t beams_;                      ///< total number
   std::vector<Clean> clean_;               ///< by direction
   std::vector<std::uint32_t> ringing_;     ///< of each bin
   std::vector<std::uint32_t> background_;  ///< mean noise of each bin
-  std::vector<std::uint32_t> levels_;      ///< the least amplitude of each intensity from 1 on
-  Random noise_, dropouts_;                ///< apart, so that a dropout does not change the noise of other beams
+  std::vector<std::uint32_t> levels_;      ///< minimum amplitude of each intensity from 1 on
+  Random noise_, dropouts_;                ///< separate, so that a dropout does not change the noise of other beams
   std::size_t sent_ = 0;
   Ping ping_;
 };

@@ -4,9 +4,8 @@
 
 namespace pingvox {
 
-/// A square tank with vertical walls, and a floater (a vertical cylinder) in it. Lengths and angles are those of a
-/// sensor that stands still in it, which is the origin of the map frame. Defaults: about the tank of the paper's
-/// recording.
+/// A square tank with vertical walls and a floater (a vertical cylinder). The map frame is that of a still sensor in
+/// it. Defaults: similar to the tank of the paper's recording.
 struct TankOptions {
   double side_m = 4.5;               ///< of the square, > 0
   double depth_m = 4.0;              ///< of the walls, the sensor in the middle; > 0. There is no bottom.
@@ -20,8 +19,8 @@ struct TankOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// How far the middle of a beam goes in the plane of the sensor until it meets a wall or the floater, in closed form:
-/// it knows nothing of `World`, so that one can be held against the other.
+/// Range [m] along the axis of a beam to the first wall or the floater, in closed form: independent of `World`, so that
+/// tests can compare the two.
 /// REQUIRES valid options.
 double true_range_m(const TankOptions& options, double bearing_rad);
 

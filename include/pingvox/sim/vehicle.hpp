@@ -9,13 +9,13 @@
 
 namespace pingvox {
 
-/// Where a vehicle shall go: on a smooth curve through all these points.
+/// A smooth curve through waypoints.
 struct Route {
   enum class End {
-    kStays,   ///< it stays at the last point
-    kStarts,  ///< it goes on to the first point and round again
+    kStays,   ///< stay at the last waypoint
+    kStarts,  ///< continue with the first waypoint, as a loop
   };
-  std::vector<Eigen::Vector3d> waypoints_m;  ///< at least two, no two in a row the same
+  std::vector<Eigen::Vector3d> waypoints_m;  ///< at least two, consecutive ones different
   End end = End::kStays;
 };
 
@@ -26,15 +26,15 @@ struct TravelOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Length [m] of a route's curve, of a round the way back to the start included.
+/// Length [m] of a route's curve; of a loop including the way back to the start.
 double length_m(const Route& route);
 
-/// The way of a vehicle that looks where it goes and stays level, from time 0 until `duration_s` at least.
+/// Trajectory of a vehicle that heads along the route and stays level, from time 0 to at least `duration_s`.
 /// REQUIRES valid options, 0 < duration_s, at most 10 million poses.
-Trajectory travelled(const Route& route, double duration_s, const TravelOptions& options);
+Trajectory follow_route(const Route& route, double duration_s, const TravelOptions& options);
 
-/// How what a vehicle believes of its way goes astray: a random walk of its position and its heading, which starts with
-/// the truth. A wrong heading also turns the way on from there.
+/// Drift of dead reckoning: a random walk of position and heading that starts at the ground truth. A heading error also
+/// rotates the rest of the path.
 struct DriftOptions {
   std::uint64_t seed = 1;
   double position_m = 0.0;   ///< standard deviation along x and along y, each, after a minute; >= 0
@@ -43,8 +43,8 @@ struct DriftOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// What a vehicle reports of a true way: poses at the same times. Depth, roll and pitch do not drift: they are
-/// measured. REQUIRES valid options.
-Trajectory reported(const Trajectory& truth, const DriftOptions& options);
+/// A true trajectory as a drifting vehicle reports it. Depth, roll and pitch are measured and do not drift. REQUIRES
+/// valid options.
+Trajectory add_drift(const Trajectory& truth, const DriftOptions& options);
 
 }  // namespace pingvox

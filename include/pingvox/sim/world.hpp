@@ -13,22 +13,22 @@
 
 namespace pingvox {
 
-/// A flat piece of wall.
+/// A flat wall.
 struct Rectangle {
   Eigen::Vector3d centre_m;
-  Eigen::Vector3d half_u_m, half_v_m;  ///< from the centre to the middle of two edges; at right angles
+  Eigen::Vector3d half_u_m, half_v_m;  ///< from the centre to the midpoints of two edges; orthogonal
 };
 
-/// A solid box, turned as its pose says.
+/// A solid, oriented box.
 struct Cuboid {
-  Pose map_from_cuboid;    ///< its frame has its origin in the middle
+  Pose map_from_cuboid;    ///< origin at the centre
   Eigen::Vector3d half_m;  ///< half edges, > 0
 };
 
-/// A solid cylinder with both its ends.
+/// A solid cylinder with end caps.
 struct Cylinder {
-  Eigen::Vector3d base_m;  ///< the middle of one end
-  Eigen::Vector3d axis_m;  ///< from there to the middle of the other; not 0
+  Eigen::Vector3d base_m;  ///< centre of one end
+  Eigen::Vector3d axis_m;  ///< to the centre of the other end; not 0
   double radius_m;         ///< > 0
 };
 
@@ -38,57 +38,57 @@ struct Sphere {
 };
 
 struct Ellipsoid {
-  Pose map_from_ellipsoid;  ///< its frame has its origin in the middle
+  Pose map_from_ellipsoid;  ///< origin at the centre
   Eigen::Vector3d radii_m;  ///< > 0
 };
 
-/// Heights over a grid in the plane, two triangles a cell: seen by sound as a mesh.
+/// A height field over a grid as a mesh of two triangles a cell.
 /// @param heights_m  row by row, `columns` to a row; at least two rows and two columns
-/// @param corner_m   where the first one stands; its z is added to all
-/// @param step_m     from one to the next, along x in a row and along y from row to row
+/// @param corner_m   position of the first height; its z is added to all
+/// @param step_m     spacing, along x in a row and along y from row to row
 TriangleMesh heightfield(const std::vector<double>& heights_m, std::size_t columns, const Eigen::Vector3d& corner_m,
                          double step_m);
 
 using Shape = std::variant<Rectangle, Cuboid, Cylinder, Sphere, Ellipsoid, TriangleMesh>;
 
-/// What a surface does to sound. Powers are relative to what a wall of `scatter` 1 sends back at a right angle.
+/// Acoustic properties of a surface. Powers are relative to the return of a wall of `scatter` 1 at normal incidence.
 struct Material {
-  double scatter = 1.0;  ///< power that comes back diffusely; falls with the cosine of the angle of incidence (Lambert)
-  double glint = 0.5;    ///< power added where sound meets the surface at a right angle; gone at some 20 degrees
-  double mirror = 0.3;   ///< share of the amplitude that goes on as from a mirror, 0..1
+  double scatter = 1.0;  ///< diffuse return; falls with the cosine of the angle of incidence (Lambert)
+  double glint = 0.5;    ///< specular return added at normal incidence; gone at some 20 degrees
+  double mirror = 0.3;   ///< fraction of the amplitude that is mirrored onwards, 0..1
 };
 
-/// Where a ray goes through a surface.
+/// Intersection of a ray and a surface.
 struct Crossing {
-  double range_m = 0.0;     ///< > kLeastRange_m
-  Eigen::Vector3d normal;   ///< of length 1, against the ray
-  std::size_t surface = 0;  ///< which one of the world's, in the order in which they were added
+  double range_m = 0.0;     ///< > kMinRange_m
+  Eigen::Vector3d normal;   ///< of length 1, facing the ray
+  std::size_t surface = 0;  ///< index of the surface, in the order of add()
 };
 
-/// Surfaces in space, in the map frame [m]. It answers two questions: what does a ray meet, and where are the surfaces.
+/// Surfaces in the map frame [m], for ray casting and as a mesh.
 /// Const functions may run in many threads at once.
 class World {
  public:
-  /// Adds a surface. REQUIRES finite values that keep what the shapes ask for.
+  /// Adds a surface. REQUIRES finite values within the limits of the shapes.
   void add(Shape shape, const Material& material = {});
 
   std::size_t size() const { return surfaces_.size(); }
   const Material& material(std::size_t surface) const { return surfaces_[surface].material; }
 
-  /// What a ray meets first within `limit_m`; nullopt: nothing.
+  /// First crossing of a ray within `limit_m`; nullopt: none.
   std::optional<Crossing> first(const SoundRay& ray, double limit_m) const;
-  /// All that it goes through within `limit_m`, nearest first.
+  /// All crossings within `limit_m`, nearest first.
   std::vector<Crossing> all(const SoundRay& ray, double limit_m) const;
 
-  /// The surfaces as triangles: flat ones as they are, round ones by pieces that stay within `tolerance_m` of them
-  /// (but of no more than 512 pieces to a circle). REQUIRES tolerance_m > 0.
+  /// The surfaces as triangles: round ones are approximated to `tolerance_m` (at most 512 segments a circle). REQUIRES
+  /// tolerance_m > 0.
   TriangleMesh mesh(double tolerance_m) const;
 
-  /// The smallest box around everything; empty for an empty world.
+  /// Bounding box; empty for an empty world.
   Eigen::AlignedBox3d bounds() const;
 
  private:
-  /// A mesh stands behind a pointer: worlds that are copied share it, for it never changes.
+  /// Copies of a world share its meshes, which never change.
   using Solid = std::variant<Rectangle, Cuboid, Cylinder, Sphere, Ellipsoid, std::shared_ptr<const TriangleTree>>;
   struct Surface {
     Solid solid;

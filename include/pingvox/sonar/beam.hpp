@@ -24,12 +24,13 @@ struct Beam {
 /// endless ray.
 inline constexpr double kMaxBeamRange_m = 10'000.0;
 
-/// Checks the ranges documented in Beam, and kMaxBeamRange_m. Readers call it on each beam, so that other code need not.
+/// Checks the ranges documented in Beam, and kMaxBeamRange_m. Readers call it on each beam, so that other code need
+/// not.
 /// @return kCorrupt naming the invalid field
 Result<void> validate(const Beam& beam);
 
 /// Any angle [rad] in [0, 2 pi). REQUIRES a finite angle.
-double wrapped_bearing(double angle_rad);
+double wrap_bearing(double angle_rad);
 
 /// One kind of damage that a source skipped.
 struct DamageKind {

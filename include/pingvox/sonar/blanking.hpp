@@ -4,9 +4,9 @@
 
 namespace pingvox {
 
-/// How far the head hears itself: what stands near the transducer in (nearly) every beam, and the fading of it, out to
-/// where the typical beam falls no further. At most half of the range; 0 when there is nothing of the kind.
-/// EchoOptions::kUsualBlanking_m for fewer than 32 beams: what is in all of so few may be a wall.
+/// Blanking range [m] measured from a sweep: the ringing that nearly every beam has near the transducer, and its decay,
+/// out to where the median beam stops falling. At most half of the range; 0 if there is no ringing.
+/// EchoOptions::kDefaultBlanking_m for fewer than 32 beams, all of which might see the same wall.
 /// @param image  the sweep's image, filtered or not
 /// REQUIRES image.rows() == sweep.beams.size()
 double blanking_range_m(const PolarImage& image, const Sweep& sweep);

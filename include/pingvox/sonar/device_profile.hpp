@@ -5,26 +5,25 @@
 
 namespace pingvox {
 
-/// What heads and their software take for the speed of sound when they turn times into ranges, and we too when a device
-/// gives times only.
+/// Speed of sound that sonar heads and their software assume, and we too for devices that report times only.
 inline constexpr double kAssumedSoundSpeed_m_s = 1500.0;
 
-/// What a maker says of a sonar head: what a beam of a log means beyond its numbers.
+/// Data of a sonar head by its maker.
 struct DeviceProfile {
-  std::string_view name;       ///< lower case, as --device takes it
-  std::string_view title;      ///< for people
+  std::string_view name;       ///< lower case, the value of --device
+  std::string_view title;      ///< for display
   double beam_width_rad;       ///< horizontally, full angle at half power
-  double beam_height_rad;      ///< vertically, the same
-  double blanking_m;           ///< nothing nearer can be heard
-  int full_scale;              ///< the largest intensity that the head gives, of 0..255
-  std::string_view intensity;  ///< what the intensities are, and what gain does to them
-  std::string_view source;     ///< of these numbers
+  double beam_height_rad;      ///< vertically, full angle at half power
+  double blanking_m;           ///< minimum range of the head
+  int full_scale;              ///< largest intensity that the head sends, of 0..255
+  std::string_view intensity;  ///< meaning of the intensities, and the effect of gain
+  std::string_view source;     ///< of this data
 };
 
-/// All heads that we know.
+/// All known heads.
 std::span<const DeviceProfile> device_profiles();
 
-/// nullptr: there is none of this name. The profile lives as long as the program.
+/// The head of this name, with static lifetime; nullptr if there is none.
 const DeviceProfile* device_named(std::string_view name);
 
 }  // namespace pingvox

@@ -9,9 +9,9 @@ namespace pingvox {
 
 enum class Filter {
   kNone,
-  kMean,      ///< all of the window alike
-  kMedian,    ///< of the window: a single bright bin vanishes, an edge stays sharp
-  kGaussian,  ///< the window weighted by the distance from its middle
+  kMean,      ///< mean of the window
+  kMedian,    ///< median of the window: removes single bright bins, keeps edges sharp
+  kGaussian,  ///< weighted by the distance from the centre
 };
 
 struct FilterOptions {
@@ -22,14 +22,13 @@ struct FilterOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// The smoothed image (paper, section 8.1), in polar coordinates: across the seam of a full turn it sees the beams on
-/// the other side, at the ends of a sector and of a beam it repeats the outermost value. Where beams are of different
-/// lengths, the bins that one lacks count as those of the nearest beam that has them, no more than half a kernel away,
-/// and beyond that as its own last one. REQUIRES valid options.
-PolarImage filtered(const PolarImage& image, const FilterOptions& options);
+/// Smooths a polar image (paper, section 8.1). A full turn wraps around; at the ends of a sector and of a beam the
+/// outermost value is repeated. Bins that a shorter beam lacks are taken from the nearest beam within half a kernel
+/// that has them, else its own last bin is repeated. REQUIRES valid options.
+PolarImage apply_filter(const PolarImage& image, const FilterOptions& options);
 
-/// How many beams to either side decide what `filtered` makes of one: half a kernel, and as many again that fill up the
-/// bins that shorter ones among them lack.
+/// How many beams to either side decide the filtered row of one: half a kernel, and as many again that fill the
+/// bins that shorter beams lack.
 std::size_t reach_beams(const FilterOptions& options);
 
 }  // namespace pingvox

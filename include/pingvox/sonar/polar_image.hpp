@@ -10,17 +10,17 @@
 
 namespace pingvox {
 
-/// A sweep as an image: row n is its n-th beam, column i its i-th bin (paper, figure 3). Rows of shorter beams are
-/// filled up with 0; `bins_in` says how many bins are real.
+/// A sweep as an image: row n is its n-th beam, column i its i-th bin (paper, figure 3). Shorter beams are padded with
+/// 0; `bins_in` is the number of bins before the padding.
 class PolarImage {
  public:
   enum class Wrap {
-    kAround,  ///< the last row is a neighbour of the first (a full turn)
+    kAround,  ///< full turn: the last row is a neighbour of the first
     kNone,
   };
 
   explicit PolarImage(const Sweep& sweep);
-  /// A black image. `bins_in` gives the real bins of each row, all <= columns.
+  /// An image of zeros. `bins_in`: number of bins of each row, all <= columns.
   PolarImage(std::vector<std::size_t> bins_in, std::size_t columns, Wrap wrap);
 
   std::size_t rows() const { return bins_in_.size(); }

@@ -12,16 +12,16 @@
 
 namespace pingvox {
 
-/// A colour as screens show it (sRGB).
+/// An sRGB colour.
 struct Rgb {
   std::uint8_t red = 0, green = 0, blue = 0;
   friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// A picture of pixels; (0, 0) is the upper left one.
+/// An image; (0, 0) is its upper left pixel.
 class Picture {
  public:
-  /// No picture that we draw is wider or higher.
+  /// Maximum width and height.
   static constexpr std::size_t kMaxSide = 4096;
 
   /// REQUIRES 0 < width, height <= kMaxSide
@@ -34,9 +34,9 @@ class Picture {
 
   /// REQUIRES a pixel of the picture.
   Rgb at(std::size_t x, std::size_t y) const;
-  /// Colours one pixel; outside of the picture nothing happens.
+  /// Sets one pixel; ignored outside of the picture.
   void set(std::ptrdiff_t x, std::ptrdiff_t y, Rgb colour);
-  /// Colours a rectangle, as far as it lies in the picture.
+  /// Fills a rectangle, clipped to the picture.
   void fill(std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t width, std::ptrdiff_t height, Rgb colour);
 
  private:
@@ -44,7 +44,7 @@ class Picture {
   std::vector<std::uint8_t> rgb_;
 };
 
-/// kIo when the stream does not take it.
+/// @return kIo when `out` fails
 inline Result<void> write_png(const Picture& picture, std::ostream& out) {
   return write_png(picture.width(), picture.height(), picture.rgb(), out);
 }

@@ -21,10 +21,10 @@ struct CartesianPictureOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// One sweep as it lies in the water (paper, figures 2 and 4): seen from above, ahead (x) is up, left (y) is left,
-/// brighter where it was louder, with a mark on each echo, rings of range, and bearings counter-clockwise from ahead.
+/// One sweep seen from above (paper, figures 2 and 4): ahead (x) is up, left (y) is left, brighter is louder, with
+/// markers at the echoes, range rings, and bearings counter-clockwise from ahead.
 /// @param image   the sweep's image, filtered or not
-/// @param echoes  one for each beam, or none at all: then nothing is marked
+/// @param echoes  one for each beam, or empty
 /// REQUIRES valid options, image.rows() == sweep.beams.size(), echoes.size() the same or 0
 Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<const std::optional<Echo>> echoes,
                          const CartesianPictureOptions& options = {});

@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// A cell of a grid in the plane: (0, 0) reaches from 0 to 1 along both axes.
+/// A cell of a plane grid: (0, 0) covers 0..1 along both axes.
 struct GridCell {
   std::int64_t x = 0, y = 0;
   friend bool operator==(const GridCell&, const GridCell&) = default;
@@ -23,19 +23,18 @@ struct RayFigure {
   Eigen::Vector2d from{0.5, 0.5}, to{0.5, 0.5};  ///< ends of the segment, in cells; finite, below 2^40
   std::vector<GridCell> marked;
 
-  /// kBadOption: an end that is not finite or too far away, or a grid of more than kMostCells along an axis
+  /// kBadOption: an end that is not finite or too far away, or a grid of more than kMaxCells along an axis
   Result<void> validate() const;
-  static constexpr std::int64_t kMostCells = 400;
+  static constexpr std::int64_t kMaxCells = 400;
 };
 
 /// The cells that one of the library's traversals marks between two points, the last one included.
 /// REQUIRES ends below 2^40
 RayFigure ray_figure(const Eigen::Vector2d& from, const Eigen::Vector2d& to, RayAlgorithm algorithm);
 
-/// Cells that the segment crosses and that are marked, cells that it crosses and that are not (a traversal that takes
-/// short cuts, or misses its end), and marked ones that it does not cross, each its own lightness and sign; the
-/// segment, its start as a disc, its end as a ring. To put two beside each other: `side_by_side`.
-/// @param target_px  about as long is the longer side of the grid, 64..3072
+/// Draws the segment (start: disc, end: ring) and three kinds of cells: crossed and marked, crossed but not marked
+/// (missed by the traversal), and marked but not crossed. `side_by_side` puts two figures beside each other.
+/// @param target_px  approximate length of the longer side of the grid, 64..3072
 /// REQUIRES a valid figure
 Picture render_ray(const RayFigure& figure, std::size_t target_px = 600);
 

@@ -9,14 +9,14 @@
 
 namespace pingvox {
 
-/// One of several pictures in a picture.
+/// One picture of several.
 struct Panel {
   Picture picture;
-  std::string caption;  ///< stands below it, in as many lines as it takes; ASCII, may be empty
+  std::string caption;  ///< below the picture, wrapped; ASCII, may be empty
 };
 
-/// Panels in rows, as many beside each other as can be read on a screen, rows as equal as can be; a title on top unless
-/// it is empty. @return kLimit when they do not fit into Picture::kMaxSide, kBadOption when there are none
+/// Arranges panels in balanced rows no wider than a screen, below a title unless it is empty. @return kLimit when they
+/// do not fit into Picture::kMaxSide, kBadOption when there are none
 Result<Picture> side_by_side(std::span<const Panel> panels, std::string_view title = {});
 
 }  // namespace pingvox
