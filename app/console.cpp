@@ -23,10 +23,10 @@ Result<void> Console::summarise(std::string_view text, std::string_view output) 
 }
 
 void Console::say(std::string_view line) const {
-  if (manner_.talk == Talk::kOn) complain(line);
+  if (manner_.talk == Talk::kOn) print_error(line);
 }
 
-void complain(std::string_view message) {
+void print_error(std::string_view message) {
   // One call, so that lines of several processes do not mix.
   const std::string line = "pingvox: " + on_one_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);

@@ -42,7 +42,7 @@ class Console {
 };
 
 /// One line on standard error, "pingvox: message", whatever the message contains.
-void complain(std::string_view message);
+void print_error(std::string_view message);
 
 /// The text with its control characters (a file name may hold line breaks) replaced by '?'.
 std::string on_one_line(std::string_view text);

@@ -74,6 +74,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& exception) {
     error.message = exception.what();
   }
-  app::complain(error.message);
+  app::print_error(error.message);
   return status_of(error, args);
 }

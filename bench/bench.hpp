@@ -11,28 +11,27 @@
 
 namespace pingvox::bench {
 
-/// Which benchmarks a name stands for.
+/// Groups of benchmarks.
 enum class Family {
-  kSpeed,     ///< one row, beside liboctomap; all of them are `pingvox bench all`
-  kVehicle,   ///< what a vehicle asks for: real time, growth, start-up; in `all`, too
-  kAccuracy,  ///< against simulated truth; a command of its own
-  kPaper,     ///< the paper's tables and figures; a command of its own
+  kSpeed,     ///< compared with liboctomap; part of `pingvox bench all`
+  kVehicle,   ///< real time, growth, start-up; part of `all`
+  kAccuracy,  ///< compared with simulated ground truth; not in `all`
+  kPaper,     ///< the paper's tables and figures; not in `all`
 };
 
 struct BenchOptions {
-  /// Where to put pictures (charts, the paper's figures): a folder, made if it is not there. nullopt: none are drawn.
+  /// Folder for pictures (charts, the paper's figures), created if missing. nullopt: none are drawn.
   std::optional<std::string> pictures;
-  /// Says a line about what is going on, for a person who waits. Never the result.
+  /// Prints a line of progress.
   void (*say)(std::string_view line) = nullptr;
 };
 
-/// One benchmark. It makes its input from a seed, or takes it from the real recordings, and checks its result before it
-/// times anything.
+/// One benchmark. Its input comes from a seed or from recordings; its result is checked before it is timed.
 struct Bench {
   std::string_view name;
   std::string_view what;  ///< in a few words
   Family family;
-  /// The rows; an error when its input is not there or its own check failed.
+  /// The rows; an error when its input is missing or its check failed.
   Result<std::vector<Row>> (*run)(const BenchOptions& options);
 };
 

@@ -55,7 +55,7 @@ std::span<const Bench> benches() {
       Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
       Bench{"threads", "the bundles of tank-fine by two threads against one", Family::kVehicle, &threads},
       Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
-      Bench{"accuracy", "echoes and maps of simulated recordings, held against what is true", Family::kAccuracy,
+      Bench{"accuracy", "echoes and maps of simulated recordings, compared with ground truth", Family::kAccuracy,
             &accuracy},
       Bench{"paper", "what the paper says and what we get, all of it; with --pictures its figures", Family::kPaper,
             &paper},

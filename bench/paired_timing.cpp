@@ -17,9 +17,9 @@
 namespace pingvox::bench {
 namespace {
 
-/// Puts in order what the other side freed, or this one's first large allocations would pay for it: chunks are joined
-/// (malloc_trim), then sorted by size, of which glibc does 10,000 at most in each allocation that none of them serves.
-void tidy_heap() {
+/// Sorts the free chunks that the other side left, which would slow down the first large allocations of this one: joins
+/// them (malloc_trim), then makes glibc sort them by size, at most 10,000 in each allocation that fits none.
+void sort_heap() {
   constexpr int kMaxAllocations = 10000;
   constexpr std::size_t kLarge = 100000;
   malloc_trim(0);
@@ -31,7 +31,7 @@ void tidy_heap() {
 
 double time_side(const Side& side, int times, double (*clock_s)()) {
   if (side.prepare) side.prepare();
-  tidy_heap();
+  sort_heap();
   const double started = clock_s();
   for (int i = 0; i < times; ++i) side.work();
   return (clock_s() - started) / times;
@@ -50,7 +50,7 @@ std::uint64_t status_bytes(const std::string& name) {
 
 std::uint64_t peak_growth(const std::function<void()>& work) {
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5" << std::flush;  // the peak starts anew
+  std::ofstream("/proc/self/clear_refs") << "5" << std::flush;  // resets the peak
   const std::uint64_t before = status_bytes("VmRSS");
   work();
   const std::uint64_t peak = status_bytes("VmHWM");
@@ -66,8 +66,8 @@ std::uint64_t live_growth(const std::function<std::shared_ptr<const void>()>& bu
   return before != 0 && after > before ? after - before : 0;
 }
 
-/// What `measure` says in a process of its own; 0 when there is none.
-std::uint64_t in_child(const std::function<std::uint64_t()>& measure) {
+/// Result of `measure` in a child process; 0 on failure.
+std::uint64_t measure_in_child(const std::function<std::uint64_t()>& measure) {
   int ends[2] = {};
   if (pipe(ends) != 0) return 0;
   const pid_t child = fork();
@@ -125,11 +125,11 @@ PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTiming
 }
 
 std::uint64_t peak_memory_bytes(const std::function<void()>& work) {
-  return in_child([&] { return peak_growth(work); });
+  return measure_in_child([&] { return peak_growth(work); });
 }
 
 std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>()>& build) {
-  return in_child([&] { return live_growth(build); });
+  return measure_in_child([&] { return live_growth(build); });
 }
 
 Row speed_row(const std::string& name, const PairedTimes& result, const MemoryOfBoth& bytes) {

@@ -12,21 +12,21 @@
 
 namespace pingvox::bench {
 
-/// CPU time of this process so far [s], all threads together: what else the machine does is left out of it.
+/// CPU time of this process so far [s], all threads: independent of other load.
 double cpu_time_s();
-/// The same of all processes that it started and that have ended.
+/// The same of all its terminated child processes.
 double childrens_cpu_time_s();
 
-/// The value in the middle, the mean of the two there of an even number. REQUIRES at least one.
+/// Median; the mean of the middle two of an even number. REQUIRES at least one value.
 double median(std::vector<double> values);
 
-/// One side of a comparison. `prepare` is not timed (a fresh map, a copy of what is used up); it may be empty.
+/// One side of a comparison. `prepare` (a fresh map, a copy of the input) is not timed; may be empty.
 struct Side {
   std::function<void()> prepare;
   std::function<void()> work;
 };
 
-/// Times of two sides that did the same work by turns (A B A B ...).
+/// Times of two sides that did the same work alternately (A B A B ...).
 struct PairedTimes {
   double ours_s = 0.0, peer_s = 0.0;  ///< medians
   double ratio = 0.0;                 ///< peer / ours: the median of the pairs
@@ -36,30 +36,29 @@ struct PairedTimes {
 /// Whether both sides run once before the first pair.
 enum class WarmUp {
   kOnce,  ///< caches and pages
-  kNone,  ///< for long work that ran a moment ago, to be checked
+  kNone,  ///< for long work that already ran for its check
 };
 
 struct PairedTimingOptions {
   int pairs = 5;
-  /// Work shorter than this is done several times in a row and the time divided; only for work that may be repeated
-  /// without preparing it again.
+  /// Shorter work is repeated and the time divided; only for work that needs no prepare() in between.
   double min_s = 0.0;
   double (*clock_s)() = &cpu_time_s;
   WarmUp warm_up = WarmUp::kOnce;
 };
 
-/// Runs both sides by turns.
+/// Runs both sides alternately.
 PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTimingOptions& options = {});
 
-/// By how much the resident memory of a fresh process grows at most while `work` runs in it [bytes]; 0 when that cannot
-/// be told. `work` must not need other threads.
+/// Peak growth of resident memory while `work` runs in a child process [bytes]; 0 if unknown. `work` must not use other
+/// threads.
 std::uint64_t peak_memory_bytes(const std::function<void()>& work);
 
-/// By how much the resident memory of a fresh process is larger [bytes] once `build` has run in it and returned what it
-/// built, all else freed and given back; 0 when that cannot be told. `build` must not need other threads.
+/// Resident memory of what `build` returns [bytes], measured in a child process after freeing everything else; 0 if
+/// unknown. `build` must not use other threads.
 std::uint64_t live_memory_bytes(const std::function<std::shared_ptr<const void>()>& build);
 
-/// Memory that the two sides took [bytes]; none where the work makes nothing that lasts.
+/// Memory of the two sides [bytes]; nullopt if the work leaves no result.
 struct MemoryOfBoth {
   std::optional<std::uint64_t> ours, peer;
 };

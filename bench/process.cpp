@@ -49,7 +49,7 @@ Result<ProgramRun> run_program(const std::vector<std::string>& words) {
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
   const auto started = std::chrono::steady_clock::now();
-  // Not fork: it would copy the page tables of all that is in memory here, and bill the child for it.
+  // Not fork, which would copy our page tables on the account of the child.
   pid_t child = -1;
   const int refused = posix_spawnp(&child, argv.front(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -69,7 +69,7 @@ Result<ProgramRun> run_program(const std::vector<std::string>& words) {
   return run;
 }
 
-Result<ProgramRun> run_well(const std::vector<std::string>& words) {
+Result<ProgramRun> run_or_fail(const std::vector<std::string>& words) {
   Result<ProgramRun> run = run_program(words);
   if (run && run->status != 0) {
     return fail(Error::Code::kCorrupt,

@@ -9,23 +9,23 @@
 
 namespace pingvox::bench {
 
-/// What a program that was run to its end came to.
+/// Result of running a program.
 struct ProgramRun {
-  int status = 0;  ///< exit status, or 128 + the signal that ended it
+  int status = 0;  ///< exit status, or 128 + signal
   double wall_s = 0.0;
   std::string said;  ///< on standard output and standard error
 };
 
-/// Runs a program, looked for as a shell does, and waits for its end. kUnsupported when there is none of that name.
+/// Runs a program from PATH and waits for its end. kUnsupported when it is not found.
 Result<ProgramRun> run_program(const std::vector<std::string>& words);
 
-/// The same; kCorrupt with the last line that it said when its status is not 0.
-Result<ProgramRun> run_well(const std::vector<std::string>& words);
+/// The same; kCorrupt with its last line of output when its status is not 0.
+Result<ProgramRun> run_or_fail(const std::vector<std::string>& words);
 
-/// The program `pingvox` beside this one. kUnsupported when it is not there.
+/// The program `pingvox` beside this one. kUnsupported when it is missing.
 Result<std::string> pingvox_program();
 
-/// A folder of its own, gone when this is.
+/// A temporary folder, removed by the destructor.
 class Scratch {
  public:
   static Result<Scratch> make();

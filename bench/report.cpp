@@ -35,7 +35,7 @@ bool same_names(const Row& a, const Row& b) {
                     [](const auto& x, const auto& y) { return x.first == y.first; });
 }
 
-/// Calls f(first, last) for each stretch of rows with the same names.
+/// Calls f(first, last) for each range of rows with the same names.
 template <class F>
 void for_each_stretch(const std::vector<Row>& rows, F&& f) {
   for (std::size_t first = 0; first < rows.size();) {

@@ -11,10 +11,10 @@
 
 namespace pingvox::bench {
 
-/// What stands in one field of a row. The truth value has no implicit way in, see Row::add_truth.
+/// Value of a field. bool is not converted implicitly, see Row::add_truth.
 using Value = std::variant<std::monostate, std::string, double, std::uint64_t, bool>;
 
-/// One line of a result: names and values, in order. The names are keys in JSON and columns in the table.
+/// One row of a result: names (keys in JSON, columns in the table) and values, in order.
 class Row {
  public:
   Row& add(std::string name, std::string_view value);
@@ -23,8 +23,8 @@ class Row {
   Row& add(std::string name, std::uint64_t value);
   Row& add(std::string name, int value);
   Row& add_truth(std::string name, bool value);
-  Row& add_value(std::string name, const Value& value);  ///< whatever it holds
-  /// Not measured here: null in JSON, a dash in the table.
+  Row& add_value(std::string name, const Value& value);  ///< of any type
+  /// Not measured: null in JSON, a dash in the table.
   Row& add_nothing(std::string name);
 
   const std::vector<std::pair<std::string, Value>>& fields() const { return fields_; }
@@ -34,7 +34,7 @@ class Row {
   std::vector<std::pair<std::string, Value>> fields_;
 };
 
-/// The rows as a table for people: a header wherever the names change, numbers to four digits, aligned.
+/// The rows as an aligned table, with a header wherever the names change and numbers to four digits.
 std::string table_of(const std::vector<Row>& rows);
 
 /// The same as a table in Markdown.

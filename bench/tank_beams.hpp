@@ -8,8 +8,7 @@
 
 namespace pingvox::bench {
 
-/// The beams of the paper's recording of a tank, in the order in which they were heard. Where the recording is not
-/// there, 28 sweeps of the simulated tank (seed 1) stand in for it.
+/// The beams of the paper's recording of a tank; if it is missing, 28 sweeps of the simulated tank (seed 1).
 struct TankBeams {
   std::string input;  ///< "recording" or "simulated"
   std::vector<Beam> beams;

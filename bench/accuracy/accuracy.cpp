@@ -13,7 +13,7 @@
 
 #include "accuracy/draw_accuracy.hpp"
 #include "accuracy/echo_score.hpp"
-#include "accuracy/judged_world.hpp"
+#include "accuracy/ground_truth.hpp"
 #include "accuracy/recording.hpp"
 #include "accuracy/true_returns.hpp"
 #include "paired_timing.hpp"
@@ -212,7 +212,7 @@ class Measurement {
       options_.say(fmt::format("  {}, {}: maps of {} m in {}", recording_.options.world, poses_of(recording_.options),
                                resolution_m, extent == Extent::kPlane ? "the plane" : "space"));
     }
-    const Result<JudgedWorld> world = JudgedWorld::make(recording_, extent, resolution_m, kBlanking_m);
+    const Result<GroundTruth> world = GroundTruth::make(recording_, extent, resolution_m, kBlanking_m);
     if (!world) return tl::unexpected(world.error());
     const std::array<std::pair<std::string_view, Echoes>, 3> sources = {
         {{"default", found(recording_, usual())},

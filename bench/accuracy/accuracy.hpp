@@ -8,7 +8,7 @@
 
 namespace pingvox::bench {
 
-/// Echoes and maps of simulated recordings, held against what is true (docs/tuning.md).
+/// Echoes and maps of simulated recordings, compared with ground truth (docs/tuning.md).
 Result<std::vector<Row>> accuracy(const BenchOptions& options);
 
 }  // namespace pingvox::bench

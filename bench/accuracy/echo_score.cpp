@@ -20,7 +20,7 @@ void count(const std::optional<double>& off_m, const EchoJudge& judge, EchoCount
   counts.wrong += *off_m > EchoJudge::kFalse_m;
 }
 
-/// The returns that can be heard: behind the blanking, before the end.
+/// The returns between the blanking range and the last bin.
 TrueReturns audible(const TrueReturns& truth, const EchoJudge& judge) {
   TrueReturns heard;
   if (truth.axis_m && *truth.axis_m >= judge.min_range_m) heard.axis_m = truth.axis_m;
@@ -55,15 +55,15 @@ EchoScore score_echoes(std::span<const std::optional<Echo>> echoes, std::span<co
     if (truth.axis_m) {
       count(echo ? std::optional(std::abs(echo->range_m - *truth.axis_m)) : std::nullopt, judge, score.axis);
     }
-    if (echo && off_m(echo->range_m, truth.returns).value_or(1.0) > EchoJudge::kFalse_m) {
-      score.beyond_cone += off_m(echo->range_m, truths[n].lobe).value_or(1.0) <= EchoJudge::kFalse_m;
+    if (echo && distance_m(echo->range_m, truth.returns).value_or(1.0) > EchoJudge::kFalse_m) {
+      score.beyond_cone += distance_m(echo->range_m, truths[n].lobe).value_or(1.0) <= EchoJudge::kFalse_m;
     }
     if (truth.returns.empty()) {
       ++score.silent_beams;
       score.silent_echoes += echo.has_value();
       continue;
     }
-    count(echo ? off_m(echo->range_m, truth.returns) : std::nullopt, judge, score.returns);
+    count(echo ? distance_m(echo->range_m, truth.returns) : std::nullopt, judge, score.returns);
     score.late += echo && echo->range_m > truth.returns.front().first_m + EchoJudge::kFalse_m;
     score.chance_5cm += share_within_5cm(truth.returns, judge);
   }

@@ -10,16 +10,16 @@
 
 namespace pingvox::bench {
 
-/// How echoes are held against the truth. An echo that is farther from it than `false_m` is false.
+/// Limits for scoring echoes. An echo farther than `false_m` from the ground truth is false.
 struct EchoJudge {
   double bin_length_m = 0.0;
-  double min_range_m = 0.0;  ///< what lies nearer is in the blanking: it cannot be heard
+  double min_range_m = 0.0;  ///< blanking range; nearer surfaces are ignored
   double range_m = 0.0;      ///< to the end of the bins
 
   static constexpr double kFalse_m = 0.10;
 };
 
-/// Beams counted against one kind of truth: those that have it. within_10cm + missed + wrong == beams.
+/// Counts of the beams that have one kind of ground truth. within_10cm + missed + wrong == beams.
 struct EchoCounts {
   std::size_t beams = 0;
   std::size_t within_1_bin = 0, within_2_bins = 0, within_5cm = 0, within_10cm = 0;
@@ -29,18 +29,19 @@ struct EchoCounts {
 
 struct EchoScore {
   std::size_t beams = 0, echoes = 0;
-  EchoCounts axis;     ///< against the first surface on the beam's axis: what a map in the plane needs
-  EchoCounts returns;  ///< against the nearest surface in line of sight within the cone: what can come back
-  std::size_t silent_beams = 0, silent_echoes = 0;  ///< nothing in the cone within range, and yet an echo
-  /// Of the false echoes, those within 10 cm of a surface that only the main lobe beyond the cone hears.
+  EchoCounts axis;     ///< compared with the first surface on the beam's axis, as a plane map needs
+  EchoCounts returns;  ///< compared with the nearest surface in line of sight within the cone
+  std::size_t silent_beams = 0,
+              silent_echoes = 0;  ///< no surface in the cone within range; of these, beams with an echo
+  /// False echoes within 10 cm of a surface that is only in the main lobe beyond the cone.
   std::size_t beyond_cone = 0;
   std::size_t late = 0;     ///< echoes more than 10 cm behind the first return
-  double chance_5cm = 0.0;  ///< mean share of the ranges listened to that lie within 5 cm of a return
+  double chance_5cm = 0.0;  ///< mean fraction of the range that lies within 5 cm of a return
 
   std::size_t false_echoes() const { return returns.wrong + silent_echoes; }
 };
 
-/// One optional echo for each beam of a truth. REQUIRES as many of each.
+/// REQUIRES one optional echo for each beam.
 EchoScore score_echoes(std::span<const std::optional<Echo>> echoes, std::span<const TrueReturns> truths,
                        const EchoJudge& judge);
 

@@ -19,7 +19,7 @@ Result<Scene> find_scene(std::string_view world) {
   return fail(Error::Code::kBadOption, fmt::format("there is no world '{}'", world));
 }
 
-/// The same way, now and then higher and lower.
+/// Adds vertical oscillations to a trajectory.
 Trajectory add_heave(const Trajectory& way, double heave_m) {
   constexpr double kTimes = 5.0;
   std::vector<StampedPose> poses = way.poses();

@@ -11,18 +11,18 @@
 
 namespace pingvox::bench {
 
-/// What is simulated for a measurement.
+/// Options of a simulated recording.
 struct RecordingOptions {
   std::string_view world;  ///< tank; harbour; harbour, no hull; seabed; cave
   Motion motion = Motion::kStill;
   std::size_t turns = 5;    ///< of the head
   double speed_m_s = 0.25;  ///< of a vehicle that moves
-  double heave_m = 0.0;     ///< how far it goes up and down around z = 0 on its way, five times
+  double heave_m = 0.0;     ///< amplitude of five vertical oscillations around z = 0
   std::size_t beams = 200;  ///< per turn
   std::uint64_t seed = 1;
 };
 
-/// A simulated log with what is true of it.
+/// A simulated log with its ground truth.
 struct Recording {
   RecordingOptions options;
   Scene scene;
@@ -31,7 +31,7 @@ struct Recording {
   std::vector<SonarSimulator::Ping> pings;  ///< of all beams of all sweeps, in order
 };
 
-/// @return kBadOption when there is no such world
+/// @return kBadOption for an unknown world
 Result<Recording> record(const RecordingOptions& options);
 
 }  // namespace pingvox::bench

@@ -17,12 +17,12 @@ Vector3d direction_of(double bearing_rad, double elevation_rad) {
           std::sin(elevation_rad)};
 }
 
-/// Half the angles of an elliptic cone.
+/// Half angles of an elliptic cone.
 struct HalfAngles {
   double width_rad, height_rad;
 };
 
-/// Where sin(u) / u is zero, when it is half power (0.707) at half the width.
+/// First zero of sin(u) / u that has half power (0.707) at half the width.
 double null_rad(double half_width_rad) {
   return std::asin(std::min(1.0, std::numbers::pi / 1.391557 * std::sin(half_width_rad)));
 }
@@ -41,7 +41,7 @@ void for_each_return(const World& world, const SonarSimulator::Ping& ping, const
       const SoundRay ray{map_from_sensor.translation(), map_from_sensor.linear() * direction_of(bearing, elevation)};
       const auto hit = world.first(ray, range_m);
       if (!hit) continue;
-      // The surface goes on at least half way to the next ray; a slanting one changes its range on the way.
+      // The surface extends at least half way to the next ray; its range changes if it is slanted.
       const Vector3d sideways = map_from_sensor.linear() * direction_of(bearing + 0.5 * std::numbers::pi, 0.0) *
                                 (across_step * std::cos(elevation));
       const Vector3d upwards =
@@ -72,7 +72,7 @@ TrueReturns returns_of(const World& world, const SonarSimulator::Ping& ping, con
 
 }  // namespace
 
-std::optional<double> off_m(double range_m, const std::vector<Span>& spans) {
+std::optional<double> distance_m(double range_m, const std::vector<Span>& spans) {
   std::optional<double> nearest;
   for (const Span& span : spans) {
     const double off = std::max({0.0, span.first_m - range_m, range_m - span.last_m});
@@ -99,7 +99,7 @@ std::vector<TrueReturns> true_returns(const Recording& recording) {
   truths.reserve(recording.pings.size());
   const bool stands_still = recording.options.motion == Motion::kStill;
   for (std::size_t n = 0; n < recording.pings.size(); ++n) {
-    // A head that stands still sees the same in each turn.
+    // A still head sees the same in each turn.
     if (stands_still && n >= recording.sonar.beams_per_turn &&
         recording.pings[n - recording.sonar.beams_per_turn].bearing_rad == recording.pings[n].bearing_rad) {
       truths.push_back(truths[n - recording.sonar.beams_per_turn]);

@@ -17,7 +17,7 @@ Result<std::vector<Row>> paper_bytes(const BenchOptions&) {
   const PaperCube cube;
   cube.fill(map, Pruning::kWhenSettled);
   cube.fill(tree, Pruning::kWhenSettled);
-  if (const auto same = same_to_the_bit(map, tree); !same) return tl::unexpected(same.error());
+  if (const auto same = check_identical(map, tree); !same) return tl::unexpected(same.error());
 
   const MapCounts counts = map.counts();
   const std::uint64_t eight = counts.nodes() * kChildren * kPointer, one = counts.nodes() * kPointer;

@@ -7,26 +7,26 @@
 
 namespace pingvox::bench {
 
-/// Whether what the paper says is what we find.
+/// Whether our result confirms the paper.
 enum class Holds { kYes, kNo, kNotJudged };
 
-/// One thing that the paper says, and what we get. The reasons at length are in docs/paper.md, under the claim's name.
+/// A claim of the paper and our result. docs/paper.md explains it under the same name.
 struct Claim {
   std::string name;     ///< section or table first, as in "table-1-leaves-pruned"
   std::string section;  ///< of the paper
   std::string unit;     ///< of the numbers; "" for words
-  Value paper = {};     ///< nothing: the paper has no number for it
+  Value paper = {};     ///< empty: no number in the paper
   Value ours = {};
-  Value octomap = {};  ///< what liboctomap gets; nothing: it has nothing of the kind
+  Value octomap = {};  ///< result of liboctomap; empty: not applicable
   Holds holds = Holds::kNotJudged;
-  bool checked = false;  ///< our result was held against something that knows: liboctomap, exact arithmetic, the truth
-  std::string why = {};  ///< in a few words
+  bool checked = false;  ///< our result was compared with liboctomap, exact arithmetic or ground truth
+  std::string why = {};  ///< short reason
 };
 
 /// {name, section, unit, paper, ours, octomap, holds, checked, why}
 Row row_of(const Claim& claim);
 
-/// A share in per cent, to one decimal; 0 of nothing.
+/// Percentage to one decimal; 0 if whole is 0.
 double per_cent(std::size_t part, std::size_t whole);
 
 }  // namespace pingvox::bench

@@ -26,14 +26,14 @@ constexpr double kMean = 10'000.0;
 /// 0.8, as in the authors' published program; three of them reach the clamp.
 const LogOdds kEvidence = LogOdds::from_probability(0.8);
 
-/// How far apart the points are.
+/// Spread of the points.
 struct Density {
   const char* name;
   double sigma;
-  /// With the search, of the time without, from the authors' published files (985,063 points, mean of 5 runs). Their
-  /// file for the densest has a sigma of 2 where the paper says 5.
+  /// Time with the search / without, from the authors' published files (985,063 points, mean of 5 runs). Their file
+  /// for the densest has a sigma of 2 where the paper says 5.
   double published_share;
-  const char* paper;  ///< what it says of figure 8
+  const char* paper;  ///< claim about figure 8
 };
 constexpr std::array kDensities = {
     Density{"sparse", 5000.0, 1.09, "slower"},
@@ -41,8 +41,8 @@ constexpr std::array kDensities = {
     Density{"dense", 5.0, 0.24, "much faster"},
 };
 
-/// Whole cells around the mean; the few that fall outside of 16 levels are drawn again. Box and Muller's way from
-/// random bits: std::normal_distribution differs between libraries.
+/// Whole cells around the mean; the few outside of 16 levels are drawn again. Box-Muller transform,
+/// since std::normal_distribution differs between libraries.
 std::vector<Key> points_of(double sigma) {
   std::mt19937_64 random(1);
   const auto share = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53; };
@@ -93,7 +93,7 @@ void add_rows(const Density& density, std::vector<Row>& rows) {
   const double peer_s = cpu_time_s() - started;
 
   const auto compared = compare_maps(*on, *off, Sameness::kLogOdds);
-  const bool same = compared && compared->equal() && same_to_the_bit(*on, *tree).has_value();
+  const bool same = compared && compared->equal() && check_identical(*on, *tree).has_value();
   const double share = drop.ours_s / drop.peer_s;
   const std::string name = density.name;
   rows.push_back(row_of({.name = fmt::format("figure-8-{}-off", name),

@@ -35,7 +35,7 @@ Row echo_row(const TankLog& log, const std::string& name, const char* section, V
                  .why = in_words(judgement)});
 }
 
-/// The paper's detector as it is written over a log.
+/// Counts of the paper's detector over a log.
 struct PaperCount {
   EchoJudgement judgement;
   std::size_t beams = 0, silent = 0, falling = 0;
@@ -45,8 +45,8 @@ std::size_t first_bin_of(const Beam& beam) {
   return static_cast<std::size_t>(std::ceil(EchoOptions::kDefaultBlanking_m / beam.bin_length_m));
 }
 
-/// Of their program: 0.3 m.
-std::size_t first_bin_of_theirs(const Beam&) {
+/// In the authors' program: 0.3 m.
+std::size_t authors_first_bin(const Beam&) {
   return 24;
 }
 
@@ -73,7 +73,7 @@ FilterOptions no_filter() {
   return {.filter = Filter::kNone};
 }
 
-/// The first of the four that is right most often.
+/// The first of the four with the most correct echoes.
 template <class RightAt>
 int best_threshold(RightAt&& right_at) {
   int best = kThresholds.front();
@@ -83,7 +83,7 @@ int best_threshold(RightAt&& right_at) {
   return best;
 }
 
-/// Cells of the map that are occupied more than `range_m` from the head, where the tank has no wall.
+/// Occupied cells more than `range_m` from the head, where the tank has no wall.
 std::uint64_t count_occupied_beyond(const OccupancyMap& map, double range_m) {
   std::uint64_t cells = 0;
   for_each_leaf(map, [&](const Leaf& leaf) {
@@ -93,7 +93,7 @@ std::uint64_t count_occupied_beyond(const OccupancyMap& map, double range_m) {
   return cells;
 }
 
-/// A map of axes only, as in the paper. Silent beams are walls in their last bin, or say nothing.
+/// A map of beam axes only, as in the paper. Silent beams are walls in their last bin, or ignored.
 enum class SilentBeam { kWall, kNothing };
 OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, int threshold, SilentBeam silent_beam) {
   OccupancyMap map;
@@ -111,7 +111,7 @@ OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, in
       echo.range_m = (static_cast<double>(bin) + 0.5) * beam.bin_length_m;
       trace_beam(Pose::Identity(), beam, echo, model, scan);
     }
-    if (!map.apply(scan)) break;  // there is no limit to pass
+    if (!map.apply(scan)) break;  // never fails without a limit
   }
   return map;
 }
@@ -142,9 +142,9 @@ void add_thresholds(const TankLog& log, std::vector<Row>& rows) {
   }
 }
 
-/// The authors' published program blacks out all up to 128 before it looks for a difference of 40: what is left begins
-/// with a step of more than that, so that it finds the first bin above 128.
-Row row_of_their_program(const TankLog& log) {
+/// The authors' published program sets bins up to 128 to 0 before it looks for a difference of 40, and so finds the
+/// first bin above 128.
+Row row_of_authors_program(const TankLog& log) {
   const EchoJudgement level = judge_echoes(log, {}, EchoOptions{.detector = Detector::kLevel, .threshold = 129});
   return row_of({.name = "threshold-their-program-" + log.name,
                  .section = "8.2",
@@ -169,7 +169,7 @@ void add_falling(const TankLog& log, std::vector<Row>& rows) {
   };
   row("smoothed", 20, paper_count(log, {}, 20), "behind 0.75 m: where it gets quieter there is no wall");
   row("unsmoothed", 70, paper_count(log, no_filter(), 70), "behind 0.75 m");
-  row("of-the-ringing", 20, paper_count(log, {}, 20, &first_bin_of_theirs),
+  row("of-the-ringing", 20, paper_count(log, {}, 20, &authors_first_bin),
       "smoothed, behind 24 bins as in their program: the ringing falls");
 }
 
@@ -230,7 +230,7 @@ Result<std::vector<Row>> paper_thresholds(const BenchOptions&) {
   std::vector<Row> rows;
   for (const TankLog& log : *logs) {
     add_thresholds(log, rows);
-    rows.push_back(row_of_their_program(log));
+    rows.push_back(row_of_authors_program(log));
     add_falling(log, rows);
     add_silent(log, rows);
   }

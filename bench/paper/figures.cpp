@@ -15,7 +15,7 @@
 namespace pingvox::bench {
 namespace {
 
-/// Writes figures into a folder and keeps a row of each.
+/// Writes figures into a folder and collects a row for each.
 class Folder {
  public:
   explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}

@@ -15,7 +15,7 @@
 namespace pingvox::bench {
 namespace {
 
-/// The paper's cube around the middle of a lattice of any depth, settled at the end.
+/// Fills the paper's cube at the centre of a lattice of any depth with lazy updates.
 template <KeyWord W>
 void fill(OccupancyMap& map) {
   Editor editor = map.edit();
@@ -31,7 +31,7 @@ void fill(OccupancyMap& map) {
   }
 }
 
-/// Rays from the middle to points on a sphere of 100 cells: what keys are for besides addressing.
+/// Rays from the centre to points on a sphere of 100 cells.
 template <KeyWord W>
 std::uint64_t walk_rays(const Lattice& lattice) {
   std::uint64_t cells = 0;
@@ -46,7 +46,7 @@ std::uint64_t walk_rays(const Lattice& lattice) {
   return cells;
 }
 
-/// Work without a peer, in seconds: the median of `times` runs after a first one.
+/// Time of work [s]: the median of `times` runs after a warm-up.
 template <class Prepare, class Work>
 double seconds_of(Prepare&& prepare, Work&& work) {
   return time_in_pairs({prepare, work}, {{}, [] {}}, {.pairs = 3}).ours_s;

@@ -6,8 +6,7 @@
 
 namespace pingvox::bench {
 
-/// All that the paper says and we can measure: the rows of all its benchmarks, and its figures where pictures are asked
-/// for.
+/// All measurable claims of the paper: the rows of its benchmarks, and its figures if options.pictures is set.
 Result<std::vector<Row>> paper(const BenchOptions& options);
 
 }  // namespace pingvox::bench

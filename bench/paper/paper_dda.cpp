@@ -10,7 +10,7 @@ template <class Real>
 std::vector<std::array<std::int64_t, 3>> paper_dda(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                                    double resolution_m, PaperStop stop) {
   using Cell = std::array<std::int64_t, 3>;
-  // As keys are made: times the inverse.
+  // As for keys: multiply by the inverse.
   const auto cell_of = [&](const Eigen::Vector3d& point) {
     const double cells_per_m = 1.0 / resolution_m;
     const auto axis = [&](int i) { return static_cast<std::int64_t>(std::floor(point[i] * cells_per_m)); };

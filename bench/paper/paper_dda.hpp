@@ -7,14 +7,14 @@
 
 namespace pingvox::bench {
 
-/// How the paper's traversal ends when it has not met its end cell.
+/// Stopping rule of the paper's traversal when it misses its end cell.
 enum class PaperStop {
   kBeyondLength,  ///< all its parameters are beyond the ray's length: "can lead to missing voxels", figure 11
-  kTravelled,     ///< it is farther from the start than the end cell is: "a slight snapping", figure 12
+  kTravelled,     ///< farther from the start than the end cell: "a slight snapping", figure 12
 };
 
-/// The paper's DDA as section 6.1 has it: parameters in floating point that are added up face by face, until the
-/// end cell is met or `stop` says so. The start cell included, the end cell not.
+/// The paper's DDA as in section 6.1: floating-point parameters summed face by face, until the end cell or `stop`.
+/// Includes the start cell, not the end cell.
 /// @tparam Real      float or double: the paper does not say
 /// @param from, to   [m]
 template <class Real>

@@ -7,15 +7,15 @@
 
 namespace pingvox::bench {
 
-/// Where the paper's detector fires.
+/// Detection of the paper's detector.
 struct PaperEdge {
-  std::size_t bin = 0;      ///< the second of the two that differ
-  bool is_falling = false;  ///< the sound got weaker there: no wall
+  std::size_t bin = 0;      ///< the second of the two bins
+  bool is_falling = false;  ///< intensity decreases: no wall
 };
 
-/// The paper's detector as section 8.2 has it: the first place where "the difference between two sequential
-/// measures in a beam is significant enough", whichever way. nullopt: nowhere.
-/// @param first_bin  what lies before it is the head's own reflection
+/// The paper's detector as in section 8.2: the first place where "the difference between two sequential
+/// measures in a beam is significant enough", of either sign. nullopt: none.
+/// @param first_bin  nearer bins hold the ringing of the head
 std::optional<PaperEdge> paper_edge(std::span<const std::uint8_t> beam, std::size_t first_bin, int threshold);
 
 }  // namespace pingvox::bench

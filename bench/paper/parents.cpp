@@ -13,10 +13,10 @@ namespace {
 
 constexpr int kDepth = 12;
 
-/// What the leaves below a node hold.
+/// Sums over the leaves below a node.
 struct Below {
   std::uint64_t occupied = 0, free = 0;
-  double squares = 0.0;  ///< of the differences to the block's value
+  double squares = 0.0;  ///< of the differences to the node's value
 };
 
 void add_leaves(const NodeView& node, int levels, float block_value, Below& below) {

@@ -9,11 +9,11 @@
 
 namespace pingvox::bench {
 
-/// How the cells of a traversal stand to those that the segment crosses by exact arithmetic. Cells that it touches
-/// within 1e-9 of a cell of a face, edge or corner count for neither.
+/// Cells of a traversal compared with those that the segment crosses by exact arithmetic. Cells touched within 1e-9 of
+/// a cell of a face, edge or corner are not counted.
 struct RayJudgement {
   std::size_t crossed = 0;   ///< cells before the end cell that the segment crosses
-  std::size_t missed = 0;    ///< of these, not walked
+  std::size_t missed = 0;    ///< of these, not in the traversal
   std::size_t walked = 0;    ///< cells of the traversal
   std::size_t strayed = 0;   ///< of these, not crossed
   std::size_t diagonal = 0;  ///< steps that change more than one component

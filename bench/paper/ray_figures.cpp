@@ -18,12 +18,12 @@ constexpr std::size_t kPanel_px = 360;
 constexpr double kCell_m = 0.1;
 using Cell = std::array<std::int64_t, 3>;
 
-/// A point in cells of 0.1 m, as metres: tenths, as a person would type them.
+/// Metres of a point in cells of 0.1 m.
 Eigen::Vector3d metres(const Eigen::Vector3d& cells) {
   return cells / 10.0;
 }
 
-/// As it is written: the cells before the end, and the end cell, which is hit in any case.
+/// The paper's traversal plus the end cell, which is always hit.
 std::vector<Cell> paper_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to, PaperStop stop) {
   std::vector<Cell> cells = paper_dda<double>(metres(from), metres(to), kCell_m, stop);
   const auto axis = [&](int i) { return static_cast<std::int64_t>(std::floor(to[i])); };
@@ -31,14 +31,14 @@ std::vector<Cell> paper_cells(const Eigen::Vector3d& from, const Eigen::Vector3d
   return cells;
 }
 
-/// Steps that are missing before the end cell: 1 is as it should be.
+/// Distance from the last cell to the end cell; 1 is correct.
 std::int64_t last_jump(const std::vector<Cell>& cells) {
   if (cells.size() < 2) return 1;
   const Cell &end = cells.back(), &before = cells[cells.size() - 2];
   return std::abs(end[0] - before[0]) + std::abs(end[1] - before[1]) + std::abs(end[2] - before[2]);
 }
 
-/// The first ray of some that loses most.
+/// The ray with the largest last jump.
 template <class Ends>
 Eigen::Vector3d worst_end(const Ends& ends, const Eigen::Vector3d& from, PaperStop stop) {
   Eigen::Vector3d worst = ends.front();
@@ -55,7 +55,7 @@ RayFigure figure_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to, cons
   return figure;
 }
 
-/// By the library, the end cell included.
+/// Cells of our DDA, including the end cell.
 std::vector<Cell> our_cells(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Lattice lattice(kCell_m);
   std::vector<Cell> cells;
@@ -75,7 +75,7 @@ Panel panel(const RayFigure& figure, std::string caption) {
 }  // namespace
 
 Result<Picture> diagonal_rays() {
-  // Not through the corners: there, rounding may choose.
+  // Not through corners, where rounding decides.
   const Eigen::Vector2d from(0.5, 0.3), to(11.5, 11.3), slant(11.5, 7.1);
   const std::array panels = {
       panel(ray_figure(from, to, RayAlgorithm::kBresenham), "9: a diagonal by Bresenham: cells touch at corners only"),

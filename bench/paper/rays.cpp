@@ -32,7 +32,7 @@ std::vector<Cell> octomap_cells(const octomap::OcTree& tree, const Eigen::Vector
   return cells;
 }
 
-/// Bresenham knows cells only: the segment from middle to middle is the best that it can be held against.
+/// Bresenham knows cells only, so it is compared with the segment between their centres.
 ExactSegment between_middles(const RandomSegment& segment) {
   const auto middle = [](ExactSegment::Point point) {
     for (std::int64_t& axis : point) axis = (axis & ~(ExactSegment::kUnit - 1)) + ExactSegment::kUnit / 2;
@@ -83,7 +83,7 @@ void add_cells(int dimensions, std::vector<Row>& rows) {
       ours.diagonal == 0 ? Holds::kYes : Holds::kNo, "");
 }
 
-/// Whether a traversal goes on, face by face, up to its end cell.
+/// Whether a traversal is connected face by face up to its end cell.
 bool reaches(const std::vector<Cell>& cells, const Cell& start, const Cell& end) {
   const Cell& last = cells.empty() ? start : cells.back();
   std::int64_t apart = 0;
@@ -91,7 +91,7 @@ bool reaches(const std::vector<Cell>& cells, const Cell& start, const Cell& end)
   return cells.empty() ? start == end : apart == 1;
 }
 
-/// Rays as people give them: from the origin to multiples of 0.1 m, in cells of 0.1 m.
+/// Rays with round ends: from the origin to multiples of 0.1 m, in cells of 0.1 m.
 struct RoundRay {
   Eigen::Vector3d to;
   Cell end;

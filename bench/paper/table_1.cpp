@@ -27,7 +27,7 @@ constexpr std::array kColumns = {
     Column{"lazy", Pruning::kWhenSettled, 19'769, 5'201, 19'769, 2.9},
 };
 
-/// The cube both ways.
+/// The cube in both libraries.
 struct Both {
   std::optional<OccupancyMap> map;
   std::unique_ptr<octomap::OcTree> tree;
@@ -37,7 +37,7 @@ struct Both {
   }
 };
 
-/// An unpruned tree is compared cell by cell, not node by node with what pruning would leave.
+/// Unpruned trees are compared cell by cell, not node by node.
 bool is_same(const Both& both) {
   return difference(*both.map, *both.tree).differs == 0 && both.map->counts().nodes() == both.tree->size();
 }
@@ -70,7 +70,7 @@ std::vector<Row> counts_of(const Column& column) {
 
 struct Times {
   double ours_s, octomap_s;
-  bool same;  ///< both made the same map
+  bool same;  ///< both maps are equal
 };
 
 Times times_of(const Column& column, const PaperCube& cube, int pairs) {
@@ -84,10 +84,10 @@ Times times_of(const Column& column, const PaperCube& cube, int pairs) {
   return {result.ours_s, result.peer_s, is_same(both)};
 }
 
-/// Whose experiment it is: the paper's times belong to one only.
+/// Experiment: the paper has times for one only.
 enum class Whose { kPapers, kOurs };
 
-/// A row for each column, and how many times as long pruning at each update takes as pruning at the end.
+/// A row for each column, and the time of pruning at each update / at the end.
 void add_times(const std::string& name, const PaperCube& cube, int pairs, Whose whose, const char* why,
                std::vector<Row>& rows) {
   std::array<Times, kColumns.size()> times{};

@@ -26,7 +26,7 @@ Picture cartesian(const Sweep& sweep, const PolarImage& image, const Echoes& ech
   return render_cartesian(sweep, image, echoes, options);
 }
 
-/// The sweep with other intensities.
+/// The sweep with the intensities of an image.
 std::vector<Beam> beams_of(const Sweep& sweep, const PolarImage& image) {
   std::vector<Beam> beams = sweep.beams;
   for (std::size_t n = 0; n < beams.size(); ++n) {
@@ -40,7 +40,7 @@ Picture polar(const std::vector<Beam>& beams) {
   return render_echoes(beams, {}, {.target_px = 320});
 }
 
-/// What the paper maps: the axes of one sweep's beams, each up to its echo.
+/// A map as in the paper: the axes of one sweep's beams, each up to its echo.
 Result<Picture> map_picture(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& echo) {
   OccupancyMap map;
   BeamsInMemory beams(sweep.beams);
@@ -52,7 +52,7 @@ Result<Picture> map_picture(const Sweep& sweep, const FilterOptions& filter, con
   return render_map(map, {.target_px = kPanel_px, .at_least = tank});
 }
 
-/// Adds pictures as panels of one figure, or remembers the first error.
+/// Collects pictures as panels of one figure, or the first error.
 class Figures {
  public:
   void add(std::string name, std::string section, std::string says, const std::vector<Panel>& panels) {

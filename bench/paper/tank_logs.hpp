@@ -30,7 +30,7 @@ Result<std::optional<TankLog>> recorded_tank();
 /// The simulated tank, and the recorded one where it is there.
 Result<std::vector<TankLog>> tank_logs();
 
-/// How the echoes of a log stand to its walls.
+/// Echoes of a log compared with its walls.
 struct EchoJudgement {
   std::size_t judged = 0;  ///< beams whose wall is known
   std::size_t right = 0;   ///< echo within 10 cm of it
@@ -39,7 +39,7 @@ struct EchoJudgement {
   void add(std::optional<double> wall_m, std::optional<double> echo_m);
 };
 
-/// Judges a filter and a detector.
+/// Evaluates a filter and a detector.
 EchoJudgement judge_echoes(const TankLog& log, const FilterOptions& filter, const EchoOptions& echo);
 
 }  // namespace pingvox::bench

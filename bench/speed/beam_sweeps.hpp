@@ -11,18 +11,18 @@
 
 namespace pingvox::bench {
 
-/// A beam and its echo as the beam model takes them: free up to the echo's range, which is what a scan of rays says.
+/// A beam and its echo for the beam model: free up to the echo's range, as in a scan of rays.
 struct HeardBeam {
   Beam beam;
   Echo echo;
 };
 using BeamSweep = std::vector<HeardBeam>;
 
-/// The first sweeps of the tank, at most so many.
+/// The first `most` sweeps of the tank.
 std::vector<BeamSweep> beam_sweeps(const TankEchoes& tank, std::size_t most);
 
-/// Each sweep traced and applied, as `pingvox map` does once it has found the echoes. `scan` is room that is used for
-/// all of them, empty before and after.
+/// Traces and applies each sweep, as `pingvox map` does after detection. `scan` is reused buffer space, empty before
+/// and after.
 void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const BeamSweep> sweeps, const BeamModelOptions& model);
 
 }  // namespace pingvox::bench

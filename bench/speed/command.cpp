@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kScans = 20, kPoints = 50'000;
 constexpr double kRange_m = 30.0;
-/// The library walks rays in single precision with sums that drift: the most cells (as a share) that may differ.
+/// Maximum fraction of cells that may differ, since liboctomap walks rays in single precision.
 constexpr double kTolerated = 1e-3;
 
 Eigen::Vector3d random_direction(Random& random) {
@@ -32,7 +32,7 @@ Eigen::Vector3d random_direction(Random& random) {
   }
 }
 
-/// What a scanner that looks everywhere sees from here, in its own frame.
+/// Points seen by an omnidirectional scanner, in its own frame.
 std::unique_ptr<octomap::Pointcloud> scan_world(const World& world, const Pose& map_from_sensor, Random& random) {
   auto cloud = std::make_unique<octomap::Pointcloud>();
   cloud->reserve(kPoints);
@@ -46,7 +46,7 @@ std::unique_ptr<octomap::Pointcloud> scan_world(const World& world, const Pose& 
   return cloud;
 }
 
-/// Scans along a way through the harbour.
+/// Writes a scan graph of a route through the harbour.
 Result<void> write_graph(const std::string& path) {
   const Scene scene = harbour_scene({});
   const double duration_s = length_m(scene.loop) / TravelOptions{}.speed_m_s;
@@ -58,7 +58,7 @@ Result<void> write_graph(const std::string& path) {
     if (!pose) return fail(Error::Code::kCorrupt, "the way through the harbour is too short");
     const Eigen::Vector3d at = pose->translation();
     const double yaw_rad = std::atan2(pose->linear()(1, 0), pose->linear()(0, 0));
-    // The graph takes the cloud.
+    // The graph takes ownership of the cloud.
     graph.addNode(scan_world(scene.world, *pose, random).release(),
                   octomap::pose6d(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()),
                                   0.0, 0.0, yaw_rad));
@@ -90,10 +90,10 @@ Result<std::vector<Row>> command(const BenchOptions&) {
 
   const std::string ours_bt = scratch->path("ours.bt"), peer_bt = scratch->path("octomap.bt");
   const std::vector<std::string> ours_words = {*program, "map", graph, "-o", ours_bt, "--resolution", "0.1", "--quiet"};
-  // It writes the tree with log-odds (.ot) as well, and cannot be told not to.
+  // graph2tree always writes an .ot as well.
   const std::vector<std::string> peer_words = {"graph2tree", "-i", graph, "-o", peer_bt, "-res", "0.1"};
-  if (const auto run = run_well(ours_words); !run) return tl::unexpected(run.error());
-  if (const auto run = run_well(peer_words); !run) {
+  if (const auto run = run_or_fail(ours_words); !run) return tl::unexpected(run.error());
+  if (const auto run = run_or_fail(peer_words); !run) {
     if (run.error().code != Error::Code::kUnsupported) return tl::unexpected(run.error());
     return fail(Error::Code::kUnsupported, run.error().message + ": it comes with OctoMap (octomap-tools)");
   }
@@ -109,8 +109,8 @@ Result<std::vector<Row>> command(const BenchOptions&) {
   }
 
   bool all_well = true;
-  const Side ours{{}, [&] { all_well &= run_well(ours_words).has_value(); }};
-  const Side peer{{}, [&] { all_well &= run_well(peer_words).has_value(); }};
+  const Side ours{{}, [&] { all_well &= run_or_fail(ours_words).has_value(); }};
+  const Side peer{{}, [&] { all_well &= run_or_fail(peer_words).has_value(); }};
   Row row =
       speed_row("command", time_in_pairs(ours, peer, {.clock_s = &childrens_cpu_time_s, .warm_up = WarmUp::kNone}), {});
   if (!all_well) return fail(Error::Code::kCorrupt, "a program failed while it was timed");

@@ -15,15 +15,15 @@ namespace {
 
 constexpr double kCell_m = 0.05;
 constexpr std::size_t kSweeps = 3;
-/// Of the cells that the bundles touch, the most (as a share) that the cones may leave out: liboctomap walks rays in
-/// single precision with sums that drift.
+/// Maximum fraction of the bundles' cells that may be missing in the cones, since liboctomap walks rays in single
+/// precision.
 constexpr double kMaxMissing = 1e-3;
-/// How many more the cones may touch, as a share: those between the rays, and those that the cone's edge cuts.
+/// Maximum fraction of additional cells of the cones: between the rays, and at the edge of the cone.
 constexpr double kMaxMore = 0.15;
 
-/// How the cells of the cones stand to those of the bundles, as shares of these.
+/// Cells of the cones relative to those of the bundles.
 struct ConeCells {
-  std::uint64_t cells = 0;  ///< of either
+  std::uint64_t cells = 0;  ///< in total
   double missing = 0.0, more = 0.0;
 };
 

@@ -6,7 +6,7 @@
 
 namespace pingvox::bench {
 
-/// Beams of the tank as cones, against insertPointCloud of their bundles of rays: what OctoMap has for them.
+/// Beams of the tank as cones, compared with insertPointCloud of bundles of rays.
 Result<std::vector<Row>> tank_cone(const BenchOptions& options);
 
 }  // namespace pingvox::bench

@@ -13,7 +13,7 @@ namespace {
 constexpr double kCell_m = 0.01;
 constexpr std::uint16_t kFirst = 32768, kEdge = 100;
 
-/// All cells of the cube, in both libraries' keys: what the sides are given.
+/// All cells of the cube as keys of both libraries.
 struct Cells {
   std::vector<Key> ours;
   std::vector<octomap::OcTreeKey> peer;
@@ -43,11 +43,11 @@ void fill_at_once(OccupancyMap& map, std::span<const Key> cells) {
   (void)map.update(cells, LogOdds::from_probability(0.7));
 }
 
-/// The library's own value of a hit is a double's logarithm: the same number is handed in.
+/// Uses our log-odds of a hit, since liboctomap computes its own in double precision.
 void fill(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> cells, PeerMode mode) {
   const float hit = LogOdds::from_probability(0.7).value();
   for (const octomap::OcTreeKey& cell : cells) tree.updateNode(cell, hit, mode == PeerMode::kLazy);
-  settle(tree, mode);
+  synchronize(tree, mode);
 }
 
 Result<std::vector<Row>> cube(std::string name, void (*fill_ours)(OccupancyMap&, std::span<const Key>), PeerMode mode) {

@@ -8,8 +8,8 @@
 
 namespace pingvox::bench {
 
-/// Draws `speed.png` into a folder: for each row that has a ratio to liboctomap a bar, on a logarithmic axis. Nothing
-/// is drawn when no row has one.
+/// Draws `speed.png` into a folder: a bar for each row with a ratio to liboctomap, on a logarithmic axis. Draws nothing
+/// if there is none.
 Result<void> draw_ratios(const std::vector<Row>& rows, const std::string& folder);
 
 }  // namespace pingvox::bench

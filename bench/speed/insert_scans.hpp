@@ -10,7 +10,7 @@
 
 namespace pingvox::bench {
 
-/// Each scan traced and applied. `scan` is room that is used for all of them, empty before and after.
+/// Traces and applies each scan. `scan` is reused buffer space, empty before and after.
 inline void insert(OccupancyMap& map, ScanUpdate& scan, std::span<const RayCloud> scans,
                    const PointScanOptions& options = {}) {
   PointTracer tracer(options);

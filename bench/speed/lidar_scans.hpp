@@ -7,15 +7,14 @@
 
 namespace pingvox::bench {
 
-/// A lidar that spins about its upright axis.
+/// A spinning lidar.
 struct LidarOptions {
-  std::size_t rings = 16, steps = 1800;  ///< rays up and around
-  double height_deg = 30.0;              ///< from the lowest ring to the highest, about the horizon
+  std::size_t rings = 16, steps = 1800;  ///< vertical and horizontal rays
+  double height_deg = 30.0;              ///< vertical field of view, centred on the horizon
   std::size_t scans = 10;
 };
 
-/// What it sees in a simulated harbour of 60 x 40 m, half a metre of way between scans; rays that meet nothing within
-/// 50 m are left out.
+/// Its scans in a simulated harbour of 60 x 40 m, 0.5 m apart; rays without a hit within 50 m are omitted.
 std::vector<RayCloud> lidar_scans(const LidarOptions& options);
 
 }  // namespace pingvox::bench

@@ -13,18 +13,18 @@
 
 namespace pingvox::bench {
 
-/// Two libraries that make the same map from nothing.
+/// A comparison of two libraries that build the same map.
 struct MapBenchmark {
   std::string name;
   double resolution_m = 0.05;
-  /// Fills an empty map. The scan is room that is used for all runs, empty before and after.
+  /// Fills an empty map. The scan is reused buffer space, empty before and after.
   std::function<void(OccupancyMap&, ScanUpdate&)> ours;
   std::function<void(octomap::OcTree&)> peer;
-  /// Whether the two may be compared: held to one run of each before anything is measured.
-  std::function<Result<void>(const OccupancyMap&, const octomap::OcTree&)> check = &same_to_the_bit;
+  /// Checks one run of each before anything is measured.
+  std::function<Result<void>(const OccupancyMap&, const octomap::OcTree&)> check = &check_identical;
 };
 
-/// Checks the maps, then measures the peak memory of each side, from nothing in a process of its own, and the times.
+/// Checks the maps, then measures the peak memory of each side in a child process, and the times.
 /// @return the row of speed_row, to which the caller may add; the error of `check`
 Result<Row> measure(const MapBenchmark& benchmark);
 

@@ -21,7 +21,7 @@ Result<std::string> bt_of(const OccupancyMap& map) {
   return std::move(out).str();
 }
 
-/// What a program has to do whose map goes on living: the library rounds and prunes the map that it writes.
+/// Time to write a map and keep it: liboctomap rounds and prunes the map that it writes, so it needs a copy.
 double cpu_of_whole_write_s(const octomap::OcTree& tree) {
   std::vector<double> times;
   for (int run = 0; run < 5; ++run) {
@@ -41,7 +41,7 @@ Result<std::vector<Row>> bt_write(const BenchOptions&) {
   if (!maps) return tl::unexpected(maps.error());
   const SilentStderr silent_stderr;
   const double whole_s = cpu_of_whole_write_s(*maps->peer);
-  // Rounded once before, so that its quicker call, which only writes, gives the same bytes. Ours rounds as it writes.
+  // Rounded before, so that its faster writeBinaryConst gives the same bytes. Ours rounds as it writes.
   maps->peer->toMaxLikelihood();
   maps->peer->prune();
   std::ostringstream ours_out, peer_out;
@@ -79,7 +79,7 @@ Result<std::vector<Row>> bt_read(const BenchOptions&) {
                   [&] { tree->readBinary(in); }};
   const PairedTimes result = time_in_pairs(ours, peer, {.pairs = 21});
   if (!*map) return tl::unexpected(map->error());
-  if (const auto same = same_to_the_bit(map->value().map, *tree); !same) return tl::unexpected(same.error());
+  if (const auto same = check_identical(map->value().map, *tree); !same) return tl::unexpected(same.error());
   Row row = speed_row("bt-read", result, {});
   row.add("input", maps->input).add("bytes", std::uint64_t{bytes->size()});
   return std::vector{row};

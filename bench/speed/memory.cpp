@@ -33,7 +33,7 @@ Result<std::vector<Row>> memory(const BenchOptions&) {
     insert(*tree, peer_clouds, PeerEnds::kExact, PeerMode::kEager);
     return tree;
   };
-  const Result<MapDifference> found = alike(*ours(), *peer(), bundles->scans);
+  const Result<MapDifference> found = check_equal(*ours(), *peer(), bundles->scans);
   if (!found) return tl::unexpected(found.error());
   std::vector<double> ours_bytes, peer_bytes, ratios;
   for (int run = 0; run < kRuns; ++run) {

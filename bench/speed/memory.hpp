@@ -6,7 +6,7 @@
 
 namespace pingvox::bench {
 
-/// What the finished map of tank-3d takes in memory.
+/// Memory of the finished map of tank-3d.
 Result<std::vector<Row>> memory(const BenchOptions& options);
 
 }  // namespace pingvox::bench

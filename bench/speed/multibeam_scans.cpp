@@ -25,7 +25,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// A number at a place, 0 behind the end.
+/// A number at an offset, 0 beyond the end.
 template <class T, std::endian kOrder>
 T number(Bytes bytes, std::size_t at) {
   std::uint8_t raw[sizeof(T)] = {};
@@ -46,7 +46,7 @@ T big(Bytes bytes, std::size_t at) {
   return number<T, std::endian::big>(bytes, at);
 }
 
-/// Where a beam ended, in the plane across the way.
+/// A sounding in the plane across the track.
 struct Sounding {
   double angle_rad = 0.0;  ///< from straight down, to starboard
   double range_m = 0.0;
@@ -59,7 +59,7 @@ struct Ping {
   std::vector<Sounding> soundings;
 };
 
-/// A QINSy packet: an XTF ping header, then R2Sonic's sections, of which R0 has the times and A2 the angles.
+/// A QINSy packet: an XTF ping header, then R2Sonic's sections, of which R0 holds the times and A2 the angles.
 Ping ping_in(Bytes packet) {
   Ping ping{.latitude_rad = little<double>(packet, 128) * kDegree,
             .longitude_rad = little<double>(packet, 136) * kDegree,
@@ -69,7 +69,7 @@ Ping ping_in(Bytes packet) {
             .heave_m = little<float>(packet, 216),
             .soundings = {}};
   constexpr std::size_t kHeader = 256, kMagic = 12, kName = 4;
-  const double sound_m_s = 2.0 * static_cast<double>(little<float>(packet, 32));  // XTF keeps half of it
+  const double sound_m_s = 2.0 * static_cast<double>(little<float>(packet, 32));  // XTF holds half of it
   std::vector<Sounding> soundings(kBeams);
   const Bytes body = packet.subspan(std::min(packet.size(), kHeader + kMagic));
   for (std::size_t at = 0; at + kName <= body.size();) {
@@ -119,7 +119,7 @@ RayCloud scan_of(const Pose& map_from_sensor, std::span<const Sounding> sounding
   return scan;
 }
 
-/// East, north and up of the first ping.
+/// Scans in east, north, up relative to the first ping.
 std::vector<RayCloud> scans_of(const std::vector<Ping>& pings) {
   constexpr double kEarth_m = 6371e3;
   std::vector<RayCloud> scans;

@@ -19,10 +19,10 @@ void insert(octomap::OcTree& tree, std::span<const PeerScan> scans, PeerEnds end
   for (const PeerScan& scan : scans) {
     tree.insertPointCloud(scan.cloud, scan.origin_m, -1.0, lazy, ends == PeerEnds::kCells);
   }
-  settle(tree, mode);
+  synchronize(tree, mode);
 }
 
-void settle(octomap::OcTree& tree, PeerMode mode) {
+void synchronize(octomap::OcTree& tree, PeerMode mode) {
   if (mode == PeerMode::kEager) return;
   tree.updateInnerOccupancy();
   tree.prune();

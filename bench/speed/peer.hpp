@@ -12,15 +12,15 @@ namespace pingvox::bench {
 
 /// How liboctomap is called.
 enum class PeerMode {
-  kEager,  ///< parents right and pruned after each update
-  kLazy,   ///< settled and pruned once, after all scans
+  kEager,  ///< parents updated and pruned after each update
+  kLazy,   ///< parents updated and pruned once, after all scans
 };
 enum class PeerEnds {
   kExact,  ///< a ray to each point
   kCells,  ///< a ray to the middle of each cell with a point: `discretize`
 };
 
-/// A scan as the library takes it.
+/// A scan in the form of liboctomap.
 struct PeerScan {
   octomap::point3d origin_m;
   octomap::Pointcloud cloud;
@@ -29,8 +29,8 @@ std::vector<PeerScan> peer_scans(std::span<const RayCloud> scans);
 
 void insert(octomap::OcTree& tree, std::span<const PeerScan> scans, PeerEnds ends, PeerMode mode);
 
-/// What is left to do when all updates of a map are done.
-void settle(octomap::OcTree& tree, PeerMode mode);
+/// Updates parents and prunes after lazy updates.
+void synchronize(octomap::OcTree& tree, PeerMode mode);
 
 /// The mode in which an empty map is filled faster, by one run of each.
 PeerMode faster_mode(double resolution_m, const std::function<void(octomap::OcTree&, PeerMode)>& fill);

@@ -31,7 +31,7 @@ std::vector<Key> normal_keys(double sigma) {
 
 void update(octomap::OcTree& tree, std::span<const octomap::OcTreeKey> keys, LogOdds hit, PeerMode mode) {
   for (const octomap::OcTreeKey& key : keys) tree.updateNode(key, hit.value(), mode == PeerMode::kLazy);
-  settle(tree, mode);
+  synchronize(tree, mode);
 }
 
 Result<std::vector<Row>> points(const std::string& name, double sigma) {

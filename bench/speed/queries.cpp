@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t kKeys = 1'000'000, kRays = 100'000;
 constexpr double kRange_m = 10.0;  ///< the tank is 5 m wide
-/// liboctomap adds up floats as it goes: the most rays (as a share) that may end elsewhere.
+/// Maximum fraction of rays that may end elsewhere, since liboctomap sums floats.
 constexpr double kMaxOther = 0.01;
 
 std::uint64_t below(Random& random, std::uint64_t end) {
   return random.bits() % end;
 }
 
-/// Of a random leaf a random cell.
+/// A random cell of a random leaf.
 Key known_key(const std::vector<Leaf>& leaves, int levels, Random& random) {
   const Leaf& leaf = leaves[below(random, leaves.size())];
   const std::uint64_t edge = std::uint64_t{1} << (levels - leaf.depth);
@@ -38,7 +38,7 @@ std::vector<Leaf> leaves_of(const OccupancyMap& map) {
   return all;
 }
 
-/// By turns a cell that is known and any one in the map's bounds.
+/// Alternately a known cell and any cell within the map's bounds.
 std::vector<Key> random_keys(const OccupancyMap& map) {
   Random random(12);
   const std::vector<Leaf> known = leaves_of(map);
@@ -63,7 +63,7 @@ Occupancy classify(const octomap::OcTree& tree, const octomap::OcTreeKey& key) {
 }
 
 struct Cast {
-  Eigen::Vector3d origin_m, direction;  ///< coordinates are those of floats
+  Eigen::Vector3d origin_m, direction;  ///< exact in single precision
 };
 
 std::vector<Cast> random_casts(const OccupancyMap& map) {
@@ -85,7 +85,7 @@ octomap::point3d as_peer(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// Whether both ended in the same occupied cell, or both in none.
+/// Whether both ended in the same occupied cell, or neither in one.
 bool end_alike(const octomap::OcTree& tree, const RayEnd& ours, bool peer_hit, const octomap::point3d& peer_end) {
   if ((ours.what == Occupancy::kOccupied) != peer_hit) return false;
   if (!peer_hit) return true;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kCell_m = 0.05, kHalfBox_m = 10.0;
 constexpr std::size_t kRays = 131'072;
-/// liboctomap adds up floats as it goes: the most rays (as a share) that may take another way past an edge.
+/// Maximum fraction of rays that may pass an edge differently, since liboctomap sums floats.
 constexpr double kMaxOther = 0.01;
 
 /// Two ends of a ray [m].
@@ -80,7 +80,7 @@ Result<std::vector<Row>> rays(const BenchOptions&) {
     return fail(Error::Code::kCorrupt, fmt::format("only {} of {} rays have liboctomap's keys", same, segments.size()));
   }
 
-  // The sums keep the compiler from leaving the work out.
+  // The sums keep the compiler from removing the work.
   std::size_t ours_cells = 0, peer_cells = 0;
   const Side ours{{}, [&] {
                     for_each_ray(lattice, segments, keys,

@@ -6,7 +6,7 @@
 
 namespace pingvox::bench {
 
-/// Random rays made keys, against computeRayKeys.
+/// Keys of random rays, compared with computeRayKeys.
 Result<std::vector<Row>> rays(const BenchOptions& options);
 
 }  // namespace pingvox::bench

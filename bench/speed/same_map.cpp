@@ -5,7 +5,7 @@
 #include <bit>
 #include <optional>
 
-#include "cells_beyond_doubt.hpp"
+#include "cells_beyond_rounding.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox::bench {
@@ -17,7 +17,7 @@ const octomap::OcTreeNode* child_of(const octomap::OcTree& tree, const octomap::
                                                                                         : nullptr;
 }
 
-/// Its lowest cell, and how deep it is.
+/// Lowest cell and depth of a node.
 struct Node {
   std::uint32_t x = 0, y = 0, z = 0;
   int depth = 0;
@@ -29,7 +29,7 @@ struct Node {
   }
 };
 
-/// Walks both trees at once; where one ends in a leaf it is compared with all leaves of the other.
+/// Walks both trees together; a leaf of one is compared with all leaves of the other below it.
 class Comparison {
  public:
   Comparison(const OccupancyMap& ours, const octomap::OcTree& peer)
@@ -89,13 +89,14 @@ MapDifference difference(const OccupancyMap& ours, const octomap::OcTree& peer) 
   return comparison.result();
 }
 
-Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& peer, std::span<const RayCloud> scans) {
+Result<MapDifference> check_equal(const OccupancyMap& ours, const octomap::OcTree& peer,
+                                  std::span<const RayCloud> scans) {
   MapDifference found = difference(ours, peer);
   if (found.differs > found.keys.size()) {
     return fail(Error::Code::kCorrupt,
                 fmt::format("not what liboctomap makes: {} of {} cells differ", found.differs, found.cells));
   }
-  const std::vector<Key> settled = cells_beyond_doubt(ours.lattice(), scans, found.keys);
+  const std::vector<Key> settled = cells_beyond_rounding(ours.lattice(), scans, found.keys);
   if (settled.empty()) return found;
   const Eigen::Vector3d first_m = ours.lattice().centre_of(settled.front());
   return fail(Error::Code::kCorrupt,
@@ -104,7 +105,7 @@ Result<MapDifference> alike(const OccupancyMap& ours, const octomap::OcTree& pee
                           found.differs, found.cells, settled.size(), first_m.x(), first_m.y(), first_m.z()));
 }
 
-Result<void> same_to_the_bit(const OccupancyMap& ours, const octomap::OcTree& peer) {
+Result<void> check_identical(const OccupancyMap& ours, const octomap::OcTree& peer) {
   const MapDifference found = difference(ours, peer);
   const std::uint64_t nodes = ours.counts().nodes();
   if (found.differs == 0 && nodes == peer.size()) return {};

@@ -25,11 +25,11 @@ struct ScanWork {
   double resolution_m = 0.05;
   std::vector<RayCloud> scans;
   EndPoints ends = EndPoints::kExact;
-  /// What we do in place of taking the scans in as clouds; empty: that.
+  /// Our side; empty: insert the scans as clouds.
   std::function<void(OccupancyMap&, ScanUpdate&)> ours;
 };
 
-/// The rays that both libraries walk with EndPoints::kCells.
+/// The rays that both libraries trace with EndPoints::kCells.
 std::vector<RayCloud> rays_to_cells(const Lattice& lattice, const std::vector<RayCloud>& scans) {
   std::vector<RayCloud> all;
   for (const RayCloud& scan : scans) {
@@ -59,8 +59,8 @@ Result<std::vector<Row>> run(const ScanWork& work) {
                              .check = [&](const OccupancyMap& map, const octomap::OcTree& tree) -> Result<void> {
                                const Result<MapDifference> difference =
                                    work.ends == EndPoints::kCells
-                                       ? alike(map, tree, rays_to_cells(map.lattice(), work.scans))
-                                       : alike(map, tree, work.scans);
+                                       ? check_equal(map, tree, rays_to_cells(map.lattice(), work.scans))
+                                       : check_equal(map, tree, work.scans);
                                if (!difference) return tl::unexpected(difference.error());
                                found = *difference;
                                return {};

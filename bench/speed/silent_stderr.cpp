@@ -7,7 +7,7 @@
 
 namespace pingvox::bench {
 
-// It uses std::cerr in some places and stderr in others.
+// liboctomap uses both std::cerr and stderr.
 SilentStderr::SilentStderr() : stream_(std::cerr.rdbuf(nullptr)), descriptor_(dup(STDERR_FILENO)) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere < 0) return;

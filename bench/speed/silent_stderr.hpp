@@ -4,8 +4,7 @@
 
 namespace pingvox::bench {
 
-/// liboctomap talks on standard error when it reads and writes. As long as this lives it is not heard, and its words
-/// cost it no system call.
+/// Discards standard error during its lifetime: liboctomap prints there when it reads and writes files.
 class SilentStderr {
  public:
   SilentStderr();
@@ -15,7 +14,7 @@ class SilentStderr {
 
  private:
   std::streambuf* stream_;  ///< of std::cerr
-  int descriptor_;          ///< a second one of standard error, -1: none
+  int descriptor_;          ///< duplicate of standard error, -1: none
 };
 
 }  // namespace pingvox::bench

@@ -28,7 +28,7 @@ Result<TankMaps> tank_maps() {
     if (const auto applied = maps.ours.apply(scan); !applied) return tl::unexpected(applied.error());
     scan.clear();
   }
-  if (const auto same = same_to_the_bit(maps.ours, *maps.peer); !same) return tl::unexpected(same.error());
+  if (const auto same = check_identical(maps.ours, *maps.peer); !same) return tl::unexpected(same.error());
   return maps;
 }
 

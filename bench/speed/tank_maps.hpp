@@ -10,8 +10,8 @@
 
 namespace pingvox::bench {
 
-/// The same map twice, to the bit: 3 sweeps of bundles in cells of 5 cm, what tank-3d makes. Both were given the cells
-/// that liboctomap finds for each sweep, one update a cell, and grew as maps grow.
+/// Identical maps in both libraries: 3 sweeps of bundles in cells of 5 cm, as in tank-3d. Both get the cells that
+/// liboctomap finds for each sweep, one update a cell.
 struct TankMaps {
   std::string input;  ///< as in TankBeams
   OccupancyMap ours;

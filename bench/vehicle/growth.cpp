@@ -19,20 +19,19 @@ namespace {
 
 constexpr double kCell_m = 0.05;
 constexpr std::array<std::uint64_t, 5> kSizes = {10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
-/// What the time in a large map may be of that in the smallest.
+/// Maximum ratio of the time in a large map to that in the smallest.
 constexpr double kMaxGrowth = 1.3;
 constexpr std::size_t kPlaces = 5, kRounds = 100;
-/// The smallest map is small, and so is the first block.
+/// Edge of a block and centre of the lattice [cells].
 constexpr std::uint16_t kEdge = 16, kMiddle = 32768;
 constexpr std::uint64_t kBlock = std::uint64_t{kEdge} * kEdge * kEdge;
 
-/// Water and walls of a basin, filled block by block: no eight cells in a cube are the same, so nothing is joined and
-/// each cell takes what a cell may take.
+/// A basin filled block by block. No octant is uniform, so nothing is pruned: the largest memory a cell can take.
 class Basin {
  public:
   explicit Basin(OccupancyMap& map) : map_(map) {}
 
-  /// Fills at least up to so many known cells. @return the error of the block that did not go in
+  /// Fills up to at least this many known cells. @return the error of the first block that fails
   Result<void> fill(std::uint64_t cells) {
     while (filled_ < cells) {
       for (int blocks = 0; blocks < 16 && filled_ < cells; ++blocks) mark_next();
@@ -45,7 +44,7 @@ class Basin {
   std::uint64_t filled() const { return filled_; }
 
  private:
-  /// Rows of 100 blocks (80 m), eight rows to a layer more: the basin grows to the side and upwards.
+  /// Rows of 100 blocks (80 m), eight rows to a layer: the basin grows sideways, then upwards.
   void mark_next() {
     const std::uint64_t n = next_++;
     const auto place = [](std::uint64_t block) { return static_cast<std::uint16_t>(kMiddle + block * kEdge); };
@@ -74,7 +73,7 @@ class Basin {
   std::uint64_t next_ = 0, filled_ = 0;
 };
 
-/// A place with water all around that is not known, the n-th of many that are alike: a multiple of 128 cells apart.
+/// The n-th of many equivalent beams in unknown water, multiples of 128 cells apart.
 InsonifiedVolume beam_at(std::size_t n) {
   const double step_m = 128 * kCell_m;
   const std::size_t row = n / 100, column = n % 100;
@@ -91,14 +90,14 @@ ScanUpdate probe(const Lattice& lattice, std::size_t n) {
   return scan;
 }
 
-/// Takes back what a probe said of the water, so that it can be said again.
-ScanUpdate unsaid(const Lattice& lattice, std::size_t n) {
+/// Reverts the misses of a probe, so that it can be applied again.
+ScanUpdate undo_probe(const Lattice& lattice, std::size_t n) {
   ScanUpdate scan(lattice, LogOdds(-ScanUpdate(lattice).miss().value()));
   trace_volume(beam_at(n), scan);
   return scan;
 }
 
-/// By the wall clock: asking for CPU time may take as long as a probe.
+/// Wall time, as reading the CPU clock may take as long as a probe.
 Result<ApplyReport> time_apply(OccupancyMap& map, const ScanUpdate& scan, std::vector<double>& times_us) {
   const auto started = std::chrono::steady_clock::now();
   auto applied = map.apply(scan);
@@ -106,7 +105,7 @@ Result<ApplyReport> time_apply(OccupancyMap& map, const ScanUpdate& scan, std::v
   return applied;
 }
 
-/// Applies kPlaces probes, from number `first` on. @return how many cells they updated
+/// Applies kPlaces probes, from number `first` on. @return number of updated cells
 Result<std::uint64_t> cells_of_probes(OccupancyMap& map, std::size_t first, std::vector<double>& times_us) {
   std::uint64_t cells = 0;
   for (std::size_t n = first; n < first + kPlaces; ++n) {
@@ -117,9 +116,9 @@ Result<std::uint64_t> cells_of_probes(OccupancyMap& map, std::size_t first, std:
   return cells;
 }
 
-Result<void> take_back_probes(OccupancyMap& map) {
+Result<void> undo_probes(OccupancyMap& map) {
   for (std::size_t n = 0; n < kPlaces; ++n) {
-    if (const auto applied = map.apply(unsaid(map.lattice(), n)); !applied) return tl::unexpected(applied.error());
+    if (const auto applied = map.apply(undo_probe(map.lattice(), n)); !applied) return tl::unexpected(applied.error());
   }
   return {};
 }
@@ -128,13 +127,12 @@ struct Known {
   double small_us = 0.0, large_us = 0.0;  ///< medians
 };
 
-/// Applies the first kPlaces probes again and again, where a vehicle was a moment ago, to a small map and to a large
-/// one by turns: what else the machine does slows both down.
+/// Applies the first kPlaces probes repeatedly, alternating between a small and a large map.
 Result<Known> probe_again(OccupancyMap& small, OccupancyMap& large) {
   std::vector<double> small_us, large_us;
   for (std::size_t round = 0; round < kRounds; ++round) {
     for (const auto& [map, times_us] : {std::pair(&small, &small_us), std::pair(&large, &large_us)}) {
-      if (const auto back = take_back_probes(*map); !back) return tl::unexpected(back.error());
+      if (const auto back = undo_probes(*map); !back) return tl::unexpected(back.error());
       if (const auto again = cells_of_probes(*map, 0, *times_us); !again) return tl::unexpected(again.error());
     }
   }
@@ -188,7 +186,7 @@ Result<std::vector<Row>> rows_by_size() {
   return rows;
 }
 
-/// Fills a map step by step, `most` of them at most. @return how many went in before the limit stopped it
+/// Fills a map in at most `most` steps. @return number of steps before the limit
 Result<std::uint64_t> steps_into(Basin& basin, std::uint64_t most) {
   for (std::uint64_t step = 0; step < most; ++step) {
     const auto filled = basin.fill(basin.filled() + 16 * kBlock);
@@ -199,7 +197,7 @@ Result<std::uint64_t> steps_into(Basin& basin, std::uint64_t most) {
   return most;
 }
 
-/// Fills a map until its limit stops it, and looks whether it is what it was before.
+/// Fills a map up to its memory limit and checks that the failed update left it unchanged.
 Result<Row> row_of_limit() {
   constexpr std::size_t kLimit_bytes = std::size_t{64} << 20U;
   constexpr std::uint64_t kMaxSteps = kSizes.back() / (16 * kBlock);

@@ -6,8 +6,8 @@
 
 namespace pingvox::bench {
 
-/// From an empty map to 100 million known cells: what a small scan takes to apply, and the memory of a known cell. And
-/// that a map with a limit stops there, unchanged.
+/// From an empty map to 100 million known cells: time to apply a small scan and memory per known cell. Also checks that
+/// a map stays unchanged at its memory limit.
 Result<std::vector<Row>> growth(const BenchOptions& options);
 
 }  // namespace pingvox::bench

@@ -16,10 +16,10 @@ namespace pingvox::bench {
 namespace {
 
 constexpr double kCell_m = 0.05;
-constexpr double kTankRate_hz = 23.0, kFastRate_hz = 100.0;  ///< beams per second: of the recording, of a fast head
+constexpr double kTankRate_hz = 23.0, kFastRate_hz = 100.0;  ///< beams per second of the recording and of a fast head
 constexpr int kReplays = 5;
 
-/// A vehicle wants each beam in its map at once: each updates it as it comes.
+/// Each beam updates the map at once.
 BuildOptions vehicle_options() {
   BuildOptions options;
   options.filter = default_filter(Detector::kRise);
@@ -30,11 +30,11 @@ BuildOptions vehicle_options() {
 }
 
 struct Replay {
-  std::vector<double> wall_s, cpu_s;  ///< of each beam
+  std::vector<double> wall_s, cpu_s;  ///< by beam
   double whole_cpu_s = 0.0;
 };
 
-/// What asking for the CPU time takes of it: here and there a tenth of what a beam takes, or half.
+/// Cost of reading the CPU clock: a tenth to half of the time of a beam.
 double cpu_of_asking_s() {
   std::vector<double> times;
   for (int i = 0; i < 1000; ++i) {
@@ -44,7 +44,7 @@ double cpu_of_asking_s() {
   return median(times);
 }
 
-/// Beams one by one, back to back: what a vehicle does between two beams, without the waiting. By the wall clock.
+/// Maps the beams one by one without waiting, by wall time.
 Replay replay(const std::vector<Beam>& beams, BeamMapper& live) {
   Replay replay;
   std::vector<Beam> fresh = beams;
@@ -59,7 +59,7 @@ Replay replay(const std::vector<Beam>& beams, BeamMapper& live) {
   return replay;
 }
 
-/// By the CPU clock: a replay of its own, which the other need not wait for.
+/// CPU times, in a separate replay so that reading that clock does not affect the wall times.
 void add_cpu_times(const std::vector<Beam>& beams, Replay& replay) {
   OccupancyMap map({.resolution_m = kCell_m});
   BeamMapper live = *BeamMapper::make(vehicle_options(), map);
@@ -72,8 +72,7 @@ void add_cpu_times(const std::vector<Beam>& beams, Replay& replay) {
   }
 }
 
-/// The same cells must be known as by build_map, which hears each sweep to its end first: it takes the beams in another
-/// order, and where a belief was clamped in between it may be another.
+/// Checks that build_map by sweep knows the same cells. Its order of beams differs, so clamped values may differ.
 Result<double> share_of_other_classes(const std::vector<Beam>& beams, const OccupancyMap& live_map) {
   OccupancyMap map({.resolution_m = kCell_m});
   BeamsInMemory source(beams);
@@ -90,7 +89,7 @@ Result<double> share_of_other_classes(const std::vector<Beam>& beams, const Occu
   return static_cast<double>(found->different) / static_cast<double>(found->cells());
 }
 
-/// Of each beam the median over the replays: what it takes, without what the machine happened to do meanwhile.
+/// Median of each beam over the replays, to suppress other load.
 std::vector<double> medians_by_beam(const std::vector<Replay>& replays, std::vector<double> Replay::* times) {
   std::vector<double> medians;
   for (std::size_t i = 0; i < (replays.front().*times).size(); ++i) {

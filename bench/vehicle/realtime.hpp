@@ -6,8 +6,7 @@
 
 namespace pingvox::bench {
 
-/// The tank recording beam by beam as a vehicle would map it: how long until a beam is in the map, and what share of a
-/// core that takes.
+/// Maps the tank recording beam by beam: latency of a beam, and load of a core.
 Result<std::vector<Row>> realtime(const BenchOptions& options);
 
 }  // namespace pingvox::bench

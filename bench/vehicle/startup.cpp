@@ -42,7 +42,7 @@ Result<std::vector<Row>> startup(const BenchOptions&) {
   if (!written) return tl::unexpected(written.error());
   std::vector<double> wall_ms;
   for (int i = 0; i < kStarts; ++i) {
-    const auto run = run_well({*program, "info", path, "--json"});
+    const auto run = run_or_fail({*program, "info", path, "--json"});
     if (!run) return tl::unexpected(run.error());
     if (run->said.find("\"occupied_cells\":1000") == std::string::npos &&
         run->said.find("\"occupied_cells\": 1000") == std::string::npos) {

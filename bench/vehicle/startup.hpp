@@ -6,7 +6,7 @@
 
 namespace pingvox::bench {
 
-/// How long `pingvox info` takes for a small map, from its start to its end.
+/// Time of `pingvox info` for a small map, from start to exit.
 Result<std::vector<Row>> startup(const BenchOptions& options);
 
 }  // namespace pingvox::bench

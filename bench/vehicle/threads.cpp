@@ -55,7 +55,7 @@ Result<std::vector<Row>> threads(const BenchOptions&) {
   const auto compared = compare_maps(*by_one, *by_two, Sameness::kLogOdds);
   if (!compared) return tl::unexpected(compared.error());
   if (!compared->equal()) return fail(Error::Code::kCorrupt, "two threads make another map than one");
-  // What a thread saves is time to wait, not work: by the wall clock.
+  // Wall time, since threads do not save CPU time.
   const PairedTimes result = time_in_pairs(two, one, {.clock_s = &wall_time_s});
   Row row;
   row.add("name", "threads")

@@ -6,7 +6,7 @@
 
 namespace pingvox::bench {
 
-/// The bundles of tank-fine mapped by one thread and by two: the same map, and how much sooner it is there.
+/// The bundles of tank-fine mapped by one thread and by two: equal maps, and the speed-up.
 Result<std::vector<Row>> threads(const BenchOptions& options);
 
 }  // namespace pingvox::bench

@@ -57,7 +57,7 @@ inline std::size_t maps(std::span<const std::uint8_t> bytes) {
 inline std::size_t pvx(std::span<const std::uint8_t> bytes) {
   const std::size_t unsealed = maps(bytes);
   if (bytes.size() < 4) return unsealed;
-  std::vector<std::uint8_t> sealed(bytes.begin(), bytes.end());
+  std::vector<std::uint8_t> with_checksum(bytes.begin(), bytes.end());
   const std::size_t end = sealed.size() - 4;
   const auto crc = static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), sealed.data(), end));
   for (std::size_t i = 0; i < 4; ++i) sealed[end + i] = static_cast<std::uint8_t>(crc >> (8 * i));

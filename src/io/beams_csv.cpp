@@ -11,7 +11,7 @@
 #include "io/readers.hpp"
 #include "io/text.hpp"
 
-// Beams as text: a first line that names the columns, then a beam in each line (docs/formats.md).
+// Beams as text: a header line with the columns, then a beam in each line (docs/formats.md).
 namespace pingvox {
 namespace {
 
@@ -33,7 +33,7 @@ bool is_bearing(Column c) {
   return c == Column::kBearingRad || c == Column::kBearingDeg || c == Column::kBearingClockwiseDeg;
 }
 
-/// Between the columns of a file: spreadsheets of many countries write semicolons.
+/// Separator of a file: spreadsheets write commas or semicolons, depending on the locale.
 char separator_of(std::string_view header) {
   return header.find(';') == std::string_view::npos ? ',' : ';';
 }
@@ -42,14 +42,14 @@ std::vector<Column> columns_in(std::string_view header) {
   std::vector<Column> columns;
   const char separator = separator_of(header);
   while (const auto name = cut_field(header, separator)) {
-    // No file of ours has more; a line of nothing but commas is no header.
+    // Limits the work on a line of commas.
     if (columns.size() == 64) break;
     columns.push_back(column_named(*name));
   }
   return columns;
 }
 
-/// Empty, or what is wrong with a header.
+/// Error of a header; empty if it is valid.
 std::string_view problem_of(const std::vector<Column>& columns) {
   const auto count = [&columns](auto matches) {
     std::size_t n = 0;
@@ -69,7 +69,7 @@ std::string_view problem_of(const std::vector<Column>& columns) {
 double bearing_of(Column column, double number) {
   if (column == Column::kBearingDeg) number *= kRadPerDeg;
   if (column == Column::kBearingClockwiseDeg) number *= -kRadPerDeg;
-  // Nothing is done to what is in order, so that what was written is read back to the last bit.
+  // Valid bearings are kept as they are, so that written files are read back exactly.
   return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrap_bearing(number);
 }
 
@@ -79,7 +79,7 @@ std::optional<std::uint8_t> intensity_in(std::string_view field) {
   return static_cast<std::uint8_t>(*number);
 }
 
-/// One line as a beam, or what is wrong with it.
+/// Parses a line; the error is the reason why it is invalid.
 tl::expected<Beam, std::string> beam_in(std::string_view line, const std::vector<Column>& columns, char separator) {
   Beam beam;
   for (const Column column : columns) {
@@ -135,11 +135,11 @@ class CsvSource : public BeamSource {
  private:
   FileBytes file_;
   Damage damage_;
-  Lines lines_;  ///< of file_, whose bytes stay where they are when it is moved
+  Lines lines_;  ///< view of file_, whose bytes do not move with it
   std::vector<Column> columns_;
   char separator_;
   std::size_t skipped_ = 0;
-  std::size_t bins_before_ = 0;  ///< of the last beam
+  std::size_t bins_before_ = 0;  ///< of the previous beam
 };
 
 }  // namespace
@@ -148,7 +148,7 @@ bool looks_like_csv(std::span<const std::uint8_t> bytes) {
   Lines lines(text_of(bytes));
   const auto header = lines.next_with_content();
   if (!header) return false;
-  // One name that we know is enough to be told what is wrong with the others.
+  // One known column is enough: open_csv then reports errors in the others.
   for (const Column column : columns_in(*header)) {
     if (column != Column::kOther) return true;
   }
@@ -181,7 +181,7 @@ Result<std::size_t> write_csv(BeamSource& beams, std::ostream& out) {
     fmt::format_to(to, "{},{},{}", (*beam)->time_s, (*beam)->bearing_rad, (*beam)->bin_length_m);
     for (const std::uint8_t intensity : (*beam)->intensities) fmt::format_to(to, ",{}", unsigned{intensity});
     line.push_back('\n');
-    // Not on to the end of a long log when the disk is full.
+    // Stops early when the disk is full.
     if (!out.write(line.data(), static_cast<std::streamsize>(line.size()))) {
       return fail(Error::Code::kIo, "the beams could not be written");
     }

@@ -18,7 +18,7 @@ constexpr std::string_view kVariable = "parsedData";
 enum Field : std::size_t { kTime, kAngle, kStepDist, kIntensities, kFieldCount };
 constexpr std::array<std::string_view, kFieldCount> kFieldNames = {"time", "angle", "step_dist", "intensities"};
 
-/// A record as a beam, or what is wrong with it.
+/// Converts a record; the error is the reason why it is invalid.
 tl::expected<Beam, std::string> beam_in(const std::array<std::optional<mat5::NumericArray>, kFieldCount>& fields) {
   std::array<double, kIntensities> numbers = {};
   for (std::size_t i = 0; i < kFieldCount; ++i) {
@@ -79,7 +79,7 @@ class MatSource : public BeamSource {
   std::string name_;
   Damage damage_;
   mat5::StructArray records_;
-  std::uint64_t beams_;  ///< that there were at the start
+  std::uint64_t beams_;  ///< number of records
   std::array<std::size_t, kFieldCount> places_;
   std::size_t record_ = 0;  ///< from 1, as MATLAB counts
   std::size_t skipped_ = 0;

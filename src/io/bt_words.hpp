@@ -15,7 +15,7 @@ constexpr unsigned state_of(unsigned word, std::size_t octant) {
   return (word >> (2 * octant)) & 3U;
 }
 
-/// Children that a word names.
+/// Number of known children of a word.
 constexpr unsigned children_of(unsigned word) {
   unsigned children = (word | word >> 1) & 0x5555U;
   children = (children & 0x3333U) + (children >> 2 & 0x3333U);
@@ -23,12 +23,12 @@ constexpr unsigned children_of(unsigned word) {
   return (children + (children >> 8)) & 0xFU;
 }
 
-/// Whether all children are in the same state, and have no children.
+/// Whether all children are leaves of the same state, or unknown.
 constexpr bool is_uniform(unsigned word) {
   return word == 0 || word == kAllFree || word == kAllOccupied;
 }
 
-/// The word of eight children without children, of which these bits are free and occupied.
+/// The word of eight leaves; bit i of each mask is child i.
 constexpr unsigned word_of(unsigned free, unsigned occupied) {
   unsigned bits = free | occupied << 16;  // both at once: bit i of each half goes to bit 2 i
   bits = (bits | bits << 4) & 0x0F0F0F0FU;
@@ -38,9 +38,9 @@ constexpr unsigned word_of(unsigned free, unsigned occupied) {
 }
 
 struct States {
-  unsigned free, occupied;  ///< inner children are in both
+  unsigned free, occupied;  ///< inner children are set in both
 };
-/// What word_of was made of.
+/// Inverse of word_of.
 constexpr States states_of(unsigned word) {
   unsigned bits = (word & 0x5555U) | (word & 0xAAAAU) << 15;
   bits = (bits | bits >> 1) & 0x33333333U;
@@ -49,9 +49,9 @@ constexpr States states_of(unsigned word) {
   return {bits & 0xFFU, bits >> 16};
 }
 
-/// All eight cells of each octant that has its bit set: bit i goes to all bits of byte i.
+/// Expands bit i to all bits of byte i: all cells of each octant.
 constexpr std::uint64_t whole_octants(unsigned octants) {
-  // Copies of the bits, one in each byte, of which byte i keeps bit i; what is not 0 then carries into its highest bit.
+  // Byte i keeps bit i of a copy of the bits; a value that is not 0 then carries into the highest bit.
   const std::uint64_t kept = octants * 0x0101010101010101U & 0x8040201008040201U;
   return ((kept + 0x7F7F7F7F7F7F7F7FU) >> 7U & 0x0101010101010101U) * 0xFFU;
 }
@@ -60,7 +60,7 @@ constexpr std::uint64_t whole_octants(unsigned octants) {
 
 using EightWords = std::uint16_t __attribute__((vector_size(16)));
 
-/// Bit i of byte o goes to bit 2 i of word o.
+/// Moves bit i of byte o to bit 2 i of word o.
 inline EightWords spread_bytes(std::uint64_t bytes) {
   if constexpr (std::endian::native == std::endian::big) bytes = __builtin_bswap64(bytes);
   std::uint8_t __attribute__((vector_size(8))) lanes;
@@ -76,12 +76,12 @@ inline EightWords words_of(std::uint64_t free, std::uint64_t occupied) {
   return spread_bytes(free) | spread_bytes(occupied) << 1;
 }
 
-/// All bits set of the words that are not is_uniform.
+/// Mask of the words that are not is_uniform.
 inline EightWords mixed_words(const EightWords& words) {
   return reinterpret_cast<EightWords>((words != 0) & (words != kAllFree) & (words != kAllOccupied));
 }
 
-/// The word above these words: kInner where they are mixed, else the state that all children are in.
+/// The word of the parent: kInner where a child is mixed, else the common state of its children.
 inline unsigned word_above(const EightWords& words, const EightWords& mixed) {
   constexpr EightWords kPlaces{1, 1 << 2, 1 << 4, 1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 14};
   const EightWords states = ((words | mixed) & 3) * kPlaces;

@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// An arithmetic value from its bytes. REQUIRES sizeof(T) bytes.
+/// Decodes an arithmetic value. REQUIRES sizeof(T) bytes.
 template <class T>
   requires std::is_arithmetic_v<T>
 T value_from(std::span<const std::uint8_t> bytes, std::endian order) {
@@ -25,7 +25,7 @@ T value_from(std::span<const std::uint8_t> bytes, std::endian order) {
   return value;
 }
 
-/// Reads forward through bytes and never past their end.
+/// Reads forward through bytes, with bounds checks.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes, std::endian order = std::endian::little)
@@ -42,7 +42,7 @@ class ByteReader {
     return taken;
   }
 
-  /// The next value; nullopt, and nothing read, when the bytes do not suffice.
+  /// The next value; nullopt, and nothing read, when too few bytes are left.
   template <class T>
   std::optional<T> read() {
     const auto bytes = take(sizeof(T));

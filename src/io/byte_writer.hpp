@@ -16,7 +16,7 @@
 
 namespace pingvox {
 
-/// Writes little-endian values to a stream, in pieces large enough that the stream costs nothing.
+/// Writes little-endian values to a stream, buffered.
 class ByteWriter {
  public:
   explicit ByteWriter(std::ostream& out) : out_(out) { buffer_.reserve(kPiece + 64); }
@@ -37,13 +37,13 @@ class ByteWriter {
     drain();
   }
 
-  /// CRC-32, as zlib counts it, of all bytes so far.
+  /// CRC-32 (zlib) of all bytes so far.
   std::uint32_t crc32() {
     drain();
     return static_cast<std::uint32_t>(crc_);
   }
 
-  /// kIo when the stream did not take all of it.
+  /// @return kIo when the stream failed
   Result<void> finish() {
     drain();
     out_.flush();

@@ -11,7 +11,7 @@
 namespace pingvox {
 namespace {
 
-/// "nan" in any case and with any sign, which is how a point without a place is written.
+/// "nan" in any case and with any sign.
 bool is_nan(std::string_view word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   constexpr std::string_view kNan = "nan";
@@ -19,7 +19,7 @@ bool is_nan(std::string_view word) {
          std::equal(word.begin(), word.end(), kNan.begin(), [](char c, char wanted) { return (c | 0x20) == wanted; });
 }
 
-/// The words of a line that are coordinates; NaN where there is none that is finite.
+/// Parses the coordinates of a line; NaN where invalid.
 class PointLine {
  public:
   explicit PointLine(const std::array<TextCloud::Column, 3>& xyz)
@@ -41,7 +41,7 @@ class PointLine {
     }
     return point;
   }
-  /// Whether the last line said that a coordinate is NaN.
+  /// Whether the last line contained "nan" as a coordinate.
   bool has_nan() const { return has_nan_; }
 
  private:
@@ -54,7 +54,7 @@ class PointLine {
   bool has_nan_ = false;
 };
 
-/// A source of one scan, made at once. What is damaged is left out and counted.
+/// A source of one scan. Damaged points are skipped and counted.
 class CloudSource : public ScanSource {
  public:
   CloudSource(std::string name, Damage damage, NanPoint nan, Eigen::Vector3d origin_m)
@@ -74,7 +74,7 @@ class CloudSource : public ScanSource {
  protected:
   virtual Result<void> read_points(std::vector<Eigen::Vector3d>& points_m) = 0;
 
-  /// @param has_nan  the point is none because one of its coordinates is NaN
+  /// @param has_nan  a coordinate is NaN
   Result<void> skip_point(const std::string& place, bool has_nan) {
     const bool is_usual = has_nan && nan_ == NanPoint::kNoReturn;
     return handle_damage(is_usual ? Damage::kSkip : damage_, skipped_, name_, place,
@@ -117,7 +117,7 @@ class TextCloudSource : public CloudSource {
     return {};
   }
 
-  FileBytes file_;  ///< what `lines_` looks into: a vector that moves keeps its bytes where they are
+  FileBytes file_;  ///< viewed by `lines_`; moving a vector does not move its bytes
   Lines lines_;
   TextCloud cloud_;
 };

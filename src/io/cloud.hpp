@@ -12,34 +12,34 @@
 #include "io/scalar.hpp"
 #include "io/text.hpp"
 
-// What the readers of clouds share: points as lines of text, and points as bytes. A cloud is one scan.
+// Shared by the readers of clouds: points as text and as bytes. A cloud is one scan.
 namespace pingvox {
 
-/// Whether a point of NaN is damage or, as in PCD, the place of a beam that brought nothing back. Both are counted.
+/// Meaning of a NaN point: damage or, as in PCD, a beam without return. Both are counted.
 enum class NanPoint { kDamage, kNoReturn };
 
-/// Points as lines of words between blanks, tabs or commas.
+/// Points as text lines, separated by blanks, tabs or commas.
 struct TextCloud {
   struct Column {
     std::size_t word = 0;           ///< counted from 0
-    Scalar type = Scalar::kDouble;  ///< kFloat: the text is rounded to it, as whoever else reads the file does
+    Scalar type = Scalar::kDouble;  ///< kFloat: rounded to float, as other readers do
   };
   std::array<Column, 3> xyz;
-  /// Lines of points: fewer are damage, what follows them belongs to something else. nullopt: all there are.
+  /// Number of lines with points: fewer are damage, further lines are ignored. nullopt: all lines.
   std::optional<std::uint64_t> points;
   NanPoint nan = NanPoint::kDamage;
 };
 
-/// @param lines  of the file, up to the first point already read
-/// REQUIRES that `lines` looks into the file's bytes
+/// @param lines  positioned at the first point
+/// REQUIRES `lines` to be a view of the file's bytes
 std::unique_ptr<ScanSource> text_cloud(FileBytes file, Lines lines, const TextCloud& cloud, Damage damage,
                                        const Eigen::Vector3d& origin_m);
 
-/// Points as bytes.
+/// Points as binary records.
 struct ByteCloud {
   struct Column {
-    std::size_t first = 0;  ///< where the value of the first point stands
-    std::size_t step = 0;   ///< bytes from there to the one of the next point
+    std::size_t first = 0;  ///< offset of the first value
+    std::size_t step = 0;   ///< stride [bytes]
     Scalar type = Scalar::kFloat;
   };
   std::array<Column, 3> xyz;

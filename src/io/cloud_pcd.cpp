@@ -11,7 +11,7 @@
 #include "io/lzf.hpp"
 #include "io/readers.hpp"
 
-// The Point Cloud Library's files, version 0.7 and those before it (docs/formats.md).
+// PCD files of the Point Cloud Library, up to version 0.7 (docs/formats.md).
 namespace pingvox {
 namespace {
 
@@ -30,7 +30,7 @@ struct PcdHeader {
   std::optional<Eigen::Vector3d> viewpoint_m;
   std::optional<PcdData> data;
   std::size_t size = 0;  ///< bytes
-  Lines rest{""};        ///< what follows, as lines
+  Lines rest{""};        ///< lines after the header
 };
 
 std::vector<std::string_view> words_in(std::string_view line) {
@@ -53,10 +53,10 @@ std::optional<Scalar> scalar_of(const Field& field) {
   return std::nullopt;
 }
 
-/// Puts what a line of the header says into its place.
-/// @return what is wrong with it; empty: nothing
+/// Parses a line of the header.
+/// @return its error; empty: none
 std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader& header) {
-  if (words.empty()) return "belongs in no header";  // nothing but commas
+  if (words.empty()) return "belongs in no header";  // only commas
   const std::string_view key = words.front();
   const std::size_t values = words.size() - 1;
   const auto take_count = [&](std::optional<std::uint64_t>& target) -> std::string_view {
@@ -70,7 +70,7 @@ std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader
     }
     return "";
   };
-  // Sizes and counts are bounded, so that their sums cannot run over.
+  // Sizes and counts are bounded, so that sums cannot overflow.
   const auto is_small = [](const std::optional<std::uint64_t>& count) {
     return count && *count > 0 && *count <= std::numeric_limits<std::uint16_t>::max();
   };
@@ -144,7 +144,7 @@ Result<PcdHeader> read_header(const FileBytes& file) {
       return corrupt(file.name, "WIDTH times HEIGHT is no number of points");
     }
     if (!header.points) header.points = *header.width * height;
-    // Files of the first versions have zeros here, and POINTS alone.
+    // Old versions have zeros here and only POINTS.
     const bool is_said = *header.width > 0 && height > 0;
     if (is_said && *header.points != *header.width * height) {
       return corrupt(file.name,
@@ -155,7 +155,7 @@ Result<PcdHeader> read_header(const FileBytes& file) {
   return header;
 }
 
-/// Where each of x, y and z stands among the fields.
+/// Indices of x, y and z among the fields.
 Result<std::array<std::size_t, 3>> fields_of_xyz(const std::string& file, const std::vector<Field>& fields) {
   constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
   std::array<std::optional<std::size_t>, 3> found;
@@ -174,7 +174,7 @@ Result<std::array<std::size_t, 3>> fields_of_xyz(const std::string& file, const 
   return std::array{*found[0], *found[1], *found[2]};
 }
 
-/// All of the bytes behind the header, decompressed.
+/// The decompressed bytes after the header.
 Result<std::vector<std::uint8_t>> decompress_points(const FileBytes& file, const PcdHeader& header,
                                                     std::uint64_t wanted) {
   ByteReader reader(file.view().subspan(header.size));
@@ -234,8 +234,7 @@ Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, cons
     return text_cloud(std::move(file), header->rest, cloud, damage, origin);
   }
 
-  // As bytes a point is a record; compressed, all points' first fields come before all their second ones, and what is
-  // called `_` is room in records that nobody compresses.
+  // Binary data hold point after point; compressed data hold field after field, without the padding named `_`.
   const bool is_compressed = *header->data == PcdData::kCompressed;
   const auto bytes_in = [&](const Field& field) -> std::uint64_t {
     return is_compressed && field.name == "_" ? 0 : field.size * field.count;

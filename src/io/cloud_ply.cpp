@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
-/// Bytes of one element; nullopt when lists make them differ.
+/// Size of one element; nullopt if it has lists.
 std::optional<std::uint64_t> bytes_of(const PlyElement& element) {
   std::uint64_t bytes = 0;
   for (const PlyProperty& property : element.properties) {

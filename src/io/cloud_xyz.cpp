@@ -4,11 +4,11 @@
 #include "io/readers.hpp"
 #include "io/text.hpp"
 
-// Points as text, `x y z` and anything behind, one in a line (docs/formats.md).
+// Points as text: `x y z` and optional further columns, one point a line (docs/formats.md).
 namespace pingvox {
 
 bool looks_like_xyz(std::span<const std::uint8_t> bytes) {
-  // More are the bins of a beam whose columns nobody named.
+  // Longer lines are beams without a header.
   constexpr std::size_t kMaxWords = 16;
   constexpr int kLines = 10;
   Lines lines(text_of(bytes));

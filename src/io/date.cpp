@@ -8,8 +8,8 @@
 namespace pingvox {
 namespace {
 
-/// The numbers of a text of the form "0000.00": each 0 is a digit, all else stands as it is. nullopt: it has another
-/// form.
+/// Parses the numbers of a text of a form such as "0000.00": each 0 is a digit, other characters are literal. nullopt:
+/// it does not match.
 template <std::size_t N>
 std::optional<std::array<int, N>> numbers_in(std::string_view text, std::string_view form) {
   if (text.size() != form.size()) return std::nullopt;
@@ -28,7 +28,7 @@ std::optional<std::array<int, N>> numbers_in(std::string_view text, std::string_
 }
 
 std::optional<double> seconds_of(int hour, int minute, int second, int millisecond) {
-  // A leap second is a second.
+  // 60 is a leap second.
   if (hour > 23 || minute > 59 || second > 60) return std::nullopt;
   return (hour * 60 + minute) * 60 + second + millisecond / 1000.0;
 }

@@ -5,11 +5,10 @@
 
 namespace pingvox {
 
-/// Seconds since 1970 of "2017.11.02 08.58.46.723", the clock's own time zone taken for UTC; nullopt: it is no such
-/// time.
+/// Seconds since 1970 of "2017.11.02 08.58.46.723", taken as UTC; nullopt: invalid.
 std::optional<double> date_time_s(std::string_view text);
 
-/// Seconds since midnight of "13:26:49.178"; nullopt: it is no such time.
+/// Seconds since midnight of "13:26:49.178"; nullopt: invalid.
 std::optional<double> time_of_day_s(std::string_view text);
 
 }  // namespace pingvox

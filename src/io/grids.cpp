@@ -19,18 +19,18 @@ Result<void> check_stream(std::ostream& out) {
   return {};
 }
 
-/// A length without the last digits, which are rounding.
+/// A length to 12 digits, without rounding errors.
 std::string length(double value_m) {
   return fmt::format("{:.12g}", value_m);
 }
 
-/// The same without an exponent, which some readers of YAML take for a word.
+/// The same without an exponent, which some YAML readers take for a string.
 std::string decimal(double value_m) {
   const std::string text = length(value_m);
   return text.find('e') == std::string::npos ? text : fmt::format("{:.20f}", value_m);
 }
 
-/// A file's name as a string of YAML.
+/// A YAML string.
 std::string quote(std::string_view name) {
   std::string out = "\"";
   for (const char c : name) {
@@ -66,7 +66,7 @@ Result<void> write_grid_pgm(const Raster<Occupancy>& slice, std::ostream& out) {
 }
 
 Result<void> write_grid_yaml(const Raster<Occupancy>& slice, std::string_view image, std::ostream& out) {
-  // map_server and nav2 take a pixel p for free when (255 - p) / 255 < free_thresh, and 205 comes to 0.19608.
+  // map_server and nav2: a pixel p is free when (255 - p) / 255 < free_thresh; unknown, 205, is 0.19608.
   out << fmt::format(
       "image: {}\nmode: trinary\nresolution: {}\norigin: [{}, {}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
       "free_thresh: 0.196\n",
@@ -78,7 +78,7 @@ Result<void> write_grid_yaml(const Raster<Occupancy>& slice, std::string_view im
 Result<void> write_heights_asc(const Raster<float>& heights, std::ostream& out) {
   float lowest = std::numeric_limits<float>::infinity();
   for (const float height : heights.values) lowest = std::fmin(lowest, height);
-  // What everybody takes, unless it could be a height.
+  // The usual value, unless it could be a height.
   const float nodata = lowest > -9999.0F ? -9999.0F : -3.4e38F;
   out << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {}\nNODATA_value {}\n", heights.columns,
                      heights.rows, length(heights.corner_m.x()), length(heights.corner_m.y()), length(heights.cell_m),

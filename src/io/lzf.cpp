@@ -8,7 +8,7 @@ bool lzf_decompress(std::span<const std::uint8_t> compressed, std::span<std::uin
   std::size_t from = 0, to = 0;
   while (from < compressed.size()) {
     const std::size_t control = compressed[from++];
-    if (control < 32) {  // the next bytes as they are
+    if (control < 32) {  // literal bytes
       const std::size_t length = control + 1;
       if (length > compressed.size() - from || length > out.size() - to) return false;
       std::copy_n(compressed.data() + from, length, out.data() + to);
@@ -16,7 +16,7 @@ bool lzf_decompress(std::span<const std::uint8_t> compressed, std::span<std::uin
       to += length;
       continue;
     }
-    // Bytes that were there before: three bits of length (7: there is a byte more of it), 13 of how far back.
+    // Copy of earlier bytes: three bits of length (7: plus another byte), 13 of distance.
     std::size_t length = (control >> 5) + 2;
     if (control >> 5 == 7) {
       if (from == compressed.size()) return false;
@@ -25,7 +25,7 @@ bool lzf_decompress(std::span<const std::uint8_t> compressed, std::span<std::uin
     if (from == compressed.size()) return false;
     const std::size_t back = ((control & 31) << 8) + compressed[from++] + 1;
     if (back > to || length > out.size() - to) return false;
-    // One by one: what is repeated may reach into what it makes.
+    // Byte by byte, as source and target may overlap.
     for (; length > 0; --length, ++to) out[to] = out[to - back];
   }
   return to == out.size();

@@ -6,11 +6,11 @@
 
 namespace pingvox {
 
-/// The most bytes that LZF makes of one: three say to repeat 264.
+/// Maximum expansion of a byte: three bytes encode a copy of 264.
 inline constexpr std::size_t kLzfMaxExpansion = 264 / 3;
 
-/// Undoes LZF (Marc Lehmann's liblzf), with which PCL compresses point clouds.
-/// @return whether `compressed` is whole and filled exactly `out`
+/// Decompresses LZF (Marc Lehmann's liblzf), used by PCL.
+/// @return whether `compressed` is valid and fills `out` exactly
 bool lzf_decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> out);
 
 }  // namespace pingvox

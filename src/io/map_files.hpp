@@ -11,33 +11,33 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
-// What the readers and writers of maps share.
+// Shared by the readers and writers of maps.
 namespace pingvox {
 
-/// OctoMap's trees have this many levels below their root, and their files do not say so (docs/formats.md).
+/// Depth of OctoMap's trees, which is not in their files (docs/formats.md).
 inline constexpr int kOctomapDepth = 16;
 
 /// kCorrupt: the file, the place in it, the reason.
 tl::unexpected<Error> damage_error(const FileBytes& file, std::size_t byte, std::string_view reason);
 
-/// kLimit: the file, the place in it, the limit [bytes] that its map would pass.
+/// kLimit: the file, the place in it, the limit [bytes].
 tl::unexpected<Error> over_limit(const FileBytes& file, std::size_t byte, std::size_t limit);
 
-/// kUnsupported, with a format that can hold the map, unless it has 16 levels.
+/// kUnsupported, naming a suitable format, unless the map has 16 levels.
 Result<void> check_octomap_depth(const OccupancyMap& map, std::string_view suffix);
 
 /// Key of a child: `parent` is the lowest cell of a node of `depth` on a lattice of `levels`.
 WideKey child_key(const WideKey& parent, int depth, int levels, int octant);
 
-/// Takes the leaves of a file into a map, and counts the nodes on the way.
+/// Adds leaves to a map.
 class LeafBuilder {
  public:
   /// @param memory_limit_bytes  0: none
   LeafBuilder(OccupancyMap& map, const FileBytes& file, std::size_t memory_limit_bytes)
       : map_(map), editor_(map.edit()), file_(file), memory_limit_bytes_(memory_limit_bytes) {}
 
-  /// @param byte  where the leaf stands, for messages
-  /// @return kCorrupt when the belief is not finite, kLimit when the tree passes the limit
+  /// @param byte  position of the leaf, for messages
+  /// @return kCorrupt when the belief is not finite, kLimit when the tree exceeds the limit
   Result<void> add(const WideKey& key, int depth, float belief, std::size_t byte);
 
  private:

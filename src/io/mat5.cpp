@@ -14,7 +14,7 @@
 namespace pingvox::mat5 {
 namespace {
 
-// Types of data elements.
+// Data element types.
 enum : std::uint32_t {
   kInt8 = 1,
   kUint8 = 2,
@@ -40,12 +40,12 @@ constexpr std::size_t kHeaderBytes = 128;
 constexpr std::size_t kTagBytes = 8;
 constexpr std::size_t kMaxFields = 1024;
 
-// Inflated data may be this much larger than the file before we call it a bomb. A recording of a tank takes 2.2, one of
-// silence some hundred, but that one is small.
+// Maximum ratio of inflated data to the file, against decompression bombs. A recording of a tank has 2.2; one of
+// silence has some hundred but is small.
 constexpr std::uint64_t kMaxInflation = 64;
 constexpr std::uint64_t kAlwaysInflated = std::uint64_t{16} << 20;
 
-/// Bytes of one number; 0: not a type of numbers.
+/// Size of a number; 0: not a numeric type.
 std::size_t bytes_of(std::uint32_t type) {
   switch (type) {
     case kInt8:
@@ -72,11 +72,11 @@ struct Element {
   std::span<const std::uint8_t> data;
 };
 
-/// The next data element; nullopt when it does not fit into what is left.
+/// The next data element; nullopt when it is longer than the rest.
 std::optional<Element> take_element(ByteReader& reader) {
   const auto first = reader.read<std::uint32_t>();
   if (!first) return std::nullopt;
-  // Up to four bytes can stand in the tag itself.
+  // Small elements of up to four bytes are stored in the tag.
   if (const std::uint32_t small_count = *first >> 16; small_count != 0) {
     const auto data = reader.take(4);
     if (!data || small_count > 4) return std::nullopt;
@@ -90,7 +90,7 @@ std::optional<Element> take_element(ByteReader& reader) {
   return Element{*first, *data};
 }
 
-/// What all matrices begin with.
+/// Header of a matrix.
 struct MatrixHead {
   std::uint32_t matrix_class = 0;
   bool complex = false;
@@ -174,13 +174,13 @@ bool has_mark(std::span<const std::uint8_t> bytes, std::string_view mark) {
   return bytes.size() >= kHeaderBytes && text_of(bytes).substr(126, 2) == mark;
 }
 
-/// Version as the header has it: 1 for level 5, 2 for 7.3; the high byte of the u16 before the mark.
+/// Version in the header: 1 for level 5, 2 for 7.3; high byte of the u16 before the endian mark.
 int version_of(std::span<const std::uint8_t> bytes) {
   if (has_mark(bytes, "IM")) return bytes[125];
   return has_mark(bytes, "MI") ? bytes[124] : 0;
 }
 
-/// The name of the variable that a matrix element begins, as far as `bytes` go.
+/// Name of the variable of a matrix element, from its first bytes.
 std::optional<std::string> name_in(std::span<const std::uint8_t> bytes, std::endian order) {
   ByteReader reader(bytes, order);
   if (!reader.take(kTagBytes)) return std::nullopt;
@@ -189,7 +189,7 @@ std::optional<std::string> name_in(std::span<const std::uint8_t> bytes, std::end
   return std::string(head->name);
 }
 
-/// The matrix element (tag included) of a variable, by itself.
+/// The matrix element of a variable, including its tag.
 Result<std::vector<std::uint8_t>> find_variable(const FileBytes& file, std::endian order, std::string_view variable) {
   const auto view = file.view();
   ByteReader reader(view, order);
@@ -215,7 +215,7 @@ Result<std::vector<std::uint8_t>> find_variable(const FileBytes& file, std::endi
       name = name_in(with_tag, order);
       if (name == variable) return std::vector<std::uint8_t>(with_tag.begin(), with_tag.end());
     } else if (element->type == kCompressed) {
-      // A large variable that is not ours is not worth inflating.
+      // Inflates only the name, to skip other large variables.
       const auto beginning = inflate_data(element->data, Inflated::kStart, std::uint64_t{1} << 12);
       if (!beginning) return in_place(beginning.error());
       name = name_in(*beginning, order);
@@ -314,7 +314,7 @@ Result<StructArray> StructArray::open(FileBytes file, std::string_view variable)
     array.fields_.emplace_back(name.substr(0, name.find('\0')));
   }
 
-  // All elements are walked over once, so that nobody meets a broken frame in the middle.
+  // Checks the tags of all elements once.
   if (array.fields_.empty() || head->elements > reader.left() / kTagBytes / array.fields_.size()) {
     return corrupt(fmt::format("{} records of {} fields do not fit into its {} bytes", head->elements,
                                array.fields_.size(), reader.left()));
@@ -343,7 +343,7 @@ std::optional<std::vector<std::optional<NumericArray>>> StructArray::next() {
   arrays.reserve(fields_.size());
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const auto element = take_element(*reader_);
-    assert(element);  // open() has been here
+    assert(element);  // checked by open()
     arrays.push_back(numeric_array_in(element->data, order_));
   }
   return arrays;

@@ -29,8 +29,8 @@ tl::unexpected<Error> corrupt(const std::string& file, std::string_view place, s
   return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, what));
 }
 
-/// A face, as a fan of triangles around its first corner.
-/// @return what is wrong with it
+/// Adds a face as a fan of triangles around its first corner.
+/// @return its error
 std::optional<std::string> add_face(const std::vector<std::uint64_t>& corners, TriangleMesh& mesh) {
   if (corners.size() < 3) return fmt::format("a face of {} corners", corners.size());
   for (const std::uint64_t corner : corners) {
@@ -43,7 +43,7 @@ std::optional<std::string> add_face(const std::vector<std::uint64_t>& corners, T
   return std::nullopt;
 }
 
-/// Indices are of 32 bits.
+/// Indices have 32 bits.
 bool is_full(const TriangleMesh& mesh) {
   return mesh.vertices_m.size() > std::numeric_limits<std::uint32_t>::max() - 3;
 }
@@ -76,7 +76,7 @@ class Words {
     }
     return point;
   }
-  /// The rest of the line does not matter.
+  /// Skips the rest of the line.
   void skip_line() { line_ = {}; }
 
  private:
@@ -86,7 +86,7 @@ class Words {
 
 Result<TriangleMesh> read_off(const FileBytes& file) {
   Words words{Lines(text_of(file.view()))};
-  words.next();  // OFF; some write the counts into the same line
+  words.next();  // OFF, sometimes on the line of the counts
   std::array<std::uint64_t, 3> counts{};
   for (std::uint64_t& count : counts) {
     const auto word = words.next();
@@ -146,7 +146,7 @@ Result<TriangleMesh> read_stl_text(const FileBytes& file) {
   return mesh;
 }
 
-// --- Binary STL: 80 bytes of anything, the number of facets, 50 bytes each.
+// --- Binary STL: 80 bytes of header, the number of facets, 50 bytes each.
 
 constexpr std::size_t kStlHead = 80, kStlFacet = 50;
 
@@ -172,7 +172,7 @@ Result<TriangleMesh> read_stl_binary(const FileBytes& file) {
 
 // --- PLY.
 
-/// The values of a PLY file one after the other, from text or bytes.
+/// Reads the values of a PLY file, text or binary.
 class PlyValues {
  public:
   PlyValues(Bytes bytes, const PlyHeader& header)
@@ -192,7 +192,7 @@ class PlyValues {
       return static_cast<double>(*value);
     });
   }
-  /// The same as a whole number from 0 to 2^32 - 1.
+  /// The next value as an integer from 0 to 2^32 - 1.
   std::optional<std::uint64_t> next_count(Scalar type) {
     const auto value = next(type);
     if (!value || !(*value >= 0.0 && *value < 0x1p32) || *value != std::floor(*value)) return std::nullopt;
@@ -214,7 +214,7 @@ Result<TriangleMesh> read_ply(const FileBytes& file) {
   for (const PlyElement& element : header->elements) {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";
-    if (element.properties.empty()) continue;  // takes no bytes, however many there are
+    if (element.properties.empty()) continue;  // no bytes to read
     for (std::uint64_t n = 0; n < element.count; ++n) {
       const auto off = [&](std::string_view what) {
         return corrupt(file.name, fmt::format("{} {}", printable(element.name), n), what);

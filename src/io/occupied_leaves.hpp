@@ -6,7 +6,7 @@
 #include "io/byte_writer.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
-// What the writers of clouds share.
+// Shared by the writers of clouds.
 namespace pingvox {
 
 template <class Visitor>
@@ -22,7 +22,7 @@ inline std::uint64_t occupied_leaves(const OccupancyMap& map) {
   return leaves;
 }
 
-/// Five floats for each occupied leaf: x, y, z of its middle, its log-odds, its edge.
+/// Five floats for each occupied leaf: x, y, z of its centre, its log-odds, its size.
 inline void put_occupied(const OccupancyMap& map, ByteWriter& writer) {
   for_each_occupied(map, [&](const Leaf& leaf) {
     const Eigen::Vector3f centre_m = leaf.centre_m().cast<float>();

@@ -23,10 +23,10 @@ namespace {
 
 constexpr int kBrickDepth = kOctomapDepth - 2;
 
-/// Builds the tree from below, whole groups and bricks at a time.
+/// Builds the tree bottom-up by whole groups and bricks.
 class TreeReader {
  public:
-  /// @param map  an empty one of a .bt file's kind
+  /// @param map  an empty map for a .bt file
   TreeReader(const FileBytes& file, std::size_t tree_at, const OccupancyMap& map)
       : file_(file),
         tree_at_(tree_at),
@@ -54,20 +54,20 @@ class TreeReader {
  private:
   std::size_t position() const { return tree_at_ + reader_.position(); }
 
-  /// The word of an inner node; 0, which none has, where it is damaged: see `bad_word`.
+  /// The word of an inner node; 0 (invalid) if damaged, see `bad_word`.
   unsigned read_word() {
     const auto word = reader_.read<std::uint16_t>();
     is_at_end_ = !word;
     nodes_ += children_of(word.value_or(0));
     return word.value_or(0);
   }
-  /// Why the last word is none. Apart from reading it: an error for each word takes as long as the rest of its work.
+  /// Error of the last word. Separate, because returning a Result for each word would double the time.
   tl::unexpected<Error> bad_word() const {
     if (is_at_end_) return damage_error(file_, position(), "the file ends inside of the tree");
     return damage_error(file_, position() - sizeof(std::uint16_t), "an inner node without children");
   }
 
-  /// The node at `depth` whose word is next, with all below it.
+  /// Reads the subtree of the node at `depth`.
   Result<detail::Entry> read_group(int depth) {
     const std::size_t at = position();
     const unsigned word = read_word();
@@ -87,7 +87,7 @@ class TreeReader {
     return check_limit(tree_.add(group), at);
   }
 
-  /// The node of a brick, whose word is next, and its cells.
+  /// Reads the node of a brick and its cells.
   Result<detail::Entry> read_brick() {
     const std::size_t at = position();
     const unsigned word = read_word();
@@ -113,7 +113,7 @@ class TreeReader {
     return (state == kOccupied ? options_.clamp.highest : options_.clamp.lowest).value();
   }
 
-  /// The entry, when the tree with it is within the limit.
+  /// The entry, or kLimit when the tree exceeds the limit.
   Result<detail::Entry> check_limit(detail::Entry entry, std::size_t byte) const {
     const std::size_t limit = options_.memory_limit_bytes;
     if (limit > 0 && tree_.bytes() > limit) return over_limit(file_, byte, limit);
@@ -126,10 +126,10 @@ class TreeReader {
   MapOptions options_;
   detail::TreeBuilder tree_;
   std::uint64_t nodes_ = 0;
-  bool is_at_end_ = false;  ///< there was no word to read
+  bool is_at_end_ = false;  ///< the file ended before the word
 };
 
-/// Makes the words of a tree as they would be if each leaf were as sure as it can be and equal ones were joined.
+/// Words of the maximum-likelihood tree: leaves rounded to occupied or free, and pruned.
 class TreeWords {
  public:
   explicit TreeWords(const OccupancyMap& map)
@@ -139,14 +139,14 @@ class TreeWords {
         words_(room_for(tree_)),
         end_(words_.get()) {
     const unsigned state = add(tree_.root, 0);
-    // The format cannot say what a root without children is: liboctomap reads it as occupied.
+    // A root without children would be read as occupied by liboctomap.
     if (state == kFree || state == kOccupied) *end_++ = state == kFree ? kAllFree : kAllOccupied;
   }
 
   std::span<std::uint16_t> words() { return {words_.get(), end_}; }
 
   std::uint64_t nodes() const {
-    // Blocks whose sums fit into 16 bits, so that as many words are counted side by side as fit into a vector.
+    // Blocks whose sums fit into 16 bits, for vectorisation.
     constexpr std::size_t kBlock = 4096;
     static_assert(kBlock * 8 <= std::numeric_limits<std::uint16_t>::max());
     const std::span<const std::uint16_t> all(words_.get(), end_);
@@ -162,14 +162,14 @@ class TreeWords {
   }
 
  private:
-  /// More than there may be, so that no word is added with care.
+  /// Upper bound of the size, so that no word needs a bounds check.
   static std::unique_ptr<std::uint16_t[]> room_for(const detail::TreeView& tree) {
     constexpr std::size_t kMaxBrickWords = 9;  // its own and those of its octants
     return std::make_unique_for_overwrite<std::uint16_t[]>(tree.group_count + tree.brick_count * kMaxBrickWords +
                                                            kMaxBrickWords);
   }
 
-  /// The state of a node, after its words and those below it, if there are any.
+  /// Appends the words of a subtree and returns the state of its root.
   unsigned add(const detail::Entry& entry, int depth) {
     if (entry.is_none()) return kUnknown;
     if (entry.is_leaf()) return state_of(LogOdds(entry.value));
@@ -191,8 +191,8 @@ class TreeWords {
     return kInner;
   }
 
-  /// Whether all that is known below a node is free: of most bricks that is told without their values, which lie in
-  /// four times as much memory as the rest.
+  /// Whether all known cells below a node are free, by the maximum: for most bricks without reading their values, which
+  /// are four fifths of the memory.
   bool is_all_free(const detail::Entry& entry) const { return has_maxima_ && state_of(LogOdds(entry.value)) == kFree; }
 
   unsigned add(const detail::CellStates& cells) {
@@ -203,7 +203,7 @@ class TreeWords {
     std::uint16_t* end = end_;
     *end++ = static_cast<std::uint16_t>(word);
     for (std::size_t octant = 0; octant < 8; ++octant) {
-      *end = octants[octant];  // and over it the next one, unless it is of an inner node
+      *end = octants[octant];  // overwritten by the next one unless it is of an inner node
       end += are_inner[octant] & 1U;
     }
     end_ = end;
@@ -224,9 +224,9 @@ class TreeWords {
 
   detail::TreeView tree_;
   Thresholds thresholds_;
-  bool has_maxima_;  ///< nothing below a node is greater than its value
+  bool has_maxima_;  ///< inner nodes hold the maximum of their children
   std::unique_ptr<std::uint16_t[]> words_;
-  std::uint16_t* end_;  ///< behind the last word
+  std::uint16_t* end_;  ///< past the last word
 };
 
 }  // namespace
@@ -252,7 +252,7 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
 Result<void> write_bt(const OccupancyMap& map, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".bt"); !fits) return fits;
   TreeWords tree(map);
-  // As one block, and without the checksum that a ByteWriter keeps: the format has none.
+  // One block; no ByteWriter, as the format has no checksum.
   out << octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m());
   const std::span<std::uint16_t> words = tree.words();
   if constexpr (std::endian::native != std::endian::little) {

@@ -9,11 +9,12 @@
 
 namespace pingvox {
 
-/// OctoMap's binary tree, also in its oldest form. Leaves get the limits of the default clamp. kCorrupt: any damage.
+/// Reads OctoMap's binary tree, also of its oldest form. Leaves get the limits of the default clamp. kCorrupt: any
+/// damage.
 Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_bytes);
 
-/// The bytes that liboctomap's OcTree::writeBinary writes: each leaf occupied or free, equal ones joined. The map stays
-/// as it is. Leaves between the map's thresholds are left out: the format has no third value.
+/// Writes the same bytes as liboctomap's OcTree::writeBinary: leaves rounded to occupied or free, and pruned. Leaves
+/// between the map's thresholds are omitted, since the format cannot hold them.
 Result<void> write_bt(const OccupancyMap& map, std::ostream& out);
 
 }  // namespace pingvox

@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::string_view kWhitespace = " \t\r\n\v\f";
 
-/// Words and lines of the header, which is text only up to its end.
+/// Words and lines of the header, which precedes binary data.
 class HeaderWords {
  public:
   explicit HeaderWords(std::string_view text) : text_(text) {}
 
   std::size_t position() const { return at_; }
 
-  /// Empty: there are no more.
+  /// Empty at the end.
   std::string_view next() {
     at_ = std::min(text_.find_first_not_of(kWhitespace, at_), text_.size());
     const std::size_t end = std::min(text_.find_first_of(kWhitespace, at_), text_.size());

@@ -83,7 +83,7 @@ Result<OccupancyMap> read_ot(const FileBytes& file, std::size_t memory_limit_byt
   const auto header = read_octomap_header(file, kOtFirstLine);
   if (!header) return tl::unexpected(header.error());
   const bool coloured = header->id == "ColorOcTree";
-  // "1" is what OcTree was called before classes had names. The times of an OcTreeStamped are not in its files.
+  // "1" is the old name of OcTree. The time stamps of an OcTreeStamped are not in its files.
   if (!coloured && header->id != "OcTree" && header->id != "OcTreeStamped" && header->id != "1") {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: holds a tree of the kind '{}'; OcTree, ColorOcTree and OcTreeStamped can be read",

@@ -9,11 +9,11 @@
 
 namespace pingvox {
 
-/// OctoMap's tree with log-odds: OcTree, ColorOcTree (colours are left out) or OcTreeStamped. kUnsupported: another
-/// kind of tree; kCorrupt: any damage. What inner nodes say is made anew from their children.
+/// Reads OctoMap's tree with log-odds: OcTree, ColorOcTree (colours are ignored) or OcTreeStamped. Values of inner
+/// nodes are recomputed. kUnsupported: another kind of tree; kCorrupt: any damage.
 Result<OccupancyMap> read_ot(const FileBytes& file, std::size_t memory_limit_bytes);
 
-/// The bytes that liboctomap's OcTree::write writes for the same tree.
+/// Writes the same bytes as liboctomap's OcTree::write.
 Result<void> write_ot(const OccupancyMap& map, std::ostream& out);
 
 }  // namespace pingvox

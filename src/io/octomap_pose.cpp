@@ -12,7 +12,7 @@ Quaternionf conjugate(const Quaternionf& q) {
   return {q[0], -q[1], -q[2], -q[3]};
 }
 
-/// Hamilton's product. The order of the terms is the order of the roundings.
+/// Hamilton's product, with the terms in OctoMap's order for equal rounding.
 Quaternionf product(const Quaternionf& a, const Quaternionf& b) {
   return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],  //
           a[2] * b[3] - b[2] * a[3] + a[0] * b[1] + b[0] * a[1],  //
@@ -49,7 +49,7 @@ OctomapPose OctomapPose::from_rpy(const Point3f& translation, float roll_rad, fl
   const double sr = std::sin(roll), sp = std::sin(pitch), sy = std::sin(yaw);
   const double cr = std::cos(roll), cp = std::cos(pitch), cy = std::cos(yaw);
 
-  // The matrix Rz * Ry * Rx, and from it the quaternion: sizes by its diagonal, signs by the rest.
+  // Matrix Rz * Ry * Rx, then its quaternion: magnitudes from the diagonal, signs from the rest.
   const double xx = cy * cp, xy = cy * sp * sr - sy * cr, xz = cy * sp * cr + sy * sr;
   const double yx = sy * cp, yy = sy * sp * sr + cy * cr, yz = sy * sp * cr - cy * sr;
   const double zx = -sp, zy = cp * sr, zz = cp * cr;

@@ -7,7 +7,7 @@
 
 namespace pingvox {
 
-/// The occupied leaves of a map as a cloud of points, PCD 0.7, binary: the values of write_ply.
+/// Writes the occupied leaves of a map as PCD 0.7, binary, with the values of write_ply.
 Result<void> write_pcd(const OccupancyMap& map, std::ostream& out);
 
 }  // namespace pingvox

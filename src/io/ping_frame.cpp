@@ -14,7 +14,7 @@ namespace {
 using Verdict = FrameCheck::Verdict;
 
 constexpr std::size_t kHeader = 8, kChecksum = 2;
-/// More than any message has; without it a damaged length would hold back several frames.
+/// More than any message needs; limits how many frames a damaged length delays.
 constexpr std::size_t kMaxPayload = 4096;
 
 constexpr std::uint16_t kDeviceData = 2300, kAutoDeviceData = 2301;
@@ -23,7 +23,7 @@ std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
   return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
 }
 
-/// Bytes of a payload before its samples; the last two of them count the samples. 0: another message.
+/// Size of a payload before its samples, including their count; 0: another message.
 std::size_t fixed_part(std::uint16_t id) {
   if (id == kDeviceData) return 14;
   return id == kAutoDeviceData ? 20 : 0;

@@ -7,8 +7,8 @@
 
 namespace pingvox {
 
-/// The occupied leaves of a map as a cloud of points, binary little-endian: float x, y, z (the middle of the leaf),
-/// log_odds, and size, the leaf's edge: all in metres but log_odds. Joined leaves stay joined.
+/// Writes the occupied leaves of a map as points, binary little-endian: float x, y, z (centre of the leaf) [m],
+/// log_odds, and size of the leaf [m].
 Result<void> write_ply(const OccupancyMap& map, std::ostream& out);
 
 }  // namespace pingvox

@@ -11,13 +11,13 @@
 #include "io/scalar.hpp"
 #include "pingvox/result.hpp"
 
-// The head of a PLY file, which says what stands behind it.
+// The header of a PLY file.
 namespace pingvox {
 
 struct PlyProperty {
   std::string name;
   Scalar type = Scalar::kFloat;
-  std::optional<Scalar> list_count;  ///< a list, whose length is of this type
+  std::optional<Scalar> list_count;  ///< type of the length of a list; nullopt: not a list
 };
 
 struct PlyElement {
@@ -29,7 +29,7 @@ struct PlyElement {
 enum class PlyFormat { kText, kLittle, kBig };
 
 struct PlyHeader {
-  std::optional<PlyFormat> format;  ///< always there when a header was read
+  std::optional<PlyFormat> format;  ///< set by read_ply_header
   std::vector<PlyElement> elements;
   std::size_t size = 0;   ///< bytes
   std::size_t lines = 0;  ///< of text
@@ -41,7 +41,7 @@ bool looks_like_ply(std::span<const std::uint8_t> bytes);
 /// @return kCorrupt naming the line
 Result<PlyHeader> read_ply_header(std::string_view file, std::span<const std::uint8_t> bytes);
 
-/// Whether a PLY file, by its header, has faces; else it is a cloud. false for a header that is broken.
+/// Whether a PLY file has faces; else it is a cloud. false for a damaged header.
 bool is_ply_with_faces(std::span<const std::uint8_t> bytes);
 
 }  // namespace pingvox

@@ -12,7 +12,7 @@
 #include "io/map_files.hpp"
 #include "io/text.hpp"
 
-// docs/formats.md: a header of 64 bytes, how the map was made, the tree, CRC-32.
+// docs/formats.md: a header of 64 bytes, made_by, the tree, CRC-32.
 namespace pingvox {
 namespace {
 
@@ -31,7 +31,7 @@ struct Header {
   unsigned root = kNothing;
 };
 
-/// Fields behind the version. Their number of bytes was checked before.
+/// Fields after the version. REQUIRES kHeaderBytes bytes.
 Result<Header> read_header(const FileBytes& file, std::size_t memory_limit_bytes) {
   ByteReader reader(file.view().first(kHeaderBytes));
   reader.take(kMagic.size() + sizeof kVersion);
@@ -42,7 +42,7 @@ Result<Header> read_header(const FileBytes& file, std::size_t memory_limit_bytes
   header.root = *reader.read<std::uint8_t>();
   const unsigned reserved = *reader.read<std::uint8_t>() | *reader.read<std::uint32_t>();
   header.options.resolution_m = *reader.read<double>();
-  // A NaN among these is found by validate().
+  // validate() rejects NaN.
   header.options.clamp.lowest = LogOdds(*reader.read<float>());
   header.options.clamp.highest = LogOdds(*reader.read<float>());
   header.options.thresholds.lower = LogOdds(*reader.read<float>());
@@ -153,7 +153,7 @@ Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) 
   }
   const auto header = read_header(file, memory_limit_bytes);
   if (!header) return tl::unexpected(header.error());
-  // Each term is compared with the bytes that are left before it is used.
+  // Each count is checked against the remaining bytes before use.
   const std::uint64_t left = crc_at - kHeaderBytes;
   const bool fits = header->made_by_bytes <= left && header->inner <= left / kInnerBytes &&
                     header->leaves <= left / kLeafBytes &&

@@ -10,8 +10,8 @@
 
 namespace pingvox {
 
-/// Our own format: a map of any depth with its log-odds, its options and how it was made. kUnsupported: written by a
-/// later version; kCorrupt: any damage.
+/// Reads our own format: a map of any depth with log-odds and options. kUnsupported: written by a later version;
+/// kCorrupt: any damage.
 Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes);
 
 Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, std::ostream& out);

@@ -5,7 +5,7 @@
 
 namespace pingvox {
 
-/// A number as files of points and meshes keep it.
+/// Number types in files of points and meshes.
 enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat, kDouble };
 
 inline constexpr bool is_integer(Scalar type) {
@@ -29,7 +29,7 @@ inline constexpr std::size_t bytes_of(Scalar type) {
   }
 }
 
-/// Calls `f.template operator()<T>()` with the type that `type` stands for.
+/// Calls `f.template operator()<T>()` with the C++ type of `type`.
 template <class F>
 constexpr decltype(auto) with_scalar(Scalar type, F&& f) {
   switch (type) {

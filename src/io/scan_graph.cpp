@@ -21,7 +21,7 @@ constexpr std::size_t kRotationBytes = 4 + 4 * 8;
 constexpr std::size_t kEdgeBytes = 2 * 4 + kVectorBytes + kRotationBytes + 8;
 constexpr std::size_t kRestOfNodeBytes = kVectorBytes + kRotationBytes + 4;
 
-/// The values behind a count that must be N.
+/// Reads a vector of N values with its count; nullopt for another count.
 template <std::size_t N>
 std::optional<std::array<float, N>> read_vector(std::span<const std::uint8_t> bytes) {
   if (value_from<std::uint32_t>(bytes, std::endian::little) != N) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<std::array<float, N>> read_vector(std::span<const std::uint8_t> by
   return values;
 }
 
-/// Points of the next node; nullopt when the node does not fit into what is left.
+/// Points of the next node; nullopt when the node is longer than the rest.
 std::optional<std::span<const std::uint8_t>> take_points(ByteReader& reader) {
   const auto points = reader.read<std::uint32_t>();
   if (!points || reader.left() < kRestOfNodeBytes) return std::nullopt;
@@ -98,11 +98,11 @@ bool looks_like_scan_graph(std::span<const std::uint8_t> bytes) {
   ByteReader reader(bytes);
   const auto nodes = reader.read<std::uint32_t>();
   if (!nodes) return false;
-  // A graph of nothing: no nodes, no edges.
+  // An empty graph: no nodes, no edges.
   if (*nodes == 0) return bytes.size() == 8 && value_from<std::uint32_t>(bytes.subspan(4), std::endian::little) == 0;
 
-  // There is no magic number, but a count of 3 in front of each vector. Some of them are enough, since a text has no
-  // such bytes; and the end of the file is not asked for, since a file that was cut off is still one of this kind.
+  // No magic number, but a count of 3 in front of each vector. The first ones suffice, since text has no such bytes.
+  // The file may be cut off.
   const auto points = reader.read<std::uint32_t>();
   if (!points) return false;
   const std::uint64_t vectors = std::min<std::uint64_t>(std::uint64_t{*points} + 1, 4);
@@ -118,7 +118,7 @@ Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damag
   const auto corrupt = [&file](std::string_view what) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, what));
   };
-  // All counts against all bytes, before any of them is believed.
+  // Checks all counts against the size of the file first.
   ByteReader reader(file.view());
   const auto nodes = reader.read<std::uint32_t>();
   if (!nodes) return corrupt("a scan graph of less than four bytes");

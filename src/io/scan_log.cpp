@@ -19,11 +19,11 @@ enum class LineKind { kNothing, kScan, kPoint, kIndented };
 LineKind kind_of_line(std::string_view line) {
   if (trim(line).empty() || line.starts_with('#')) return LineKind::kNothing;
   if (line.starts_with(kNode)) return LineKind::kScan;
-  // log2graph takes these for comments.
+  // log2graph takes lines with a leading blank for comments.
   return line.starts_with(' ') ? LineKind::kIndented : LineKind::kPoint;
 }
 
-/// The first N numbers of a line; what follows them is somebody else's (an intensity, say).
+/// The first N numbers of a line; further columns (an intensity, say) are ignored.
 template <std::size_t N>
 std::optional<std::array<float, N>> numbers_in(std::string_view text) {
   std::array<float, N> numbers;
@@ -54,7 +54,7 @@ class ScanLogSource : public ScanSource {
   }
 
   Result<std::optional<PointScan>> next() override {
-    // Points without a place, until a scan begins.
+    // Points before the first scan are damage.
     std::optional<ScanBuilder> scan;
     while (line_ && !scan) {
       std::string_view reason = "a point before the first scan that can be used";
@@ -91,7 +91,7 @@ class ScanLogSource : public ScanSource {
   std::optional<double> share_read() const override { return read_share(lines_.left(), file_.bytes.size()); }
 
  private:
-  /// To the next line that says anything.
+  /// Moves to the next line that is neither empty nor a comment.
   void advance() {
     do {
       line_ = lines_.next();

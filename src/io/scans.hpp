@@ -8,17 +8,17 @@
 
 namespace pingvox {
 
-/// Whether a quaternion stands for a rotation: of length 1, but for rounding.
+/// Whether a quaternion is a rotation: of length 1 within rounding.
 bool is_rotation(const std::array<float, 4>& quaternion);
 
-/// Collects the points of one of OctoMap's scans, moved to the frame of the map.
+/// Collects the points of an OctoMap scan, transformed to the map frame.
 class ScanBuilder {
  public:
   explicit ScanBuilder(const OctomapPose& pose);
 
   bool origin_is_finite() const { return scan_.origin_m.allFinite(); }
   void reserve(std::size_t points) { scan_.points_m.reserve(points); }
-  /// false, and nothing added: the point is not finite in the frame of the map.
+  /// Adds a point; false if it is not finite in the map frame.
   bool add(const Point3f& point);
   PointScan finish() && { return std::move(scan_); }
 

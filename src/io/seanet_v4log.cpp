@@ -133,17 +133,17 @@ Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage)
   StreamReader reader(std::move(stream));
   const Result<Bytes> header = reader.peek(kHeader);
   if (!header) return tl::unexpected(header.error());
-  const auto damaged = [&] {
+  const auto header_error = [&] {
     return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", reader.name()));
   };
-  if (header->size() < kHeader) return report_damage();
+  if (header->size() < kHeader) return header_error();
   const auto first = value_at<std::uint32_t>(*header, kFirstRecord);
   const auto end = value_at<std::uint32_t>(*header, kEndOfRecords);
-  if (first < kHeader) return report_damage();
+  if (first < kHeader) return header_error();
   while (reader.position() < first) {
     const Result<Bytes> settings = reader.peek(std::min<std::size_t>(first - reader.position(), 4096));
     if (!settings) return tl::unexpected(settings.error());
-    if (settings->empty()) return report_damage();
+    if (settings->empty()) return header_error();
     reader.skip(settings->size());
   }
   // Logs that were not closed hold no end.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kNumbers = 8;
 
-/// A pose, or what is wrong with the line.
+/// Parses a line; the error is the reason why it is invalid.
 tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
   std::array<double, kNumbers> n = {};
   std::size_t count = 0;
@@ -38,7 +38,7 @@ tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
   return pose;
 }
 
-/// With nine decimals, as everybody writes it, or with as many as it needs to be read back.
+/// With nine decimals, as usual, or more if needed to be read back exactly.
 std::string time_text(double time_s) {
   std::string text = fmt::format("{:.9f}", time_s);
   return number_in(text) == time_s ? text : fmt::format("{}", time_s);
@@ -54,8 +54,7 @@ bool looks_like_tum(std::span<const std::uint8_t> bytes) {
   while (const auto word = cut_word(rest)) {
     if (++count > kNumbers + 1 || !number_in(*word)) return false;
   }
-  // One more or less is a trajectory with a damaged first line. But a cloud may have as many columns: then there is no
-  // rotation in any of them.
+  // Accepts one column more or less as a damaged line. A cloud may have as many columns, but no unit quaternions.
   if (count + 1 < kNumbers) return false;
   std::optional<std::string_view> line = first;
   for (int looked_at = 0; line && looked_at < 10; ++looked_at, line = lines.next_with_content()) {

@@ -7,7 +7,7 @@
 
 namespace pingvox {
 
-/// Writes the middle of each occupied leaf as a line `x y z log_odds size`, in metres.
+/// Writes the centre of each occupied leaf as a line `x y z log_odds size`, in metres.
 Result<void> write_xyz(const OccupancyMap& map, std::ostream& out);
 
 }  // namespace pingvox

@@ -116,7 +116,7 @@ int status_of(pid_t child) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-void expect_complaint(const Outcome& outcome, int status, const std::vector<std::string>& texts) {
+void expect_error(const Outcome& outcome, int status, const std::vector<std::string>& texts) {
   EXPECT_EQ(outcome.status, status) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   EXPECT_TRUE(outcome.err.starts_with("pingvox: ")) << outcome.err;

@@ -59,6 +59,6 @@ int status_of(pid_t child);
 
 /// A call that could not be done: this status, nothing on standard output, and exactly one line on standard error that
 /// begins with "pingvox: " and holds each of these texts.
-void expect_complaint(const Outcome& outcome, int status, const std::vector<std::string>& texts);
+void expect_error(const Outcome& outcome, int status, const std::vector<std::string>& texts);
 
 }  // namespace pingvox::test

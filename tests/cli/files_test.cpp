@@ -51,7 +51,7 @@ TEST(Files, WhatCannotBeReadIsOneLineAndNoOutput) {
     for (const Words& words : readers_of(file)) {
       SCOPED_TRACE(::testing::PrintToString(words));
       const std::string name = file == "line\nbreak" ? "line?break" : file;
-      expect_complaint(here.call(words), trouble(words), {name});
+      expect_error(here.call(words), trouble(words), {name});
       ++calls;
     }
   }
@@ -64,18 +64,18 @@ TEST(Files, TheWrongKindIsNamed) {
   make_good_map(here);
   here.write("poses.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
   const auto files_before = here.files();
-  expect_complaint(here.call({"map", "good.ot", "-o", "out.bt"}), 1, {"good.ot", "a map", "not a log"});
-  expect_complaint(here.call({"map", "poses.txt", "-o", "out.bt"}), 1, {"poses.txt", "a trajectory", "not a log"});
-  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1,
-                   {"good.ot: is a map (.ot), not a trajectory"});
-  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "tank.csv"}), 1,
-                   {"tank.csv: is a log of beams (.csv), not a trajectory"});
-  expect_complaint(here.call({"simulate", "tank", "-o", "out.csv", "--poses", "tank.csv"}), 1,
-                   {"tank.csv: is a log of beams (.csv), not a trajectory"});
-  expect_complaint(here.call({"compare", "tank.csv", "good.ot"}), 2, {"tank.csv: is a log of beams (.csv), not a map"});
-  expect_complaint(here.call({"convert", "tank.csv", "-o", "out.bt"}), 2, {"tank.csv", "pingvox map"});
-  expect_complaint(here.call({"convert", "good.ot", "-o", "out.csv"}), 2, {"good.ot", "a map"});
-  expect_complaint(here.call({"render", "poses.txt", "-o", "out.png"}), 1, {"poses.txt", "a trajectory"});
+  expect_error(here.call({"map", "good.ot", "-o", "out.bt"}), 1, {"good.ot", "a map", "not a log"});
+  expect_error(here.call({"map", "poses.txt", "-o", "out.bt"}), 1, {"poses.txt", "a trajectory", "not a log"});
+  expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1,
+               {"good.ot: is a map (.ot), not a trajectory"});
+  expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "tank.csv"}), 1,
+               {"tank.csv: is a log of beams (.csv), not a trajectory"});
+  expect_error(here.call({"simulate", "tank", "-o", "out.csv", "--poses", "tank.csv"}), 1,
+               {"tank.csv: is a log of beams (.csv), not a trajectory"});
+  expect_error(here.call({"compare", "tank.csv", "good.ot"}), 2, {"tank.csv: is a log of beams (.csv), not a map"});
+  expect_error(here.call({"convert", "tank.csv", "-o", "out.bt"}), 2, {"tank.csv", "pingvox map"});
+  expect_error(here.call({"convert", "good.ot", "-o", "out.csv"}), 2, {"good.ot", "a map"});
+  expect_error(here.call({"render", "poses.txt", "-o", "out.png"}), 1, {"poses.txt", "a trajectory"});
   EXPECT_EQ(here.files(), files_before);
 }
 
@@ -94,8 +94,8 @@ TEST(Files, ThoseOfOthersAreNamedWithWhatToDo) {
   for (const auto& [content, texts] : strangers) {
     SCOPED_TRACE(texts.front());
     here.write("stranger", content);
-    expect_complaint(here.call({"info", "stranger"}), 1, texts);
-    expect_complaint(here.call({"map", "stranger", "-o", "out.bt"}), 1, texts);
+    expect_error(here.call({"info", "stranger"}), 1, texts);
+    expect_error(here.call({"map", "stranger", "-o", "out.bt"}), 1, texts);
   }
 }
 
@@ -112,7 +112,7 @@ TEST(Files, ThoseThatAreOnlyWrittenAreNoLogsOfOthers) {
   for (const auto& [name, what] : written) {
     SCOPED_TRACE(name);
     const Outcome outcome = here.call({"info", name});
-    expect_complaint(outcome, 1, {name, what, "written, not read"});
+    expect_error(outcome, 1, {name, what, "written, not read"});
     EXPECT_EQ(outcome.err.find("bearing_cw_deg"), std::string::npos);
   }
 }
@@ -127,8 +127,8 @@ TEST(Files, TruncatedMapsAreRefusedAndTruncatedLogsReadAsFarAsTheyGo) {
     for (const std::size_t size : {std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
       SCOPED_TRACE(name + " cut to " + std::to_string(size));
       here.write("cut", whole.substr(0, size));
-      expect_complaint(here.call({"info", "cut"}), 1, {"cut"});
-      expect_complaint(here.call({"compare", "cut", "good.ot"}), 2, {"cut"});
+      expect_error(here.call({"info", "cut"}), 1, {"cut"});
+      expect_error(here.call({"compare", "cut", "good.ot"}), 2, {"cut"});
     }
   }
 
@@ -138,8 +138,8 @@ TEST(Files, TruncatedMapsAreRefusedAndTruncatedLogsReadAsFarAsTheyGo) {
   const Outcome skipped = here.call({"info", "cut.csv", "--json"});
   EXPECT_EQ(skipped.status, 0) << skipped.err;
   EXPECT_THAT(skipped.out, ::testing::HasSubstr("\"skipped\": 1}"));
-  expect_complaint(here.call({"info", "cut.csv", "--strict"}), 1, {"cut.csv", "line"});
-  expect_complaint(here.call({"map", "cut.csv", "-o", "out.bt", "--strict"}), 1, {"cut.csv", "line"});
+  expect_error(here.call({"info", "cut.csv", "--strict"}), 1, {"cut.csv", "line"});
+  expect_error(here.call({"map", "cut.csv", "-o", "out.bt", "--strict"}), 1, {"cut.csv", "line"});
   EXPECT_FALSE(here.has("out.bt"));
 }
 
@@ -159,7 +159,7 @@ TEST(Files, FlippedBytesNeverEndTheProgramOtherwiseThanByAWord) {
     if (outcome.status == 0) {
       EXPECT_EQ(outcome.err, "");
     } else {
-      expect_complaint(outcome, 1, {"mutant"});
+      expect_error(outcome, 1, {"mutant"});
     }
   }
 }
@@ -168,7 +168,7 @@ TEST(Files, ALogInWhichNothingCanBeMappedIsNoMap) {
   const Workplace here;
   here.simulate_tank();
   here.write("late.txt", "1e6 0 0 0 0 0 0 1\n2e6 1 0 0 0 0 0 1\n");
-  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "late.txt"}), 1, {"tank.csv", "poses"});
+  expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "late.txt"}), 1, {"tank.csv", "poses"});
   EXPECT_FALSE(here.has("out.bt"));
 }
 
@@ -218,13 +218,13 @@ TEST(Output, AFailedCallKeepsTheOldFile) {
   fs::create_directory(here.folder() / "folder.bt");
   const auto files_before = here.files();
 
-  expect_complaint(here.call({"map", "empty", "-o", "out.bt"}), 1, {"empty"});
-  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt", "--memory-limit", "10K"}), 1, {"limit"});
-  expect_complaint(here.call({"map", "tank.csv", "-o", "no/such/folder/out.bt"}), 1, {"no/such/folder"});
-  expect_complaint(here.call({"map", "tank.csv", "-o", "folder.bt"}), 1, {"folder.bt"});
+  expect_error(here.call({"map", "empty", "-o", "out.bt"}), 1, {"empty"});
+  expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--memory-limit", "10K"}), 1, {"limit"});
+  expect_error(here.call({"map", "tank.csv", "-o", "no/such/folder/out.bt"}), 1, {"no/such/folder"});
+  expect_error(here.call({"map", "tank.csv", "-o", "folder.bt"}), 1, {"folder.bt"});
   // A disk that is full in the middle of the file.
-  expect_complaint(here.call({"map", "tank.csv", "-o", "out.bt"}, {.file_bytes = 500}), 1, {"out.bt"});
-  expect_complaint(here.call({"convert", "tank.csv", "-o", "out.csv"}, {.file_bytes = 50'000}), 1, {"out.csv"});
+  expect_error(here.call({"map", "tank.csv", "-o", "out.bt"}, {.file_bytes = 500}), 1, {"out.bt"});
+  expect_error(here.call({"convert", "tank.csv", "-o", "out.csv"}, {.file_bytes = 50'000}), 1, {"out.csv"});
   EXPECT_EQ(here.read("out.bt"), "old");
   EXPECT_EQ(here.read("out.csv"), "old");
   EXPECT_EQ(here.files(), files_before);
@@ -234,13 +234,13 @@ TEST(Output, AFailedCallKeepsTheOldFile) {
 TEST(Output, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
   const Workplace here;
   fs::create_directory(here.folder() / "folder.bt");
-  expect_complaint(here.call({"map", "missing.csv", "-o", "folder.bt"}), 1, {"folder.bt", "is a folder"});
-  expect_complaint(here.call({"map", "missing.csv", "-o", "no/out.bt"}), 1, {"no such folder 'no'"});
+  expect_error(here.call({"map", "missing.csv", "-o", "folder.bt"}), 1, {"folder.bt", "is a folder"});
+  expect_error(here.call({"map", "missing.csv", "-o", "no/out.bt"}), 1, {"no such folder 'no'"});
   fs::create_directory(here.folder() / "folder");
   for (const std::string output : {"folder", "folder/", "no/"}) {
-    expect_complaint(here.call({"map", "missing.csv", "-o", output}), 2, {output + ": is a folder", ".bt"});
+    expect_error(here.call({"map", "missing.csv", "-o", output}), 2, {output + ": is a folder", ".bt"});
   }
-  expect_complaint(here.call({"render", "missing.csv", "-o", "folder"}), 2, {"folder: is a folder", ".png"});
+  expect_error(here.call({"render", "missing.csv", "-o", "folder"}), 2, {"folder: is a folder", ".png"});
 }
 
 TEST(Output, AFolderWithoutTheRightToWriteIsNamed) {
@@ -249,7 +249,7 @@ TEST(Output, AFolderWithoutTheRightToWriteIsNamed) {
   here.simulate_tank();
   fs::create_directory(here.folder() / "locked");
   fs::permissions(here.folder() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  expect_complaint(here.call({"map", "tank.csv", "-o", "locked/out.bt"}), 1, {"locked/out.bt", "ermission"});
+  expect_error(here.call({"map", "tank.csv", "-o", "locked/out.bt"}), 1, {"locked/out.bt", "ermission"});
 }
 
 TEST(Output, AFullDiskOrAReaderThatWentAwayIsOneLine) {
@@ -268,11 +268,11 @@ TEST(Output, AFullDiskOrAReaderThatWentAwayIsOneLine) {
                                     {"render", "good.ot", "-o", "-"}};
   for (const Words& words : calls) {
     SCOPED_TRACE(::testing::PrintToString(words));
-    expect_complaint(here.call(words, {.out_path = "/dev/full"}), trouble(words), {"standard output", "No space"});
-    expect_complaint(here.call(words, {.out_is_broken_pipe = true}), trouble(words), {"standard output", "pipe"});
-    expect_complaint(here.call(words, {.out_is_closed = true}), trouble(words), {"standard output"});
+    expect_error(here.call(words, {.out_path = "/dev/full"}), trouble(words), {"standard output", "No space"});
+    expect_error(here.call(words, {.out_is_broken_pipe = true}), trouble(words), {"standard output", "pipe"});
+    expect_error(here.call(words, {.out_is_closed = true}), trouble(words), {"standard output"});
   }
-  expect_complaint(here.call({"map", "tank.csv", "-o", "/dev/full"}), 1, {"/dev/full", "No space"});
+  expect_error(here.call({"map", "tank.csv", "-o", "/dev/full"}), 1, {"/dev/full", "No space"});
 }
 
 TEST(Output, KilledWhileWritingLeavesTheOldFile) {

@@ -45,8 +45,8 @@ TEST(FirstUse, BeamsThatAreSkippedHaveAReason) {
   EXPECT_EQ(json["skipped_for.damage"], "1");
   EXPECT_EQ(json["skipped_for.no_pose"], "59");
   here.write("late.txt", "900 0 0 0 0 0 0 1\n901 0 0 0 0 0 0 1\n");
-  expect_complaint(here.call({"map", "a.csv", "-o", "b.bt", "--poses", "late.txt"}), 1,
-                   {"a.csv: nothing could be mapped: 1 damaged", "80 outside the time of the poses, 900.000 s"});
+  expect_error(here.call({"map", "a.csv", "-o", "b.bt", "--poses", "late.txt"}), 1,
+               {"a.csv: nothing could be mapped: 1 damaged", "80 outside the time of the poses, 900.000 s"});
 }
 
 TEST(FirstUse, ATrajectoryBesideALogIsNamedWhenItIsNotUsed) {
@@ -107,7 +107,7 @@ TEST(FirstUse, InfoAndRenderNumberSweepsAlike) {
   EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("3, complete: 1-2\n"));
   EXPECT_THAT(here.call({"render", "a.csv", "-o", "a.png", "--sweep", "3"}).out, HasSubstr("10 beams"));
   EXPECT_THAT(here.call({"render", "a.csv", "-o", "a.png", "--view", "cartesian"}).out, HasSubstr("sweep 1, 40 beams"));
-  expect_complaint(here.call({"render", "a.csv", "-o", "b.png", "--sweep", "4"}), 2, {"no sweep 4", "3"});
+  expect_error(here.call({"render", "a.csv", "-o", "b.png", "--sweep", "4"}), 2, {"no sweep 4", "3"});
 }
 
 TEST(FirstUse, BinLengthsAreListedWithTheirBeams) {
@@ -130,9 +130,9 @@ TEST(FirstUse, ASliceInWhichNothingIsKnownIsAnError) {
   const Workplace here;
   here.write("a.csv", turns_csv(40));
   ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--quiet"}).status, 0);
-  expect_complaint(here.call({"render", "a.bt", "-o", "a.png", "--view", "slice", "--z", "50"}), 1,
-                   {"a.bt", "nothing is known"});
-  expect_complaint(here.call({"convert", "a.bt", "-o", "a.ply", "--z", "50"}), 1, {"a.bt", "nothing is known"});
+  expect_error(here.call({"render", "a.bt", "-o", "a.png", "--view", "slice", "--z", "50"}), 1,
+               {"a.bt", "nothing is known"});
+  expect_error(here.call({"convert", "a.bt", "-o", "a.ply", "--z", "50"}), 1, {"a.bt", "nothing is known"});
 }
 
 TEST(FirstUse, ALayerOfAMapIsWrittenAsPointsAndAsAMap) {

@@ -207,9 +207,9 @@ TEST(Compare, SaysWhatDiffers) {
   EXPECT_EQ((*json)["against_b.free_true"], "1");
 
   ASSERT_EQ(here.call({"map", "b.txt", "-o", "fine.ot", "--resolution", "0.05"}).status, 0);
-  expect_complaint(here.call({"compare", "a.ot", "fine.ot"}), 2, {"a.ot has cells of 0.1 m, fine.ot of 0.05 m"});
+  expect_error(here.call({"compare", "a.ot", "fine.ot"}), 2, {"a.ot has cells of 0.1 m, fine.ot of 0.05 m"});
   ASSERT_EQ(here.call({"map", "b.txt", "-o", "deep.pvx", "--resolution", "0.1", "--depth", "20"}).status, 0);
-  expect_complaint(here.call({"compare", "a.ot", "deep.pvx"}), 2, {"a.ot has 16 levels, deep.pvx has 20"});
+  expect_error(here.call({"compare", "a.ot", "deep.pvx"}), 2, {"a.ot has 16 levels, deep.pvx has 20"});
 }
 
 // Kills a large leaf that counts as one cell.
@@ -265,7 +265,7 @@ TEST(Map, DeepMapsGoIntoPvxAndSayHowTheyWereMade) {
   EXPECT_THAT(info.out, ::testing::HasSubstr("40 levels"));
   EXPECT_THAT(info.out, ::testing::HasSubstr("map tank.csv -o deep.pvx --depth 40 --hit-from fixed"));
   for (const std::string name : {"deep.bt", "deep.ot"}) {
-    expect_complaint(here.call({"convert", "deep.pvx", "-o", name}), 1, {name, "16", ".pvx"});
+    expect_error(here.call({"convert", "deep.pvx", "-o", name}), 1, {name, "16", ".pvx"});
     EXPECT_FALSE(here.has(name));
   }
 }
@@ -296,8 +296,8 @@ TEST(Map, RangeAndShareOfBeamsCount) {
   FlatJson map = json_with(here.call({"info", "c.bt", "--json"}), info_map_keys());
   EXPECT_EQ(map["occupied_cells"], "0");
   EXPECT_GT(std::stol(map["free_cells"]), 300);
-  expect_complaint(here.call({"map", "tank.csv", "-o", "d.bt", "--max-range", "0.5"}), 2,
-                   {"--max-range: must be above --min-range, which is 0.75 m when it is not given, is 0.5 m"});
+  expect_error(here.call({"map", "tank.csv", "-o", "d.bt", "--max-range", "0.5"}), 2,
+               {"--max-range: must be above --min-range, which is 0.75 m when it is not given, is 0.5 m"});
 }
 
 TEST(Map, TheRecordingOfTheTankHas28SweepsAnd4BeamsOver) {

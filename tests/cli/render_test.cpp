@@ -96,13 +96,13 @@ TEST(Render, SaysWhatAFileHasNoPictureOf) {
   const Workplace here;
   here.simulate_tank();
   ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt"}).status, 0);
-  expect_complaint(here.call({"render", "tank.bt", "-o", "p.png", "--view", "polar"}), 2, {"tank.bt", "a map"});
-  expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--view", "cartesian", "--sweep", "99"}), 2,
-                   {"tank.csv", "no sweep 99"});
-  expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--view", "above", "--poses", "none.tum"}), 1,
-                   {"none.tum"});
-  expect_complaint(here.call({"render", "tank.csv", "-o", "p.png", "--max-range", "0.5"}), 2,
-                   {"--max-range: must be above --min-range"});
+  expect_error(here.call({"render", "tank.bt", "-o", "p.png", "--view", "polar"}), 2, {"tank.bt", "a map"});
+  expect_error(here.call({"render", "tank.csv", "-o", "p.png", "--view", "cartesian", "--sweep", "99"}), 2,
+               {"tank.csv", "no sweep 99"});
+  expect_error(here.call({"render", "tank.csv", "-o", "p.png", "--view", "above", "--poses", "none.tum"}), 1,
+               {"none.tum"});
+  expect_error(here.call({"render", "tank.csv", "-o", "p.png", "--max-range", "0.5"}), 2,
+               {"--max-range: must be above --min-range"});
   EXPECT_FALSE(here.has("p.png"));
 }
 

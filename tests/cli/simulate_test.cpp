@@ -72,10 +72,10 @@ TEST(Simulate, HearsAMeshWhereItStands) {
   EXPECT_EQ(logs[0], logs[2]);
 
   here.write("broken.off", "OFF\n4 1 0\n2 -9 -9\n");
-  expect_complaint(here.call({"simulate", "broken.off", "-o", "a.csv"}), 1, {"broken.off", "vertex 1"});
-  expect_complaint(here.call({"simulate", "none.stl", "-o", "a.csv"}), 1, {"none.stl"});
-  expect_complaint(here.call({"simulate", "wall.off", "-o", "a.csv", "--truth", "fine", "--resolution", "0.001"}), 2,
-                   {"--resolution"});
+  expect_error(here.call({"simulate", "broken.off", "-o", "a.csv"}), 1, {"broken.off", "vertex 1"});
+  expect_error(here.call({"simulate", "none.stl", "-o", "a.csv"}), 1, {"none.stl"});
+  expect_error(here.call({"simulate", "wall.off", "-o", "a.csv", "--truth", "fine", "--resolution", "0.001"}), 2,
+               {"--resolution"});
   EXPECT_FALSE(here.has("a.csv")) << "said before the work";
 }
 

@@ -128,7 +128,7 @@ TEST(Usage, InvalidArgumentsAreRefusedWithTheNearestValidOneBeforeAnyWork) {
   const Workplace here;
   for (const Case& c : cases) {
     SCOPED_TRACE(::testing::PrintToString(c.words));
-    expect_complaint(here.call(c.words), 2, c.texts);
+    expect_error(here.call(c.words), 2, c.texts);
   }
   EXPECT_THAT(here.files(), ::testing::IsEmpty());
 }
@@ -165,7 +165,7 @@ TEST(Usage, OptionsWithoutEffectAreRefused) {
   here.write("a.xyz", "1 2 3\n");
   for (const Case& c : cases) {
     SCOPED_TRACE(::testing::PrintToString(c.args));
-    expect_complaint(here.call(c.args), 2, c.texts);
+    expect_error(here.call(c.args), 2, c.texts);
   }
   EXPECT_THAT(here.files(), ::testing::UnorderedElementsAre("tank.csv", "a.xyz"));
 }
@@ -244,12 +244,12 @@ TEST(Usage, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
     for (const std::string& value : c.bad) {
       SCOPED_TRACE(c.command + " " + c.option + " " + value);
       const Outcome outcome = call(value);
-      expect_complaint(outcome, 2, {"pingvox: " + c.command + ": " + c.option + ": must be ", ", is " + value});
+      expect_error(outcome, 2, {"pingvox: " + c.command + ": " + c.option + ": must be ", ", is " + value});
       EXPECT_EQ(outcome.err.find('_'), std::string::npos) << outcome.err;
     }
     for (const std::string& value : c.good) {
       SCOPED_TRACE(c.command + " " + c.option + " " + value);
-      expect_complaint(call(value), 1, {"missing.stl"});  // the words are right: there is no such file
+      expect_error(call(value), 1, {"missing.stl"});  // the words are right: there is no such file
     }
   }
 }
@@ -267,7 +267,7 @@ TEST(Usage, VersionIsOneLine) {
 }
 
 TEST(Usage, TheViewerOfLaterVersionsIsNoSpellingMistake) {
-  expect_complaint(Workplace().call({"view", "a.bt"}), 1, {"not in this version", "pingvox render"});
+  expect_error(Workplace().call({"view", "a.bt"}), 1, {"not in this version", "pingvox render"});
 }
 
 /// All long options in a text.
@@ -364,9 +364,9 @@ TEST(Config, WrongWordsInItAreNamedWithTheFile) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.content);
     here.write("c.toml", c.content);
-    expect_complaint(here.call({"map", "log.csv", "-o", "m.bt", "--config", "c.toml"}), 2, c.texts);
+    expect_error(here.call({"map", "log.csv", "-o", "m.bt", "--config", "c.toml"}), 2, c.texts);
   }
-  expect_complaint(here.call({"map", "log.csv", "-o", "m.bt", "--config", "no.toml"}), 1, {"no.toml"});
+  expect_error(here.call({"map", "log.csv", "-o", "m.bt", "--config", "no.toml"}), 1, {"no.toml"});
 }
 
 TEST(NearestWord, IsTheOneThatWasMeantOrNone) {

@@ -40,7 +40,7 @@ inline Bytes bytes_of_hex(std::string_view hex) {
   return bytes;
 }
 
-inline Bytes written(const OccupancyMap& map, Format format, std::string_view made_by = {}) {
+inline Bytes to_bytes(const OccupancyMap& map, Format format, std::string_view made_by = {}) {
   std::ostringstream out;
   const auto done = write_map(map, format, made_by, out);
   EXPECT_TRUE(done) << done.error().message;

@@ -94,7 +94,7 @@ TEST(Bt, WritesTheBytesOfLiboctomap) {
     const auto updates = random_updates(random, 16, random() % 3000 + 1);
     const OccupancyMap map = map_of(updates, {.resolution_m = resolution_m});
     const auto before = samples::leaves_of(map);
-    const Bytes ours = written(map, Format::kBt);
+    const Bytes ours = to_bytes(map, Format::kBt);
     ASSERT_EQ(ours, written_binary(octree_of(updates, resolution_m)));
     EXPECT_EQ(samples::leaves_of(map), before) << "writing changed the map";
     bytes += ours.size();
@@ -129,8 +129,8 @@ TEST(Bt, WritesTheBytesOfLiboctomapAfterScans) {
       }
       for (const auto& key : hits) tree.updateNode(key, true);
     }
-    ASSERT_EQ(written(map, Format::kBt), written_binary(tree));
-    ASSERT_EQ(written(map, Format::kOt), written_full(tree));
+    ASSERT_EQ(to_bytes(map, Format::kBt), written_binary(tree));
+    ASSERT_EQ(to_bytes(map, Format::kOt), written_full(tree));
   }
 }
 
@@ -154,8 +154,8 @@ TEST(Bt, WritesWhatAnEditorHasNotSettledYet) {
       for (Editor* editor : {&unsettling, &settling}) {
         is_set ? editor->set(key, depth, evidence) : editor->update(key, evidence);
       }
-      const Bytes ours = written(changed, Format::kBt);
-      ASSERT_EQ(ours, written(settled, Format::kBt)) << step;
+      const Bytes ours = to_bytes(changed, Format::kBt);
+      ASSERT_EQ(ours, to_bytes(settled, Format::kBt)) << step;
       different += ours != last ? 1 : 0;
       last = ours;
     }
@@ -169,7 +169,7 @@ TEST(Ot, WritesTheBytesOfLiboctomap) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const auto updates = random_updates(random, 16, random() % 3000 + 1);
-    const Bytes ours = written(map_of(updates, {.resolution_m = 0.05}), Format::kOt);
+    const Bytes ours = to_bytes(map_of(updates, {.resolution_m = 0.05}), Format::kOt);
     ASSERT_EQ(ours, written_full(octree_of(updates, 0.05)));
     bytes += ours.size();
   }
@@ -188,7 +188,7 @@ TEST(Bt, ReadsWhatLiboctomapReads) {
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
     ASSERT_TRUE(theirs.readBinary(in));
     EXPECT_EQ(sorted(samples::leaves_of(ours->map)), sorted(leaves_of(theirs)));
-    EXPECT_EQ(written(ours->map, Format::kBt), bytes);
+    EXPECT_EQ(to_bytes(ours->map, Format::kBt), bytes);
   }
 }
 
@@ -202,7 +202,7 @@ TEST(Ot, ReadsWhatLiboctomapWrites) {
     ASSERT_TRUE(ours) << ours.error().message;
     EXPECT_EQ(ours->format, Format::kOt);
     EXPECT_EQ(sorted(samples::leaves_of(ours->map)), sorted(leaves_of(theirs)));
-    EXPECT_EQ(written(ours->map, Format::kOt), bytes);
+    EXPECT_EQ(to_bytes(ours->map, Format::kOt), bytes);
   }
 }
 
@@ -246,7 +246,7 @@ TEST(Bt, ReadsTheFreiburgCorridor) {
   EXPECT_EQ(occupied, 143'729U);
   EXPECT_EQ(free, 284'415U);
   EXPECT_EQ(map->map.lattice().resolution_m(), 0.08);
-  EXPECT_EQ(written(map->map, Format::kBt), file->bytes);
+  EXPECT_EQ(to_bytes(map->map, Format::kBt), file->bytes);
 }
 
 TEST(Bt, GoldenVoxelIsItsCell) {
@@ -376,14 +376,14 @@ TEST(Ot, RefusesDamage) {
 TEST(Octomap, EmptyMapsGoBothWays) {
   const OccupancyMap empty({.resolution_m = 0.1});
   octomap::OcTree tree(0.1);
-  EXPECT_EQ(written(empty, Format::kBt), written_binary(tree));
-  EXPECT_EQ(written(empty, Format::kOt), written_full(tree));
+  EXPECT_EQ(to_bytes(empty, Format::kBt), written_binary(tree));
+  EXPECT_EQ(to_bytes(empty, Format::kOt), written_full(tree));
   for (const Format format : {Format::kBt, Format::kOt}) {
-    const auto map = read(written(empty, format));
+    const auto map = read(to_bytes(empty, format));
     ASSERT_TRUE(map) << map.error().message;
     EXPECT_TRUE(map->map.empty());
   }
-  const Bytes bytes = written(empty, Format::kBt);
+  const Bytes bytes = to_bytes(empty, Format::kBt);
   std::istringstream in(std::string(bytes.begin(), bytes.end()));
   EXPECT_TRUE(tree.readBinary(in));
   EXPECT_EQ(tree.size(), 0U);
@@ -393,7 +393,7 @@ TEST(Octomap, EmptyMapsGoBothWays) {
 TEST(Bt, FreeSpaceOfASingleLeafStaysFree) {
   OccupancyMap map({.resolution_m = 0.1});
   map.edit().set(Key{}, 0, LogOdds(-1.0F));
-  const Bytes bytes = written(map, Format::kBt);
+  const Bytes bytes = to_bytes(map, Format::kBt);
   std::istringstream in(std::string(bytes.begin(), bytes.end()));
   octomap::OcTree tree(1.0);
   ASSERT_TRUE(tree.readBinary(in));
@@ -413,7 +413,7 @@ TEST(Bt, LeavesOutWhatIsBetweenTheThresholds) {
     editor.set(Key{100, 32768, 32768}, 16, LogOdds(0.1F));
     editor.set(Key{32768, 32769, 32768}, 16, LogOdds(-1.0F));
   }
-  const auto again = read(written(map, Format::kBt));
+  const auto again = read(to_bytes(map, Format::kBt));
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(again->map.counts().leaves, 2U);
   EXPECT_EQ(again->map.at(Key{32768, 32768, 32768}), Clamp{}.highest);
@@ -430,7 +430,7 @@ TEST(Bt, JoinsWhatTheMapWasToldNotToJoin) {
     }
   }
   ASSERT_EQ(unjoined.counts().leaves, 4096U);
-  EXPECT_EQ(written(unjoined, Format::kBt), written(joined, Format::kBt));
+  EXPECT_EQ(to_bytes(unjoined, Format::kBt), to_bytes(joined, Format::kBt));
 }
 
 TEST(Octomap, ResolutionSurvives) {
@@ -438,7 +438,7 @@ TEST(Octomap, ResolutionSurvives) {
     OccupancyMap map({.resolution_m = resolution_m});
     map.edit().set(Key{1, 2, 3}, 16, LogOdds(1.0F));
     for (const Format format : {Format::kBt, Format::kOt}) {
-      const Bytes bytes = written(map, format);
+      const Bytes bytes = to_bytes(map, format);
       const auto again = read(bytes);
       ASSERT_TRUE(again) << again.error().message;
       EXPECT_EQ(again->map.lattice().resolution_m(), resolution_m);
@@ -471,7 +471,7 @@ TEST(Octomap, StopsAtTheMemoryLimit) {
   std::mt19937_64 random(3);
   const OccupancyMap map = map_of(random_updates(random, 16, 20000), {.resolution_m = 0.1});
   for (const Format format : {Format::kBt, Format::kOt, Format::kPvx}) {
-    const Bytes bytes = written(map, format);
+    const Bytes bytes = to_bytes(map, format);
     const auto refused = read(bytes, map.memory_bytes() / 2);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Error::Code::kLimit);

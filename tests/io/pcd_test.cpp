@@ -14,12 +14,12 @@ TEST(Pcd, HoldsTheOccupiedLeavesOnly) {
       "# .PCD v0.7 - Point Cloud Data file format\n# occupied leaves of a map with cells of 0.5 m\nVERSION 0.7\n"
       "FIELDS x y z log_odds size\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
       "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n");
-  EXPECT_EQ(written(map_of_two_occupied_leaves(), Format::kPcd), expected);
+  EXPECT_EQ(to_bytes(map_of_two_occupied_leaves(), Format::kPcd), expected);
 }
 
 /// The points of a cloud that was written.
 std::vector<Eigen::Vector3d> read_back(const OccupancyMap& map, Format format) {
-  const auto source = open_scans({"written", written(map, format)}, Damage::kFail);
+  const auto source = open_scans({"written", to_bytes(map, format)}, Damage::kFail);
   EXPECT_TRUE(source) << source.error().message;
   if (!source) return {};
   const auto scan = (*source)->next();

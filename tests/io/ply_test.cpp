@@ -13,11 +13,11 @@ TEST(Ply, HoldsTheOccupiedLeavesOnly) {
       "ply\nformat binary_little_endian 1.0\ncomment occupied leaves of a map with cells of 0.5 m\nelement vertex 2\n"
       "property float x\nproperty float y\nproperty float z\nproperty float log_odds\nproperty float size\n"
       "end_header\n");
-  EXPECT_EQ(written(map_of_two_occupied_leaves(), Format::kPly), expected);
+  EXPECT_EQ(to_bytes(map_of_two_occupied_leaves(), Format::kPly), expected);
 }
 
 TEST(Ply, OfAnEmptyMapHasNoVertex) {
-  const Bytes bytes = written(OccupancyMap({.resolution_m = 0.5}), Format::kPly);
+  const Bytes bytes = to_bytes(OccupancyMap({.resolution_m = 0.5}), Format::kPly);
   EXPECT_NE(std::string(bytes.begin(), bytes.end()).find("element vertex 0\n"), std::string::npos);
 }
 

@@ -19,7 +19,7 @@ void set_u32(Bytes& bytes, std::size_t at, std::uint32_t value) {
 }
 
 /// With a checksum that fits, so that a test gets past it.
-Bytes sealed(Bytes bytes) {
+Bytes with_checksum(Bytes bytes) {
   if (bytes.size() < 4) return bytes;
   const std::size_t end = bytes.size() - 4;
   set_u32(bytes, end, static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), bytes.data(), end)));
@@ -57,7 +57,7 @@ Bytes tiny_bytes() {
 
 TEST(Pvx, GoldenBytes) {
   // Made by hand; the checksum is what Python's zlib.crc32 says of the rest.
-  EXPECT_EQ(written(tiny_map(), Format::kPvx, "test"), tiny_bytes());
+  EXPECT_EQ(to_bytes(tiny_map(), Format::kPvx, "test"), tiny_bytes());
   const auto map = read(tiny_bytes());
   ASSERT_TRUE(map) << map.error().message;
   EXPECT_EQ(map->format, Format::kPvx);
@@ -90,7 +90,7 @@ TEST(Pvx, KeepsEachBitAtAnyDepth) {
         }
       }
       const std::string made_by = "depth = " + std::to_string(depth) + "\n";
-      const auto again = read(written(map, Format::kPvx, made_by));
+      const auto again = read(to_bytes(map, Format::kPvx, made_by));
       ASSERT_TRUE(again) << again.error().message;
       EXPECT_EQ(leaves_of(again->map), leaves_of(map));
       EXPECT_EQ(again->made_by, made_by);
@@ -102,7 +102,7 @@ TEST(Pvx, KeepsEachBitAtAnyDepth) {
       EXPECT_EQ(read_options.clamp.highest, options.clamp.highest);
       EXPECT_EQ(read_options.thresholds.lower, options.thresholds.lower);
       EXPECT_EQ(read_options.thresholds.upper, options.thresholds.upper);
-      EXPECT_EQ(written(again->map, Format::kPvx, made_by), written(map, Format::kPvx, made_by));
+      EXPECT_EQ(to_bytes(again->map, Format::kPvx, made_by), to_bytes(map, Format::kPvx, made_by));
       leaves += leaves_of(map).size();
     }
   }
@@ -112,11 +112,11 @@ TEST(Pvx, KeepsEachBitAtAnyDepth) {
 TEST(Pvx, KeepsEmptyMapsAndSingleLeaves) {
   for (const int depth : {1, 2, 16, 128}) {
     OccupancyMap map({.resolution_m = 0.1, .depth = depth});
-    auto again = read(written(map, Format::kPvx));
+    auto again = read(to_bytes(map, Format::kPvx));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_TRUE(again->map.empty());
     map.edit().set(WideKey{}, 0, LogOdds(-0.75F));
-    again = read(written(map, Format::kPvx));
+    again = read(to_bytes(map, Format::kPvx));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(leaves_of(again->map), leaves_of(map));
     EXPECT_EQ(again->map.counts().nodes(), 1U);
@@ -124,7 +124,7 @@ TEST(Pvx, KeepsEmptyMapsAndSingleLeaves) {
 }
 
 TEST(Pvx, RefusesEachTruncationAndEachFlippedBit) {
-  const Bytes whole = written(tiny_map(), Format::kPvx, "test");
+  const Bytes whole = to_bytes(tiny_map(), Format::kPvx, "test");
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_FALSE(read(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)))) << size;
   }
@@ -136,13 +136,13 @@ TEST(Pvx, RefusesEachTruncationAndEachFlippedBit) {
   Bytes longer = whole;
   longer.push_back(0);
   expect_refused(longer, Error::Code::kCorrupt, "checksum");
-  expect_refused(sealed(longer), Error::Code::kCorrupt, "lengths");
+  expect_refused(with_checksum(longer), Error::Code::kCorrupt, "lengths");
 }
 
 TEST(Pvx, RefusesALaterVersionByItsNumber) {
   Bytes bytes = tiny_bytes();
   bytes[8] = 2;
-  expect_refused(sealed(bytes), Error::Code::kUnsupported, "version 2");
+  expect_refused(with_checksum(bytes), Error::Code::kUnsupported, "version 2");
 }
 
 TEST(Pvx, RefusesSenselessHeadersAndTrees) {
@@ -150,7 +150,7 @@ TEST(Pvx, RefusesSenselessHeadersAndTrees) {
     Bytes bytes = tiny_bytes();
     const Bytes patch = bytes_of_hex(hex);
     std::copy(patch.begin(), patch.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
-    return sealed(bytes);
+    return with_checksum(bytes);
   };
   const auto corrupt = Error::Code::kCorrupt;
   expect_refused(with(12, "ffffffff"), corrupt, "lengths");

@@ -10,8 +10,8 @@
 #include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/map/trace_ray.hpp"
+#include "support/cells_as_text.hpp"
 #include "support/differences.hpp"
-#include "support/drawn.hpp"
 #include "support/exact_segment.hpp"
 #include "support/oracle_map.hpp"
 #include "support/scan_cells.hpp"
@@ -284,7 +284,7 @@ TEST(TraceRay, MarksTheCellsThatTheDdaWalksOver) {
 }
 
 TEST(Bresenham, ShallowRayLeavesItsEndCellOut) {
-  EXPECT_EQ(drawn(bresenham(Key{0, 0, 0}, Key{6, 2, 0})),
+  EXPECT_EQ(as_text(bresenham(Key{0, 0, 0}, Key{6, 2, 0})),
             "##....\n"
             "..###.\n"
             ".....#\n");

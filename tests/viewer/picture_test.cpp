@@ -23,7 +23,7 @@ TEST(Picture, FillsOnlyWhatLiesInIt) {
   picture.set(4, 0, kBlack);
   picture.set(6, 0, kBlack);
   picture.set(0, -1, kBlack);
-  EXPECT_EQ(drawn(picture, 0, 0, 6, 4, 1, {{kWhite, '.'}, {kBlack, '#'}}),
+  EXPECT_EQ(as_text(picture, 0, 0, 6, 4, 1, {{kWhite, '.'}, {kBlack, '#'}}),
             "##..#.\n"
             "##....\n"
             "......\n"
@@ -49,7 +49,7 @@ TEST(Picture, IsTheSameAfterPng) {
 TEST(Label, IsReadable) {
   Picture picture(30, 9, kWhite);
   draw_label(picture, 0, 0, "2.5 m", 1, kBlack);
-  EXPECT_EQ(drawn(picture, 0, 0, 30, 9, 1, {{kWhite, '.'}, {kBlack, '#'}}),
+  EXPECT_EQ(as_text(picture, 0, 0, 30, 9, 1, {{kWhite, '.'}, {kBlack, '#'}}),
             ".###........#####.............\n"
             "#...#.......#.................\n"
             "....#.......####........##.#..\n"
@@ -78,7 +78,7 @@ TEST(Label, EachLetterDiffersFromEachOther) {
        std::string_view("0123456789.-+,/abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ:;=_()[]%*<>!?#&'\"|~@^")) {
     Picture picture(6, 9, kWhite);
     draw_label(picture, 0, 0, std::string_view(&letter, 1), 1, kBlack);
-    shapes.push_back(drawn(picture, 0, 0, 6, 9, 1, {{kWhite, '.'}, {kBlack, '#'}}));
+    shapes.push_back(as_text(picture, 0, 0, 6, 9, 1, {{kWhite, '.'}, {kBlack, '#'}}));
     EXPECT_NE(shapes.back().find('#'), std::string::npos) << letter;
     // The gap to the next letter.
     for (std::size_t row = 0; row < 9; ++row) EXPECT_EQ(shapes.back()[row * 7 + 5], '.') << letter;

@@ -35,9 +35,9 @@ TEST(RenderEchoes, RowsAreBeamsAndColumnsAreRange) {
   const std::vector<Beam> beams = {beam_of({0, 0, 255, 0}), beam_of({255, 0, 0, 0}), beam_of({64, 255}),
                                    beam_of({0, 255}, 1.0)};
   const Picture picture = render_echoes(beams, {}, {.target_px = 16});
-  EXPECT_EQ(drawn(picture, kLeft, kTop, 16, 1, 1, kLetters), "........####....\n");
+  EXPECT_EQ(as_text(picture, kLeft, kTop, 16, 1, 1, kLetters), "........####....\n");
   std::string rows;
-  for (std::size_t row = 0; row < 4; ++row) rows += drawn(picture, kLeft, kTop + row * 16, 4, 1, 4, kLetters);
+  for (std::size_t row = 0; row < 4; ++row) rows += as_text(picture, kLeft, kTop + row * 16, 4, 1, 4, kLetters);
   EXPECT_EQ(rows,
             "..#.\n"
             "#...\n"
@@ -50,7 +50,7 @@ TEST(RenderEchoes, MarksEachEchoWhereItIs) {
   const std::vector<std::optional<Echo>> echoes = {echo_at(1.0), std::nullopt, echo_at(1.75)};
   const Picture picture = render_echoes(beams, echoes, {.target_px = 16});
   std::string rows;
-  for (std::size_t row = 0; row < 3; ++row) rows += drawn(picture, kLeft, kTop + row * 16, 16, 1, 1, kLetters);
+  for (std::size_t row = 0; row < 3; ++row) rows += as_text(picture, kLeft, kTop + row * 16, 16, 1, 1, kLetters);
   EXPECT_EQ(rows,
             ".......|||......\n"
             "................\n"

@@ -29,7 +29,7 @@ TEST(RenderRay, ShowsWhichCellsAreMissedAndWhichAreBeyond) {
   // Cells of 64 pixels: a grid of 5 x 4, y upwards, looked at near their upper right corners.
   const Picture picture = render_ray(figure, 320);
   std::string cells;
-  for (std::size_t row = 0; row < 4; ++row) cells += drawn(picture, 24 + 59, 24 + row * 64 + 5, 5, 1, 64, kLetters);
+  for (std::size_t row = 0; row < 4; ++row) cells += as_text(picture, 24 + 59, 24 + row * 64 + 5, 5, 1, 64, kLetters);
   // The missed one is hatched: either its colour or paper.
   EXPECT_EQ(cells.substr(0, 12), ".....\n..X..\n");
   EXPECT_EQ(cells.substr(12, 2), ".#");

@@ -1,5 +1,5 @@
-// What judges recordings, held against closed forms, and against what is known to be wrong.
-#include "accuracy/judged_world.hpp"
+// Ground truth and scores, compared with closed forms and with deliberate errors.
+#include "accuracy/ground_truth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,23 +49,9 @@ TEST(TrueReturns, OverABottomBeginAtTheLowerEdgeOfTheCone) {
 
 TEST(Mapped, IsWhatBuildMapMakes) {
   const Recording recording = tank(2);
-  class Source final : public BeamSource {
-   public:
-    explicit Source(const Recording& recorded) : recorded_(recorded) {}
-    Result<std::optional<Beam>> next() override {
-      if (sweep_ == recorded_.sweeps.size()) return std::nullopt;
-      Beam beam = recorded_.sweeps[sweep_].beams[beam_];
-      if (++beam_ == recorded_.sweeps[sweep_].beams.size()) {
-        beam_ = 0;
-        ++sweep_;
-      }
-      return beam;
-    }
-
-   private:
-    const Recording& recorded_;
-    std::size_t sweep_ = 0, beam_ = 0;
-  } source(recording);
+  std::vector<Beam> beams;
+  for (const Sweep& sweep : recording.sweeps) beams.insert(beams.end(), sweep.beams.begin(), sweep.beams.end());
+  BeamsInMemory source(std::move(beams));
   OccupancyMap built(MapOptions{.resolution_m = 0.05});
   ASSERT_TRUE(build_map(source, Trajectory::still(Pose::Identity()), {}, built));
   const auto map = map_echoes(recording, detect(recording, {}, {}), {}, 0.05);
@@ -90,7 +76,7 @@ class OfPerfectRanges : public testing::Test {
 
   Recording recording_ = tank(2);
   std::vector<TrueReturns> truths_ = true_returns(recording_);
-  Result<JudgedWorld> world_ = JudgedWorld::make(recording_, Extent::kPlane, 0.05, 0.75);
+  Result<GroundTruth> world_ = GroundTruth::make(recording_, Extent::kPlane, 0.05, 0.75);
 };
 
 TEST_F(OfPerfectRanges, AMapInThePlaneIsRight) {

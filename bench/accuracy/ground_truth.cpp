@@ -1,4 +1,4 @@
-#include "accuracy/judged_world.hpp"
+#include "accuracy/ground_truth.hpp"
 
 #include <utility>
 
@@ -20,7 +20,7 @@ Result<OccupancyMap> part_of(const OccupancyMap& map, Extent extent) {
 
 }  // namespace
 
-Result<JudgedWorld> JudgedWorld::make(const Recording& recording, Extent extent, double resolution_m,
+Result<GroundTruth> GroundTruth::make(const Recording& recording, Extent extent, double resolution_m,
                                       double min_range_m) {
   Eigen::AlignedBox3d water = recording.scene.water_m;
   if (extent == Extent::kPlane) {
@@ -39,10 +39,10 @@ Result<JudgedWorld> JudgedWorld::make(const Recording& recording, Extent extent,
                                                 .max_range_m = recording.sonar.range_m(),
                                                 .height_rad = recording.sonar.beam_height_rad});
   if (!visible) return tl::unexpected(visible.error());
-  return JudgedWorld(extent, *std::move(truth), *std::move(visible));
+  return GroundTruth(extent, *std::move(truth), *std::move(visible));
 }
 
-Result<MapAgreement> JudgedWorld::score(const OccupancyMap& map, const Thresholds& thresholds) const {
+Result<MapAgreement> GroundTruth::score(const OccupancyMap& map, const Thresholds& thresholds) const {
   const Result<OccupancyMap> part = part_of(map, extent_);
   if (!part) return tl::unexpected(part.error());
   return agreement_of(with_thresholds(*part, thresholds), truth_, {judged_box(truth_), &visible_});

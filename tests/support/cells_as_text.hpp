@@ -8,7 +8,7 @@ namespace pingvox::test {
 
 /// The cells of a range of keys in the plane z = 0, from key (0, 0) on, x to the right and y downwards.
 template <class Keys>
-std::string drawn(const Keys& keys) {
+std::string as_text(const Keys& keys) {
   std::vector<std::string> rows;
   std::size_t columns = 0;
   for (const auto key : keys) {

@@ -14,24 +14,24 @@
 
 namespace pingvox::bench {
 
-/// Where a map of a world is judged.
+/// The part of a world in which maps are scored.
 enum class Extent {
-  kPlane,  ///< the layer of cells that holds z = 0, in which the head turns
-  kSpace,  ///< all of the world, and 3 m of what is behind its walls
+  kPlane,  ///< the layer of cells at z = 0, in which the head turns
+  kSpace,  ///< all of the world, and 3 m behind its walls
 };
 
 /// The ground truth of a world in cells of one size, ready to judge maps as `pingvox compare --visible-from` does: what
 /// lies beyond a side without a wall is left out, and only what could be seen from where the head was is to be found.
-class JudgedWorld {
+class GroundTruth {
  public:
-  static Result<JudgedWorld> make(const Recording& recording, Extent extent, double resolution_m, double min_range_m);
+  static Result<GroundTruth> make(const Recording& recording, Extent extent, double resolution_m, double min_range_m);
 
   /// REQUIRES a map of this resolution and 16 levels. @return kUnsupported when nothing is known in the plane
   Result<MapAgreement> score(const OccupancyMap& map) const { return score(map, map.options().thresholds); }
   Result<MapAgreement> score(const OccupancyMap& map, const Thresholds& thresholds) const;
 
  private:
-  JudgedWorld(Extent extent, OccupancyMap truth, OccupancyMap visible)
+  GroundTruth(Extent extent, OccupancyMap truth, OccupancyMap visible)
       : extent_(extent), truth_(std::move(truth)), visible_(std::move(visible)) {}
   Extent extent_;
   OccupancyMap truth_, visible_;
@@ -42,13 +42,13 @@ using Echoes = std::vector<std::optional<Echo>>;
 
 Echoes detect(const Recording& recording, const FilterOptions& filter, const EchoOptions& options);
 
-/// The same echoes, each taken to be in the middle of its first bin, as in the paper.
+/// The same echoes with the range of the centre of their first bin, as in the paper.
 Echoes at_first_bins(Echoes echoes, double bin_length_m);
 
-/// What a perfect detector would find on the axis of each beam.
+/// Echoes of a perfect detector on the axis of each beam.
 Echoes true_echoes(const Recording& recording, const std::vector<TrueReturns>& truths, double min_range_m);
 
-/// The map of given echoes: what build_map makes of them. @return kLimit when it would grow too large
+/// The map that build_map makes of given echoes. @return kLimit when it would grow too large
 Result<OccupancyMap> map_echoes(const Recording& recording, const Echoes& echoes, const BeamModelOptions& model,
                                 double resolution_m);
 

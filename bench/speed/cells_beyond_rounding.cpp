@@ -1,4 +1,4 @@
-#include "cells_beyond_doubt.hpp"
+#include "cells_beyond_rounding.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,10 +7,10 @@
 namespace pingvox::bench {
 namespace {
 
-/// [cells]. After hundreds of sums in single precision the other library's rays are a thousandth off.
+/// [cells]. After hundreds of sums in single precision, liboctomap's rays are a thousandth off.
 constexpr double kMargin = 0.01;
 
-/// A ray in cells, not in metres.
+/// A ray in units of cells.
 struct Ray {
   Eigen::Vector3d from, to, direction;
 };
@@ -26,15 +26,14 @@ std::vector<Ray> rays_of(const Lattice& lattice, const RayCloud& scan) {
   return rays;
 }
 
-/// Whether the ray stays in the cell's layer along this axis: nothing is added up there, so a cell has its lower face
-/// and not its upper one.
+/// Whether a ray without motion along this axis is in the cell's layer (lower face included, upper excluded).
 bool is_in_layer(double at, double middle) {
   return at >= middle - 0.5 && at < middle + 0.5;
 }
 
-/// Whether a ray comes into the cube of this half edge.
+/// Whether a ray enters the cube of this half edge.
 bool meets(const Ray& ray, const Eigen::Vector3d& middle, double half) {
-  double in = 0.0, out = 1.0;  // where along the ray it is between the faces of all axes so far
+  double in = 0.0, out = 1.0;  // interval of the ray between the faces of all axes so far
   for (int axis = 0; axis < 3; ++axis) {
     const double along = ray.to[axis] - ray.from[axis], before = middle[axis] - ray.from[axis];
     if (along == 0.0) {
@@ -57,14 +56,14 @@ bool ends_in(const Ray& ray, const Eigen::Vector3d& middle, double half) {
   return true;
 }
 
-bool leaves_doubt(std::span<const Ray> rays, const Eigen::Vector3d& middle) {
+bool is_within_rounding(std::span<const Ray> rays, const Eigen::Vector3d& middle) {
   constexpr double kSmaller = 0.5 - kMargin, kLarger = 0.5 + kMargin, kReach = 0.9;  // to the corners, and more
   bool may_hit = false, surely_missed = false, may_miss = false;
   for (const Ray& ray : rays) {
     const Eigen::Vector3d way = middle - ray.from;
     const double along = way.dot(ray.direction);
     if (way.squaredNorm() - along * along > kReach * kReach) continue;
-    if (ends_in(ray, middle, kSmaller)) return false;  // a hit, whatever else passes
+    if (ends_in(ray, middle, kSmaller)) return false;  // a hit, whatever passes
     const bool may_end = ends_in(ray, middle, kLarger);
     may_hit |= may_end;
     if (!meets(ray, middle, kLarger)) continue;
@@ -76,14 +75,15 @@ bool leaves_doubt(std::span<const Ray> rays, const Eigen::Vector3d& middle) {
 
 }  // namespace
 
-std::vector<Key> cells_beyond_doubt(const Lattice& lattice, std::span<const RayCloud> scans,
-                                    std::span<const Key> cells) {
+std::vector<Key> cells_beyond_rounding(const Lattice& lattice, std::span<const RayCloud> scans,
+                                       std::span<const Key> cells) {
   std::vector<Key> settled(cells.begin(), cells.end());
   for (const RayCloud& scan : scans) {
     if (settled.empty()) break;
     const std::vector<Ray> rays = rays_of(lattice, scan);
-    std::erase_if(
-        settled, [&](const Key& cell) { return leaves_doubt(rays, lattice.centre_of(cell) / lattice.resolution_m()); });
+    std::erase_if(settled, [&](const Key& cell) {
+      return is_within_rounding(rays, lattice.centre_of(cell) / lattice.resolution_m());
+    });
   }
   return settled;
 }
