@@ -95,7 +95,7 @@ NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
   const std::string_view text = text_of(bytes);
   if (text.starts_with(kClockLine)) {
     Lines first(text);
-    const std::string_view clock = trimmed(first.next().value_or("").substr(kClockLine.size()));
+    const std::string_view clock = trim(first.next().value_or("").substr(kClockLine.size()));
     if (clock == name_of(NavClock::kUnix)) reading.clock = NavClock::kUnix;
     if (clock == name_of(NavClock::kBoot)) reading.clock = NavClock::kBoot;
   }
