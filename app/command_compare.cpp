@@ -136,7 +136,7 @@ std::string text_of(const MapAgreement& agreement) {
 
 std::string text_of(const MapComparison& found, const MapAgreement& agreement, Sameness sameness) {
   const std::uint64_t cells = found.cells();
-  // A map that holds no log-odds says nothing about how far they differ.
+  // Without log-odds there is no difference to print.
   const std::string log_odds =
       sameness == Sameness::kLogOdds
           ? report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference))

@@ -119,7 +119,7 @@ Error with_name(Error error, const std::string& name) {
   return error;
 }
 
-/// The map of a mesh's surface, as if it had been read.
+/// The map of a mesh's surface.
 Result<MapFile> map_of_mesh(const FileBytes& file, const ConvertCommand& command) {
   const Result<TriangleMesh> mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
@@ -130,7 +130,7 @@ Result<MapFile> map_of_mesh(const FileBytes& file, const ConvertCommand& command
   return MapFile{command.format, *std::move(map), fmt::format("the surface of {}", file.name)};
 }
 
-/// A grid for map_server: the picture, then the file that names it.
+/// Writes a grid for map_server: the image, then its YAML file.
 Result<std::string> write_grid(const OccupancyMap& map, const ConvertCommand& command) {
   const Result<Raster<Occupancy>> slice = slice_of(map, command.slice);
   if (!slice) return tl::unexpected(with_name(slice.error(), command.input));

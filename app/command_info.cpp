@@ -27,7 +27,7 @@
 namespace pingvox::app {
 namespace {
 
-/// A report in both forms.
+/// A report as text and JSON.
 struct Summary {
   JsonObject json;
   std::string text;
@@ -37,7 +37,7 @@ std::string headline(const std::string& name, Format format) {
   return fmt::format("{}: {}\n", on_one_line(name), describe(format));
 }
 
-/// Angle that the head covered: a full turn, or all but the widest gap between two bearings.
+/// Angle covered by the head: a full turn, or all but the widest gap between bearings.
 double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   if (has_turn) return 360.0;
   if (bearings_rad.empty()) return 0.0;
@@ -47,7 +47,7 @@ double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   for (std::size_t i = 1; i < bearings_rad.size(); ++i) {
     widest = std::max(widest, bearings_rad[i] - bearings_rad[i - 1]);
   }
-  // A bearing is never known better than to a millionth of a degree: rounded, so that 90 is not 90.00000000000001.
+  // Rounded to a millionth of a degree, so that 90 is not 90.00000000000001.
   return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
 }
 
@@ -98,7 +98,7 @@ JsonObject lengths_json(const BinLengths& lengths) {
   return json;
 }
 
-/// Rising numbers with runs shortened: "2-5, 8".
+/// Ascending numbers with ranges: "2-5, 8".
 std::string numbers_text(const std::vector<std::size_t>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size();) {
@@ -128,7 +128,7 @@ class BeamSurvey {
   Summary finish(const std::string& name, Format format, const BeamSource& source) {
     const std::size_t skipped = source.skipped();
     take(assembler_.finish());
-    // Those of most beams first.
+    // Most frequent first.
     std::vector<std::pair<double, std::size_t>> lengths(bin_lengths_.begin(), bin_lengths_.end());
     std::sort(lengths.begin(), lengths.end(),
               [](const auto& a, const auto& b) { return std::pair(b.second, a.first) < std::pair(a.second, b.first); });
@@ -198,7 +198,7 @@ class BeamSurvey {
   double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
   bool has_turn_ = false;
   std::map<double, std::size_t> bin_lengths_;
-  std::set<double> bearings_rad_;  ///< a head has so many and no more, however long the log is
+  std::set<double> bearings_rad_;  ///< bounded by the resolution of the head, however long the log
   SweepAssembler assembler_;
 };
 

@@ -28,7 +28,7 @@ struct CommandName {
   Result<Command> (*parse)(const Args&);
 };
 
-/// `view` is known, so that its name is not taken for a misspelt one, but not offered.
+/// `view` of later versions is known but not listed, so that it is not reported as misspelt.
 constexpr std::array kCommands = {
     CommandName{"map", "logs to a map", &map_command},
     CommandName{"info", "what a log, a cloud, a map or a mesh holds", &info_command},

@@ -8,9 +8,8 @@
 
 namespace pingvox::app {
 
-/// Makes a command of the args of a call (without the program's name). Nothing is read but a file of --config, and
-/// nothing of the work is begun, so that wrong args cost no time.
-/// @return kBadOption when the args are off, with the nearest right one; kIo when a --config file cannot be read
+/// Parses the arguments (without the program's name) into a command. Reads no file but that of --config.
+/// @return kBadOption for invalid usage, with the nearest valid word; kIo when a --config file cannot be read
 Result<Command> parse_command_line(const std::vector<std::string>& args);
 
 }  // namespace pingvox::app

@@ -33,10 +33,10 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// What all logs together came to.
+/// Totals of all logs.
 struct Totals {
   BuildReport report;
-  std::size_t scans = 0, points = 0;  ///< of the report's sweeps and beams those that are no beams
+  std::size_t scans = 0, points = 0;  ///< scans of points, and their points
   std::size_t damaged = 0;
   bool has_beams = false;
   BeamModelOptions beam;  ///< of the first log of beams
@@ -74,8 +74,8 @@ std::optional<double> share_read(const Log& log) {
   return std::visit([](const auto& source) { return source->share_read(); }, log);
 }
 
-/// Microseconds: what is shorter is noise.
-double rounded(double seconds) {
+/// Rounded to microseconds.
+double round_to_us(double seconds) {
   return std::round(seconds * 1e6) / 1e6;
 }
 
@@ -124,12 +124,12 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
   const BuildReport& report = totals.report;
   const MapCounts counts = map.counts();
   JsonObject seconds;
-  seconds.add("read", rounded(report.seconds.read))
-      .add("detect", rounded(report.seconds.detect))
-      .add("trace", rounded(report.seconds.trace))
-      .add("apply", rounded(report.seconds.apply))
-      .add("write", rounded(totals.write_s))
-      .add("total", rounded(totals.total_s));
+  seconds.add("read", round_to_us(report.seconds.read))
+      .add("detect", round_to_us(report.seconds.detect))
+      .add("trace", round_to_us(report.seconds.trace))
+      .add("apply", round_to_us(report.seconds.apply))
+      .add("write", round_to_us(totals.write_s))
+      .add("total", round_to_us(totals.total_s));
   JsonObject held;
   held.add("resolution", map.lattice().resolution_m())
       .add("depth", map.lattice().depth())
@@ -212,7 +212,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       if (const std::string kind = kind_text(kind_of(*format)); std::ranges::find(kinds, kind) == kinds.end()) {
         kinds.push_back(kind);
       }
-      // Known with the last one, and said before its work.
+      // Known with the last log; printed before mapping it.
       if (i + 1 == command.logs.size()) {
         if (const auto used = check_limited(command.limited, kinds); !used) {
           return fail(used.error().code, fmt::format("map: {}", used.error().message));
@@ -224,7 +224,7 @@ Result<int> run(const MapCommand& command, Console& console) {
 
       const Progress progress = [&](const BuildReport& done) {
         if (!bar.is_due()) return;
-        // Logs count the same: how long the later ones are is not known yet.
+        // All logs count the same, as the length of later ones is unknown.
         std::optional<double> share = share_read(*log);
         if (share) share = (static_cast<double>(i) + *share) / static_cast<double>(command.logs.size());
         bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),

@@ -25,21 +25,21 @@
 namespace pingvox::app {
 namespace {
 
-/// A picture, and what is to be seen on it.
+/// A picture and its description.
 struct Drawn {
   Picture picture;
   std::string what;
 };
 
-/// A sweep with what was found in it.
+/// A sweep with its echoes.
 struct ProcessedSweep {
   std::size_t number = 0;  ///< counted from 1
   Sweep sweep;
-  PolarImage image;                           ///< as it is to be shown
-  std::vector<std::optional<Echo>> echoes{};  ///< empty when they are not to be marked
+  PolarImage image;                           ///< the image to be shown
+  std::vector<std::optional<Echo>> echoes{};  ///< empty when they are not marked
 };
 
-/// The beam up to a range; all bins that begin nearer.
+/// Keeps the bins of a beam that begin within a range.
 void cut_beam(Beam& beam, double range_m) {
   const double bins = std::ceil(range_m / beam.bin_length_m);
   if (bins < static_cast<double>(beam.intensities.size())) {
@@ -81,10 +81,10 @@ std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> e
   return text;
 }
 
-/// All beams that a polar picture shows.
-class PolarGatherer {
+/// Collects the beams of a polar picture.
+class PolarCollector {
  public:
-  explicit PolarGatherer(const PanelCommand& panel) : panel_(panel) {}
+  explicit PolarCollector(const PanelCommand& panel) : panel_(panel) {}
 
   void add(std::size_t number, Sweep sweep) {
     if (panel_.sweep && *panel_.sweep != number) return;
@@ -105,10 +105,10 @@ class PolarGatherer {
   std::vector<std::optional<Echo>> echoes_;
 };
 
-/// The one sweep that a Cartesian picture shows: that asked for, else the one that covers the most directions.
-class CartesianGatherer {
+/// Selects the sweep of a Cartesian picture: as requested, else the one that covers the most directions.
+class CartesianCollector {
  public:
-  explicit CartesianGatherer(const PanelCommand& panel) : panel_(panel) {}
+  explicit CartesianCollector(const PanelCommand& panel) : panel_(panel) {}
 
   void add(std::size_t number, Sweep sweep) {
     if (panel_.sweep && *panel_.sweep != number) return;
@@ -128,7 +128,7 @@ class CartesianGatherer {
   }
 
  private:
-  /// Degrees in which the sweep has a beam.
+  /// Number of whole degrees in which the sweep has a beam.
   static std::size_t directions_in(const Sweep& sweep) {
     std::bitset<360> seen;
     for (const Beam& beam : sweep.beams) {
@@ -149,7 +149,7 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage dama
   const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
   if (!source) return tl::unexpected(source.error());
   PanelCommand of_head = panel;
-  of_head.build = panel.head.applied_to(panel.build, (*source)->device());
+  of_head.build = panel.head.apply_to(panel.build, (*source)->device());
   Gatherer gatherer(of_head);
   SweepAssembler assembler;
   std::size_t sweeps = 0;
@@ -187,7 +187,7 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, Damag
   return map;
 }
 
-/// A map and the side from which it is to be drawn.
+/// A map and its viewpoint.
 struct MapToDraw {
   OccupancyMap map;
   PictureView view;
@@ -204,7 +204,7 @@ PictureView view_of(const PanelCommand& panel, FormatKind kind) {
   return panel.view.value_or(kind == FormatKind::kBeams ? PictureView::kPolar : PictureView::kAbove);
 }
 
-/// What the options of a picture may be limited to: see PanelCommand.
+/// Adds the kinds that options of a panel may be limited to (PanelCommand).
 void add_kinds(const PanelCommand& panel, FormatKind kind, std::vector<std::string>& kinds) {
   const PictureView view = view_of(panel, kind);
   const auto add = [&](bool applies, std::string text) {
@@ -217,7 +217,7 @@ void add_kinds(const PanelCommand& panel, FormatKind kind, std::vector<std::stri
   add(is_map && kind != FormatKind::kMap, std::string(kMappedLogs));
 }
 
-/// Does a panel's work: a picture is done, a map waits for those that it is compared with.
+/// Prepares a panel: draws a picture, or returns a map to be drawn with those that it is compared with.
 Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const PanelCommand& panel, Damage damage) {
   using Prepared = std::variant<Drawn, MapToDraw>;
   const Result<Format> format = identify_format(file);
@@ -238,8 +238,8 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
                   fmt::format("render: {}: is {}: only logs of beams have polar and Cartesian pictures", file.name,
                               describe(*format)));
     }
-    auto drawn = view == PictureView::kPolar ? draw_sweeps<PolarGatherer>(std::move(file), panel, damage)
-                                             : draw_sweeps<CartesianGatherer>(std::move(file), panel, damage);
+    auto drawn = view == PictureView::kPolar ? draw_sweeps<PolarCollector>(std::move(file), panel, damage)
+                                             : draw_sweeps<CartesianCollector>(std::move(file), panel, damage);
     return std::move(drawn).map([](Drawn done) { return Prepared(std::move(done)); });
   }
   if (kind == FormatKind::kMap) {
@@ -248,7 +248,7 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
   return map_of_log(std::move(file), panel, damage).map(to_draw);
 }
 
-/// An empty picture says nothing about why it is empty.
+/// Refuses a slice without known cells, since an empty picture would not tell why.
 Result<void> check_layer(const MapToDraw& shown, const PanelCommand& panel) {
   const auto z_m = panel.map_picture.layer_z_m;
   if (shown.view != PictureView::kSlice || !z_m) return {};
@@ -263,8 +263,8 @@ Box around(const std::optional<Box>& a, const Box& b) {
   return {a->min.cwiseMin(b.min), a->max.cwiseMax(b.max)};
 }
 
-/// All panels, side by side if there are several. A file that several show is read once; maps of one file that are seen
-/// from one side show the same part of the world, so that they can be compared.
+/// Draws all panels, side by side if there are several. A file is read once; maps of one file and viewpoint show the
+/// same box, for comparison.
 Result<Drawn> draw(const RenderCommand& command) {
   std::map<std::string, FileBytes> files;
   std::map<std::pair<std::string, MapView>, std::optional<Box>> parts;

@@ -26,7 +26,7 @@ namespace {
 class TruthRecorder final : public BeamSource {
  public:
   struct Sent {
-    double bearing_rad;  ///< as the log has it
+    double bearing_rad;  ///< as in the log
     SonarSimulator::Ping ping;
   };
 
@@ -73,7 +73,7 @@ Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, c
     Result<Trajectory> way = trajectory_of(command.poses);
     if (!way) return tl::unexpected(way.error());
     const double duration = way->poses().back().time_s - way->poses().front().time_s;
-    // Both ends count: a beam is sent at the last pose, too.
+    // A beam is sent at the last pose, too.
     return Journey{*std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
   }
   const Route* route = scene.route(command.motion);
@@ -111,7 +111,7 @@ Result<void> write_ranges(const std::string& path, const SonarSimulator& simulat
 }
 
 Result<OccupancyMap> true_map(const Scene& scene, const Trajectory& way, double resolution_m) {
-  // Where the vehicle is, there is water, in whatever box a mesh stands.
+  // The water includes the vehicle, even outside of the box of a mesh.
   Eigen::AlignedBox3d water = scene.water_m;
   for (const StampedPose& pose : way.poses()) water.extend(pose.map_from_body.translation());
   return world_map(scene.world, water, way.poses().front().map_from_body.translation(), resolution_m);
@@ -152,7 +152,7 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   const Result<Journey> journey = journey_of(command, *scene, sonar);
   if (!journey) return tl::unexpected(journey.error());
 
-  // What can fail comes before the work.
+  // Steps that may fail come before the long ones.
   std::optional<OccupancyMap> map;
   if (command.truth) {
     Result<OccupancyMap> made = true_map(*scene, journey->way, command.truth_resolution_m);

@@ -25,23 +25,23 @@
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
 
-/// The commands as plain values: what `parse_command_line` returns and `run` executes. A `run` returns the
-/// exit status of a call that could be done; `main` turns errors into the others.
+/// The commands as plain values: returned by `parse_command_line`, executed by `run`. `run` returns the exit status;
+/// `main` maps errors to theirs.
 namespace pingvox::app {
 
-/// Something to read and nothing to do: --help, --version.
+/// --help or --version.
 struct ShowText {
   OutputOptions output_options;
   std::string text;
 };
 
-/// What a call says of the sonar's head. What it leaves open follows from the log's device.
+/// Options of the sonar head. The rest follows from the device of the log.
 struct HeadArgs {
-  const DeviceProfile* device = nullptr;  ///< nullptr: the log's
+  const DeviceProfile* device = nullptr;  ///< nullptr: that of the log
   std::optional<double> beam_width_rad, beam_height_rad;
 
-  /// The options with the beam's width and height: as the call says, else as the device's maker does, else as they are.
-  BuildOptions applied_to(BuildOptions options, const DeviceProfile* of_log) const {
+  /// Sets width and height of the beam: as given, else of the device, else unchanged.
+  BuildOptions apply_to(BuildOptions options, const DeviceProfile* of_log) const {
     if (const DeviceProfile* head = device != nullptr ? device : of_log; head != nullptr) {
       options.model.width_rad = head->beam_width_rad;
       options.model.height_rad = head->beam_height_rad;
@@ -84,8 +84,8 @@ struct InfoCommand {
 struct CompareCommand {
   OutputOptions output_options;
   std::string a, b;
-  std::optional<double> layer_z_m;             ///< compare only the layer of cells that holds this height
-  std::optional<double> occupied_probability;  ///< a cell of A is occupied from here on
+  std::optional<double> layer_z_m;             ///< compare only the layer of cells at this height
+  std::optional<double> occupied_probability;  ///< occupancy threshold of A
   std::optional<std::string> visible_from;     ///< poses from which the cells to find could be seen
   Pose body_from_sensor = Pose::Identity();
   ViewOptions view{.min_range_m = EchoOptions::kUsualBlanking_m};
@@ -96,7 +96,7 @@ struct ConvertCommand {
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
-  std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the usual one
+  std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the default
   SliceOptions slice;                  ///< of a map
   bool has_echoes = false;             ///< the detected echoes of a log instead of its beams
   FilterOptions filter;
@@ -106,23 +106,23 @@ struct ConvertCommand {
   Surface surface = Surface::kHighest;
 };
 
-/// What a picture shows: of a log of beams one of the first two; of a map, or of a log after mapping it, the others.
+/// Views of a picture: the first two for logs of beams, the others for maps, also of logs.
 enum class PictureView { kPolar, kCartesian, kAbove, kSide, kSlice };
-/// The kinds that options of 'render' may be limited to, beside those of logs (Option::only_for).
+/// Kinds that options of 'render' may be limited to (Option::only_for), besides those of logs.
 inline constexpr std::string_view kDrawnMaps = "pictures of maps", kMappedLogs = "logs that are mapped";
 /// "--view polar"
 std::string view_kind(PictureView view);
 enum class ShownImage { kRaw, kFiltered };
 enum class EchoMarks { kOn, kOff };
 
-/// One of the pictures that stand side by side.
+/// One of several pictures side by side.
 struct PanelCommand {
   std::string input;
   std::string caption;
   std::optional<PictureView> view;  ///< nullopt: polar of a log of beams, else from above
   ShownImage image = ShownImage::kRaw;
   EchoMarks marks = EchoMarks::kOn;
-  std::optional<std::size_t> sweep;  ///< counted from 1; nullopt: polar all, Cartesian the fullest one
+  std::optional<std::size_t> sweep;  ///< from 1; nullopt: polar all, Cartesian the fullest one
   BetweenBeams between = BetweenBeams::kInterpolate;
   EchoPictureOptions echo_picture;
   MapPictureOptions map_picture;
@@ -146,18 +146,18 @@ struct SimulateCommand {
   std::string world;  ///< tank, harbour, seabed, cave, or the file of a mesh
   TankOptions tank;
   SonarOptions sonar;
-  std::optional<double> range_m;       ///< to set the bins to; nullopt: as the world asks for, or as sonar says
-  std::optional<double> bin_length_m;  ///< the same by the length of a bin
+  std::optional<double> range_m;       ///< range of the bins; nullopt: that of the world, or of `sonar`
+  std::optional<double> bin_length_m;  ///< alternative to range_m
   Motion motion = Motion::kStill;
-  std::optional<std::string> poses;  ///< the way instead of a built-in one
+  std::optional<std::string> poses;  ///< trajectory instead of a built-in route
   TravelOptions travel;
   DriftOptions drift;
-  std::optional<std::size_t> turns;  ///< nullopt: as many as the way takes
-  std::optional<std::string> truth;  ///< the folder to write it to
+  std::optional<std::size_t> turns;  ///< nullopt: for the whole route
+  std::optional<std::string> truth;  ///< folder for the ground truth
   double truth_resolution_m = 0.05;
 };
 
-/// Starts `pingvox-bench`, a program of its own, with these arguments.
+/// Runs the program `pingvox-bench` with these arguments.
 struct BenchCommand {
   OutputOptions output_options;
   std::vector<std::string> args;

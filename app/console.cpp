@@ -27,7 +27,7 @@ void Console::say(std::string_view line) const {
 }
 
 void print_error(std::string_view message) {
-  // One call, so that lines of several processes do not mix.
+  // One write, so that lines of several processes do not mix.
   const std::string line = "pingvox: " + on_one_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }

@@ -15,36 +15,35 @@ enum class ShowProgress {
   kNever,
 };
 
-/// How a command talks to whoever called it.
+/// Options of the output of a command.
 struct OutputOptions {
   Report report = Report::kText;
   Talk talk = Talk::kOn;
   ShowProgress progress = ShowProgress::kAuto;
 };
 
-/// The two ways out of the program: standard output for results, standard error for talk.
+/// Standard output for results, standard error for messages.
 class Console {
  public:
   explicit Console(const OutputOptions& output_options) : manner_(output_options) {}
 
   const OutputOptions& output_options() const { return manner_; }
 
-  /// Writes a result to standard output. kIo: nobody reads it, or the disk is full.
+  /// Writes a result to standard output. kIo: closed pipe or full disk.
   Result<void> print(std::string_view text) const;
-  /// The summary of what a command did, for people: to standard output, or to standard error when the output itself
-  /// went there. Nothing when asked to be quiet.
+  /// Prints a summary to standard output, or to standard error if the output file is standard output; nothing if quiet.
   Result<void> summarise(std::string_view text, std::string_view output) const;
-  /// One line on standard error, unless asked to be quiet. Nothing can be done when it fails.
+  /// Prints a line on standard error, unless quiet. Errors are ignored.
   void say(std::string_view line) const;
 
  private:
   OutputOptions manner_;
 };
 
-/// One line on standard error, "pingvox: message", whatever the message contains.
+/// Prints "pingvox: message" as one line on standard error.
 void print_error(std::string_view message);
 
-/// The text with its control characters (a file name may hold line breaks) replaced by '?'.
+/// Replaces control characters (a file name may contain line breaks) by '?'.
 std::string on_one_line(std::string_view text);
 
 }  // namespace pingvox::app

@@ -8,9 +8,8 @@
 
 namespace pingvox::app {
 
-/// A JSON object (RFC 8259) in the making: the one place that writes JSON. Keys come out in the order in which they
-/// were added; strings that are not UTF-8 have the offending bytes replaced, numbers that are not finite become null,
-/// and no locale has a say.
+/// Builds a JSON object (RFC 8259). Keys keep their order; invalid UTF-8 is replaced, non-finite numbers become null;
+/// independent of the locale.
 class JsonObject {
  public:
   JsonObject& add(std::string_view key, double value);
@@ -24,7 +23,7 @@ class JsonObject {
   JsonObject& add_truth(std::string_view key, bool value);                    ///< true or false
   JsonObject& add_null(std::string_view key);
 
-  /// The object on one line, without a line break at its end.
+  /// The object on one line, without a final line break.
   std::string text() const { return "{" + members_ + "}"; }
 
  private:

@@ -33,7 +33,7 @@ Result<int> run_any(const app::Command& command) {
       command);
 }
 
-Result<int> called_with(const std::vector<std::string>& args) {
+Result<int> run_command_line(const std::vector<std::string>& args) {
   if (const auto limited = app::limit_vectors(); !limited) return tl::unexpected(limited.error());
   const Result<app::Command> command = app::parse_command_line(args);
   if (!command) return tl::unexpected(command.error());
@@ -41,15 +41,15 @@ Result<int> called_with(const std::vector<std::string>& args) {
 }
 
 int status_of(const Error& error, const std::vector<std::string>& args) {
-  // 1 says "different" there.
+  // For compare, 1 means different.
   const bool compares = !args.empty() && args.front() == "compare";
   return error.code == Error::Code::kBadOption || compares ? kWordsAreOff : kCouldNotBeDone;
 }
 
-/// A file that we open must not get the number of a standard stream that our caller closed.
+/// Opens closed standard streams, so that no file gets their descriptor.
 void keep_standard_streams() {
   for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
-    // The wrong way round: using the stream still fails.
+    // In the wrong mode, so that using the stream still fails.
     if (::fcntl(fd, F_GETFD) == -1) ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -58,7 +58,7 @@ void keep_standard_streams() {
 
 int main(int argc, char** argv) {
   keep_standard_streams();
-  // A reader that went away and a file that grew too large are errors like others, not our death.
+  // A closed pipe and a file too large are ordinary errors.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
   Error error{Error::Code::kUnsupported, ""};
   try {
     args.assign(argv + (argc > 0 ? 1 : 0), argv + argc);
-    const Result<int> status = called_with(args);
+    const Result<int> status = run_command_line(args);
     if (status) return *status;
     error = status.error();
   } catch (const std::bad_alloc&) {

@@ -60,7 +60,7 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   if (!file) return tl::unexpected(file.error());
   Result<Trajectory> trajectory = read_tum(*file);
   if (trajectory) return trajectory;
-  // A damaged trajectory may be taken for points as text.
+  // A damaged trajectory may look like points as text.
   const std::optional<Format> format = format_of(file->view());
   if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
   return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, describe(*format)));
@@ -111,7 +111,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   const BuildOptions of_head = head.applied_to(options, beams != nullptr ? (*beams)->device() : nullptr);
   Result<BuildReport> report = build(log, path.trajectory, of_head, map, progress);
   if (!report) {
-    // Errors of the map itself name no file; those of options need none.
+    // Adds the file name to errors of the map.
     const Error::Code code = report.error().code;
     if (code != Error::Code::kLimit && code != Error::Code::kNoMemory) return tl::unexpected(report.error());
     return fail(code, fmt::format("{}: {}", name, report.error().message));

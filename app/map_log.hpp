@@ -33,12 +33,12 @@ std::string nav_text(const VehiclePath& path);
 /// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);
 
-/// What mapping a log came to.
+/// Result of mapping a log.
 struct MappedLog {
   BuildReport report;
-  BeamModelOptions beam;     ///< as it was mapped: the width and height may be those of the log's device
+  BeamModelOptions beam;     ///< as used: width and height may be those of the log's device
   std::size_t damaged = 0;   ///< records that could not be read
-  std::string skipped_text;  ///< how many were skipped for which reason, and what to do; empty: none
+  std::string skipped_text;  ///< skipped beams by reason, and what to do; empty: none
 };
 
 /// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
@@ -47,7 +47,7 @@ struct MappedLog {
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress = {});
 
-/// A trajectory file beside a log that belongs to it by its name: "dive.tum" of "dive.csv".
+/// Trajectory file of the same name beside a log: "dive.tum" of "dive.csv".
 std::optional<std::string> trajectory_beside(const std::string& log);
 
 }  // namespace pingvox::app

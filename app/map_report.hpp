@@ -14,13 +14,13 @@ JsonObject bounds_json(const std::optional<Box>& bounds);
 /// "-1.2 -3.4 0 .. 1.2 3.4 0.5 m", or "nothing is known".
 std::string bounds_text(const std::optional<Box>& bounds);
 
-/// A number of bytes for people: "12.3 MB".
+/// A number of bytes as text: "12.3 MB".
 std::string bytes_text(std::size_t bytes);
 
-/// A line of a report for people: the values of all of them stand in one column.
+/// A line of a report, with the values aligned.
 std::string report_line(std::string_view label, std::string_view value);
 
-/// What a map holds, as lines for people.
+/// Summary of a map as text.
 std::string map_text(const OccupancyMap& map, const MapCounts& counts);
 
 }  // namespace pingvox::app

@@ -62,9 +62,9 @@ Take into_degrees(std::optional<double>& target_rad) {
   };
 }
 
-/// A default that a log's device may change.
+/// Text of a default that depends on the device of the log.
 std::string of_device(double angle_rad) {
-  return fmt::format("that of the device, else {}", shown(angle_rad / kDegree_rad));
+  return fmt::format("that of the device, else {}", number_text(angle_rad / kDegree_rad));
 }
 
 std::string device_names(std::string_view between) {
@@ -139,7 +139,7 @@ OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
         "up to M free",
         "none", within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(echo.max_range_m))},
        {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
-        shown(kAssumedSoundSpeed_m_s),
+        number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                into_sound_speed_ratio(sound_speed_ratio))},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; none leaves more beams silent",
@@ -176,16 +176,17 @@ OptionTable::Group map_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Map",
-      {{"--resolution", 0, "M", "edge length of a cell", shown(map.resolution_m), into_number(map.resolution_m)},
+      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m), into_number(map.resolution_m)},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
         into_number(map.depth)},
-       {"--hit", 0, "P", "probability that a cell is occupied after one echo in it", shown(model.hit.probability()),
-        within({0.5, 1.0, Limits::Ends::kBothOut}, into_probability(model.hit))},
+       {"--hit", 0, "P", "probability that a cell is occupied after one echo in it",
+        number_text(model.hit.probability()), within({0.5, 1.0, Limits::Ends::kBothOut}, into_probability(model.hit))},
        {"--miss", 0, "P", "probability that a cell is occupied after one beam passed through it",
-        shown(args.build.miss.probability()),
+        number_text(args.build.miss.probability()),
         within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(args.build.miss))},
        {"--clamp", 0, "P,P", "lowest and highest probability a cell can reach",
-        shown(map.clamp.lowest.probability()) + "," + shown(map.clamp.highest.probability()), into_clamp(map.clamp)},
+        number_text(map.clamp.lowest.probability()) + "," + number_text(map.clamp.highest.probability()),
+        into_clamp(map.clamp)},
        choice("--vote", kVotes, "update a cell once per sweep (a hit beats a miss) or once per beam", args.build.vote),
        {"--memory-limit", 0, "BYTES", "stop before the map grows larger; also 512M, 2G", "none",
         into_bytes(map.memory_limit_bytes)}}};
@@ -215,8 +216,8 @@ OptionTable::Group sensor_group(BuildArgs& args) {
         within({0.0, 180.0, Limits::Ends::kBothOut}, into_degrees(args.head.beam_height_rad))},
        {"--device", 0, device_names("|"), "sonar head, which gives the width and height of its beam", "as the log says",
         into_device(args.head.device)},
-       {"--free-share", 0, "S", "central fraction of the beam (0..1) that marks cells free", shown(model.free_share),
-        within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
+       {"--free-share", 0, "S", "central fraction of the beam (0..1) that marks cells free",
+        number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),
        choice("--hit-from", kHitsFrom, "evidence of an echo: the same for all, or by its intensity", model.hit_from),
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};

@@ -18,7 +18,7 @@ inline constexpr std::string_view kBeamLogs = "logs of beams", kPointLogs = "poi
                                   kNavLogs = "navigation logs", kMaps = "maps", kMeshes = "meshes",
                                   kEchoTables = "tables of echoes";
 
-/// Echo options of the command line. The filter that is not given follows from the detector.
+/// Echo options of the command line. The default filter follows from the detector.
 struct EchoArgs {
   Filter filter = FilterOptions{}.filter;
   std::optional<int> kernel;
@@ -33,7 +33,7 @@ struct EchoArgs {
 
 /// Mapping options of the command line.
 struct BuildArgs {
-  /// A map is 3D, and so is a beam.
+  /// Maps are 3D by default.
   BuildArgs() { build.model.shape = BeamShape::kCone; }
 
   MapOptions map;
@@ -44,7 +44,7 @@ struct BuildArgs {
   double nav_offset_s = 0.0;
 
   BuildOptions build_options() const {
-    BuildOptions all = head.applied_to(build, nullptr);
+    BuildOptions all = head.apply_to(build, nullptr);
     all.filter = echoes.filter_options();
     all.echo = echoes.echo;
     return all;
@@ -53,7 +53,7 @@ struct BuildArgs {
   Result<PathArgs> path() const;
 };
 
-/// All but whether the maximum range is beyond the minimum one, which scans of points need not have: `check_ranges`.
+/// Validates options, except the minimum range, which scans of points do not have: see `check_ranges`.
 Result<void> check_options(BuildOptions options);
 
 /// "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.

@@ -23,7 +23,7 @@ Result<Format> identify_format(ByteStream& stream) {
 
 std::string describe(Format format) {
   const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
-  // What users call logs that have no suffix of their own.
+  // Formats without a suffix of their own.
   if (format == Format::kPingViewer) return "a log of beams (Ping Viewer)";
   if (format == Format::kSeanetCapture) return "a log of beams (SeaNet, serial line)";
   if (format == Format::kUdpCapture) return "a log of beams (SeaNet, UDP packets)";

@@ -14,21 +14,21 @@
 
 namespace pingvox::app {
 
-/// The format of a file, by its content. kUnsupported when we do not read it; the message says what it is.
+/// Format of a file by its content. kUnsupported when it is not readable; the message describes the file.
 Result<Format> identify_format(const FileBytes& file);
-/// The same. What is not read as a stream is in memory afterwards.
+/// The same. Loads formats that are not read as streams into memory.
 Result<Format> identify_format(ByteStream& stream);
 
-/// A format with its kind, for messages: "a map (.bt)".
+/// Format and kind for messages: "a map (.bt)".
 std::string describe(Format format);
 
-/// The kind as options name it (Option::only_for): "logs of beams".
+/// The kind in the words of Option::only_for: "logs of beams".
 std::string kind_text(FormatKind kind);
 
 /// A log of either kind.
 using Log = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource>>;
 
-/// Any log or cloud, recognised by content. kUnsupported when the file is none, with what it is.
+/// Opens a log or cloud by its content. kUnsupported when it is neither; the message describes the file.
 /// @param cloud_origin_m  as for open_scans
 Result<Log> open_log(ByteStream stream, Damage damage,
                      const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-// The only place that includes it: it takes five seconds to compile.
+// Included only here, as it takes five seconds to compile.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
@@ -58,7 +58,7 @@ Result<void> give(const OptionTable& table, const std::string& where, const Take
   return fail(taken.error().code, fmt::format("{}: {}: {}", table.command, where, message));
 }
 
-/// The args that CLI11 found for one option or position.
+/// Arguments of one option or position.
 struct Found {
   const Option* option = nullptr;
   const Positional* positional = nullptr;
@@ -123,7 +123,7 @@ std::optional<std::string> value_of(const std::string& name, const std::vector<F
   return std::nullopt;
 }
 
-bool holds(const Condition& condition, const std::vector<Found>& found) {
+bool is_met(const Condition& condition, const std::vector<Found>& found) {
   if (condition.values.empty()) {
     return std::any_of(found.begin(), found.end(), [&](const Found& entry) {
       return entry.option && entry.option->name == condition.name && (entry.parsed->count() > 0 || entry.configured);
@@ -138,10 +138,10 @@ std::string text_of(const Condition& condition) {
   return condition.name + (values.empty() ? "" : " ") + values;
 }
 
-/// Refuses an option that has no effect beside the others.
+/// Refuses an option without effect.
 Result<void> check_conditions(const OptionTable& table, const Option& option, const std::vector<Found>& found) {
-  const auto is_met = [&](const Condition& condition) { return holds(condition, found); };
-  if (option.only_with.empty() || std::any_of(option.only_with.begin(), option.only_with.end(), is_met)) return {};
+  const auto met = [&](const Condition& condition) { return is_met(condition, found); };
+  if (option.only_with.empty() || std::any_of(option.only_with.begin(), option.only_with.end(), met)) return {};
   std::vector<std::string> needed;
   for (const Condition& condition : option.only_with) needed.push_back(text_of(condition));
   const Condition& first = option.only_with.front();
@@ -161,7 +161,7 @@ std::string label_of(const Option& option) {
 constexpr std::size_t kHelpColumn = 32;
 constexpr std::size_t kHelpWidth = 100;
 
-/// `label`, and `text` broken into lines beside it.
+/// `label` with `text` wrapped beside it.
 std::string help_entry(const std::string& label, const std::string& text) {
   std::string out = "  " + label;
   std::size_t column = out.size();
@@ -193,7 +193,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& a
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
-  // What is found stays with the parser's options, to be turned into values below.
+  // Arguments are kept in the parser and converted below.
   const CLI::callback_t keep = [](const CLI::results_t&) { return true; };
   std::vector<Found> found;
   for (const auto& group : table.groups) {
@@ -220,10 +220,10 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& a
   const CLI::Option* help = app.add_flag("-h,--help");
 
   try {
-    // CLI11 takes its args from the back.
+    // CLI11 expects the arguments in reverse order.
     app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
   } catch (const CLI::ArgumentMismatch& error) {
-    // "--resolution: 1 required ..." in its own args; the name is all that we need.
+    // As in "--resolution: 1 required ...": only the name is used.
     const std::string message = error.what();
     return parse_error(table, message.substr(0, message.find(':')) + ": needs a value");
   } catch (const CLI::Error& error) {
@@ -266,7 +266,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& a
       if (!given) return tl::unexpected(given.error());
     }
   }
-  // Only now, because a wrong value of the other option is the better message.
+  // After the values, whose errors are more helpful.
   for (const Found& entry : found) {
     if (!entry.option || entry.parsed->count() == 0) continue;
     if (const auto useful = check_conditions(table, *entry.option, found); !useful) {

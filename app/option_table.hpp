@@ -9,7 +9,7 @@
 
 namespace pingvox::app {
 
-/// Turns the text behind an option into a value. Its message says what is wrong with the text, not where it stood.
+/// Parses the argument of an option. Its error describes the text, without the name of the option.
 using Take = std::function<Result<void>(const std::string&)>;
 
 /// Whether an option may be given several times.
@@ -18,29 +18,29 @@ enum class Repeats {
   kEachCounts,  ///< in the order of the command line
 };
 
-/// Holds if another option or a positional argument has one of these values, given or by default; with no values, if it
-/// is given at all.
+/// Met if another option or positional argument has one of these values, given or by default; without values: if it is
+/// given.
 struct Condition {
   std::string name;  ///< "--filter", "WORLD"
   std::vector<std::string> values = {};
 };
 
-/// One option of a command: how it is called, what it takes, what it means.
+/// One option of a command.
 struct Option {
   std::string name;   ///< "--resolution"
   char letter = 0;    ///< 'o' for -o; 0: none
-  std::string value;  ///< what its value is called in the help; empty: a flag
+  std::string value;  ///< name of its value in the help; empty: a flag
   std::string help;
   std::string standard;  ///< the default, as typed; empty: none
   Take take;             ///< of a flag: gets "true"
   Repeats repeats = Repeats::kNot;
   /// The option has an effect only if one of these holds; empty: always.
   std::vector<Condition> only_with = {};
-  /// The kinds of input or output on which the option has an effect, known only once files are open; empty: all.
+  /// Kinds of input or output on which the option has an effect, checked after opening the files; empty: all.
   std::vector<std::string> only_for = {};
 };
 
-/// A word without a dash in front.
+/// A positional argument.
 struct Positional {
   enum class Count { kOne, kMany };
   std::string name;  ///< "LOG"
@@ -49,7 +49,7 @@ struct Positional {
   Take take;
 };
 
-/// What a command is called with. The same table makes the parser, the keys of a configuration file, and the help.
+/// Arguments of a command: defines the parser, the keys of a configuration file, and the help.
 struct OptionTable {
   struct Group {
     std::string title;
@@ -58,10 +58,10 @@ struct OptionTable {
 
   std::string command;
   std::string purpose;                  ///< for the help, one paragraph
-  std::vector<Positional> positionals;  ///< all of them needed; the last one may be kMany
+  std::vector<Positional> positionals;  ///< all required; the last one may be kMany
   std::vector<Group> groups;
   std::vector<std::string> examples;
-  std::string notes;  ///< for the help, behind the options
+  std::string notes;  ///< for the help, after the options
 };
 
 /// An option of the command line that has an effect only on some inputs or outputs.
@@ -75,9 +75,9 @@ struct Parsed {
   std::vector<LimitedOption> limited;  ///< options that were given and whose `only_for` is not empty
 };
 
-/// Passes the arguments to the table's `take` functions: first those of a --config file (TOML, the option's names
-/// without the dashes), then those of the command line. An option of the command line that cannot have an effect
-/// (`Option::only_with`, or given twice) is refused; one of the configuration file is a default, and is not.
+/// Passes the arguments to the `take` functions of the table: first those of a --config file (TOML, names without
+/// dashes), then those of the command line. Options of the command line without effect (`Option::only_with`, or given
+/// twice) are refused; those of the configuration file are not.
 /// @return kBadOption for invalid usage, with the nearest valid name; kIo when the configuration cannot be read
 Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& args);
 

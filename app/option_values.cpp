@@ -23,7 +23,7 @@ Result<std::size_t> bytes_from(std::string_view text) {
   return *count << shift;
 }
 
-bool Limits::hold(double value) const {
+bool Limits::contain(double value) const {
   return (has_low() ? value >= low : value > low) && (has_high() ? value <= high : value < high);
 }
 
@@ -39,7 +39,7 @@ Take within(const Limits& limits, Take take) {
   return [limits, take = std::move(take)](const std::string& text) -> Result<void> {
     if (auto taken = take(text); !taken) return taken;
     const Result<double> value = number_from<double>(text);
-    if (value && !limits.hold(*value)) return usage_error(fmt::format("must be {}, is {}", limits.text(), text));
+    if (value && !limits.contain(*value)) return usage_error(fmt::format("must be {}, is {}", limits.text(), text));
     return {};
   };
 }
@@ -73,7 +73,7 @@ Take into_bytes(std::size_t& target) {
   };
 }
 
-std::string shown(double value) {
+std::string number_text(double value) {
   return fmt::format("{:.6g}", value);
 }
 

@@ -21,7 +21,7 @@
 #include "pingvox/result.hpp"
 #include "suggest.hpp"
 
-/// Values from the text of a call (no locale, nothing left over), and options that put them into their place.
+/// Parses values of options (independent of the locale, all of the text) into their targets.
 namespace pingvox::app {
 
 using Args = std::vector<std::string>;
@@ -68,10 +68,10 @@ Result<std::array<double, N>> numbers_from(std::string_view text) {
   return values;
 }
 
-/// A number of bytes, also with K, M, G or T behind it.
+/// A number of bytes, optionally with suffix K, M, G or T.
 Result<std::size_t> bytes_from(std::string_view text);
 
-/// Any text but an empty one.
+/// Any non-empty text.
 Take into(std::string& target);
 
 /// A number of any kind; typed in units of `unit`.
@@ -95,7 +95,7 @@ Take into_optional(std::optional<Number>& target) {
   };
 }
 
-/// The numbers that an option takes, as typed.
+/// Limits of a number, in the units of the command line.
 struct Limits {
   enum class Ends { kIn, kLowOut, kHighOut, kBothOut };
   double low = 0.0, high = 1.0;
@@ -103,27 +103,27 @@ struct Limits {
 
   bool has_low() const { return ends == Ends::kIn || ends == Ends::kHighOut; }
   bool has_high() const { return ends == Ends::kIn || ends == Ends::kLowOut; }
-  bool hold(double value) const;
+  bool contain(double value) const;
   std::string text() const;  ///< "0..1", "above 0 and at most 100"
 };
 
 inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
 
-/// The same, and a number outside of the limits is refused. What is not a number is for `take` to judge.
+/// Refuses numbers outside of the limits, then calls `take`, which also refuses other text.
 Take within(const Limits& limits, Take take);
 
 Take into_probability(LogOdds& target);
-/// More than none.
+/// At least one byte.
 Take into_bytes(std::size_t& target);
 
-/// One of the words that an option takes, and what it means.
+/// A word that an option accepts, and its value.
 template <class Enum>
 struct Choice {
   std::string_view word;
   Enum value;
 };
 
-/// For the help: the words with | between them.
+/// The words separated by |, for the help.
 template <class Enum, std::size_t N>
 std::string choices_text(const std::array<Choice<Enum>, N>& words) {
   std::string out;
@@ -149,7 +149,7 @@ Result<Enum> choice_value(const std::array<Choice<Enum>, N>& words, const std::s
   return usage_error(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
 }
 
-/// An option that takes one of `words`, which must outlive it. What is in `target` is the default.
+/// An option that accepts one of `words`, which must outlive it. `target` holds the default.
 template <class Enum, std::size_t N>
 Option choice(std::string name, const std::array<Choice<Enum>, N>& words, std::string help, Enum& target) {
   const Take take = [&target, &words](const std::string& text) -> Result<void> {
@@ -171,7 +171,7 @@ Option flag(std::string name, std::string help, Enum& target, Enum value) {
   return {std::move(name), 0, "", std::move(help), "", take};
 }
 
-/// A default as typed.
-std::string shown(double value);
+/// A default as text.
+std::string number_text(double value);
 
 }  // namespace pingvox::app

@@ -6,7 +6,7 @@
 #include "commands.hpp"
 #include "pingvox/result.hpp"
 
-/// Each makes a command of the args behind its name, or its help; errors as those of parse_command_line.
+/// Each parses the arguments after its name into a command, or its help; errors as parse_command_line.
 namespace pingvox::app {
 
 Result<Command> map_command(const std::vector<std::string>& args);

@@ -79,7 +79,7 @@ Result<Command> convert_command(const Args& args) {
          quiet_option(command.output_options)}},
        std::move(echo_options),
        {"Meshes",
-        {{"--resolution", 0, "M", "edge length of a cell", shown(MapOptions{}.resolution_m),
+        {{"--resolution", 0, "M", "edge length of a cell", number_text(MapOptions{}.resolution_m),
           into_optional(command.resolution_m)}}},
        {"Maps and meshes",
         {{"--z", 0, "M", "only the layer of cells that holds this height", "all layers", into_optional(layer_m)},

@@ -32,17 +32,17 @@ constexpr std::array kBetweens = {Choice<BetweenBeams>{"interpolate", BetweenBea
                                   Choice<BetweenBeams>{"nothing", BetweenBeams::kNothing}};
 constexpr std::array kPngOnly = {Choice<Format>{"png", Format::kPng}};
 
-/// The options of one panel. A copy with some options changed is the panel beside it.
+/// The options of one panel. --beside copies them and changes some.
 struct PanelArgs {
   PanelCommand panel;
   MapView from = MapView::kRight;
   std::optional<double> slice_z_m;
   std::optional<std::size_t> size_px;
   BuildArgs build;
-  std::vector<std::pair<std::string, std::string>> given;  ///< options with their values, those given later behind
+  std::vector<std::pair<std::string, std::string>> given;  ///< options with their values, in order
 
-  /// What an option was given, last of all; nullopt: nothing.
-  std::optional<std::string> given_to(std::string_view name) const {
+  /// Last value of an option; nullopt: not given.
+  std::optional<std::string> value_of(std::string_view name) const {
     for (auto it = given.rbegin(); it != given.rend(); ++it) {
       if (it->first == name) return it->second;
     }
@@ -50,7 +50,7 @@ struct PanelArgs {
   }
 };
 
-/// Makes the options also note what they are given.
+/// Makes the options also record their values.
 void note_in(std::vector<std::pair<std::string, std::string>>& given, std::vector<OptionTable::Group>& groups) {
   for (auto& group : groups) {
     for (Option& option : group.options) {
@@ -125,16 +125,16 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   return groups;
 }
 
-/// What of the options that differ between panels this one has.
+/// The options in which this panel differs from the others.
 std::string caption_of(const PanelArgs& args, const std::vector<PanelArgs>& all) {
-  // Its own table says how its options are called and what they are when they are not given.
+  // A separate table, for names and defaults.
   PanelArgs defaults;
   std::string caption;
   for (const auto& group : panel_groups(defaults)) {
     for (const Option& option : group.options) {
-      const auto value = args.given_to(option.name);
+      const auto value = args.value_of(option.name);
       const bool differs = std::any_of(all.begin(), all.end(),
-                                       [&](const PanelArgs& other) { return other.given_to(option.name) != value; });
+                                       [&](const PanelArgs& other) { return other.value_of(option.name) != value; });
       if (!differs || option.name == "--caption" || option.name == "--size") continue;
       caption +=
           fmt::format("{}{} {}", caption.empty() ? "" : ", ", option.name.substr(2), value.value_or(option.standard));
@@ -143,7 +143,7 @@ std::string caption_of(const PanelArgs& args, const std::vector<PanelArgs>& all)
   return caption;
 }
 
-/// The panel with everything in its place.
+/// Converts the arguments of a panel.
 Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size_px) {
   PanelCommand panel = args.panel;
   panel.map = args.build.map;
@@ -161,7 +161,8 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   if (panel.sweep == 0U) return usage_error("--sweep: sweeps are counted from 1");
   const auto& [low_m, high_m] = std::pair(panel.map_picture.min_z_m, panel.map_picture.max_z_m);
   if (low_m && high_m && *low_m >= *high_m) {
-    return usage_error(fmt::format("--min-z must be below --max-z, they are {} and {}", shown(*low_m), shown(*high_m)));
+    return usage_error(
+        fmt::format("--min-z must be below --max-z, they are {} and {}", number_text(*low_m), number_text(*high_m)));
   }
   if (panel.view == PictureView::kSlice && (low_m || high_m)) {
     return usage_error("--view slice: draws one layer, that at --z: no --min-z, no --max-z");
@@ -174,7 +175,7 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   return panel;
 }
 
-/// What options may be limited to, as far as it is known before the file is read.
+/// Kinds that options may be limited to, as far as known before reading the file.
 std::vector<std::string> possible_kinds(const std::vector<PanelArgs>& panels) {
   std::vector<std::string> kinds;
   const auto add = [&kinds](std::string kind) {

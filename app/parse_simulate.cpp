@@ -54,11 +54,11 @@ Result<Command> simulate_command(const Args& args) {
                        "beside it as .tum"),
          {"--truth", 0, "DIR", "folder for ground truth: poses.tum, ranges.csv, world.ply (a mesh), world.bt (a map)",
           "none", into(truth)},
-         {"--resolution", 0, "M", "edge length of a cell of world.bt", shown(command.truth_resolution_m),
+         {"--resolution", 0, "M", "edge length of a cell of world.bt", number_text(command.truth_resolution_m),
           into_number(command.truth_resolution_m)},
          quiet_option(command.output_options)}},
        {"World and vehicle",
-        {{"--side", 0, "M", "side of the square tank", shown(tank.side_m),
+        {{"--side", 0, "M", "side of the square tank", number_text(tank.side_m),
           within({2.0 * std::max(std::abs(tank.sensor_x_m), std::abs(tank.sensor_y_m)), 1000.0, Limits::Ends::kLowOut},
                  into_number(tank.side_m))},
          choice("--trajectory", kMotions, "path of the vehicle; still is at 0,0,0", command.motion),
@@ -66,14 +66,14 @@ Result<Command> simulate_command(const Args& args) {
          {"--mount", 0, "X,Y,Z,R,P,Y",
           "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
           into_mount(sonar.body_from_sensor)},
-         {"--speed", 0, "M/S", "speed of the vehicle", shown(command.travel.speed_m_s),
+         {"--speed", 0, "M/S", "speed of the vehicle", number_text(command.travel.speed_m_s),
           within({0.0, 100.0, Limits::Ends::kLowOut}, into_number(command.travel.speed_m_s))},
          {"--turns", 0, "N", "turns of the head", "5; of a moving vehicle: to the end of its path",
           into_optional(command.turns)},
          {"--drift", 0, "M", "error of the reported position after a minute (standard deviation)",
-          shown(command.drift.position_m), within({0.0, 1000.0}, into_number(command.drift.position_m))},
+          number_text(command.drift.position_m), within({0.0, 1000.0}, into_number(command.drift.position_m))},
          {"--heading-drift", 0, "DEG", "error of the reported heading after a minute (standard deviation)",
-          shown(command.drift.heading_rad / kDegree_rad),
+          number_text(command.drift.heading_rad / kDegree_rad),
           within({0.0, 572.95}, into_number(command.drift.heading_rad, kDegree_rad))}}},
        {"Sonar",
         {{"--seed", 0, "N", "seed of the random numbers", fmt::format("{}", sonar.seed), into_number(sonar.seed)},
@@ -85,29 +85,29 @@ Result<Command> simulate_command(const Args& args) {
          {"--beams-per-turn", 0, "N", "beams in a full turn", fmt::format("{}", sonar.beams_per_turn),
           within({4.0, 6400.0}, into_number(sonar.beams_per_turn))},
          {"--beam-width", 0, "DEG", "horizontal beam width, between the points of half power",
-          shown(sonar.beam_width_rad / kDegree_rad),
+          number_text(sonar.beam_width_rad / kDegree_rad),
           within({0.0, 57.29, Limits::Ends::kLowOut}, into_number(sonar.beam_width_rad, kDegree_rad))},
-         {"--beam-height", 0, "DEG", "vertical beam width, likewise", shown(sonar.beam_height_rad / kDegree_rad),
+         {"--beam-height", 0, "DEG", "vertical beam width, likewise", number_text(sonar.beam_height_rad / kDegree_rad),
           within({0.0, 114.59, Limits::Ends::kLowOut}, into_number(sonar.beam_height_rad, kDegree_rad))},
-         {"--side-lobes", 0, "S", "side lobes: 0 none, 1 those of a rectangular transducer", shown(sonar.side_lobes),
-          within({0.0, 1.0}, into_number(sonar.side_lobes))},
-         {"--gain", 0, "G", "fraction of the loss with range that the receiver compensates, 0..1", shown(sonar.gain),
-          within({0.0, 1.0}, into_number(sonar.gain))},
+         {"--side-lobes", 0, "S", "side lobes: 0 none, 1 those of a rectangular transducer",
+          number_text(sonar.side_lobes), within({0.0, 1.0}, into_number(sonar.side_lobes))},
+         {"--gain", 0, "G", "fraction of the loss with range that the receiver compensates, 0..1",
+          number_text(sonar.gain), within({0.0, 1.0}, into_number(sonar.gain))},
          {"--compression", 0, "C", "exponent that maps amplitudes to 8 bits: 1 is linear, less amplifies weak ones",
-          shown(sonar.compression), within({0.1, 1.0}, into_number(sonar.compression))},
-         {"--absorption", 0, "DB/M", "absorption by the water, one way", shown(sonar.absorption_db_per_m),
+          number_text(sonar.compression), within({0.1, 1.0}, into_number(sonar.compression))},
+         {"--absorption", 0, "DB/M", "absorption by the water, one way", number_text(sonar.absorption_db_per_m),
           within({0.0, 10.0}, into_number(sonar.absorption_db_per_m))},
-         {"--ringing", 0, "M", "range of the transducer ringing", shown(sonar.ringing_m),
+         {"--ringing", 0, "M", "range of the transducer ringing", number_text(sonar.ringing_m),
           within({0.0, 10'000.0}, into_number(sonar.ringing_m))},
-         {"--speckle", 0, "S", "speckle: 0 none, 1 full fading of each bin", shown(sonar.speckle),
+         {"--speckle", 0, "S", "speckle: 0 none, 1 full fading of each bin", number_text(sonar.speckle),
           within({0.0, 1.0}, into_number(sonar.speckle))},
-         {"--noise", 0, "N", "mean background amplitude near the head, 0..255", shown(sonar.noise),
+         {"--noise", 0, "N", "mean background amplitude near the head, 0..255", number_text(sonar.noise),
           within({0.0, 255.0}, into_number(sonar.noise))},
          {"--multipath", 0, "S", "fraction of the mirrored sound that goes on to other surfaces, 0..1",
-          shown(sonar.multipath), within({0.0, 1.0}, into_number(sonar.multipath))},
-         {"--bubbles", 0, "S", "fraction of beams with noise only", shown(sonar.silent),
+          number_text(sonar.multipath), within({0.0, 1.0}, into_number(sonar.multipath))},
+         {"--bubbles", 0, "S", "fraction of beams with noise only", number_text(sonar.silent),
           within({0.0, 1.0}, into_number(sonar.silent))},
-         {"--lost", 0, "S", "fraction of beams missing in the log", shown(sonar.lost),
+         {"--lost", 0, "S", "fraction of beams missing in the log", number_text(sonar.lost),
           within({0.0, 1.0, Limits::Ends::kHighOut}, into_number(sonar.lost))},
          config_option()}}},
       {"pingvox simulate tank -o tank.csv", "pingvox simulate tank -o - --seed 7 | pingvox map - -o tank.bt",
@@ -144,12 +144,12 @@ Result<Command> simulate_command(const Args& args) {
     if (command.range_m) {
       const auto bins = static_cast<double>(sonar.bins);
       const Limits bins_m{1e-6 * bins, bins};
-      if (!bins_m.hold(*command.range_m)) {
+      if (!bins_m.contain(*command.range_m)) {
         return usage_error(fmt::format("--range: must be {} m with {} bins, is {} m", bins_m.text(), sonar.bins,
-                                       shown(*command.range_m)));
+                                       number_text(*command.range_m)));
       }
     }
-    // Of the sonar all but the bin length, which waits for the world.
+    // The bin length may follow from the world.
     SonarOptions set = sonar;
     set.bin_length_m = command.range_m ? *command.range_m / static_cast<double>(std::max<std::size_t>(sonar.bins, 1))
                                        : command.bin_length_m.value_or(sonar.bin_length_m);

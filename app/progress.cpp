@@ -22,7 +22,7 @@ bool is_wanted(const OutputOptions& output_options) {
 
 }  // namespace
 
-// Without --progress it does not flicker for work that is done at once.
+// Delayed, so that it does not flicker during short work.
 ProgressBar::ProgressBar(const OutputOptions& output_options)
     : shown_(is_wanted(output_options)),
       next_(output_options.progress == ShowProgress::kAlways ? Clock::now() : Clock::now() + kInterval) {}

@@ -8,8 +8,8 @@
 
 namespace pingvox::app {
 
-/// A bar on standard error that says how far the work is, drawn over itself ten times a second. It is there only on a
-/// terminal, after a tenth of a second, or from the start when it was asked for; it is gone when the work is done.
+/// A progress bar on standard error, redrawn ten times a second. Shown only on a terminal after a tenth of a second, or
+/// always if requested; removed at the end.
 class ProgressBar {
  public:
   explicit ProgressBar(const OutputOptions& output_options);
@@ -17,11 +17,11 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { clear(); }
 
-  /// Whether it is time to draw again: ask before making up a text.
+  /// Whether it is time to draw again.
   bool is_due();
-  /// Draws a bar (without one, when nobody knows the share) and the text, cut to a terminal's usual width.
+  /// Draws a bar (none if the share is unknown) and the text, cut to the usual width of a terminal.
   void draw(std::optional<double> share, std::string_view text);
-  /// Takes the bar away.
+  /// Removes the bar.
   void clear();
 
  private:

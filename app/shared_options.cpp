@@ -16,7 +16,7 @@ namespace pingvox::app {
 namespace {
 
 tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
-  // A message of the library may begin with the same word: the stage that it is about.
+  // Messages of the library may already begin with this word.
   const bool is_named = error.message.starts_with(table.command + ":");
   if (error.code != Error::Code::kBadOption || is_named) return tl::unexpected(error);
   return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
@@ -29,7 +29,7 @@ Option output_option(std::string& target, std::string help) {
 }
 
 Option config_option() {
-  // The table reads the file; what is left to take is nothing.
+  // The file is read by parse().
   return {"--config", 0,
           "FILE",     "read options from a TOML file, named as here without the dashes; the command line wins",
           "",         [](const std::string&) -> Result<void> { return {}; }};
@@ -88,7 +88,7 @@ Result<void> check_folder_of(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) {
     return fail(Error::Code::kIo, fmt::format("{}: is a folder, not a file", path));
   }
-  // Devices and pipes are written to as they are, and a link leads to another folder; else the file is made anew.
+  // Devices and pipes are written in place, and links lead to another folder; other files are created.
   const bool is_made = !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
   if (is_made && ::access(folder.c_str(), W_OK) != 0) {
     const std::string reason = std::system_category().message(errno);

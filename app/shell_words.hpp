@@ -8,10 +8,10 @@
 
 namespace pingvox::app {
 
-/// The word as one types it in a shell.
+/// Quotes a word for a shell.
 std::string quote_for_shell(const std::string& word);
 
-/// The words of a text, split and unquoted as a shell does it; kBadOption when a quotation mark is not closed.
+/// Splits and unquotes text as a shell does; kBadOption for an unclosed quotation mark.
 Result<std::vector<std::string>> split_shell_words(std::string_view text);
 
 }  // namespace pingvox::app

@@ -8,7 +8,7 @@
 namespace pingvox::app {
 namespace {
 
-/// Longer words are no typing errors of ours, and the table below is quadratic.
+/// Longer words are ignored, as the time is quadratic.
 constexpr std::size_t kLongestWord = 64;
 
 /// Optimal string alignment: insert, delete, replace, swap two neighbours.
@@ -46,7 +46,7 @@ std::optional<std::string> nearest_word(std::string_view word, std::span<const s
     }
   }
   if (nearest) return nearest;
-  // A word that was cut short ("--res") is no typing error, but it means something if only one begins like it.
+  // An abbreviation ("--res") is accepted if it is unique.
   for (const std::string& candidate : known) {
     if (letters(word) < 3 || !candidate.starts_with(word)) continue;
     if (nearest) return std::nullopt;

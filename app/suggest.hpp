@@ -7,11 +7,10 @@
 
 namespace pingvox::app {
 
-/// The word that somebody who typed `word` most likely meant: the nearest one by edit distance (a swap of neighbours
-/// counts once), if it is near enough to be worth a question.
+/// The nearest known word by edit distance (a swap of neighbours counts once), if it is near enough to suggest.
 std::optional<std::string> nearest_word(std::string_view word, std::span<const std::string> known);
 
-/// ": did you mean 'WORD'?", or nothing.
+/// ": did you mean 'WORD'?", or empty.
 std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 
 }  // namespace pingvox::app

@@ -9,7 +9,7 @@
 
 namespace pingvox::app {
 
-/// The thresholds that echoes were detected with: one number if it was given, else a range.
+/// Range of the thresholds that echoes were detected with.
 struct ThresholdRange {
   std::optional<int> min, max;  ///< nullopt: no echoes
 

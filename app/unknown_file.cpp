@@ -19,7 +19,7 @@ constexpr std::string_view kAsCsv =
     "(bearings clockwise from ahead, as most sonars count them; bearing_deg is counter-clockwise; docs/formats.md)";
 constexpr std::string_view kWrittenOnly = "written, not read";
 
-/// Files that people have beside their sonar, by how they begin.
+/// Common files of other kinds, by their first bytes.
 struct Signature {
   std::string_view begin, what, advice;
 };
@@ -41,7 +41,7 @@ constexpr std::array kSignatures = {
     Signature{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
 };
 
-/// Whether the beginning has only bytes that text has.
+/// Whether the bytes are text.
 bool is_text(std::string_view bytes) {
   constexpr std::size_t kLookedAt = 4096;
   return std::ranges::all_of(bytes.substr(0, kLookedAt), [](char byte) {

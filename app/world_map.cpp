@@ -17,9 +17,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;
-constexpr int kBrick = 4;  ///< edge, in cells, of what the map stores as one when it is uniform
+constexpr int kBrick = 4;  ///< edge [cells] of a brick, which the map stores as one leaf when uniform
 
-/// The cells of a box of space, each of them empty, water or a surface.
+/// The cells of a box: empty, water or surface.
 class Grid {
  public:
   enum class Kind : std::uint8_t { kUnknown, kWater, kSurface };
@@ -37,7 +37,7 @@ class Grid {
                      [this](const Cell& cell) { at(cell - low_) = Kind::kSurface; });
   }
 
-  /// Makes water of all that is connected with a cell by faces, within the range of cells from `first` to `last`.
+  /// Flood-fills water from a cell through faces, within the cells from `first` to `last`.
   /// REQUIRES a range of cells of the grid.
   void flood(const Cell& from, const Cell& first, const Cell& last) {
     const auto is_open = [&](const Cell& c) {
@@ -48,7 +48,7 @@ class Grid {
       Cell cell = waiting.back();
       waiting.pop_back();
       if (!is_open(cell)) continue;
-      // A whole row at once, and of the rows beside it the first cell of each open stretch.
+      // Fills a whole row, then continues from each open run of the neighbouring rows.
       while (is_open(cell - Cell::UnitX())) --cell.x();
       std::array<bool, 4> is_stretch{};
       for (; is_open(cell); ++cell.x()) {
@@ -75,7 +75,7 @@ class Grid {
 Result<OccupancyMap> world_map(const World& world, const Eigen::AlignedBox3d& water_m, const Vector3d& inside_m,
                                double resolution_m) {
   OccupancyMap map(MapOptions{.resolution_m = resolution_m});
-  // Whole bricks, with room for the surfaces that are the border.
+  // Whole bricks, with room for surfaces on the border.
   const Vector3d first = ((water_m.min() / resolution_m).array() - 1.0).floor() / kBrick;
   const Vector3d last = ((water_m.max() / resolution_m).array() + 1.0).floor() / kBrick;
   const double cells = ((last - first).array() * kBrick + 2.0 * kBrick).prod();
@@ -102,7 +102,7 @@ Result<OccupancyMap> world_map(const World& world, const Eigen::AlignedBox3d& wa
   for (const auto& [a, b, c] : mesh.triangles) {
     grid.draw({mesh.vertices_m[a], mesh.vertices_m[b], mesh.vertices_m[c]});
   }
-  // Cells with their middle in the water: a hair's breadth of one that reaches over the edge is no way around a wall.
+  // Cells with their centre in the box: a cell that barely reaches into it is no way around a wall.
   const auto cell_of = [&](const Vector3d& cells_from_zero) -> Cell {
     return cells_from_zero.array().floor().cast<std::int64_t>().matrix() - low;
   };

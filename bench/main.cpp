@@ -47,7 +47,7 @@ struct Call {
   bool shows_usage = false, shows_list = false;
 };
 
-void complain(std::string_view message) {
+void print_error(std::string_view message) {
   fmt::print(stderr, "pingvox: bench: {}\n", message);
 }
 
@@ -122,7 +122,7 @@ int run(const Call& call) {
     if (call.options.say != nullptr) say(fmt::format("{}: {} ...", bench->name, bench->what));
     const Result<std::vector<Row>> result = bench->run(call.options);
     if (!result) {
-      complain(fmt::format("{}: {}", bench->name, result.error().message));
+      print_error(fmt::format("{}: {}", bench->name, result.error().message));
       status = kCouldNotBeDone;
       continue;
     }
@@ -133,7 +133,7 @@ int run(const Call& call) {
   }
   if (call.options.pictures) {
     if (const auto drawn = draw_ratios(rows, *call.options.pictures); !drawn) {
-      complain(drawn.error().message);
+      print_error(drawn.error().message);
       status = kCouldNotBeDone;
     }
   }
@@ -141,7 +141,7 @@ int run(const Call& call) {
                           : call.form == Form::kMarkdown ? markdown_of(rows)
                                                          : table_of(rows);
   if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0) {
-    complain("standard output does not take the result");
+    print_error("standard output does not take the result");
     return kCouldNotBeDone;
   }
   return status;
@@ -149,12 +149,12 @@ int run(const Call& call) {
 
 int run(const std::vector<std::string>& words) {
   if (const auto limited = app::limit_vectors(); !limited) {
-    complain(limited.error().message);
+    print_error(limited.error().message);
     return kInvalidUsage;
   }
   const Result<Call> call = parse(words);
   if (!call) {
-    complain(call.error().message);
+    print_error(call.error().message);
     return kInvalidUsage;
   }
   if (call->shows_usage || call->shows_list) {
@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
   try {
     return run({argv + 1, argv + argc});
   } catch (const std::exception& exception) {
-    complain(exception.what());
+    print_error(exception.what());
     return kCouldNotBeDone;
   }
 }

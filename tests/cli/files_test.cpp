@@ -79,9 +79,9 @@ TEST(Files, TheWrongKindIsNamed) {
   EXPECT_EQ(here.files(), files_before);
 }
 
-TEST(Files, ThoseOfOthersAreNamedWithWhatToDo) {
+TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
   const Workplace here;
-  const std::vector<std::pair<std::string, std::vector<std::string>>> strangers = {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> unknown_files = {
       {"#ROSBAG V2.0\n", {"ROS bag", "bin_length_m", "docs/formats.md"}},
       {"\x1f\x8b\x08 tank.csv"s, {"compressed", "unpack"}},
       {"\xff\xfet\0i\0"s, {"UTF-16", "UTF-8"}},
@@ -91,15 +91,15 @@ TEST(Files, ThoseOfOthersAreNamedWithWhatToDo) {
       {"ping,angle,range\n1,2,3\n", {"time_s,bearing_cw_deg,", "clockwise from ahead", "bearing_deg is counter"}},
       {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "bin_length_m"}},
   };
-  for (const auto& [content, texts] : strangers) {
+  for (const auto& [content, texts] : unknown_files) {
     SCOPED_TRACE(texts.front());
-    here.write("stranger", content);
-    expect_error(here.call({"info", "stranger"}), 1, texts);
-    expect_error(here.call({"map", "stranger", "-o", "out.bt"}), 1, texts);
+    here.write("unknown", content);
+    expect_error(here.call({"info", "unknown"}), 1, texts);
+    expect_error(here.call({"map", "unknown", "-o", "out.bt"}), 1, texts);
   }
 }
 
-TEST(Files, ThoseThatAreOnlyWrittenAreNoLogsOfOthers) {
+TEST(Files, OutputFormatsAreNamedAsSuch) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "tank.csv", "--turns", "1", "--truth", "truth", "--quiet"}).status, 0);
   ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt", "--quiet"}).status, 0);

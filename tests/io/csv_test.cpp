@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Everything<Beam> read_csv(std::string_view text, Damage damage = Damage::kSkip) {
+ReadResult<Beam> read_csv(std::string_view text, Damage damage = Damage::kSkip) {
   return all_beams({"log.csv", bytes_of(text)}, damage);
 }
 

@@ -14,7 +14,7 @@ double yaw_of(const Pose& pose) {
   return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0));
 }
 
-TEST(Travelled, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
+TEST(FollowRoute, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
   const Route route{{{0.0, 0.0, -1.0}, {4.0, 0.0, -1.0}, {4.0, 4.0, -2.0}}, Route::End::kStays};
   const Trajectory way = follow_route(route, 60.0, {.speed_m_s = 0.5, .pose_every_s = 0.1});
   EXPECT_EQ(way.poses().front().time_s, 0.0);
@@ -42,7 +42,7 @@ TEST(Travelled, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
   EXPECT_TRUE(way.poses().back().map_from_body.translation().isApprox(route.waypoints_m.back())) << "it stays";
 }
 
-TEST(Travelled, GoesRoundAndRound) {
+TEST(FollowRoute, GoesRoundAndRound) {
   const Route route{{{0.0, 0.0, 0.0}, {4.0, 0.0, 0.0}, {4.0, 4.0, 0.0}, {0.0, 4.0, 0.0}}, Route::End::kStarts};
   const double round_s = length_m(route) / 0.5;
   const Trajectory way = follow_route(route, 3.0 * round_s, {.speed_m_s = 0.5});
@@ -53,7 +53,7 @@ TEST(Travelled, GoesRoundAndRound) {
   }
 }
 
-TEST(Reported, IsTheTruthWithoutDrift) {
+TEST(AddDrift, IsTheTruthWithoutDrift) {
   const Route route{{{0.0, 0.0, 0.0}, {4.0, 1.0, 0.0}, {4.0, 4.0, -1.0}}, Route::End::kStays};
   const Trajectory truth = follow_route(route, 40.0, {});
   const Trajectory told = add_drift(truth, {});
@@ -63,7 +63,7 @@ TEST(Reported, IsTheTruthWithoutDrift) {
   }
 }
 
-TEST(Reported, StraysAsFarAsOrdered) {
+TEST(AddDrift, StraysAsFarAsOrdered) {
   // Standing still for a minute: the walk's end has the deviation that was asked for, along x and y and in heading.
   std::vector<StampedPose> poses;
   for (int n = 0; n <= 240; ++n) poses.push_back({0.25 * n, Pose(Eigen::Translation3d(1.0, 2.0, 3.0))});
@@ -89,7 +89,7 @@ TEST(Reported, StraysAsFarAsOrdered) {
   EXPECT_NEAR(sum, 0.0, 0.1) << "to no side";
 }
 
-TEST(Reported, AWrongHeadingTurnsTheWayOn) {
+TEST(AddDrift, AWrongHeadingTurnsTheWayOn) {
   const Route route{{{0.0, 0.0, 0.0}, {30.0, 0.0, 0.0}}, Route::End::kStays};
   const Trajectory truth = follow_route(route, 60.0, {.speed_m_s = 0.5});
   const Trajectory told = add_drift(truth, {.seed = 3, .heading_rad = 0.3});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-TEST(WrappedBearing, NeverReturnsAWholeTurn) {
+TEST(WrapBearing, NeverReturnsAWholeTurn) {
   for (const double angle :
        {-1e-300, -1e-17, -1e-9, kTurn, -kTurn, 1e15, -1e15, std::nextafter(kTurn, 0.0), 3 * kTurn}) {
     SCOPED_TRACE(angle);

@@ -316,7 +316,7 @@ TEST(Detectors, DoNotSeeWhatStandsBeforeTheRangeThatCounts) {
   EXPECT_GT(found, 1800U);
 }
 
-TEST(UsualContrast, FollowsTheGainAndSeesNoEchoInNoise) {
+TEST(ContrastsByGain, FollowsTheGainAndSeesNoEchoInNoise) {
   std::size_t walls = 0;
   std::size_t noises = 0;
   for (const Detector detector : kDetectors) {
@@ -343,7 +343,7 @@ TEST(UsualContrast, FollowsTheGainAndSeesNoEchoInNoise) {
   EXPECT_EQ(noises, 600U);
 }
 
-TEST(UsualContrast, IsThePapersThresholdOnItsRecording) {
+TEST(ContrastsByGain, IsThePapersThresholdOnItsRecording) {
   std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
   if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
   beams.resize(200);

@@ -64,7 +64,7 @@ double tolerance_of(Filter filter) {
   return 0.0;
 }
 
-TEST(Filtered, IsWhatItsNameSaysAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel) {
+TEST(ApplyFilter, IsWhatItsNameSaysAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel) {
   std::size_t checked = 0;
   for (std::uint64_t seed = 1; seed <= 360; ++seed) {
     SCOPED_TRACE(seed);
@@ -91,7 +91,7 @@ TEST(Filtered, IsWhatItsNameSaysAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel
   EXPECT_GT(checked, 30'000U);
 }
 
-TEST(Filtered, TakesTheLargestKernelOnTheSmallestImages) {
+TEST(ApplyFilter, TakesTheLargestKernelOnTheSmallestImages) {
   for (const Wrap wrap : {Wrap::kAround, Wrap::kNone}) {
     for (const Filter filter : kFilters) {
       SCOPED_TRACE(static_cast<int>(filter));
@@ -105,14 +105,14 @@ TEST(Filtered, TakesTheLargestKernelOnTheSmallestImages) {
   }
 }
 
-TEST(Filtered, LeavesTheImageAloneWithoutAFilter) {
+TEST(ApplyFilter, LeavesTheImageAloneWithoutAFilter) {
   std::mt19937_64 random(7);
   const PolarImage image = random_image(random, 5, 9, Wrap::kAround);
   const PolarImage out = apply_filter(image, {.filter = Filter::kNone, .kernel = 5, .sigma = 1.0});
   for (std::size_t n = 0; n < image.rows(); ++n) EXPECT_TRUE(std::ranges::equal(out.row(n), image.row(n)));
 }
 
-TEST(Filtered, DoesNotDarkenTheEndsOfShortBeamsNorTheirNeighbours) {
+TEST(ApplyFilter, DoesNotDarkenTheEndsOfShortBeamsNorTheirNeighbours) {
   PolarImage image({8, 3, 0, 8, 5, 5, 5, 5, 5, 5, 5}, 8, Wrap::kAround);
   for (std::size_t n = 0; n < image.rows(); ++n) std::ranges::fill(image.row(n).first(image.bins_in(n)), 100);
   for (const Filter filter : kFilters) {
@@ -125,7 +125,7 @@ TEST(Filtered, DoesNotDarkenTheEndsOfShortBeamsNorTheirNeighbours) {
   }
 }
 
-TEST(Filtered, DependsOnNoBeamBeyondItsReach) {
+TEST(ApplyFilter, DependsOnNoBeamBeyondItsReach) {
   std::size_t changed = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);

@@ -28,17 +28,17 @@ inline std::vector<std::uint8_t> from_hex(std::string_view hex) {
   return bytes;
 }
 
-/// Everything that a source gives, and how it ends.
+/// ReadResult that a source gives, and how it ends.
 template <class T>
-struct Everything {
+struct ReadResult {
   std::vector<T> items;
   std::size_t skipped = 0;
   std::string error;  ///< empty: the end of the source
 };
 
 template <class T, class Source>
-Everything<T> everything_from(Result<std::unique_ptr<Source>> source) {
-  Everything<T> all;
+ReadResult<T> read_everything(Result<std::unique_ptr<Source>> source) {
+  ReadResult<T> all;
   if (!source) {
     all.error = source.error().message;
     return all;
@@ -52,12 +52,12 @@ Everything<T> everything_from(Result<std::unique_ptr<Source>> source) {
   }
 }
 
-inline Everything<Beam> all_beams(FileBytes file, Damage damage = Damage::kSkip) {
-  return everything_from<Beam>(open_beams(std::move(file), damage));
+inline ReadResult<Beam> all_beams(FileBytes file, Damage damage = Damage::kSkip) {
+  return read_everything<Beam>(open_beams(std::move(file), damage));
 }
 
-inline Everything<PointScan> all_scans(FileBytes file, Damage damage = Damage::kSkip) {
-  return everything_from<PointScan>(open_scans(std::move(file), damage));
+inline ReadResult<PointScan> all_scans(FileBytes file, Damage damage = Damage::kSkip) {
+  return read_everything<PointScan>(open_scans(std::move(file), damage));
 }
 
 inline bool same(const Beam& a, const Beam& b) {
