@@ -21,7 +21,7 @@ constexpr std::size_t kPanel_px = 320;
 Picture cartesian(const Sweep& sweep, const PolarImage& image, const Echoes& echoes,
                   BetweenBeams between = BetweenBeams::kInterpolate) {
   CartesianPictureOptions options;
-  options.look.target_px = 260;  // noise makes large files
+  options.style.target_px = 260;  // noise makes large files
   options.between = between;
   return render_cartesian(sweep, image, echoes, options);
 }

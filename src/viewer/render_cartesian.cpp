@@ -12,7 +12,7 @@
 
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
-#include "viewer/echo_look.hpp"
+#include "viewer/echo_legend.hpp"
 #include "viewer/label.hpp"
 #include "viewer/strokes.hpp"
 
@@ -48,7 +48,7 @@ class Reach {
     }
   }
 
-  bool holds(double x_m, double y_m) const {
+  bool contains(double x_m, double y_m) const {
     return std::hypot(x_m, y_m) <= range_m_[direction(std::round(std::atan2(y_m, x_m) / kStep_rad))];
   }
 
@@ -65,8 +65,8 @@ class Reach {
 };
 
 void draw_image(Picture& picture, const Area& area, const CartesianImage& image, const Reach& reach,
-                const EchoPictureOptions& look) {
-  const std::array<Rgb, 256> greys = greys_of(look);
+                const EchoPictureOptions& style) {
+  const std::array<Rgb, 256> greys = greys_of(style);
   const double range_m = 0.5 * static_cast<double>(image.size_px) * image.pixel_m;
   for (std::size_t row = 0; row < image.size_px; ++row) {
     for (std::size_t column = 0; column < image.size_px; ++column) {
@@ -74,7 +74,7 @@ void draw_image(Picture& picture, const Area& area, const CartesianImage& image,
       if (std::hypot(x_m, y_m) > range_m) continue;
       const std::uint8_t intensity = image.at(row, column);
       picture.set(area.x + static_cast<std::ptrdiff_t>(column), area.y + static_cast<std::ptrdiff_t>(row),
-                  intensity > 0 || reach.holds(x_m, y_m) ? greys[intensity] : look.nothing);
+                  intensity > 0 || reach.contains(x_m, y_m) ? greys[intensity] : style.nothing);
     }
   }
 }
@@ -136,8 +136,8 @@ void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, const 
 
 Result<void> CartesianPictureOptions::validate() const {
   std::string bad;
-  if (const auto valid = look.validate(); !valid) bad = valid.error().message;
-  if (const auto valid = CartesianOptions{between, look.target_px, beam_width_rad}.validate(); !valid) {
+  if (const auto valid = style.validate(); !valid) bad = valid.error().message;
+  if (const auto valid = CartesianOptions{between, style.target_px, beam_width_rad}.validate(); !valid) {
     bad += (bad.empty() ? "" : "; ") + valid.error().message;
   }
   if (bad.empty()) return {};
@@ -150,7 +150,7 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
   assert(image.rows() == sweep.beams.size());
   assert(echoes.empty() || echoes.size() == sweep.beams.size());
   const CartesianImage drawn =
-      cartesian_image(image, sweep, {options.between, options.look.target_px, options.beam_width_rad});
+      cartesian_image(image, sweep, {options.between, options.style.target_px, options.beam_width_rad});
   const auto size = static_cast<std::ptrdiff_t>(drawn.size_px);
   const std::ptrdiff_t inner = std::max(size + 2 * kRim, kMinWidth);
   const Area area{kMargin + (inner - size) / 2, kMargin + kRim, size, size};
@@ -163,17 +163,17 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
     draw_label(picture, kMargin, footer, "nothing was heard", kTextScale, kInk);
     return picture;
   }
-  draw_image(picture, area, drawn, Reach(sweep, options.beam_width_rad), options.look);
+  draw_image(picture, area, drawn, Reach(sweep, options.beam_width_rad), options.style);
   draw_polar_grid(picture, area, disc);
   draw_ring_labels(picture, disc);
   const double radius = std::clamp(half / 200.0, 1.6, 4.0);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (!echoes[i] || !(echoes[i]->range_m <= disc.range_m)) continue;
-    draw_disc(picture, disc.spot_at(echoes[i]->range_m, sweep.beams[i].bearing_rad), radius, options.look.echo);
+    draw_disc(picture, disc.spot_at(echoes[i]->range_m, sweep.beams[i].bearing_rad), radius, options.style.echo);
   }
   draw_marker(picture, Marker::kPlus, disc.middle, 7.0, kRing);
   draw_scale_bar(picture, kMargin, footer, disc);
-  draw_echo_legend(picture, kMargin, footer + kFooterRow, options.look,
+  draw_echo_legend(picture, kMargin, footer + kFooterRow, options.style,
                    echoes.empty() ? Marked::kNothing : Marked::kEchoes);
   return picture;
 }

@@ -11,7 +11,7 @@
 
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
-#include "viewer/echo_look.hpp"
+#include "viewer/echo_legend.hpp"
 #include "viewer/label.hpp"
 
 namespace pingvox {

@@ -138,15 +138,15 @@ Corners expand(const Corners& corners, const Box& box, const Lattice& lattice) {
 
 /// Columns of the shown part, at most `most` along each side.
 Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
-  const ViewAxes look = view_axes(options.view);
+  const ViewAxes axes = view_axes(options.view);
   const Lattice& lattice = map.lattice();
   const int levels = lattice.depth();
   const std::optional<Corners> known = corners_of(map, options);
   if (!known) return {};
   const auto [low, high] = options.at_least ? expand(*known, *options.at_least, lattice) : *known;
 
-  const WideWord low_across = word_along(low, look.across), low_up = word_along(low, look.up);
-  const WideWord high_across = word_along(high, look.across), high_up = word_along(high, look.up);
+  const WideWord low_across = word_along(low, axes.across), low_up = word_along(low, axes.up);
+  const WideWord high_across = word_along(high, axes.across), high_up = word_along(high, axes.up);
   int shift = 0;
   const auto cells = [&](WideWord from, WideWord to) { return shift_right(to, shift) - shift_right(from, shift); };
   while (cells(low_across, high_across) >= most || cells(low_up, high_up) >= most) ++shift;
@@ -160,8 +160,8 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
   }
   for_each_shown(map, options, [&](const Leaf& leaf) {
     const int bits = std::max(levels - leaf.depth, shift);
-    grids[static_cast<std::size_t>(bits - shift)].raise(shift_right(word_along(leaf.key, look.across), bits),
-                                                        shift_right(word_along(leaf.key, look.up), bits),
+    grids[static_cast<std::size_t>(bits - shift)].raise(shift_right(word_along(leaf.key, axes.across), bits),
+                                                        shift_right(word_along(leaf.key, axes.up), bits),
                                                         leaf.belief.value());
   });
   for (std::size_t g = grids.size() - 1; g > 0; --g) {
@@ -182,8 +182,8 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
   return {grids[0].across,
           grids[0].up,
           lattice.cell_size_m(depth),
-          corner_m[static_cast<Eigen::Index>(look.across)],
-          corner_m[static_cast<Eigen::Index>(look.up)],
+          corner_m[static_cast<Eigen::Index>(axes.across)],
+          corner_m[static_cast<Eigen::Index>(axes.up)],
           std::move(grids[0].belief)};
 }
 
@@ -254,13 +254,13 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const M
 }
 
 /// Caption: which part of the map is shown.
-std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, const ViewAxes& look) {
-  if (!options.layer_z_m) return std::string(look.note);
+std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, const ViewAxes& axes) {
+  if (!options.layer_z_m) return std::string(axes.note);
   const auto layer = layer_at(map.lattice(), *options.layer_z_m);
   if (!layer) return fmt::format("z = {:.6g} m, outside of the map", *options.layer_z_m);
   // Rounds tiny values to 0.
   const auto tidy = [&](double z_m) { return std::abs(z_m) < 1e-6 * map.lattice().resolution_m() ? 0.0 : z_m; };
-  return fmt::format("{}, layer z = {:.6g} to {:.6g} m", look.note, tidy(layer->first), tidy(layer->second));
+  return fmt::format("{}, layer z = {:.6g} to {:.6g} m", axes.note, tidy(layer->first), tidy(layer->second));
 }
 
 }  // namespace
@@ -291,7 +291,7 @@ std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& 
 
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
-  const ViewAxes look = view_axes(options.view);
+  const ViewAxes axes = view_axes(options.view);
   const Columns columns = columns_of(map, options, options.target_px);
   const std::size_t longer = std::max({columns.across, columns.up, std::size_t{1}});
   // Up to 15% larger than requested rather than half as large; a single cell need not fill the picture.
@@ -303,7 +303,7 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
 
   // Relative to the corner of the area, in pixels.
   const std::ptrdiff_t known_left = (width - across * zoom) / 2;
-  const bool is_mirrored = look.grows == ViewAxes::Across::kGrowsLeftwards;
+  const bool is_mirrored = axes.grows == ViewAxes::Across::kGrowsLeftwards;
   const double metres_per_pixel = columns.cell_m / static_cast<double>(zoom);
   const auto metres = [&](std::ptrdiff_t pixels) { return static_cast<double>(pixels) * metres_per_pixel; };
   const std::ptrdiff_t known_right = width - known_left - across * zoom;
@@ -331,15 +331,15 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
     }
   }
   draw_frame(picture, area, kBorder, kInk);
-  draw_label(picture, area.x, kMargin, note_of(map, options, look), kTextScale, kInk);
+  draw_label(picture, area.x, kMargin, note_of(map, options, axes), kTextScale, kInk);
 
   if (across == 0) {
     draw_label(picture, area.x, area.bottom() + kGap, "nothing is known", kTextScale, kInk);
     return picture;
   }
   constexpr std::array<std::string_view, 3> kAxes = {"x in m", "y in m", "z in m"};
-  draw_bottom_axis(picture, area, across_ticks, kAxes[look.across]);
-  draw_left_axis(picture, area, up_ticks, kAxes[look.up]);
+  draw_bottom_axis(picture, area, across_ticks, kAxes[axes.across]);
+  draw_left_axis(picture, area, up_ticks, kAxes[axes.up]);
 
   const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
   draw_scale_bar(picture, area.x, footer, metres_per_pixel);

@@ -26,7 +26,7 @@ Sweep sweep_between(double from_deg, double to_deg, double step_deg) {
 
 CartesianPictureOptions options_of(BetweenBeams between) {
   CartesianPictureOptions options;
-  options.look.target_px = kSize;
+  options.style.target_px = kSize;
   options.between = between;
   return options;
 }
@@ -81,7 +81,7 @@ TEST(RenderCartesian, DrawsWhateverIsValid) {
       std::vector<std::optional<Echo>> echoes(sweep.beams.size(), Echo{});
       for (const BetweenBeams between : {BetweenBeams::kInterpolate, BetweenBeams::kNothing}) {
         CartesianPictureOptions options = options_of(between);
-        options.look.target_px = 16;
+        options.style.target_px = 16;
         options.beam_width_rad = 2.0 * std::numbers::pi;
         EXPECT_LE(render_cartesian(sweep, PolarImage(sweep), echoes, options).width(), Picture::kMaxSide);
         ++pictures;
@@ -94,7 +94,7 @@ TEST(RenderCartesian, DrawsWhateverIsValid) {
 TEST(CartesianPictureOptions, RefuseSenselessValues) {
   EXPECT_TRUE(CartesianPictureOptions{}.validate());
   CartesianPictureOptions bad;
-  bad.look.target_px = 4;
+  bad.style.target_px = 4;
   bad.beam_width_rad = 0.0;
   const auto refused = bad.validate();
   ASSERT_FALSE(refused);

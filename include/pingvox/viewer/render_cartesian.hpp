@@ -14,7 +14,7 @@
 namespace pingvox {
 
 struct CartesianPictureOptions {
-  EchoPictureOptions look;  ///< its target_px is the width and the height of the image
+  EchoPictureOptions style;  ///< its target_px is the width and the height of the image
   BetweenBeams between = BetweenBeams::kInterpolate;
   double beam_width_rad = CartesianOptions{}.beam_width_rad;
 

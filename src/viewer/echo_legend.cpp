@@ -1,4 +1,4 @@
-#include "viewer/echo_look.hpp"
+#include "viewer/echo_legend.hpp"
 
 #include <cmath>
 
