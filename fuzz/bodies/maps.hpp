@@ -53,15 +53,15 @@ inline std::size_t maps(std::span<const std::uint8_t> bytes) {
   return 1;
 }
 
-/// The same, and once more with a checksum that fits: else nothing behind it is ever reached.
+/// The same, and again with a valid checksum, to reach the code behind its check.
 inline std::size_t pvx(std::span<const std::uint8_t> bytes) {
-  const std::size_t unsealed = maps(bytes);
-  if (bytes.size() < 4) return unsealed;
-  std::vector<std::uint8_t> with_checksum(bytes.begin(), bytes.end());
-  const std::size_t end = sealed.size() - 4;
-  const auto crc = static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), sealed.data(), end));
-  for (std::size_t i = 0; i < 4; ++i) sealed[end + i] = static_cast<std::uint8_t>(crc >> (8 * i));
-  return unsealed + maps(sealed);
+  const std::size_t as_is = maps(bytes);
+  if (bytes.size() < 4) return as_is;
+  std::vector<std::uint8_t> fixed(bytes.begin(), bytes.end());
+  const std::size_t end = fixed.size() - 4;
+  const auto crc = static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), fixed.data(), end));
+  for (std::size_t i = 0; i < 4; ++i) fixed[end + i] = static_cast<std::uint8_t>(crc >> (8 * i));
+  return as_is + maps(fixed);
 }
 
 }  // namespace pingvox::fuzz
