@@ -88,7 +88,7 @@ struct CompareCommand {
   std::optional<double> occupied_probability;  ///< occupancy threshold of A
   std::optional<std::string> visible_from;     ///< poses from which the cells to find could be seen
   Pose body_from_sensor = Pose::Identity();
-  ViewOptions view{.min_range_m = EchoOptions::kUsualBlanking_m};
+  ViewOptions view{.min_range_m = EchoOptions::kDefaultBlanking_m};
 };
 
 struct ConvertCommand {

@@ -44,11 +44,11 @@ Result<Command> compare_command(const Args& args) {
           "judge A as `pingvox bench accuracy` does: only what could be seen of B from these poses (TUM) is to be "
           "found, and what lies beyond a side of B without a wall is left out",
           "all of B", into(visible_from)},
-         seen({"--min-range", 0, "M", "nearest range at which a cell is seen", shown(view.min_range_m),
+         seen({"--min-range", 0, "M", "nearest range at which a cell is seen", number_text(view.min_range_m),
                within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_number(view.min_range_m))}),
          seen({"--max-range", 0, "M", "farthest range at which a cell is seen: that of the log", "no limit",
                within({0.0, kAnyHigh, Limits::Ends::kBothOut}, into_number(view.max_range_m))}),
-         seen({"--beam-height", 0, "DEG", "vertical beam width, full angle", shown(view.height_rad / kDegree_rad),
+         seen({"--beam-height", 0, "DEG", "vertical beam width, full angle", number_text(view.height_rad / kDegree_rad),
                within({0.0, 180.0, Limits::Ends::kLowOut}, into_number(view.height_rad, kDegree_rad))}),
          seen({"--mount", 0, "X,Y,Z,R,P,Y",
                "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",

@@ -38,7 +38,7 @@ TEST(Nav, InfoSaysWhatEachSourceHolds) {
   EXPECT_EQ(text.status, 0);
   EXPECT_THAT(text.out, HasSubstr("velocity"));
   EXPECT_THAT(text.out, HasSubstr("first at byte"));
-  expect_complaint(here.call({"info", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
+  expect_error(here.call({"info", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
 }
 
 TEST(Nav, BecomesCsvAndNothingElse) {
@@ -47,8 +47,8 @@ TEST(Nav, BecomesCsvAndNothingElse) {
   const Outcome outcome = here.call({"convert", "nav.csv", "-o", "again.csv"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(here.read("again.csv"), HasSubstr("11,bar,depth,5,,,,,,1\n"));
-  expect_complaint(here.call({"convert", "nav.csv", "-o", "map.bt"}), 2, {"nav.csv", "a navigation log"});
-  expect_complaint(here.call({"map", "nav.csv", "-o", "map.bt"}), 1, {"nav.csv", "a navigation log"});
+  expect_error(here.call({"convert", "nav.csv", "-o", "map.bt"}), 2, {"nav.csv", "a navigation log"});
+  expect_error(here.call({"map", "nav.csv", "-o", "map.bt"}), 1, {"nav.csv", "a navigation log"});
 }
 
 /// The poses of a TUM file as a sensor log would have them.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/judged_world.hpp"
+#include "accuracy/ground_truth.hpp"
 #include "call.hpp"
 #include "json_reader.hpp"
 
@@ -39,10 +39,10 @@ TEST(CompareVisible, PrintsWhatTheBenchMeasures) {
   cone.shape = BeamShape::kCone;
   const auto map = bench::map_echoes(*recording, bench::detect(*recording, {}, {}), cone, 0.05);
   ASSERT_TRUE(map);
-  const auto plane = bench::JudgedWorld::make(*recording, bench::Extent::kPlane, 0.05, 0.75);
+  const auto plane = bench::GroundTruth::make(*recording, bench::Extent::kPlane, 0.05, 0.75);
   ASSERT_TRUE(plane);
   expect_same(compared(here, {"--max-range", "10", "--layer", "0"}), *plane->score(*map));
-  const auto space = bench::JudgedWorld::make(*recording, bench::Extent::kSpace, 0.05, 0.75);
+  const auto space = bench::GroundTruth::make(*recording, bench::Extent::kSpace, 0.05, 0.75);
   ASSERT_TRUE(space);
   expect_same(compared(here, {"--max-range", "10"}), *space->score(*map));
 }
@@ -51,16 +51,16 @@ TEST(CompareVisible, SaysWhenNothingOfTheTruthCouldBeSeen) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "log.csv", "--turns", "1", "--truth", "truth", "--quiet"}).status, 0);
   here.write("far.tum", "0 500 0 0 0 0 0 1\n");
-  expect_complaint(
+  expect_error(
       here.call({"compare", "truth/world.bt", "truth/world.bt", "--visible-from", "far.tum", "--max-range", "10"}), 2,
       {"far.tum: nothing of truth/world.bt could be seen"});
 }
 
 TEST(CompareVisible, RefusesItsOptionsWithoutIt) {
   const Workplace here;
-  expect_complaint(here.call({"compare", "a.bt", "b.bt", "--max-range", "10"}), 2, {"--max-range", "--visible-from"});
-  expect_complaint(here.call({"compare", "a.bt", "b.bt", "--visible-from", "t", "--max-range", "0.5"}), 2,
-                   {"--max-range: must be above --min-range, which is 0.75 m, is 0.5 m"});
+  expect_error(here.call({"compare", "a.bt", "b.bt", "--max-range", "10"}), 2, {"--max-range", "--visible-from"});
+  expect_error(here.call({"compare", "a.bt", "b.bt", "--visible-from", "t", "--max-range", "0.5"}), 2,
+               {"--max-range: must be above --min-range, which is 0.75 m, is 0.5 m"});
 }
 
 }  // namespace
