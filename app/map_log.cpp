@@ -108,7 +108,7 @@ Result<void> check_ranges(const BuildOptions& options) {
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress) {
   const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
-  const BuildOptions of_head = head.applied_to(options, beams != nullptr ? (*beams)->device() : nullptr);
+  const BuildOptions of_head = head.apply_to(options, beams != nullptr ? (*beams)->device() : nullptr);
   Result<BuildReport> report = build(log, path.trajectory, of_head, map, progress);
   if (!report) {
     // Adds the file name to errors of the map.

@@ -128,9 +128,8 @@ OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
   OptionTable::Group group = {
       "Echoes",
-      {{"--min-range", 0, "M|auto",
-        "ignore echoes nearer than M (transducer ringing); auto measures it per sweep",
-        shown(EchoOptions::kUsualBlanking_m),
+      {{"--min-range", 0, "M|auto", "ignore echoes nearer than M (transducer ringing); auto measures it per sweep",
+        number_text(EchoOptions::kDefaultBlanking_m),
         within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_or_auto(echo.min_range_m))},
        {"--min-bin", 0, "N", "ignore bins before bin N (the first is 0)", fmt::format("{}", echo.min_bin),
         into_number(echo.min_bin)},

@@ -110,14 +110,14 @@ TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {
     words.insert(words.end(), more.begin(), more.end());
     return here.call(words);
   };
-  expect_complaint(map({"--nav", "nav.csv", "--nav-offset", "-900"}), 1, {"nothing could be mapped", "--nav-offset"});
-  expect_complaint(map({"--nav", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
-  expect_complaint(map({"--nav", "nav.csv", "--poses", "a.tum"}), 2, {"--poses and --nav"});
-  expect_complaint(map({"--nav-offset", "3"}), 2, {"--nav-offset"});
-  expect_complaint(map({"--nav", "dive.csv"}), 1, {"dive.csv", "not a navigation log"});
+  expect_error(map({"--nav", "nav.csv", "--nav-offset", "-900"}), 1, {"nothing could be mapped", "--nav-offset"});
+  expect_error(map({"--nav", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
+  expect_error(map({"--nav", "nav.csv", "--poses", "a.tum"}), 2, {"--poses and --nav"});
+  expect_error(map({"--nav-offset", "3"}), 2, {"--nav-offset"});
+  expect_error(map({"--nav", "dive.csv"}), 1, {"dive.csv", "not a navigation log"});
   here.write("sky.csv", "time_s,source,quantity,x,y,z\n1,ahrs,attitude,0,0,0\n");
-  expect_complaint(map({"--nav", "sky.csv"}), 1, {"sky.csv", "no valid position"});
-  expect_complaint(here.call({"convert", "sky.csv", "-o", "sky.tum"}), 1, {"sky.csv", "no valid position"});
+  expect_error(map({"--nav", "sky.csv"}), 1, {"sky.csv", "no valid position"});
+  expect_error(here.call({"convert", "sky.csv", "-o", "sky.tum"}), 1, {"sky.csv", "no valid position"});
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 #include "support/scan_cells.hpp"
 
 using namespace pingvox;
-using test::drawn;
+using test::as_text;
 using test::ExactSegment;
 using Cell = ExactSegment::Cell;
 using Point = ExactSegment::Point;
