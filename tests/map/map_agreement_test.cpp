@@ -46,6 +46,20 @@ TEST(MapAgreement, OfTheTruthItselfIsPerfect) {
   EXPECT_EQ(score.free_a, 18U);
 }
 
+// Kills a large leaf that counts as fewer cells than it holds.
+TEST(MapAgreement, CountsTheCellsOfLargeLeaves) {
+  OccupancyMap map(MapOptions{.resolution_m = 1.0});
+  const int depth = map.lattice().depth();
+  map.edit().set(*map.lattice().key_of({0.5, 0.5, 0.5}), depth - 2, LogOdds(-2.0F));
+  map.edit().set(*map.lattice().key_of({8.5, 0.5, 0.5}), depth - 1, LogOdds(2.0F));
+  const MapAgreement score = agreement_of(map, map);
+  EXPECT_EQ(score.free_a, 64U);
+  EXPECT_EQ(score.free_both, 64U);
+  EXPECT_EQ(score.occupied_b, 8U);
+  EXPECT_EQ(score.precision(), 1.0);
+  EXPECT_EQ(score.recall(), 1.0);
+}
+
 TEST(MapAgreement, ForgivesAWallOneCellOffAndNotTwo) {
   const MapAgreement one = judged({"......", "......", "######"});
   EXPECT_EQ(one.precision(), 1.0);
