@@ -95,6 +95,7 @@ TEST(MapAgreement, CellsFreedBehindAWallAreWrongEvenWithinOneCell) {
   const MapAgreement score = judged({"......", "......", "......", "###.##", "   .  ", "   .  "});
   EXPECT_EQ(score.free_a, 21U);
   EXPECT_EQ(score.free_both, 18U);
+  EXPECT_EQ(score.free_true(), 18.0 / 21.0);
   EXPECT_EQ(score.free_near, 19U);  // the wall's own touches water
 }
 
