@@ -265,4 +265,18 @@ TEST(ScanUpdate, AHitBeatsAMissAndTheSurestHitCounts) {
   }
 }
 
+// Kills a brick of 4 x 4 x 4 cells, all of them hit, that gets the evidence of one of them.
+TEST(ScanUpdate, EachCellOfAFullBrickHasItsOwnEvidence) {
+  ScanUpdate scan(Lattice(MapOptions{}.resolution_m));
+  const auto cell = [](int n) {
+    return Key{static_cast<std::uint16_t>(4 + n % 4), static_cast<std::uint16_t>(8 + n / 4 % 4),
+               static_cast<std::uint16_t>(12 + n / 16)};
+  };
+  const auto evidence = [](int n) { return LogOdds(0.3F + 0.01F * static_cast<float>(n)); };
+  for (int n = 0; n < 64; ++n) scan.add_hit(cell(n), evidence(n));
+  OccupancyMap map;
+  ASSERT_TRUE(map.apply(scan));
+  for (int n = 0; n < 64; ++n) EXPECT_EQ(map.at(cell(n)), evidence(n)) << n;
+}
+
 }  // namespace
