@@ -135,8 +135,8 @@ class Walk {
     return axis;
   }
 
-  /// Crosses so many faces of one axis, and those of the `Others` other axes that come before each. REQUIRES a < b where
-  /// there are two.
+  /// Crosses so many faces of one axis, and those of the `Others` other axes that come before each. REQUIRES a < b
+  /// where there are two.
   template <int Others>
   void step_along(std::size_t major, std::size_t a, std::size_t b, std::uint64_t faces, ScanUpdate& scan) {
     // By themselves, not as members, which would be stored in each step.
