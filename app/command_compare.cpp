@@ -142,7 +142,8 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
           ? report_line("log-odds", fmt::format("differ by {:.6g} at most", found.max_log_odds_difference))
           : "";
   const char* by = sameness == Sameness::kLogOdds ? "by log-odds" : "by occupied or free";
-  return fmt::format("{} % of {} cells are the same ({})\n", share_text(found.same, cells), cells, by) +
+  return fmt::format("{} % of the {} cells known in A or B are the same ({})\n", share_text(found.same, cells), cells,
+                     by) +
          report_line("same", fmt::format("{}", found.same)) +
          report_line("different", fmt::format("{}", found.different)) +
          report_line("only in A", fmt::format("{}", found.only_a)) +
@@ -151,7 +152,7 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
                                              agreement.occupied_both)) +
          report_line("free", fmt::format("{} in A, {} in B, {} in both", agreement.free_a, agreement.free_b,
                                          agreement.free_both)) +
-         report_line("B as truth", fmt::format("precision {}, recall {} (occupied, within one cell); free {}",
+         report_line("B as truth", fmt::format("occupied: precision {}, recall {} (within one cell); free: {} right",
                                                share_text(agreement.precision()), share_text(agreement.recall()),
                                                share_text(agreement.free_true())));
 }

@@ -18,6 +18,7 @@
 #include "pingvox/io/tum.hpp"
 #include "pingvox/map/slice.hpp"
 #include "pingvox/map/surface_map.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 
 namespace pingvox::app {
@@ -81,7 +82,10 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   });
   if (!written) return tl::unexpected(written.error());
   const std::size_t skipped = (*source)->skipped();
-  return what + (skipped > 0 ? fmt::format("; {} damaged ones skipped", skipped) : "");
+  if (skipped > 0) what += fmt::format("; {} damaged ones skipped", skipped);
+  const DeviceProfile* device = command.has_echoes ? nullptr : (*source)->device();
+  if (device != nullptr) what += fmt::format(" (CSV names no sonar: map it with --device {})", device->name);
+  return what;
 }
 
 Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command) {

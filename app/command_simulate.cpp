@@ -183,7 +183,8 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   if (map) {
     const auto truth = write_truth(command, *map, journey->way, simulator, recorder, sonar);
     if (!truth) return tl::unexpected(truth.error());
-    summary += fmt::format("{}: ground truth\n", on_one_line(*command.truth));
+    summary +=
+        fmt::format("{}: ground truth (poses.tum, ranges.csv, world.ply, world.bt)\n", on_one_line(*command.truth));
   }
   const auto printed = console.summarise(summary, command.output);
   if (!printed) return tl::unexpected(printed.error());

@@ -109,7 +109,8 @@ struct ConvertCommand {
 /// Views of a picture: the first two for logs of beams, the others for maps, also of logs.
 enum class PictureView { kPolar, kCartesian, kAbove, kSide, kSlice };
 /// Kinds that options of 'render' may be limited to (Option::only_for), besides those of logs.
-inline constexpr std::string_view kDrawnMaps = "pictures of maps", kMappedLogs = "logs that are mapped";
+inline constexpr std::string_view kDrawnMaps = "pictures of maps",
+                                  kMappedLogs = "logs that are mapped (--view above, side, slice)";
 /// "--view polar"
 std::string view_kind(PictureView view);
 enum class ShownImage { kRaw, kFiltered };

@@ -30,7 +30,8 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
 }
 
-/// "3036 outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log)"
+/// "3036 outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log,
+/// with times in seconds of the same clock)"
 std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, const Lattice& lattice) {
   std::string text;
   const auto add = [&text](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
@@ -44,11 +45,12 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
   add(mapped.report.no_pose,
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
                   path.trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
-      path.nav ? "--nav must cover the log; --nav-offset corrects its clock" : "--poses must cover the log");
+      path.nav ? "--nav must cover the log; --nav-offset corrects its clock"
+               : "--poses must cover the log, with times in seconds of the same clock");
   add(mapped.report.outside,
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
-      "a larger --resolution reaches farther");
+      "lengths are in metres; a larger --resolution reaches farther");
   return text;
 }
 

@@ -67,17 +67,19 @@ std::string of_device(double angle_rad) {
   return fmt::format("that of the device, else {}", number_text(angle_rad / kDegree_rad));
 }
 
-std::string device_names(std::string_view between) {
-  std::vector<std::string> names;
+Args device_names() {
+  Args names;
   for (const DeviceProfile& profile : device_profiles()) names.emplace_back(profile.name);
-  return fmt::format("{}", fmt::join(names, between));
+  return names;
 }
 
 Take into_device(const DeviceProfile*& target) {
   return [&target](const std::string& text) -> Result<void> {
     target = device_named(text);
-    if (target == nullptr) return usage_error(fmt::format("must be {}, not '{}'", device_names(" or "), text));
-    return {};
+    if (target != nullptr) return {};
+    const Args known = device_names();
+    return usage_error(
+        fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
   };
 }
 
@@ -213,8 +215,8 @@ OptionTable::Group sensor_group(BuildArgs& args) {
         within({0.0, 180.0, Limits::Ends::kLowOut}, into_degrees(args.head.beam_width_rad))},
        {"--beam-height", 0, "DEG", "vertical beam width, full angle", of_device(model.height_rad),
         within({0.0, 180.0, Limits::Ends::kBothOut}, into_degrees(args.head.beam_height_rad))},
-       {"--device", 0, device_names("|"), "sonar head, which gives the width and height of its beam", "as the log says",
-        into_device(args.head.device)},
+       {"--device", 0, fmt::format("{}", fmt::join(device_names(), "|")),
+        "sonar head, which gives the width and height of its beam", "as the log says", into_device(args.head.device)},
        {"--free-share", 0, "S", "central fraction of the beam (0..1) that marks cells free",
         number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),

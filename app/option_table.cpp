@@ -284,7 +284,7 @@ Result<void> check_limited(const std::vector<LimitedOption>& options, const std:
     };
     if (std::any_of(kinds.begin(), kinds.end(), is_met)) continue;
     return fail(Error::Code::kBadOption, fmt::format("{}: has no effect on {}, only on {}", option.name,
-                                                     fmt::join(kinds, " and "), fmt::join(option.only_for, " and ")));
+                                                     fmt::join(kinds, " or "), fmt::join(option.only_for, " or ")));
   }
   return {};
 }

@@ -27,9 +27,11 @@ Result<Command> compare_command(const Args& args) {
   std::string visible_from;
   const OptionTable table{
       "compare",
-      "Compares two maps cell by cell, at the finest resolution. Cells are equal if their log-odds are; if one of the\n"
-      "files is a .bt, which has no log-odds, if both are free or both are occupied. Also judges A with B as ground\n"
-      "truth: precision and recall of occupied cells (within one cell), and how many of A's free cells are free in B.",
+      "Compares two maps cell by cell, at the finest resolution. Cells are the same if their log-odds are equal; if\n"
+      "A or B is a .bt, which has no log-odds, if both cells are free or both are occupied. 'only in A' counts cells\n"
+      "that are unknown in B. With B as ground truth: precision is the share of A's occupied cells that lie within\n"
+      "one cell of an occupied cell of B, recall the reverse, and 'free' the share of A's free cells that are free in\n"
+      "B.",
       {{"A", Positional::Count::kOne, "a map; - is standard input", into(command.a)},
        {"B", Positional::Count::kOne, "a map of the same resolution and depth, such as ground truth", into(command.b)}},
       {{"Options",

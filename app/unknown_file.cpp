@@ -17,7 +17,7 @@ constexpr std::string_view kUtf16 = "is text in UTF-16", kSaveAgain = "save it a
 constexpr std::string_view kAsCsv =
     "write its beams as CSV, with 'time_s,bearing_cw_deg,bin_length_m,intensities' as the first line "
     "(bearings clockwise from ahead, as most sonars count them; bearing_deg is counter-clockwise; docs/formats.md)";
-constexpr std::string_view kWrittenOnly = "written, not read";
+constexpr std::string_view kWrittenOnly = "pingvox writes this format, but does not read it";
 
 /// Common files of other kinds, by their first bytes.
 struct Signature {
@@ -32,7 +32,7 @@ constexpr std::array kSignatures = {
     Signature{"version https://git-lfs"sv, "is a pointer of Git LFS", "'git lfs pull' fetches the file itself"},
     Signature{"\xff\xfe"sv, kUtf16, kSaveAgain},
     Signature{"\xfe\xff"sv, kUtf16, kSaveAgain},
-    Signature{"\x89PNG"sv, "is a picture", "pictures are written, not read"},
+    Signature{"\x89PNG"sv, "is a picture", "pingvox writes pictures, but does not read them"},
     Signature{"P5\n# pingvox"sv, "is a grid for map_server", kWrittenOnly},
     Signature{"image: "sv, "describes a grid for map_server", kWrittenOnly},
     Signature{"ncols "sv, "is a grid of heights", kWrittenOnly},

@@ -57,11 +57,11 @@ std::string_view problem_of(const std::vector<Column>& columns) {
     return n;
   };
   const auto count_of = [&count](Column wanted) { return count([wanted](Column c) { return c == wanted; }); };
-  if (count_of(Column::kTime) != 1) return "needs one column time_s";
-  if (count(is_bearing) != 1) return "needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg";
-  if (count_of(Column::kBinLength) != 1) return "needs one column bin_length_m";
+  if (count_of(Column::kTime) != 1) return "the header needs one column time_s";
+  if (count(is_bearing) != 1) return "the header needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg";
+  if (count_of(Column::kBinLength) != 1) return "the header needs one column bin_length_m";
   if (count_of(Column::kIntensities) != 1 || columns.back() != Column::kIntensities) {
-    return "needs the column intensities as its last one";
+    return "the header needs the column intensities as its last one";
   }
   return {};
 }

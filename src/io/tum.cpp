@@ -15,18 +15,19 @@ namespace pingvox {
 namespace {
 
 constexpr std::size_t kNumbers = 8;
+constexpr std::string_view kLayout = "a pose is 't x y z qx qy qz qw'";
 
 /// Parses a line; the error is the reason why it is invalid.
 tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
   std::array<double, kNumbers> n = {};
   std::size_t count = 0;
   for (; const auto word = cut_word(line); ++count) {
-    if (count == kNumbers) return tl::unexpected(std::string("more than 8 numbers"));
+    if (count == kNumbers) return tl::unexpected(fmt::format("more than 8 numbers: {}", kLayout));
     const std::optional<double> number = number_in(*word);
-    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number", printable(*word)));
+    if (!number) return tl::unexpected(fmt::format("\"{}\" is not a finite number: {}", printable(*word), kLayout));
     n[count] = *number;
   }
-  if (count < kNumbers) return tl::unexpected(fmt::format("{} numbers instead of 8", count));
+  if (count < kNumbers) return tl::unexpected(fmt::format("{} numbers instead of 8: {}", count, kLayout));
 
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
   const double norm = rotation.norm();

@@ -70,7 +70,9 @@ TEST(DeviceLogs, ABeamIsAsWideAndHighAsThatOfTheHead) {
 TEST(DeviceLogs, AreConvertedToTheSameBeams) {
   const Workplace here;
   here.write("log", serial_capture());
-  ASSERT_EQ(here.call({"convert", "log", "-o", "log.csv"}).status, 0);
+  const Outcome converted = here.call({"convert", "log", "-o", "log.csv"});
+  ASSERT_EQ(converted.status, 0);
+  EXPECT_THAT(converted.out, ::testing::HasSubstr("CSV names no sonar: map it with --device micron"));
   ASSERT_EQ(here.call({"map", "log", "-o", "a.ot", "--quiet"}).status, 0);
   ASSERT_EQ(here.call({"map", "log.csv", "-o", "b.ot", "--quiet"}).status, 0);
   EXPECT_EQ(here.read("a.ot"), here.read("b.ot"));

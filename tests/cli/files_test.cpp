@@ -112,7 +112,7 @@ TEST(Files, OutputFormatsAreNamedAsSuch) {
   for (const auto& [name, what] : written) {
     SCOPED_TRACE(name);
     const Outcome outcome = here.call({"info", name});
-    expect_error(outcome, 1, {name, what, "written, not read"});
+    expect_error(outcome, 1, {name, what, "does not read it"});
     EXPECT_EQ(outcome.err.find("bearing_cw_deg"), std::string::npos);
   }
 }

@@ -194,7 +194,7 @@ TEST(Compare, SaysWhatDiffers) {
   EXPECT_EQ((*json)["different"], "1");  // the end of the one is a miss of the other
   EXPECT_EQ((*json)["only_a"], "0");
   EXPECT_EQ((*json)["only_b"], "1");
-  EXPECT_THAT(here.call({"compare", "a.ot", "b.ot"}).out, ::testing::HasSubstr("83.3333 % of 12 cells"));
+  EXPECT_THAT(here.call({"compare", "a.ot", "b.ot"}).out, ::testing::HasSubstr("83.3333 % of the 12 cells"));
   EXPECT_EQ((*json)["classes.occupied_a"], "1");
   EXPECT_EQ((*json)["classes.occupied_b"], "1");
   EXPECT_EQ((*json)["classes.occupied_both"], "0");

@@ -126,9 +126,9 @@ TEST(Csv, LeavesOutABeamThatWasCutOff) {
 
 TEST(Csv, SaysWhichColumnIsMissing) {
   EXPECT_EQ(read_csv("time_s,bin_length_m,intensities\n").error,
-            "log.csv: line 1: needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg");
+            "log.csv: line 1: the header needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg");
   EXPECT_THAT(read_csv("#\n\nbearing_rad,bin_length_m,intensities\n").error,
-              HasSubstr("line 3: needs one column time_s"));
+              HasSubstr("line 3: the header needs one column time_s"));
   EXPECT_THAT(read_csv("time_s,bearing_rad,intensities\n").error, HasSubstr("bin_length_m"));
   EXPECT_THAT(read_csv("time_s,bearing_rad,bin_length_m\n").error, HasSubstr("intensities"));
   EXPECT_THAT(read_csv("time_s,bearing_rad,intensities,bin_length_m\n").error, HasSubstr("intensities"));

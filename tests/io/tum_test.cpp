@@ -52,10 +52,14 @@ TEST(Tum, NormalisesALittleAndRefusesMore) {
 
 TEST(Tum, NamesTheLineThatIsWrong) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
-  EXPECT_EQ(error_of(good + "# note\n2 0 0 0 0 0 1\n"), "poses.tum: line 3: 7 numbers instead of 8");
-  EXPECT_EQ(error_of(good + "2 0 0 0 0 0 0 1 9\n"), "poses.tum: line 2: more than 8 numbers");
-  EXPECT_EQ(error_of(good + "2 0 zero 0 0 0 0 1\n"), "poses.tum: line 2: \"zero\" is not a finite number");
-  EXPECT_EQ(error_of(good + "2 nan 0 0 0 0 0 1\n"), "poses.tum: line 2: \"nan\" is not a finite number");
+  EXPECT_EQ(error_of(good + "# note\n2 0 0 0 0 0 1\n"),
+            "poses.tum: line 3: 7 numbers instead of 8: a pose is 't x y z qx qy qz qw'");
+  EXPECT_EQ(error_of(good + "2 0 0 0 0 0 0 1 9\n"),
+            "poses.tum: line 2: more than 8 numbers: a pose is 't x y z qx qy qz qw'");
+  EXPECT_EQ(error_of(good + "2 0 zero 0 0 0 0 1\n"),
+            "poses.tum: line 2: \"zero\" is not a finite number: a pose is 't x y z qx qy qz qw'");
+  EXPECT_EQ(error_of(good + "2 nan 0 0 0 0 0 1\n"),
+            "poses.tum: line 2: \"nan\" is not a finite number: a pose is 't x y z qx qy qz qw'");
   EXPECT_EQ(error_of(good + "0.5 0 0 0 0 0 0 1\n"),
             "poses.tum: line 2: time 0.5 s does not come after 1 s of the pose before it");
   EXPECT_THAT(error_of(good + good), HasSubstr("line 2: time"));
