@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
@@ -46,8 +47,8 @@ Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& comma
   out << "time_s,bearing_rad,range_m,intensity,first_bin,peak_bin,last_bin,threshold\n";
   EchoStream stream(command.filter, command.echo, EchoStream::Wait::kForSweep);
   std::size_t beams = 0, echoes = 0;
-  const auto write = [&](const std::vector<EchoStream::Heard>& heard) {
-    for (const EchoStream::Heard& one : heard) {
+  const auto write = [&](const std::vector<EchoStream::BeamWithEcho>& heard) {
+    for (const EchoStream::BeamWithEcho& one : heard) {
       const std::optional<Echo>& echo = one.echo;
       if (!echo) continue;
       ++echoes;
@@ -82,7 +83,8 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   });
   if (!written) return tl::unexpected(written.error());
   const std::size_t skipped = (*source)->skipped();
-  if (skipped > 0) what += fmt::format("; {} damaged ones skipped", skipped);
+  if (skipped > 0)
+    what += fmt::format("; {} damaged ones skipped, the first: {}", skipped, on_one_line((*source)->first_damage()));
   const DeviceProfile* device = command.has_echoes ? nullptr : (*source)->device();
   if (device != nullptr) what += fmt::format(" (CSV names no sonar: map it with --device {})", device->name);
   return what;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
@@ -111,6 +112,12 @@ std::string numbers_text(const std::vector<std::size_t>& numbers) {
   return text;
 }
 
+template <typename Source>
+std::string skipped_line(const Source& source) {
+  return report_line("skipped",
+                     fmt::format("{} damaged, the first: {}", source.skipped(), on_one_line(source.first_damage())));
+}
+
 class BeamSurvey {
  public:
   void add(const Beam& beam) {
@@ -167,7 +174,7 @@ class BeamSurvey {
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
     if (const DeviceProfile* device = source.device()) add_device(summary, *device);
-    if (skipped > 0) summary.text += report_line("skipped", fmt::format("{} damaged", skipped));
+    if (skipped > 0) summary.text += skipped_line(source);
     add_damage(summary, source.damage());
     return summary;
   }
@@ -242,7 +249,7 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
   }
   summary.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
   summary.text += report_line("bounds", bounds_text(bounds));
-  if (source.skipped() > 0) summary.text += report_line("skipped", fmt::format("{} damaged", source.skipped()));
+  if (source.skipped() > 0) summary.text += skipped_line(source);
   return summary;
 }
 

@@ -237,6 +237,11 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.clear();
         console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));
       }
+      if (const std::string odd = odd_times_text(path->trajectory, mapped->report);
+          !odd.empty() && command.path.poses) {
+        bar.clear();
+        console.say(fmt::format("{}: {}", *command.path.poses, odd));
+      }
       const bool has_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*log);
       if (const auto beside = trajectory_beside(name);
           beside && has_beams && !command.path.poses && !command.path.nav) {
@@ -257,11 +262,12 @@ Result<int> run(const MapCommand& command, Console& console) {
                                    ? console.print(json_of(totals, *path, *map))
                                    : console.summarise(text_of(totals, *path, *map, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
-  if (map->empty() && totals.report.outside.count == 0) {
-    console.say(
-        fmt::format("{}: the map is empty: no echoes and no free space in range (see --min-range, --max-range, "
-                    "--threshold and --silent)",
-                    command.output));
+  if (map->empty()) {
+    console.say(fmt::format("{}: the map is empty{}", command.output,
+                            totals.report.outside.count > 0
+                                ? ""
+                                : ": no echoes and no free space in range (see --min-range, --max-range, --threshold "
+                                  "and --silent)"));
   }
   return 0;
 }

@@ -81,6 +81,19 @@ std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> e
   return text;
 }
 
+/// "; all echoes within 5 m (--max-range 5 shows them larger)" where they fill a small part of the picture.
+std::string small_text(const ProcessedSweep& shown, const PanelCommand& panel) {
+  if (std::isfinite(panel.build.echo.max_range_m)) return {};
+  double farthest_m = 0.0, range_m = 0.0;
+  for (const auto& echo : shown.echoes) farthest_m = std::max(farthest_m, echo ? echo->range_m : 0.0);
+  for (const Beam& beam : shown.sweep.beams) {
+    range_m = std::max(range_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
+  }
+  if (!(farthest_m > 0.0 && 4.0 * farthest_m < range_m)) return {};
+  const double wanted_m = std::ceil(1.1 * farthest_m);
+  return fmt::format("; all echoes within {:g} m (--max-range {:g} shows them larger)", wanted_m, wanted_m);
+}
+
 /// Collects the beams of a polar picture.
 class PolarCollector {
  public:
@@ -124,7 +137,8 @@ class CartesianCollector {
     const CartesianPictureOptions options{panel_.echo_picture, panel_.between, panel_.build.model.width_rad};
     return Drawn{
         render_cartesian(shown.sweep, shown.image, shown.echoes, options),
-        fmt::format("sweep {}, {}", shown.number, count_text(shown.sweep.beams.size(), shown.echoes, panel_, skipped))};
+        fmt::format("sweep {}, {}{}", shown.number, count_text(shown.sweep.beams.size(), shown.echoes, panel_, skipped),
+                    small_text(shown, panel_))};
   }
 
  private:

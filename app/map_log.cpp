@@ -40,7 +40,8 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
     if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
     text += fmt::format(" ({})", advice);
   };
-  add({mapped.damaged, std::nullopt}, "damaged", "--strict stops at the first one and says where it is");
+  add({mapped.damaged, std::nullopt}, fmt::format("damaged, the first: {}", on_one_line(mapped.first_damage)),
+      "--strict stops there");
   const auto& poses = path.trajectory.poses();
   add(mapped.report.no_pose,
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
@@ -122,12 +123,23 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   mapped.report = *report;
   mapped.beam = of_head.model;
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
+  mapped.first_damage = std::visit([](const auto& source) { return source->first_damage(); }, log);
   mapped.skipped_text = text_of_skipped(mapped, path, map.lattice());
   if (report->beams == 0) {
     const std::string reason = mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text;
     return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", name, reason));
   }
   return mapped;
+}
+
+std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
+  // More than 100 times as long: likely in milliseconds.
+  constexpr double kTooLong = 100.0;
+  if (!report.first_s || !report.last_s) return {};
+  const double poses_s = trajectory.poses().back().time_s - trajectory.poses().front().time_s;
+  const double log_s = *report.last_s - *report.first_s;
+  if (!(log_s > 0.0 && poses_s > kTooLong * log_s)) return {};
+  return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", poses_s, log_s);
 }
 
 std::optional<std::string> trajectory_beside(const std::string& log) {

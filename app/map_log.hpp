@@ -38,6 +38,7 @@ struct MappedLog {
   BuildReport report;
   BeamModelOptions beam;     ///< as used: width and height may be those of the log's device
   std::size_t damaged = 0;   ///< records that could not be read
+  std::string first_damage;  ///< place and reason of the first one
   std::string skipped_text;  ///< skipped beams by reason, and what to do; empty: none
 };
 
@@ -46,6 +47,9 @@ struct MappedLog {
 /// @param head  what the command line says of it
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress = {});
+
+/// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
+std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
 
 /// Trajectory file of the same name beside a log: "dive.tum" of "dive.csv".
 std::optional<std::string> trajectory_beside(const std::string& log);

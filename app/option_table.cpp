@@ -234,7 +234,9 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& a
   for (const std::string& word : app.remaining()) {
     if (word.size() > 1 && word.front() == '-') {
       const std::string name = word.substr(0, word.find('='));
-      return parse_error(table, fmt::format("unknown option '{}'{}", name, did_you_mean(name, option_names(table))));
+      std::string advice = did_you_mean(name, option_names(table));
+      if (advice.empty()) advice = fmt::format(" (see 'pingvox {} --help')", table.command);
+      return parse_error(table, fmt::format("unknown option '{}'{}", name, advice));
     }
     return parse_error(table, fmt::format("unexpected argument '{}'", word));
   }

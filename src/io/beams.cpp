@@ -99,9 +99,9 @@ Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
   return wrong_format(file.name, "a log of scans", format);
 }
 
-Result<void> handle_damage(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
+Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::string& file, const std::string& place,
                            const std::string& reason) {
-  ++skipped;
+  if (skipped.count++ == 0) skipped.first = fmt::format("{}: {}", place, reason);
   if (damage == Damage::kSkip) return {};
   return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, reason));
 }

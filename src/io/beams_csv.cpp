@@ -129,7 +129,8 @@ class CsvSource : public BeamSource {
     return std::nullopt;
   }
 
-  std::size_t skipped() const override { return skipped_; }
+  std::size_t skipped() const override { return skipped_.count; }
+  std::string first_damage() const override { return skipped_.first; }
   std::optional<double> share_read() const override { return read_share(lines_.left(), file_.bytes.size()); }
 
  private:
@@ -138,7 +139,7 @@ class CsvSource : public BeamSource {
   Lines lines_;  ///< view of file_, whose bytes do not move with it
   std::vector<Column> columns_;
   char separator_;
-  std::size_t skipped_ = 0;
+  SkippedRecords skipped_;
   std::size_t bins_before_ = 0;  ///< of the previous beam
 };
 

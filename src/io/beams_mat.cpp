@@ -72,7 +72,8 @@ class MatSource : public BeamSource {
     return std::nullopt;
   }
 
-  std::size_t skipped() const override { return skipped_; }
+  std::size_t skipped() const override { return skipped_.count; }
+  std::string first_damage() const override { return skipped_.first; }
   std::optional<double> share_read() const override { return read_share(records_.elements_left(), beams_); }
 
  private:
@@ -82,7 +83,7 @@ class MatSource : public BeamSource {
   std::uint64_t beams_;  ///< number of records
   std::array<std::size_t, kFieldCount> places_;
   std::size_t record_ = 0;  ///< from 1, as MATLAB counts
-  std::size_t skipped_ = 0;
+  SkippedRecords skipped_;
 };
 
 }  // namespace

@@ -68,7 +68,8 @@ class CloudSource : public ScanSource {
     if (const auto read = read_points(scan.points_m); !read) return tl::unexpected(read.error());
     return scan;
   }
-  std::size_t skipped() const final { return skipped_; }
+  std::size_t skipped() const final { return skipped_.count; }
+  std::string first_damage() const final { return skipped_.first; }
   std::optional<double> share_read() const final { return is_read_ ? 1.0 : 0.0; }
 
  protected:
@@ -90,7 +91,7 @@ class CloudSource : public ScanSource {
   NanPoint nan_;
   Eigen::Vector3d origin_m_;
   bool is_read_ = false;
-  std::size_t skipped_ = 0;
+  SkippedRecords skipped_;
 };
 
 class TextCloudSource : public CloudSource {

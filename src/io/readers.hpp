@@ -59,8 +59,14 @@ bool looks_like_off(std::span<const std::uint8_t> bytes);
 bool looks_like_binary_stl(std::span<const std::uint8_t> bytes);
 bool looks_like_stl_text(std::span<const std::uint8_t> bytes);
 
+/// What a reader skipped because it was damaged.
+struct SkippedRecords {
+  std::size_t count = 0;
+  std::string first;  ///< place and reason of the first one
+};
+
 /// Handles a damaged record: counts it, or returns an error with Damage::kFail.
-Result<void> handle_damage(Damage damage, std::size_t& skipped, const std::string& file, const std::string& place,
+Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::string& file, const std::string& place,
                            const std::string& reason);
 
 /// Fraction read when `left` of `all` remain.

@@ -80,7 +80,8 @@ class ScanGraphSource : public ScanSource {
     return std::nullopt;
   }
 
-  std::size_t skipped() const override { return skipped_; }
+  std::size_t skipped() const override { return skipped_.count; }
+  std::string first_damage() const override { return skipped_.first; }
   std::optional<double> share_read() const override { return read_share(reader_.left(), file_.bytes.size()); }
 
  private:
@@ -89,7 +90,7 @@ class ScanGraphSource : public ScanSource {
   ByteReader reader_;
   std::size_t nodes_;
   std::size_t node_ = 0;
-  std::size_t skipped_ = 0;
+  SkippedRecords skipped_;
 };
 
 }  // namespace

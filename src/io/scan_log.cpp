@@ -87,7 +87,8 @@ class ScanLogSource : public ScanSource {
     return std::move(*scan).finish();
   }
 
-  std::size_t skipped() const override { return skipped_; }
+  std::size_t skipped() const override { return skipped_.count; }
+  std::string first_damage() const override { return skipped_.first; }
   std::optional<double> share_read() const override { return read_share(lines_.left(), file_.bytes.size()); }
 
  private:
@@ -106,7 +107,7 @@ class ScanLogSource : public ScanSource {
   Damage damage_;
   Lines lines_;
   std::optional<std::string_view> line_;
-  std::size_t skipped_ = 0;
+  SkippedRecords skipped_;
 };
 
 }  // namespace

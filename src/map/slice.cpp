@@ -55,6 +55,7 @@ void for_each_in_slice(const OccupancyMap& map, const SliceOptions& options, Vis
 
 std::string heights_text(const SliceOptions& options) {
   if (!options.min_z_m && !options.max_z_m) return "";
+  if (options.min_z_m == options.max_z_m) return fmt::format(" at a height of {:g} m", *options.min_z_m);
   const auto shown = [](const std::optional<double>& z) { return z ? fmt::format("{:g}", *z) : std::string(); };
   return fmt::format(" at heights {}..{} m", shown(options.min_z_m), shown(options.max_z_m));
 }

@@ -24,7 +24,7 @@ EchoStream stream_of(const BuildOptions& options) {
 
 /// A beam, and where the head was when it was heard.
 struct PlacedBeam {
-  EchoStream::Heard heard;
+  EchoStream::BeamWithEcho heard;
   Pose map_from_sensor;
 
   /// The first thing heard within the range, or beyond it: sound that came back from there has passed all before.
@@ -86,7 +86,7 @@ class BeamMapper::Stages {
 
  private:
   /// Maps the beams whose echoes are settled.
-  Result<void> take(std::vector<EchoStream::Heard> heard) {
+  Result<void> take(std::vector<EchoStream::BeamWithEcho> heard) {
     watch_.lap(report_.seconds.detect);
     if (options_.timing == Timing::kBySweep) no_pose_before_ = report_.no_pose.count;  // these beams are one sweep
     const Result<std::vector<PlacedBeam>> placed = place(std::move(heard));
@@ -103,9 +103,9 @@ class BeamMapper::Stages {
   }
 
   /// Each beam where it was heard: de-skew. Those without a pose are left out.
-  Result<std::vector<PlacedBeam>> place(std::vector<EchoStream::Heard> heard) {
+  Result<std::vector<PlacedBeam>> place(std::vector<EchoStream::BeamWithEcho> heard) {
     std::vector<PlacedBeam> placed;
-    for (EchoStream::Heard& one : heard) {
+    for (EchoStream::BeamWithEcho& one : heard) {
       const auto waiting = poses_.extract(one.number);
       const std::optional<Pose>& map_from_body = waiting.mapped();
       if (!map_from_body) {

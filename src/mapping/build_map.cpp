@@ -1,6 +1,8 @@
 #include "pingvox/mapping/build_map.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,6 +31,7 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
   Result<BeamMapper> mapper = BeamMapper::make(options, map);
   if (!mapper) return tl::unexpected(mapper.error());
   double read_s = 0.0;
+  std::optional<double> first_s, last_s;
   std::size_t told = 0;
   for (;;) {
     detail::Stopwatch watch;
@@ -36,12 +39,17 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
     watch.lap(read_s);
     if (!beam) return tl::unexpected(std::move(beam.error()));
     if (!*beam) break;
-    const std::optional<Pose> pose = map_from_body.at((*beam)->time_s);
+    const double time_s = (*beam)->time_s;
+    first_s = std::min(first_s.value_or(time_s), time_s);
+    last_s = std::max(last_s.value_or(time_s), time_s);
+    const std::optional<Pose> pose = map_from_body.at(time_s);
     if (const auto added = mapper->add(std::move(**beam), pose); !added) return tl::unexpected(added.error());
     if (progress && std::exchange(told, mapper->report().beams) != told) progress(report_of(*mapper, source, read_s));
   }
   if (const auto finished = mapper->finish(); !finished) return tl::unexpected(finished.error());
   BuildReport report = report_of(*mapper, source, read_s);
+  report.first_s = first_s;
+  report.last_s = last_s;
   if (progress) progress(report);
   return report;
 }

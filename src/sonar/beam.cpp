@@ -35,6 +35,11 @@ std::size_t BeamSource::skipped() const {
   return count;
 }
 
+std::string BeamSource::first_damage() const {
+  const std::vector<DamageKind> kinds = damage();
+  return kinds.empty() ? "" : fmt::format("byte {}: {}", kinds.front().first_byte, kinds.front().what);
+}
+
 Result<std::optional<Beam>> BeamsInMemory::next() {
   if (next_ == beams_.size()) return std::nullopt;
   return std::move(beams_[next_++]);

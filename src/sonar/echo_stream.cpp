@@ -42,8 +42,8 @@ EchoStream::EchoStream(const FilterOptions& filter, const EchoOptions& echo, Wai
   assert(echo.validate());
 }
 
-std::vector<EchoStream::Heard> EchoStream::add(Beam beam) {
-  std::vector<Heard> heard;
+std::vector<EchoStream::BeamWithEcho> EchoStream::add(Beam beam) {
+  std::vector<BeamWithEcho> heard;
   if (std::optional<Sweep> finished = assembler_.add(std::move(beam))) heard = rest_of(std::move(*finished));
   const std::span<const Beam> pending = assembler_.pending();
   if (!delay_ || pending.size() <= 2 * *delay_) return heard;
@@ -57,14 +57,14 @@ std::vector<EchoStream::Heard> EchoStream::add(Beam beam) {
   return heard;
 }
 
-std::vector<EchoStream::Heard> EchoStream::finish() {
+std::vector<EchoStream::BeamWithEcho> EchoStream::finish() {
   std::optional<Sweep> last = assembler_.finish();
-  return last ? rest_of(std::move(*last)) : std::vector<Heard>{};
+  return last ? rest_of(std::move(*last)) : std::vector<BeamWithEcho>{};
 }
 
-std::vector<EchoStream::Heard> EchoStream::rest_of(Sweep sweep) {
+std::vector<EchoStream::BeamWithEcho> EchoStream::rest_of(Sweep sweep) {
   const Found found = echoes_of(sweep, filter_, echo_);
-  std::vector<Heard> rest;
+  std::vector<BeamWithEcho> rest;
   for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
     const bool settled = settled_ > 0 && n >= *delay_ && n < *delay_ + settled_;
     if (!settled) rest.push_back({first_ + n, std::move(sweep.beams[n]), found.echoes[n], found.beyond[n]});

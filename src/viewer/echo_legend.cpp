@@ -19,7 +19,7 @@ std::array<Rgb, 256> greys_of(const EchoPictureOptions& options) {
 }
 
 void draw_echo_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, const EchoPictureOptions& options,
-                      Marked marked) {
+                      Marked marked, Unrecorded unrecorded) {
   constexpr std::ptrdiff_t kHigh = 16, kRamp = 128, kSwatch = 18, kApart = 24;
   const auto write = [&](std::string_view text) {
     draw_label(picture, x, y + 1, text, kTextScale, kInk);
@@ -33,12 +33,20 @@ void draw_echo_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, cons
   draw_frame(picture, {x, y, kRamp, kHigh}, 1, kInk);
   x += kRamp + kGap;
   write("255");
-  if (marked == Marked::kNothing) return;
-  x += kApart - kGap;
-  picture.fill(x, y, kSwatch, kHigh, {30, 30, 30});
-  picture.fill(x + kSwatch / 2 - 2, y, 4, kHigh, options.echo);
-  x += kSwatch + kGap;
-  write("echo");
+  if (marked == Marked::kEchoes) {
+    x += kApart - kGap;
+    picture.fill(x, y, kSwatch, kHigh, {30, 30, 30});
+    picture.fill(x + kSwatch / 2 - 2, y, 4, kHigh, options.echo);
+    x += kSwatch + kGap;
+    write("echo");
+  }
+  if (unrecorded == Unrecorded::kShown) {
+    x += kApart - kGap;
+    picture.fill(x, y, kSwatch, kHigh, options.nothing);
+    draw_frame(picture, {x, y, kSwatch, kHigh}, 1, kInk);
+    x += kSwatch + kGap;
+    write("not recorded");
+  }
 }
 
 }  // namespace pingvox

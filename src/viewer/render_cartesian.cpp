@@ -174,7 +174,8 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
   draw_marker(picture, Marker::kPlus, disc.middle, 7.0, kRing);
   draw_scale_bar(picture, kMargin, footer, disc);
   draw_echo_legend(picture, kMargin, footer + kFooterRow, options.style,
-                   echoes.empty() ? Marked::kNothing : Marked::kEchoes);
+                   echoes.empty() ? Marked::kNothing : Marked::kEchoes,
+                   sweep.extent == Sweep::Extent::kTurn ? Unrecorded::kHidden : Unrecorded::kShown);
   return picture;
 }
 

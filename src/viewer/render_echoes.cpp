@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "viewer/axis.hpp"
@@ -17,7 +18,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kLeft = 110, kRight = 126, kTop = 24, kBottom = 96;
+constexpr std::ptrdiff_t kLeft = 110, kRight = 126, kTop = 44, kBottom = 96;
 constexpr std::size_t kMaxRows = 2000, kMinHeight = 800;
 constexpr std::size_t kMinWidth = static_cast<std::size_t>(kEchoLegendWidth);
 constexpr std::ptrdiff_t kMarkWidth = 3;
@@ -108,7 +109,8 @@ void draw_axes(Picture& picture, const Scale& scale) {
     const std::string text = std::to_string(beam);
     draw_label(picture, kLeft - 2 - kTick - kGap - label_width(text, kTextScale), y - 6, text, kTextScale, kInk);
   }
-  draw_label(picture, kGap, below + kTick + kGap, "beam", kTextScale, kInk);
+  constexpr std::string_view kBeam = "beam";
+  draw_label(picture, kLeft - kGap - label_width(kBeam, kTextScale), kGap, kBeam, kTextScale, kInk);
 }
 
 /// A bearing [degrees, counter-clockwise, 0..359] with its side, port or starboard.
@@ -157,8 +159,7 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
     const double passed = is_rising ? std::floor(bearing + kNear) : std::ceil(bearing - kNear);
     if (is_rising ? passed > before + kNear : passed < before - kNear) mark(b, passed);
   }
-  const std::ptrdiff_t below = kTop + static_cast<std::ptrdiff_t>(scale.rows * scale.row_px) + 2;
-  draw_label(picture, x + kTick - kGap, below + kTick + kGap, "deg", kTextScale, kInk);
+  draw_label(picture, x + kGap, kGap, "bearing", kTextScale, kInk);
 }
 
 }  // namespace
@@ -203,7 +204,8 @@ Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional
   draw_axes(picture, scale);
   draw_bearings(picture, beams, scale);
   draw_echo_legend(picture, kGap, kTop + static_cast<std::ptrdiff_t>(height) + kBottom - kEchoLegendHeight, options,
-                   echoes.empty() ? Marked::kNothing : Marked::kEchoes);
+                   echoes.empty() ? Marked::kNothing : Marked::kEchoes,
+                   std::ranges::find(pixels, kNothing) == pixels.end() ? Unrecorded::kHidden : Unrecorded::kShown);
   return picture;
 }
 

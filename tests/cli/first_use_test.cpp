@@ -20,13 +20,13 @@ FlatJson json_of(const Outcome& outcome) {
   return flat_json(outcome.out).value_or(FlatJson{});
 }
 
-/// A log of full turns of 40 beams, a wall at bin 40 of 100. `step` turns from beam to beam.
-std::string turns_csv(int beams, int first = 0) {
+/// A log of full turns of 40 beams, a wall at bin 40.
+std::string turns_csv(int beams, int first = 0, int bins = 100) {
   std::ostringstream csv;
   csv << "time_s,bearing_cw_deg,bin_length_m,intensities\n";
   for (int i = first; i < first + beams; ++i) {
     csv << i << "," << (i % 40) * 9 << ",0.1";
-    for (int bin = 0; bin < 100; ++bin) csv << "," << (bin >= 40 && bin < 50 ? 200 : 5);
+    for (int bin = 0; bin < bins; ++bin) csv << "," << (bin >= 40 && bin < 50 ? 200 : 5);
     csv << "\n";
   }
   return csv.str();
@@ -38,7 +38,7 @@ TEST(FirstUse, BeamsThatAreSkippedHaveAReason) {
   here.write("poses.txt", "0 0 0 0 0 0 0 1\n20 0 0 0 0 0 0 1\n");
   const Outcome outcome = here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("a.csv: skipped 1 damaged (--strict"));
+  EXPECT_THAT(outcome.err, HasSubstr("a.csv: skipped 1 damaged, the first: line 82: "));
   EXPECT_THAT(outcome.err,
               HasSubstr("59 outside the time of the poses, 0.000 s to 20.000 s, the first at 21.000 s (--poses"));
   FlatJson json = json_of(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt", "--json"}));
@@ -55,6 +55,33 @@ TEST(FirstUse, ATrajectoryBesideALogIsNamedWhenItIsNotUsed) {
   here.write("a.tum", "0 0 0 0 0 0 0 1\n100 0 0 0 0 0 0 1\n");
   EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).err, HasSubstr("as if the vehicle did not move"));
   EXPECT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "a.tum"}).err, "");
+}
+
+TEST(FirstUse, TheFirstDamagedRecordIsNamedByEachCommand) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40) + "40,0,0.1,5\n41,0,20000,1\n42,0,1,-\n");
+  const std::string where = "damaged, the first: line 43: range 20000 m is longer than 10000 m";
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).err, HasSubstr(where + " (--strict stops there)"));
+  EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("2 " + where));
+  EXPECT_THAT(here.call({"convert", "a.csv", "-o", "b.csv"}).out, HasSubstr("skipped, the first: line 43"));
+}
+
+TEST(FirstUse, PosesInMillisecondsAreQuestioned) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  here.write("ms.txt", "0 0 0 0 0 0 0 1\n39000 1 0 0 0 0 0 1\n");
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "ms.txt"}).err,
+              HasSubstr("ms.txt: its poses last 39000 s, the log 39 s: are their times in seconds?"));
+  here.write("s.txt", "0 0 0 0 0 0 0 1\n39 1 0 0 0 0 0 1\n");
+  EXPECT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "s.txt"}).err, "");
+}
+
+TEST(FirstUse, ALongLogWithNearEchoesSaysHowToEnlargeThem) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  EXPECT_THAT(here.call({"render", "a.csv", "-o", "a.png", "--view", "cartesian"}).out, Not(HasSubstr("--max-range")));
+  here.write("far.csv", turns_csv(40, 0, 500));
+  EXPECT_THAT(here.call({"render", "far.csv", "-o", "a.png", "--view", "cartesian"}).out, HasSubstr("--max-range 5"));
 }
 
 TEST(FirstUse, AMapIsMadeOfConesAndSaysSo) {

@@ -28,6 +28,7 @@ TEST(Usage, InvalidArgumentsAreRefusedWithTheNearestValidOneBeforeAnyWork) {
       {{"mpa"}, {"unknown command 'mpa'", "did you mean 'map'?"}},
       {{"cnvert", "a"}, {"did you mean 'convert'?"}},
       {{"xyzzy"}, {"unknown command 'xyzzy'", "--help"}},
+      {{"map", "a.csv", "-o", "a.bt", "-r", "1"}, {"unknown option '-r' (see 'pingvox map --help')"}},
       {{"--versoin"}, {"unknown option", "did you mean '--version'?"}},
       {{"map"}, {"map: LOG is missing"}},
       {{"map", "log.csv"}, {"map: -o FILE is missing"}},

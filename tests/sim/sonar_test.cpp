@@ -19,15 +19,16 @@ using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
 
-struct Heard {
+struct BeamWithEcho {
   Beam beam;
   SonarSimulator::Ping ping;
 };
 
-std::vector<Heard> heard_in(const World& world, const Trajectory& way, const SonarOptions& options, std::size_t turns) {
+std::vector<BeamWithEcho> heard_in(const World& world, const Trajectory& way, const SonarOptions& options,
+                                   std::size_t turns) {
   EXPECT_TRUE(options.validate());
   SonarSimulator simulator(world, way, options, turns);
-  std::vector<Heard> heard;
+  std::vector<BeamWithEcho> heard;
   for (;;) {
     auto beam = simulator.next();
     if (!beam || !*beam) return heard;
@@ -35,14 +36,14 @@ std::vector<Heard> heard_in(const World& world, const Trajectory& way, const Son
   }
 }
 
-std::vector<Heard> heard_in(const World& world, const SonarOptions& options, std::size_t turns = 1) {
+std::vector<BeamWithEcho> heard_in(const World& world, const SonarOptions& options, std::size_t turns = 1) {
   return heard_in(world, Trajectory::still(Pose::Identity()), options, turns);
 }
 
 /// FNV-1a.
-std::uint64_t checksum(const std::vector<Heard>& all) {
+std::uint64_t checksum(const std::vector<BeamWithEcho>& all) {
   std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const Heard& heard : all) {
+  for (const BeamWithEcho& heard : all) {
     for (const std::uint8_t byte : heard.beam.intensities) hash = (hash ^ byte) * 0x100000001b3U;
   }
   return hash;
@@ -257,7 +258,7 @@ TEST(SonarSimulator, TurnsOnWhileTheVehicleMoves) {
   const auto all = heard_in(world, follow_route(route, 5.0, {.speed_m_s = 0.5}), options, 5);
   ASSERT_EQ(all.size(), 250U);
   for (std::size_t turn = 0; turn < 5; ++turn) {
-    const Heard& ahead = all[turn * 50];
+    const BeamWithEcho& ahead = all[turn * 50];
     const double range = 4.5 - 0.5 * static_cast<double>(turn);
     EXPECT_NEAR(ahead.ping.map_from_sensor.translation().x(), 0.5 * static_cast<double>(turn), 1e-9);
     EXPECT_NEAR((static_cast<double>(strongest_in(ahead.beam, 0.7, 5.0)) + 0.5) * 0.0125, range + 0.01, 0.02);

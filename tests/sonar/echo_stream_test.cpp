@@ -68,7 +68,7 @@ Count check(const std::vector<Beam>& beams, const Way& way) {
   }
   Count count;
   EchoStream stream(way.filter, way.echo);
-  const auto judge = [&](const std::vector<EchoStream::Heard>& heard) {
+  const auto judge = [&](const std::vector<EchoStream::BeamWithEcho>& heard) {
     for (const auto& [number, beam, echo, beyond] : heard) {
       EXPECT_EQ(static_cast<double>(number), beam.time_s);
       const auto found = wanted.find(beam.time_s);
@@ -85,7 +85,7 @@ Count check(const std::vector<Beam>& beams, const Way& way) {
     }
   };
   for (const Beam& beam : beams) {
-    const std::vector<EchoStream::Heard> heard = stream.add(beam);
+    const std::vector<EchoStream::BeamWithEcho> heard = stream.add(beam);
     judge(heard);
     if (heard.empty()) continue;
     // The last one of a batch is the one in time, if any is.

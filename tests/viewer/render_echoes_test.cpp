@@ -12,7 +12,7 @@ using namespace pingvox;
 
 namespace {
 
-constexpr std::size_t kLeft = 110, kTop = 24;
+constexpr std::size_t kLeft = 110, kTop = 44;
 
 Beam beam_of(std::vector<std::uint8_t> intensities, double bin_length_m = 0.5) {
   return {.time_s = 0.0, .bearing_rad = 0.0, .bin_length_m = bin_length_m, .intensities = std::move(intensities)};

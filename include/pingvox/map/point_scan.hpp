@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pingvox/result.hpp"
@@ -23,6 +24,8 @@ class ScanSource {
   virtual Result<std::optional<PointScan>> next() = 0;
   /// Points or scans left out so far because they were damaged.
   virtual std::size_t skipped() const { return 0; }
+  /// Place and reason of the first one, as in "line 23: is not a point of three finite numbers"; empty: none.
+  virtual std::string first_damage() const { return {}; }
   /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: not known.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };

@@ -60,6 +60,7 @@ struct BuildReport {
   LeftOut no_pose;          ///< of those skipped, those heard when the pose is not known
   LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
+  std::optional<double> first_s, last_s;            ///< least and greatest time of a beam, mapped or not
   std::uint64_t cells_freed = 0, cells_hit = 0;     ///< cell updates, summed over scans
   struct Seconds {
     double read = 0, detect = 0, trace = 0, apply = 0;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -51,6 +52,9 @@ class BeamSource {
   virtual std::size_t skipped() const;
   /// Skipped records by kind of damage, in order of first occurrence; empty where the source does not tell them apart.
   virtual std::vector<DamageKind> damage() const { return {}; }
+  /// Place and reason of the first skipped record, as in "line 23: time is not a finite number"; empty when none was
+  /// skipped. By default of damage().
+  virtual std::string first_damage() const;
   /// The sonar head, if the log or its format names it; else nullptr.
   virtual const DeviceProfile* device() const { return nullptr; }
   /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.

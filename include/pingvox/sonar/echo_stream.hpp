@@ -20,7 +20,7 @@ namespace pingvox {
 /// - Without a delay_beams() all beams are returned, in order, when the sweep ends.
 class EchoStream {
  public:
-  struct Heard {
+  struct BeamWithEcho {
     std::uint64_t number = 0;  ///< of the beam, counted from 0
     Beam beam;
     std::optional<Echo> echo;
@@ -36,9 +36,9 @@ class EchoStream {
 
   /// Takes the next beam, which must be valid. Returns the beams whose echoes are final now: the rest of the sweep that
   /// ended before it, the beam delay_beams() before it, or none.
-  std::vector<Heard> add(Beam beam);
+  std::vector<BeamWithEcho> add(Beam beam);
   /// Returns the rest of the last sweep, and starts anew.
-  std::vector<Heard> finish();
+  std::vector<BeamWithEcho> finish();
 
   /// Beams of its sweep that must arrive after a beam. nullopt: all, because the blanking range is measured or with
   /// kForSweep.
@@ -48,7 +48,7 @@ class EchoStream {
   std::size_t complete_sweeps() const { return complete_sweeps_; }
 
  private:
-  std::vector<Heard> rest_of(Sweep sweep);
+  std::vector<BeamWithEcho> rest_of(Sweep sweep);
 
   FilterOptions filter_;
   EchoOptions echo_;
