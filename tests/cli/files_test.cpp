@@ -180,7 +180,7 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
   const std::vector<Case> cases = {
       {{"--min-range", "100"}, {"the map is empty: no echoes and no free space", "--min-range"}},
       {{"--resolution", "1e-5", "--beam", "ray"},
-       {"skipped 400 outside of the map", "0.328 m from its origin", "larger"}},
+       {"skipped 400 outside of the map", "0.328 m from its origin", "larger", "out.bt: the map is empty\n"}},
   };
   const Workplace here;
   here.simulate_tank();
@@ -192,7 +192,6 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, ::testing::HasSubstr("nothing is known"));
     EXPECT_THAT(outcome.err, ::testing::StartsWith("pingvox: "));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     for (const std::string& text : c.texts) EXPECT_THAT(outcome.err, ::testing::HasSubstr(text));
     words.push_back("--quiet");
     EXPECT_EQ(here.call(words).err, "");
