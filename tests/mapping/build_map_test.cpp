@@ -123,6 +123,12 @@ TEST(BuildMap, MountIsAppliedBetweenBodyAndSensor) {
   OccupancyMap map;
   ASSERT_TRUE(build_map(source, Trajectory::still(Pose::Identity()), options, map));
   EXPECT_EQ(map.classify(Eigen::Vector3d(1.01, 2.01, -0.49)), Occupancy::kOccupied);
+  // A vehicle that is turned itself: the mount turns with it.
+  Echoes again(kBeamsPerTurn, [](double, double bearing) { return bearing < 0.01 ? 2.0 : 0.0; });
+  const Pose vehicle = pose_from_rpy({10.02, 0.02, 0.02}, 0.0, 0.0, std::numbers::pi / 2);
+  OccupancyMap turned;
+  ASSERT_TRUE(build_map(again, Trajectory::still(vehicle), options, turned));
+  EXPECT_EQ(turned.classify(Eigen::Vector3d(8.02, 1.02, -0.48)), Occupancy::kOccupied);
 }
 
 TEST(BuildMap, BeamsOutsideOfTheTrajectoryAreLeftOutAndCounted) {
