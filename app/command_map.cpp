@@ -218,8 +218,11 @@ Result<int> run(const MapCommand& command, Console& console) {
           return fail(used.error().code, fmt::format("map: {}", used.error().message));
         }
       }
-      const Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m);
+      Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m);
       if (!log) return tl::unexpected(log.error());
+      if (const auto done = subtract_background(*log, command.logs[i], command.background_m, command.damage); !done) {
+        return tl::unexpected(done.error());
+      }
       totals.report.seconds.read += read.seconds();
 
       const Progress progress = [&](const BuildReport& done) {

@@ -160,10 +160,20 @@ template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage damage) {
   const std::string name = file.name;
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
-  const Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
+  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
   if (!source) return tl::unexpected(source.error());
   PanelCommand of_head = panel;
   of_head.build = panel.head.apply_to(panel.build, (*source)->device());
+  if (panel.background_m) {
+    Result<Background> background = learn_background(panel.input, *panel.background_m, damage);
+    if (!background) return tl::unexpected(background.error());
+    if (panel.image == ShownImage::kBackground) {
+      *source = std::make_unique<BeamsInMemory>(background->beams());
+      of_head.marks = EchoMarks::kOff;
+    } else {
+      *source = subtract_background(*std::move(source), *std::move(background));
+    }
+  }
   Gatherer gatherer(of_head);
   SweepAssembler assembler;
   std::size_t sweeps = 0;
@@ -194,8 +204,11 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, Damag
   const Result<VehiclePath> path = vehicle_path(panel.path, damage);
   if (!path) return tl::unexpected(path.error());
   const std::string name = file.name;
-  const Result<Log> log = open_log(std::move(file), damage);
+  Result<Log> log = open_log(std::move(file), damage);
   if (!log) return tl::unexpected(log.error());
+  if (const auto done = subtract_background(*log, panel.input, panel.background_m, damage); !done) {
+    return tl::unexpected(done.error());
+  }
   const Result<MappedLog> report = map_log(*log, name, *path, panel.build, panel.head, *map);
   if (!report) return tl::unexpected(report.error());
   return map;

@@ -70,6 +70,7 @@ struct MapCommand {
   MapOptions map;
   BuildOptions build;
   HeadArgs head;
+  std::optional<double> background_m;  ///< range of the background to subtract
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the file
 };
@@ -102,6 +103,7 @@ struct ConvertCommand {
   FilterOptions filter;
   EchoOptions echo;
   double sound_speed_ratio = 1.0;  ///< of the echoes
+  std::optional<double> background_m;
   std::vector<LimitedOption> limited;
   Surface surface = Surface::kHighest;
 };
@@ -113,7 +115,7 @@ inline constexpr std::string_view kDrawnMaps = "pictures of maps",
                                   kMappedLogs = "logs that are mapped (--view above, side, slice)";
 /// "--view polar"
 std::string view_kind(PictureView view);
-enum class ShownImage { kRaw, kFiltered };
+enum class ShownImage { kRaw, kFiltered, kBackground };
 enum class EchoMarks { kOn, kOff };
 
 /// One of several pictures side by side.
@@ -130,6 +132,7 @@ struct PanelCommand {
   MapOptions map;  ///< for logs that are mapped
   BuildOptions build;
   HeadArgs head;
+  std::optional<double> background_m;
   PathArgs path;
 };
 

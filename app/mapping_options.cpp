@@ -23,6 +23,7 @@ constexpr std::array kDetectors = {Choice<Detector>{"rise", Detector::kRise},
                                    Choice<Detector>{"cfar", Detector::kCfar}};
 constexpr std::array kCfars = {Choice<CfarOptions::Noise>{"ca", CfarOptions::Noise::kCellAveraging},
                                Choice<CfarOptions::Noise>{"so", CfarOptions::Noise::kSmallestOf},
+                               Choice<CfarOptions::Noise>{"go", CfarOptions::Noise::kGreatestOf},
                                Choice<CfarOptions::Noise>{"os", CfarOptions::Noise::kOrdered}};
 constexpr std::array kShapes = {Choice<BeamShape>{"ray", BeamShape::kRay}, Choice<BeamShape>{"fan", BeamShape::kFan},
                                 Choice<BeamShape>{"cone", BeamShape::kCone}};
@@ -152,8 +153,11 @@ OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
        choice("--detect", kDetectors, "echo detector", echo.detector),
        {"--threshold", 0, "T|auto", "rise, level or gradient (canny) from which on a bin is an echo",
         "automatic, from the contrast of nearby beams", into_or_auto(echo.threshold)},
-       choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of or ordered-statistic",
-              echo.cfar.noise)}};
+       choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
+              echo.cfar.noise),
+       {"--background", 0, "M",
+        "subtract what each direction always hears nearer than M: the vehicle itself; reads the log twice", "off",
+        within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, into_optional(args.background_m))}}};
   for (Option& option : group.options) {
     if (option.name != "--max-range") option.only_for = beams;
     if (option.name == "--kernel") option.only_with = {{"--filter", {"mean", "median", "gaussian"}}};

@@ -9,6 +9,7 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
+#include "pingvox/sonar/background.hpp"
 
 /// Options for detecting echoes and building maps, shared by 'map' and 'render'.
 namespace pingvox::app {
@@ -24,6 +25,7 @@ struct EchoArgs {
   std::optional<int> kernel;
   std::optional<double> sigma;
   EchoOptions echo;
+  std::optional<double> background_m;  ///< nullopt: none is subtracted
 
   FilterOptions filter_options() const {
     const FilterOptions usual = default_filter(echo.detector);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapping_options.hpp"
+#include "option_values.hpp"
 #include "unknown_file.hpp"
 
 namespace pingvox::app {
@@ -87,6 +88,22 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
   return fail(Error::Code::kUnsupported,
               fmt::format("{}: is {}, not a log{}", stream.name(), describe(*format),
                           kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
+}
+
+Result<Background> learn_background(const std::string& path, double range_m, Damage damage) {
+  if (path == "-") return usage_error("--background: reads the log twice, and standard input can be read only once");
+  return ByteStream::open(path)
+      .and_then([&](ByteStream stream) { return open_beams(std::move(stream), damage); })
+      .and_then([&](std::unique_ptr<BeamSource> source) { return Background::learn(*source, {.range_m = range_m}); });
+}
+
+Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage) {
+  auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+  if (beams == nullptr || !range_m) return {};
+  Result<Background> background = learn_background(path, *range_m, damage);
+  if (!background) return tl::unexpected(background.error());
+  *beams = subtract_background(std::move(*beams), *std::move(background));
+  return {};
 }
 
 }  // namespace pingvox::app

@@ -11,6 +11,7 @@
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/sonar/background.hpp"
 
 namespace pingvox::app {
 
@@ -32,5 +33,12 @@ using Log = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource
 /// @param cloud_origin_m  as for open_scans
 Result<Log> open_log(ByteStream stream, Damage damage,
                      const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);
+
+/// What each direction of the log at a path always hears nearer than `range_m`.
+/// @return kBadOption for standard input, which cannot be read once more
+Result<Background> learn_background(const std::string& path, double range_m, Damage damage);
+
+/// Subtracts it from the beams of a log; nullopt or a log of points: nothing is done.
+Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage);
 
 }  // namespace pingvox::app

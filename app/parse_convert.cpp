@@ -106,6 +106,7 @@ Result<Command> convert_command(const Args& args) {
     command.filter = echo.filter_options();
     command.echo = echo.echo;
     command.sound_speed_ratio = sound_speed_ratio;
+    command.background_m = echo.background_m;
     if (command.has_echoes && command.format != Format::kCsv) return usage_error("--echoes: are written as .csv only");
     if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());

@@ -104,6 +104,7 @@ Result<Command> map_command(const Args& args) {
     command.map = map;
     command.build = build.build_options();
     command.head = build.head;
+    command.background_m = build.echoes.background_m;
     if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
     if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {

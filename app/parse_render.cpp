@@ -26,7 +26,8 @@ constexpr std::array kPictureViews = {
 constexpr std::array kSides = {Choice<MapView>{"right", MapView::kRight}, Choice<MapView>{"left", MapView::kLeft},
                                Choice<MapView>{"front", MapView::kFront}, Choice<MapView>{"behind", MapView::kBehind}};
 constexpr std::array kShownImages = {Choice<ShownImage>{"raw", ShownImage::kRaw},
-                                     Choice<ShownImage>{"filtered", ShownImage::kFiltered}};
+                                     Choice<ShownImage>{"filtered", ShownImage::kFiltered},
+                                     Choice<ShownImage>{"background", ShownImage::kBackground}};
 constexpr std::array kEchoMarks = {Choice<EchoMarks>{"on", EchoMarks::kOn}, Choice<EchoMarks>{"off", EchoMarks::kOff}};
 constexpr std::array kBetweens = {Choice<BetweenBeams>{"interpolate", BetweenBeams::kInterpolate},
                                   Choice<BetweenBeams>{"nothing", BetweenBeams::kNothing}};
@@ -84,7 +85,8 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
         {"--max-z", 0, "M", "draw nothing of a map above", "none", into_optional(panel.map_picture.max_z_m)},
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as by 'info'",
          "all; cartesian: the fullest one", into_optional(panel.sweep)},
-        choice("--show", kShownImages, "intensities as recorded, or smoothed by --filter", panel.image),
+        choice("--show", kShownImages,
+               "intensities as recorded, or smoothed by --filter; or what --background subtracts", panel.image),
         choice("--echoes", kEchoMarks, "mark the detected echoes", panel.marks),
         choice("--between", kBetweens, "what --view cartesian draws between beams", panel.between),
         {"--size", 0, "PX",
@@ -149,6 +151,10 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   panel.map = args.build.map;
   panel.build = args.build.build_options();
   panel.head = args.build.head;
+  panel.background_m = args.build.echoes.background_m;
+  if (panel.image == ShownImage::kBackground && !panel.background_m) {
+    return usage_error("--show background: needs a range (--background M)");
+  }
   const Result<PathArgs> path = args.build.path();
   if (!path) return tl::unexpected(path.error());
   panel.path = *path;

@@ -18,20 +18,20 @@ _pingvox_options() {
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
       options+=(--poses --nav --nav-offset --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
-      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
+      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     info) options+=(--json --strict) ;;
     compare)
       options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
       options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height --echoes)
-      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
+      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
-      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar)
+      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     simulate)
       options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --mount --speed --turns --drift)
@@ -48,7 +48,7 @@ _pingvox_words() {
   case "$1" in
     --filter) printf '%s\n' none mean median gaussian ;;
     --detect) printf '%s\n' rise level max canny cfar ;;
-    --cfar) printf '%s\n' ca so os ;;
+    --cfar) printf '%s\n' ca so go os ;;
     --beam) printf '%s\n' ray fan cone ;;
     --device) printf '%s\n' ping360 micron miniking seaking-325 seaking-675 ;;
     --ray) printf '%s\n' dda bresenham ;;
@@ -64,7 +64,7 @@ _pingvox_words() {
       ;;
     --view) printf '%s\n' polar cartesian above side slice ;;
     --from) printf '%s\n' right left front behind ;;
-    --show) printf '%s\n' raw filtered ;;
+    --show) printf '%s\n' raw filtered background ;;
     --echoes) [[ $2 != render ]] || printf '%s\n' on off ;;
     --between) printf '%s\n' interpolate nothing ;;
     --height) printf '%s\n' highest lowest ;;
@@ -94,7 +94,7 @@ _pingvox() {
 
   if [[ -z $words ]]; then
     case "$previous" in
-      --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --sound-speed | --kernel | --sigma | --threshold | \
+      --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)

@@ -29,6 +29,12 @@ double rate_smallest(double times, std::size_t m) {
   return rate;
 }
 
+/// Hansen and Sawyers 1980: T = times the greater mean of two groups of m.
+double rate_greatest(double times, std::size_t m) {
+  const auto count = static_cast<double>(m);
+  return 2.0 * std::pow(1.0 + times / count, -count) - rate_smallest(times, m);
+}
+
 /// Rohling 1983: T = times the k-th smallest of n.
 double rate_ordered(double times, std::size_t k, std::size_t n) {
   double rate = 1.0;
@@ -48,6 +54,8 @@ double rate(double times, const CfarOptions& options) {
       return rate_averaging(times, n);
     case CfarOptions::Noise::kSmallestOf:
       return rate_smallest(times, options.training);
+    case CfarOptions::Noise::kGreatestOf:
+      return rate_greatest(times, options.training);
     case CfarOptions::Noise::kOrdered:
       break;
   }
@@ -100,6 +108,10 @@ std::optional<double> noise_of(const Training& training, const Squares& squares,
       if (training.before.empty()) return std::sqrt(mean(training.behind));
       if (training.behind.empty()) return std::sqrt(mean(training.before));
       return std::sqrt(std::min(mean(training.before), mean(training.behind)));
+    case CfarOptions::Noise::kGreatestOf:
+      if (training.before.empty()) return std::sqrt(mean(training.behind));
+      if (training.behind.empty()) return std::sqrt(mean(training.before));
+      return std::sqrt(std::max(mean(training.before), mean(training.behind)));
     case CfarOptions::Noise::kOrdered:
       break;
   }

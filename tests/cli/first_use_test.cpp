@@ -84,6 +84,49 @@ TEST(FirstUse, ALongLogWithNearEchoesSaysHowToEnlargeThem) {
   EXPECT_THAT(here.call({"render", "far.csv", "-o", "a.png", "--view", "cartesian"}).out, HasSubstr("--max-range 5"));
 }
 
+/// A wall at 4 m, and the vehicle's own frame at 1 m ahead of the head.
+std::string framed_csv() {
+  std::ostringstream csv;
+  csv << "time_s,bearing_cw_deg,bin_length_m,intensities\n";
+  for (int i = 0; i < 240; ++i) {
+    csv << i << "," << (i % 40) * 9 << ",0.1";
+    for (int bin = 0; bin < 100; ++bin) {
+      const bool is_frame = i % 40 < 3 && bin >= 10 && bin < 12, is_wall = bin >= 40 && bin < 50;
+      csv << "," << (is_frame || is_wall ? 200 : 5);
+    }
+    csv << "\n";
+  }
+  return csv.str();
+}
+
+TEST(FirstUse, TheVehicleIsTakenOutOfItsOwnPicture) {
+  const Workplace here;
+  here.write("a.csv", framed_csv());
+  const auto nearest_m = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"convert", "a.csv", "--echoes", "-o", "echoes.csv"});
+    EXPECT_EQ(here.call(words).status, 0);
+    std::istringstream echoes(here.read("echoes.csv"));
+    std::string line;
+    std::getline(echoes, line);
+    double nearest = 100.0;
+    for (std::string word; std::getline(echoes, line);) {
+      std::istringstream words_of(line);
+      for (int column = 0; column < 3; ++column) std::getline(words_of, word, ',');
+      nearest = std::min(nearest, std::stod(word));
+    }
+    return nearest;
+  };
+  EXPECT_LT(nearest_m({}), 2.0);
+  EXPECT_GT(nearest_m({"--background", "2"}), 3.5);
+  EXPECT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--beam", "ray", "--background", "2"}).status, 0);
+  EXPECT_EQ(here.call({"map", "a.csv", "-o", "b.bt", "--beam", "ray"}).status, 0);
+  EXPECT_NE(here.read("a.bt").substr(here.read("a.bt").find("data")),
+            here.read("b.bt").substr(here.read("b.bt").find("data")));
+  EXPECT_EQ(here.call({"render", "a.csv", "-o", "a.png", "--background", "2", "--show", "background"}).status, 0);
+  expect_error(here.call({"render", "a.csv", "-o", "a.png", "--show", "background"}), 2, {"--background M"});
+  expect_error(here.call({"map", "-", "-o", "c.bt", "--background", "2"}, {.in = framed_csv()}), 2, {"read only once"});
+}
+
 TEST(FirstUse, AMapIsMadeOfConesAndSaysSo) {
   const Workplace here;
   here.simulate_tank();

@@ -61,7 +61,7 @@ TEST(Usage, InvalidArgumentsAreRefusedWithTheNearestValidOneBeforeAnyWork) {
       {{"map", "log.csv", "-o", "m.bt", "--threshold", "0"}, {"threshold"}},
       {{"map", "log.csv", "-o", "m.bt", "--threshold", "300"}, {"threshold", "1..255"}},
       {{"map", "log.csv", "-o", "m.bt", "--detect", "canny", "--threshold", "3000"}, {"threshold", "1..2040"}},
-      {{"map", "log.csv", "-o", "m.bt", "--cfar", "go"}, {"--cfar", "ca or so or os"}},
+      {{"map", "log.csv", "-o", "m.bt", "--cfar", "xo"}, {"--cfar", "ca or so or go or os"}},
       {{"map", "log.csv", "-o", "m.bt", "--free-share", "1.5"},
        {"--free-share: must be above 0 and at most 1, is 1.5"}},
       {{"map", "log.csv", "-o", "m.bt", "--hit", "0.3"}, {"--hit: must be above 0.5 and below 1, is 0.3"}},

@@ -146,7 +146,7 @@ TEST(Canny, FindsNoFartherEdgeWithALongerLink) {
 
 TEST(Cfar, LetsTheWantedShareOfRayleighNoisePass) {
   using Noise = CfarOptions::Noise;
-  for (const Noise noise : {Noise::kCellAveraging, Noise::kSmallestOf, Noise::kOrdered}) {
+  for (const Noise noise : {Noise::kCellAveraging, Noise::kSmallestOf, Noise::kGreatestOf, Noise::kOrdered}) {
     for (const double rate : {0.05, 0.01}) {
       SCOPED_TRACE(testing::Message() << static_cast<int>(noise) << ", " << rate);
       const CfarOptions options{.noise = noise, .guard = 2, .training = 12, .false_alarm_rate = rate};
@@ -172,6 +172,7 @@ TEST(Cfar, LetsTheWantedShareOfRayleighNoisePass) {
         std::ranges::sort(squares);
         const double level = noise == Noise::kCellAveraging ? 0.5 * (before + behind)
                              : noise == Noise::kSmallestOf  ? std::min(before, behind)
+                             : noise == Noise::kGreatestOf  ? std::max(before, behind)
                                                             : squares[17];
         const bool above = middle > scale * std::sqrt(level);
         passed += above ? 1U : 0U;
@@ -198,6 +199,7 @@ TEST(Cfar, SeesAWallBesideAnotherOnlyWithTheSmallerNoise) {
     return echo ? echo->first : 0;
   };
   EXPECT_EQ(first_with(CfarOptions::Noise::kSmallestOf), 40U);
+  EXPECT_NE(first_with(CfarOptions::Noise::kGreatestOf), 40U) << "the wall behind passes for noise";
   EXPECT_NE(first_with(CfarOptions::Noise::kCellAveraging), 40U) << "the wall behind passes for noise";
 }
 

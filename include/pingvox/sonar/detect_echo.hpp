@@ -43,7 +43,8 @@ enum class Detector {
   /// The first rising edge of the polar image (Canny 1986; paper, section 9), aperture 3: local maxima of the gradient
   /// |x| + |y| that exceed the threshold, and those above CannyOptions::low that are linked to one.
   kCanny,
-  /// Constant false-alarm rate (Finn and Johnson 1968; smallest-of: Trunk 1978; ordered statistic: Rohling 1983): the
+  /// Constant false-alarm rate (Finn and Johnson 1968; smallest-of: Trunk 1978;
+  /// greatest-of: Hansen and Sawyers 1980; ordered statistic: Rohling 1983): the
   /// first rising bin above the noise of the bins around it. For a gain that varies along the beam.
   kCfar,
 };
@@ -59,6 +60,7 @@ struct CfarOptions {
   enum class Noise {
     kCellAveraging,  ///< mean of all training bins
     kSmallestOf,     ///< the smaller of the means before and after: a second wall close by does not hide the first
+    kGreatestOf,     ///< the greater of the two: fewer false echoes where the noise rises along the beam
     kOrdered,        ///< upper quartile of the training bins: insensitive to single bright ones
   };
   Noise noise = Noise::kSmallestOf;

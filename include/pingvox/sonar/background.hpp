@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+namespace pingvox {
+
+struct BackgroundOptions {
+  /// How far the vehicle reaches [m], in (0, kMaxRange_m]: bins beyond it are no background. What stands nearer than
+  /// this in most beams of a direction is taken for the vehicle, also a wall that a still sonar looks at.
+  double range_m = 1.5;
+  static constexpr double kMaxRange_m = 10.0;
+
+  Result<void> validate() const;  ///< kBadOption
+};
+
+/// What a sonar hears of its own vehicle, by direction and range: the median intensity of all beams of a log, in
+/// directions of one degree and cells of kCell_m. Where fewer than kMinBeams were heard there is none.
+class Background {
+ public:
+  /// Learns from the rest of a log.
+  /// @return kBadOption when the options do not validate, else the error of the source
+  static Result<Background> learn(BeamSource& source, const BackgroundOptions& options);
+
+  /// Lowers the beam's intensities by the background, down to 0. Bins are taken by their middle.
+  void subtract_from(Beam& beam) const;
+
+  /// The background as a sweep: a beam in the middle of each direction, with bins of kCell_m.
+  std::vector<Beam> beams() const;
+
+  static constexpr double kCell_m = 0.02;
+  static constexpr std::size_t kMinBeams = 5;
+
+ private:
+  static constexpr std::size_t kDirections = 360;
+  Background(std::size_t cells, std::vector<std::uint8_t> intensities)
+      : cells_(cells), intensities_(std::move(intensities)) {}
+
+  std::size_t cells_;                      ///< of each direction
+  std::vector<std::uint8_t> intensities_;  ///< kDirections * cells_
+};
+
+/// A source without the background of its beams.
+std::unique_ptr<BeamSource> subtract_background(std::unique_ptr<BeamSource> source, Background background);
+
+}  // namespace pingvox

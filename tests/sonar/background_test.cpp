@@ -1,0 +1,127 @@
+#include "pingvox/sonar/background.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "support/tank_recording.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr double kBin_m = 0.0125;
+
+/// Sweeps of a sonar on a vehicle whose frame answers with 120 at 0.8 m between 10 and 30 degrees, and that goes
+/// along: in each sweep the wall is elsewhere.
+std::vector<Beam> beams_of_a_vehicle(std::size_t sweeps, std::uint64_t seed = 1) {
+  std::mt19937_64 random(seed);
+  std::vector<Beam> beams;
+  for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
+    const std::size_t wall = 50 + 40 * sweep;
+    for (int n = 0; n < 200; ++n) {
+      const double bearing_deg = 1.8 * n;
+      Beam beam{.time_s = static_cast<double>(beams.size()),
+                .bearing_rad = bearing_deg * std::numbers::pi / 180.0,
+                .bin_length_m = kBin_m,
+                .intensities = std::vector<std::uint8_t>(600)};
+      for (std::uint8_t& bin : beam.intensities) bin = static_cast<std::uint8_t>(random() % 6);
+      if (bearing_deg > 10.0 && bearing_deg < 30.0) std::fill_n(beam.intensities.begin() + 64, 6, 120);
+      std::fill_n(beam.intensities.begin() + static_cast<std::ptrdiff_t>(wall), 8, 200);
+      beams.push_back(std::move(beam));
+    }
+  }
+  return beams;
+}
+
+Background learned(std::vector<Beam> beams, double range_m) {
+  BeamsInMemory source(std::move(beams));
+  Result<Background> background = Background::learn(source, {.range_m = range_m});
+  EXPECT_TRUE(background);
+  return *std::move(background);
+}
+
+TEST(Background, IsTheVehicleAndNotTheWallsThatItPasses) {
+  const std::vector<Beam> beams = beams_of_a_vehicle(12);
+  const Background background = learned(beams, 2.0);
+  for (Beam beam : beams) {
+    const Beam before = beam;
+    background.subtract_from(beam);
+    const double bearing_deg = beam.bearing_rad * 180.0 / std::numbers::pi;
+    const auto loudest = *std::max_element(beam.intensities.begin() + 64, beam.intensities.begin() + 70);
+    if (bearing_deg > 12.0 && bearing_deg < 28.0 && beam.time_s > 400.0) {
+      EXPECT_LE(loudest, 8) << bearing_deg;
+    }
+    EXPECT_EQ(std::vector(beam.intensities.begin() + 160, beam.intensities.end()),
+              std::vector(before.intensities.begin() + 160, before.intensities.end()))
+        << "bins beyond the range";
+    for (std::size_t bin = 0; bin < 600; ++bin) {
+      EXPECT_LE(beam.intensities[bin], before.intensities[bin]);
+      if (before.intensities[bin] == 200) {
+        EXPECT_GE(beam.intensities[bin], 80) << "a wall is still an echo";
+      }
+    }
+  }
+}
+
+// Kills a background of a direction that one sweep has seen once: its echoes would vanish.
+TEST(Background, NeedsSeveralBeamsOfADirection) {
+  const std::vector<Beam> beams = beams_of_a_vehicle(2);
+  const Background background = learned(beams, 5.0);
+  for (Beam beam : beams) {
+    const Beam before = beam;
+    background.subtract_from(beam);
+    EXPECT_EQ(beam.intensities, before.intensities);
+  }
+}
+
+TEST(Background, DoesNotDependOnTheLengthOfBins) {
+  const Background background = learned(beams_of_a_vehicle(12), 2.0);
+  Beam fine{.bearing_rad = 20.0 * std::numbers::pi / 180.0, .bin_length_m = 0.00125, .intensities = {}};
+  fine.intensities.assign(2000, 120);
+  background.subtract_from(fine);
+  EXPECT_LE(fine.intensities[static_cast<std::size_t>(0.84 / 0.00125)], 8);
+  EXPECT_GE(fine.intensities[static_cast<std::size_t>(0.70 / 0.00125)], 110);
+}
+
+TEST(Background, IsShownAsASweep) {
+  const Background background = learned(beams_of_a_vehicle(12), 1.5);
+  const std::vector<Beam> beams = background.beams();
+  ASSERT_EQ(beams.size(), 360U);
+  for (const Beam& beam : beams) EXPECT_TRUE(validate(beam));
+  EXPECT_GE(*std::ranges::max_element(beams[20].intensities), 116);
+  EXPECT_LE(*std::ranges::max_element(beams[100].intensities), 8);
+}
+
+TEST(Background, RefusesARangeThatIsNone) {
+  for (const double range_m : {0.0, -1.0, 10.1, std::nan("")}) {
+    BeamsInMemory source({});
+    EXPECT_FALSE(Background::learn(source, {.range_m = range_m})) << range_m;
+  }
+}
+
+// In the recording some beams hear the vehicle out to 0.9 m.
+TEST(Background, TakesTheVehicleOutOfTheTankRecording) {
+  const std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
+  if (beams.empty()) GTEST_SKIP() << "no recording of the tank";
+  const Background background = learned(beams, 1.2);
+  std::size_t before = 0, after = 0;
+  const auto near_m = [](const Beam& beam) {
+    for (std::size_t bin = 36; bin < 75 && bin < beam.intensities.size(); ++bin) {
+      if (beam.intensities[bin] > 70) return true;
+    }
+    return false;
+  };
+  for (Beam beam : beams) {
+    before += near_m(beam) ? 1U : 0U;
+    background.subtract_from(beam);
+    after += near_m(beam) ? 1U : 0U;
+  }
+  EXPECT_GT(before, 500U);
+  EXPECT_LT(after, before / 10);
+}
+
+}  // namespace
+}  // namespace pingvox
