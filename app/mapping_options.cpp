@@ -34,12 +34,20 @@ constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
-Take into_sound_speed_ratio(double& ratio) {
-  return [&ratio](const std::string& text) -> Result<void> {
-    const Result<double> speed = number_from<double>(text);
-    if (!speed) return tl::unexpected(speed.error());
-    if (!(*speed > 0.0) || !std::isfinite(*speed)) return usage_error(fmt::format("must be above 0, is {}", text));
-    ratio = *speed / kAssumedSoundSpeed_m_s;
+Take into_water(std::optional<Water>& water) {
+  return [&water](const std::string& text) -> Result<void> {
+    std::array<double, 3> n{};
+    const auto three = numbers_from<3>(text);
+    const auto two = numbers_from<2>(text);
+    if (three) n = *three;
+    if (two) n = {(*two)[0], (*two)[1], 0.0};
+    if (!two && !three) {
+      return usage_error(
+          fmt::format("'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D", text));
+    }
+    const Water given{.temperature_C = n[0], .salinity = n[1], .depth_m = n[2]};
+    if (const auto valid = given.validate(); !valid) return tl::unexpected(valid.error());
+    water = given;
     return {};
   };
 }
@@ -126,7 +134,18 @@ Result<void> check_options(BuildOptions options) {
   return options.validate();
 }
 
-OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
+double EchoArgs::sound_speed_ratio() const {
+  const double speed_m_s =
+      water ? ::pingvox::sound_speed_m_s(*water) : sound_speed_m_s.value_or(kAssumedSoundSpeed_m_s);
+  return speed_m_s / kAssumedSoundSpeed_m_s;
+}
+
+Result<void> EchoArgs::validate() const {
+  if (water && sound_speed_m_s) return usage_error("--sound-speed and --water: exclude each other");
+  return {};
+}
+
+OptionTable::Group echo_group(EchoArgs& args) {
   EchoOptions& echo = args.echo;
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
   OptionTable::Group group = {
@@ -143,7 +162,10 @@ OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio) {
        {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
         number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
-               into_sound_speed_ratio(sound_speed_ratio))},
+               into_optional(args.sound_speed_m_s))},
+       {"--water", 0, "T,S[,D]",
+        "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m", "none",
+        into_water(args.water)},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; none leaves more beams silent",
               args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",

@@ -10,6 +10,7 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sonar/background.hpp"
+#include "pingvox/sonar/sound_speed.hpp"
 
 /// Options for detecting echoes and building maps, shared by 'map' and 'render'.
 namespace pingvox::app {
@@ -25,7 +26,13 @@ struct EchoArgs {
   std::optional<int> kernel;
   std::optional<double> sigma;
   EchoOptions echo;
-  std::optional<double> background_m;  ///< nullopt: none is subtracted
+  std::optional<double> background_m;     ///< nullopt: none is subtracted
+  std::optional<double> sound_speed_m_s;  ///< nullopt: of `water`, else as the device assumes
+  std::optional<Water> water;
+
+  double sound_speed_ratio() const;
+  /// kBadOption when both say what the speed of sound is.
+  Result<void> validate() const;
 
   FilterOptions filter_options() const {
     const FilterOptions usual = default_filter(echo.detector);
@@ -49,6 +56,7 @@ struct BuildArgs {
     BuildOptions all = head.apply_to(build, nullptr);
     all.filter = echoes.filter_options();
     all.echo = echoes.echo;
+    all.sound_speed_ratio = echoes.sound_speed_ratio();
     return all;
   }
   /// kBadOption when both files are given.
@@ -62,7 +70,7 @@ Result<void> check_options(BuildOptions options);
 Take into_mount(Pose& target);
 
 /// Groups of options that write into their arguments, which must outlive them.
-OptionTable::Group echo_group(EchoArgs& args, double& sound_speed_ratio);
+OptionTable::Group echo_group(EchoArgs& args);
 OptionTable::Group map_group(BuildArgs& args);
 OptionTable::Group sensor_group(BuildArgs& args);
 

@@ -41,9 +41,8 @@ Result<Command> convert_command(const Args& args) {
     surface = *value;
     return {};
   };
-  double sound_speed_ratio = 1.0;
   EchoArgs echo;
-  OptionTable::Group echo_options = echo_group(echo, sound_speed_ratio);
+  OptionTable::Group echo_options = echo_group(echo);
   echo_options.title = "Echoes of a log";
   for (Option& option : echo_options.options) {
     option.only_for = {std::string(kEchoTables)};
@@ -105,7 +104,8 @@ Result<Command> convert_command(const Args& args) {
     command.limited = parsed.limited;
     command.filter = echo.filter_options();
     command.echo = echo.echo;
-    command.sound_speed_ratio = sound_speed_ratio;
+    if (const auto valid = echo.validate(); !valid) return tl::unexpected(valid.error());
+    command.sound_speed_ratio = echo.sound_speed_ratio();
     command.background_m = echo.background_m;
     if (command.has_echoes && command.format != Format::kCsv) return usage_error("--echoes: are written as .csv only");
     if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());

@@ -87,7 +87,7 @@ Result<Command> map_command(const Args& args) {
                 command.output_options.progress)}},
        map_options,
        sensor_options,
-       echo_group(build.echoes, build.build.sound_speed_ratio),
+       echo_group(build.echoes),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox map tank.mat -o tank.bt",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
@@ -102,6 +102,7 @@ Result<Command> map_command(const Args& args) {
     command.format = *output_as;
     command.limited = parsed.limited;
     command.map = map;
+    if (const auto valid = build.echoes.validate(); !valid) return tl::unexpected(valid.error());
     command.build = build.build_options();
     command.head = build.head;
     command.background_m = build.echoes.background_m;

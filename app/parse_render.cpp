@@ -95,7 +95,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
          "1000; of several pictures 640", within({16.0, 3072.0}, into_optional(args.size_px))},
         {"--caption", 0, "TEXT", "text below the picture", "the options that differ between pictures",
          into(panel.caption)}}},
-      echo_group(args.build.echoes, args.build.build.sound_speed_ratio),
+      echo_group(args.build.echoes),
       map_group(args.build),
       sensor_group(args.build)};
   const auto limit = [&](std::string_view name, const std::vector<std::string>& only_for) {
@@ -149,6 +149,7 @@ std::string caption_of(const PanelArgs& args, const std::vector<PanelArgs>& all)
 Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size_px) {
   PanelCommand panel = args.panel;
   panel.map = args.build.map;
+  if (const auto valid = args.build.echoes.validate(); !valid) return tl::unexpected(valid.error());
   panel.build = args.build.build_options();
   panel.head = args.build.head;
   panel.background_m = args.build.echoes.background_m;

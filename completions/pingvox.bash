@@ -18,20 +18,20 @@ _pingvox_options() {
       options+=(--output --format --json --quiet --progress --strict --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
       options+=(--poses --nav --nav-offset --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
-      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar --background)
+      options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     info) options+=(--json --strict) ;;
     compare)
       options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
       options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height --echoes)
-      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar --background)
+      options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
-      options+=(--min-range --min-bin --max-range --sound-speed --filter --kernel --sigma --detect --threshold --cfar --background)
+      options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     simulate)
       options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --mount --speed --turns --drift)
@@ -94,7 +94,7 @@ _pingvox() {
 
   if [[ -z $words ]]; then
     case "$previous" in
-      --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --kernel | --sigma | --threshold | \
+      --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --water | --kernel | --sigma | --threshold | \
         --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)

@@ -25,8 +25,8 @@ Result<void> validate(const Beam& beam) {
 double wrap_bearing(double angle_rad) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const double wrapped = angle_rad - kTurn * std::floor(angle_rad / kTurn);
-  // A tiny negative angle rounds up to a whole turn.
-  return wrapped >= 0.0 && wrapped < kTurn ? wrapped : 0.0;
+  // A tiny negative angle rounds up to a whole turn; -0 becomes 0.
+  return wrapped > 0.0 && wrapped < kTurn ? wrapped : 0.0;
 }
 
 std::size_t BeamSource::skipped() const {

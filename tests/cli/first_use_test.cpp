@@ -127,6 +127,24 @@ TEST(FirstUse, TheVehicleIsTakenOutOfItsOwnPicture) {
   expect_error(here.call({"map", "-", "-o", "c.bt", "--background", "2"}, {.in = framed_csv()}), 2, {"read only once"});
 }
 
+// Kills a salinity that is taken for a temperature, and a speed that goes the wrong way.
+TEST(FirstUse, TheSpeedOfSoundComesFromTheWater) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  const auto echoes = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"convert", "a.csv", "--echoes", "-o", "echoes.csv"});
+    EXPECT_EQ(here.call(words).status, 0);
+    return here.read("echoes.csv");
+  };
+  // Coppens 1981: 1482.355 m/s at 20 degrees in fresh water, 1521.45 in the ocean.
+  EXPECT_EQ(echoes({"--water", "20,0"}).substr(0, 120), echoes({"--sound-speed", "1482.355"}).substr(0, 120));
+  EXPECT_NE(echoes({"--water", "20,35"}), echoes({"--water", "20,0"}));
+  expect_error(here.call({"map", "a.csv", "-o", "a.bt", "--water", "20,35", "--sound-speed", "1480"}), 2,
+               {"--sound-speed and --water: exclude each other"});
+  expect_error(here.call({"map", "a.csv", "-o", "a.bt", "--water", "20"}), 2, {"T,S or T,S,D"});
+  expect_error(here.call({"map", "a.csv", "-o", "a.bt", "--water", "60,0"}), 2, {"--water", "0..35"});
+}
+
 TEST(FirstUse, AMapIsMadeOfConesAndSaysSo) {
   const Workplace here;
   here.simulate_tank();

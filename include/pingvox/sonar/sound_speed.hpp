@@ -1,0 +1,20 @@
+#pragma once
+
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// What the speed of sound in water depends on.
+struct Water {
+  double temperature_C = 0.0;  ///< 0..35
+  double salinity = 0.0;       ///< practical salinity (about grams of salt in a kilogram), 0..45: 0 fresh, 35 the ocean
+  double depth_m = 0.0;        ///< 0..4000
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// Speed of sound [m/s] by Coppens (1981), "Simple equations for the speed of sound in Neptunian waters", within about
+/// 0.1 m/s of Del Grosso's. REQUIRES valid water.
+double sound_speed_m_s(const Water& water);
+
+}  // namespace pingvox
