@@ -72,10 +72,11 @@ Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& comma
 
 /// Writes the beams of a log, or their echoes. @return what was written
 Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command) {
-  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage);
+  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage, command.topic);
   if (!source) return tl::unexpected(source.error());
   if (command.background_m) {
-    Result<Background> background = learn_background(command.input, *command.background_m, command.damage);
+    Result<Background> background =
+        learn_background(command.input, *command.background_m, command.damage, command.topic);
     if (!background) return tl::unexpected(background.error());
     *source = subtract_background(*std::move(source), *std::move(background));
   }
@@ -96,9 +97,7 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
 }
 
 Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command) {
-  const Result<FileBytes> file = ByteStream::whole(std::move(stream));
-  if (!file) return tl::unexpected(file.error());
-  const Result<NavFile> nav = read_nav(*file, command.damage);
+  const Result<NavFile> nav = read_nav(std::move(stream), command.damage);
   if (!nav) return tl::unexpected(nav.error());
   std::size_t samples = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
@@ -115,9 +114,7 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
 
 /// Writes where the vehicle was. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command) {
-  const Result<FileBytes> file = ByteStream::whole(std::move(stream));
-  if (!file) return tl::unexpected(file.error());
-  const Result<VehiclePath> path = vehicle_path(*file, 0.0, command.damage);
+  const Result<VehiclePath> path = vehicle_path(std::move(stream), 0.0, command.damage);
   if (!path) return tl::unexpected(path.error());
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
@@ -189,6 +186,12 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   if (command.has_echoes) kinds.emplace_back(kEchoTables);
   if (const auto used = check_limited(command.limited, kinds); !used) {
     return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
+  }
+  if (is_bag(format) && to == FormatKind::kTrajectory) return convert_nav_to_poses(std::move(stream), command);
+  if (is_bag(format) && to == FormatKind::kBeams) {
+    const Result<BagContents> bag = bag_contents(stream, command.damage);
+    if (!bag) return tl::unexpected(bag.error());
+    if (!has_beams(*bag) && !bag->nav.log.sources().empty()) return convert_nav(std::move(stream), command);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command);

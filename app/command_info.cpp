@@ -253,9 +253,9 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
   return summary;
 }
 
-Result<Summary> summarize_log(ByteStream stream, Format format, Damage damage) {
+Result<Summary> summarize_log(ByteStream stream, Format format, Damage damage, const std::string& topic = {}) {
   const std::string name = stream.name();
-  const Result<Log> log = open_log(std::move(stream), damage);
+  const Result<Log> log = open_log(std::move(stream), damage, std::nullopt, topic);
   if (!log) return tl::unexpected(log.error());
   return std::visit([&](const auto& source) { return summarize(*source, name, format); }, *log);
 }
@@ -337,12 +337,62 @@ Result<Summary> summarize_nav(const FileBytes& file, Format format, Damage damag
   return summary;
 }
 
-Result<Summary> summarize_file(ByteStream stream, Damage damage, const std::vector<LimitedOption>& limited) {
+std::string_view name_of(BagTopicSummary::Use use) {
+  using Use = BagTopicSummary::Use;
+  return use == Use::kBeams ? "beams" : use == Use::kNavigation ? "navigation" : "";
+}
+
+void add_topics(Summary& summary, const std::vector<BagTopicSummary>& topics) {
+  std::vector<JsonObject> list;
+  std::size_t widest = 5;
+  for (const BagTopicSummary& topic : topics) widest = std::max(widest, on_one_line(topic.name).size());
+  summary.text += fmt::format("  {:<{}} {:>9}  {:<10}  type\n", "topic", widest, "messages", "read as");
+  for (const BagTopicSummary& topic : topics) {
+    JsonObject& json = list.emplace_back().add("name", topic.name).add("type", topic.type);
+    json.add("messages", topic.messages).add("read_as", name_of(topic.use));
+    summary.text += fmt::format("  {:<{}} {:>9}  {:<10}  {}\n", on_one_line(topic.name), widest, topic.messages,
+                                name_of(topic.use), on_one_line(topic.type));
+  }
+  summary.json.add("topics", std::span<const JsonObject>(list));
+}
+
+/// A bag: its beams, or what else it holds, then its topics and its navigation.
+Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoCommand& command) {
+  const std::string name = stream.name();
+  // --strict refuses the beams with the same words.
+  const Result<BagContents> bag = bag_contents(stream, command.damage);
+  if (!bag) return tl::unexpected(bag.error());
+  const bool is_navigated = !bag->nav.log.sources().empty();
+  if (!has_beams(*bag)) {
+    Summary summary;
+    summary.json.add("kind", "nav").add("format", name_of(format));
+    add_nav(summary.json, bag->nav);
+    summary.text = headline(name, format) + nav_text(bag->nav);
+    add_damage(summary, bag->nav.damage);
+    add_topics(summary, bag->topics);
+    return summary;
+  }
+  Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.topic);
+  if (!summary) return summary;
+  add_topics(*summary, bag->topics);
+  if (is_navigated) {
+    JsonObject nav;
+    add_nav(nav, bag->nav);
+    summary->json.add("nav", nav);
+    summary->text += "navigation (--nav):\n" + nav_text(bag->nav);
+  }
+  return summary;
+}
+
+Result<Summary> summarize_file(ByteStream stream, const InfoCommand& command) {
+  const Damage damage = command.damage;
+  const std::vector<LimitedOption>& limited = command.limited;
   const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
   if (const auto used = check_limited(limited, {kind_text(kind_of(*format))}); !used) {
     return fail(used.error().code, "info: " + used.error().message);
   }
+  if (is_bag(*format)) return summarize_bag(std::move(stream), *format, command);
   const FileBytes& file = stream.held();
   switch (kind_of(*format)) {
     case FormatKind::kMap:
@@ -363,7 +413,7 @@ Result<Summary> summarize_file(ByteStream stream, Damage damage, const std::vect
 Result<int> run(const InfoCommand& command, Console& console) {
   Result<ByteStream> stream = ByteStream::open(command.file);
   if (!stream) return tl::unexpected(stream.error());
-  const Result<Summary> summary = summarize_file(std::move(*stream), command.damage, command.limited);
+  const Result<Summary> summary = summarize_file(std::move(*stream), command);
   if (!summary) return tl::unexpected(summary.error());
   const bool json = command.output_options.report == Report::kJson;
   if (const auto printed = console.print(json ? summary->json.text() + "\n" : summary->text); !printed) {

@@ -218,9 +218,11 @@ Result<int> run(const MapCommand& command, Console& console) {
           return fail(used.error().code, fmt::format("map: {}", used.error().message));
         }
       }
-      Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m);
+      Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m, command.topic);
       if (!log) return tl::unexpected(log.error());
-      if (const auto done = subtract_background(*log, command.logs[i], command.background_m, command.damage); !done) {
+      if (const auto done =
+              subtract_background(*log, command.logs[i], command.background_m, command.damage, command.topic);
+          !done) {
         return tl::unexpected(done.error());
       }
       totals.report.seconds.read += read.seconds();

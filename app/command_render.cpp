@@ -157,15 +157,15 @@ class CartesianCollector {
 };
 
 template <class Gatherer>
-Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage damage) {
+Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   const std::string name = file.name;
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
-  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), damage);
+  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), command.damage, command.topic);
   if (!source) return tl::unexpected(source.error());
   PanelCommand of_head = panel;
   of_head.build = panel.head.apply_to(panel.build, (*source)->device());
   if (panel.background_m) {
-    Result<Background> background = learn_background(panel.input, *panel.background_m, damage);
+    Result<Background> background = learn_background(panel.input, *panel.background_m, command.damage, command.topic);
     if (!background) return tl::unexpected(background.error());
     if (panel.image == ShownImage::kBackground) {
       *source = std::make_unique<BeamsInMemory>(background->beams());
@@ -198,15 +198,16 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, Damage dama
               fmt::format("render: {}: there is no sweep {}, only {}", name, panel.sweep.value_or(0), sweeps));
 }
 
-Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, Damage damage) {
+Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   Result<OccupancyMap> map = OccupancyMap::make(panel.map);
   if (!map) return map;
-  const Result<VehiclePath> path = vehicle_path(panel.path, damage);
+  const Result<VehiclePath> path = vehicle_path(panel.path, command.damage);
   if (!path) return tl::unexpected(path.error());
   const std::string name = file.name;
-  Result<Log> log = open_log(std::move(file), damage);
+  Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.topic);
   if (!log) return tl::unexpected(log.error());
-  if (const auto done = subtract_background(*log, panel.input, panel.background_m, damage); !done) {
+  if (const auto done = subtract_background(*log, panel.input, panel.background_m, command.damage, command.topic);
+      !done) {
     return tl::unexpected(done.error());
   }
   const Result<MappedLog> report = map_log(*log, name, *path, panel.build, panel.head, *map);
@@ -245,7 +246,8 @@ void add_kinds(const PanelCommand& panel, FormatKind kind, std::vector<std::stri
 }
 
 /// Prepares a panel: draws a picture, or returns a map to be drawn with those that it is compared with.
-Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const PanelCommand& panel, Damage damage) {
+Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const PanelCommand& panel,
+                                                     const RenderCommand& command) {
   using Prepared = std::variant<Drawn, MapToDraw>;
   const Result<Format> format = identify_format(file);
   if (!format) return tl::unexpected(format.error());
@@ -265,14 +267,14 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
                   fmt::format("render: {}: is {}: only logs of beams have polar and Cartesian pictures", file.name,
                               describe(*format)));
     }
-    auto drawn = view == PictureView::kPolar ? draw_sweeps<PolarCollector>(std::move(file), panel, damage)
-                                             : draw_sweeps<CartesianCollector>(std::move(file), panel, damage);
+    auto drawn = view == PictureView::kPolar ? draw_sweeps<PolarCollector>(std::move(file), panel, command)
+                                             : draw_sweeps<CartesianCollector>(std::move(file), panel, command);
     return std::move(drawn).map([](Drawn done) { return Prepared(std::move(done)); });
   }
   if (kind == FormatKind::kMap) {
     return read_map(file).map([&](MapFile read) { return to_draw(std::move(read.map)); });
   }
-  return map_of_log(std::move(file), panel, damage).map(to_draw);
+  return map_of_log(std::move(file), panel, command).map(to_draw);
 }
 
 /// Refuses a slice without known cells, since an empty picture would not tell why.
@@ -312,7 +314,7 @@ Result<Drawn> draw(const RenderCommand& command) {
     return fail(used.error().code, "render: " + used.error().message);
   }
   for (const PanelCommand& panel : command.panels) {
-    auto work = prepare_panel(files.at(panel.input), panel, command.damage);
+    auto work = prepare_panel(files.at(panel.input), panel, command);
     if (!work) return tl::unexpected(work.error());
     if (const auto* shown = std::get_if<MapToDraw>(&*work)) {
       if (const auto layer = check_layer(*shown, panel); !layer) return tl::unexpected(layer.error());

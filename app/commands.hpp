@@ -67,6 +67,7 @@ struct MapCommand {
   PathArgs path;
   std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
+  std::string topic;  ///< of a bag; empty: the only one with beams
   MapOptions map;
   BuildOptions build;
   HeadArgs head;
@@ -80,6 +81,7 @@ struct InfoCommand {
   std::string file;
   std::vector<LimitedOption> limited;
   Damage damage = Damage::kSkip;
+  std::string topic;  ///< of a bag; empty: the only one with beams
 };
 
 struct CompareCommand {
@@ -97,6 +99,7 @@ struct ConvertCommand {
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
+  std::string topic;                   ///< of a bag; empty: the only one with beams
   std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the default
   SliceOptions slice;                  ///< of a map
   bool has_echoes = false;             ///< the detected echoes of a log instead of its beams
@@ -140,6 +143,7 @@ struct RenderCommand {
   OutputOptions output_options;
   std::string output, title;
   Damage damage = Damage::kSkip;
+  std::string topic;                   ///< of a bag; empty: the only one with beams
   std::vector<PanelCommand> panels;    ///< at least one
   std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs that are mapped"
 };

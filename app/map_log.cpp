@@ -74,16 +74,17 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage) {
     return trajectory_of(path.poses).map([](Trajectory trajectory) {
       return VehiclePath{std::move(trajectory), std::nullopt};
     });
-  const Result<FileBytes> file = read_file(*path.nav);
-  if (!file) return tl::unexpected(file.error());
-  return vehicle_path(*file, path.nav_offset_s, damage);
+  Result<ByteStream> stream = ByteStream::open(*path.nav);
+  if (!stream) return tl::unexpected(stream.error());
+  return vehicle_path(std::move(*stream), path.nav_offset_s, damage);
 }
 
-Result<VehiclePath> vehicle_path(const FileBytes& nav, double offset_s, Damage damage) {
-  const Result<NavFile> read = read_nav(nav, damage);
+Result<VehiclePath> vehicle_path(ByteStream nav, double offset_s, Damage damage) {
+  const std::string name = nav.name();
+  const Result<NavFile> read = read_nav(std::move(nav), damage);
   if (!read) return tl::unexpected(read.error());
   Result<NavTrajectory> made = nav_trajectory(read->log, offset_s);
-  if (!made) return fail(made.error().code, fmt::format("{}: {}", nav.name, made.error().message));
+  if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
   return VehiclePath{std::move(made->trajectory),
                      VehiclePath::Nav{made->attitude, made->position, damaged_records(*read)}};
 }

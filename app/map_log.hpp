@@ -26,7 +26,7 @@ struct VehiclePath {
 /// Without a file the vehicle stays at the origin.
 Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage);
 /// From a navigation log. @param offset_s  added to its times
-Result<VehiclePath> vehicle_path(const FileBytes& nav, double offset_s, Damage damage);
+Result<VehiclePath> vehicle_path(ByteStream nav, double offset_s, Damage damage);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "mapping_options.hpp"
@@ -22,12 +23,29 @@ Result<Format> identify_format(ByteStream& stream) {
   return identify_format(stream.held());
 }
 
+Result<BagContents> bag_contents(ByteStream& stream, Damage damage) {
+  if (const std::optional<std::string> path = stream.path()) {
+    Result<ByteStream> again = ByteStream::open(*path);
+    if (!again) return tl::unexpected(again.error());
+    return read_bag(std::move(*again), damage);
+  }
+  if (const Result<void> held = stream.load_all(); !held) return tl::unexpected(held.error());
+  return read_bag(ByteStream(stream.held()), damage);
+}
+
+bool has_beams(const BagContents& bag) {
+  return std::ranges::any_of(bag.topics, [](const BagTopicSummary& topic) {
+    return topic.use == BagTopicSummary::Use::kBeams && topic.messages > 0;
+  });
+}
+
 std::string describe(Format format) {
   const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
   // Formats without a suffix of their own.
   if (format == Format::kPingViewer) return "a log of beams (Ping Viewer)";
   if (format == Format::kSeanetCapture) return "a log of beams (SeaNet, serial line)";
   if (format == Format::kUdpCapture) return "a log of beams (SeaNet, UDP packets)";
+  if (is_bag(format)) return fmt::format("a ROS bag (.{})", name_of(format));
   if (format == Format::kDumplog) return "a log of beams (SeanetDumpLog)";
   switch (kind_of(format)) {
     case FormatKind::kBeams:
@@ -73,12 +91,13 @@ std::string kind_text(FormatKind kind) {
   }
 }
 
-Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m) {
+Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m,
+                     const std::string& topic) {
   const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind == FormatKind::kBeams) {
-    return open_beams(std::move(stream), damage).map([](auto source) { return Log(std::move(source)); });
+    return open_beams(std::move(stream), damage, topic).map([](auto source) { return Log(std::move(source)); });
   }
   if (kind == FormatKind::kScans || kind == FormatKind::kCloud) {
     return ByteStream::whole(std::move(stream))
@@ -90,17 +109,18 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
                           kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
 }
 
-Result<Background> learn_background(const std::string& path, double range_m, Damage damage) {
+Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const std::string& topic) {
   if (path == "-") return usage_error("--background: reads the log twice, and standard input can be read only once");
   return ByteStream::open(path)
-      .and_then([&](ByteStream stream) { return open_beams(std::move(stream), damage); })
+      .and_then([&](ByteStream stream) { return open_beams(std::move(stream), damage, topic); })
       .and_then([&](std::unique_ptr<BeamSource> source) { return Background::learn(*source, {.range_m = range_m}); });
 }
 
-Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage) {
+Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage,
+                                 const std::string& topic) {
   auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
   if (beams == nullptr || !range_m) return {};
-  Result<Background> background = learn_background(path, *range_m, damage);
+  Result<Background> background = learn_background(path, *range_m, damage, topic);
   if (!background) return tl::unexpected(background.error());
   *beams = subtract_background(std::move(*beams), *std::move(background));
   return {};

@@ -75,6 +75,7 @@ Result<Command> convert_command(const Args& args) {
          {"--format", 0, choices_text(kLogAndMapFormats), "format of the output, if its name has no such suffix",
           "by suffix, else csv", format},
          strict_option(command.damage),
+         topic_option(command.topic),
          quiet_option(command.output_options)}},
        std::move(echo_options),
        {"Meshes",

@@ -9,10 +9,11 @@ Result<Command> info_command(const Args& args) {
   InfoCommand command;
   const OptionTable table{
       "info",
-      "Says what a file holds: a log of beams or of point scans, a cloud, a map, a mesh, or a trajectory.\n"
+      "Says what a file holds: a log of beams, of point scans or of navigation, a cloud, a map, a mesh, or a "
+      "trajectory.\n"
       "Files are recognised by their content, not by their name.",
       {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", into(command.file)}},
-      {{"Options", {json_option(command.output_options), strict_option(command.damage)}}},
+      {{"Options", {json_option(command.output_options), strict_option(command.damage), topic_option(command.topic)}}},
       {"pingvox info tank.mat", "pingvox info tank.bt --json"},
       ""};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {

@@ -72,7 +72,8 @@ Result<Command> map_command(const Args& args) {
       "Builds a 3D occupancy map from sonar logs, in the order given: detects the echo of each beam, marks the cells\n"
       "before it free and those at it occupied.",
       {{"LOG", Positional::Count::kMany,
-        "beams (Ping Viewer's .bin, SeaNet, MATLAB 5, CSV), point scans (OctoMap's .graph and .log) or clouds of "
+        "beams (Ping Viewer's .bin, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's .graph and .log) or "
+        "clouds of "
         "points (PLY, PCD, XYZ), recognised by content; - is standard input",
         log}},
       {{"Output",
@@ -88,11 +89,11 @@ Result<Command> map_command(const Args& args) {
        map_options,
        sensor_options,
        echo_group(build.echoes),
-       {"Input", {strict_option(command.damage), config_option()}}},
+       {"Input", {strict_option(command.damage), topic_option(command.topic), config_option()}}},
       {"pingvox map tank.mat -o tank.bt",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
        "pingvox map dive.csv -o reef.ot --nav dive.tlog --nav-offset -1712333808.974",
-       "pingvox map scans.graph -o scans.bt --resolution 0.1",
+       "pingvox map dive.db3 -o net.bt --nav dive.db3", "pingvox map scans.graph -o scans.bt --resolution 0.1",
        "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
       "Point scans and clouds have no beam: only the options of the map (except --vote), --ray and --max-range apply.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};

@@ -41,6 +41,13 @@ Option strict_option(Damage& damage) {
   return option;
 }
 
+Option topic_option(std::string& topic) {
+  Option option{"--topic",  0, "NAME", "the topic of a ROS bag whose beams are read", "the only one with beams",
+                into(topic)};
+  option.only_for = {std::string(kBeamLogs)};
+  return option;
+}
+
 Option json_option(OutputOptions& output_options) {
   return flag("--json", "print the report as one JSON object", output_options.report, Report::kJson);
 }

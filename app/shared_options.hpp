@@ -16,6 +16,7 @@ namespace pingvox::app {
 Option output_option(std::string& target, std::string help);
 Option config_option();
 Option strict_option(Damage& damage);
+Option topic_option(std::string& topic);
 Option json_option(OutputOptions& output_options);
 Option quiet_option(OutputOptions& output_options);
 

@@ -25,6 +25,10 @@ std::string_view description_of(Format format) {
     case Format::kV4log:
     case Format::kDumplog:
       return "a SeaNet log";
+    case Format::kRosBag:
+    case Format::kRosSqlite:
+    case Format::kMcap:
+      return "a ROS bag";
     case Format::kScanGraph:
       return "an OctoMap scan graph";
     case Format::kScanLog:
@@ -66,8 +70,9 @@ tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wan
 
 }  // namespace
 
-Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage) {
+Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage, const std::string& topic) {
   const std::optional<Format> streamed = streamed_format_of(stream.beginning());
+  if (streamed && is_bag(*streamed)) return open_bag_beams(std::move(stream), damage, topic);
   if (streamed == Format::kPingViewer) return open_ping_viewer(std::move(stream), damage);
   if (streamed == Format::kSeanetCapture) return open_seanet_capture(std::move(stream), damage);
   if (streamed == Format::kUdpCapture) return open_udp_capture(std::move(stream), damage);
@@ -83,8 +88,8 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage)
   return wrong_format(file.name, "a log of beams", format);
 }
 
-Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage) {
-  return open_beams(ByteStream(std::move(file)), damage);
+Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, const std::string& topic) {
+  return open_beams(ByteStream(std::move(file)), damage, topic);
 }
 
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,

@@ -8,9 +8,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "io/descriptor.hpp"
 
@@ -36,6 +39,7 @@ class ByteStream::Source {
 
   std::uint64_t bytes_read() const { return read_; }
   std::optional<std::uint64_t> size() const { return size_; }
+  bool is_standard_input() const { return !owned_.valid(); }
 
  private:
   Descriptor owned_;  ///< empty for standard input, which stays open
@@ -51,6 +55,24 @@ ByteStream::ByteStream(ByteStream&&) noexcept = default;
 ByteStream& ByteStream::operator=(ByteStream&&) noexcept = default;
 ByteStream::~ByteStream() = default;
 
+namespace {
+
+/// The bag in a folder of ROS 2.
+Result<std::string> bag_in(const std::string& folder) {
+  std::vector<std::string> bags;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::filesystem::path& path = entry.path();
+    if (path.extension() == ".db3" || path.extension() == ".mcap") bags.push_back(path.string());
+  }
+  if (error) return os_error(folder, error.value());
+  if (bags.empty()) return os_error(folder, EISDIR);
+  if (bags.size() == 1) return bags.front();
+  return fail(Error::Code::kIo, fmt::format("{}: is a folder of {} bags: name them one by one", folder, bags.size()));
+}
+
+}  // namespace
+
 Result<ByteStream> ByteStream::open(const std::string& path) {
   const bool standard_input = path == "-";
   FileBytes beginning{standard_input ? "standard input" : path, {}};
@@ -61,7 +83,10 @@ Result<ByteStream> ByteStream::open(const std::string& path) {
 
   struct stat status = {};
   if (::fstat(fd, &status) != 0) return os_error(beginning.name, errno);
-  if (S_ISDIR(status.st_mode)) return os_error(beginning.name, EISDIR);
+  if (S_ISDIR(status.st_mode)) {
+    const Result<std::string> bag = bag_in(path);
+    return bag ? open(*bag) : tl::unexpected(bag.error());
+  }
   std::optional<std::uint64_t> size;
   if (S_ISREG(status.st_mode)) size = static_cast<std::uint64_t>(status.st_size);
 
@@ -76,6 +101,11 @@ Result<ByteStream> ByteStream::open(const std::string& path) {
   }
   beginning.bytes.resize(filled);
   return ByteStream(std::move(beginning), std::move(rest));
+}
+
+std::optional<std::string> ByteStream::path() const {
+  if (!rest_ || !rest_->size()) return std::nullopt;
+  return rest_->is_standard_input() ? std::nullopt : std::optional(held_.name);
 }
 
 std::span<const std::uint8_t> ByteStream::beginning() const {

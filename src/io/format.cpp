@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/bag.hpp"
 #include "io/byte_reader.hpp"
 #include "io/nav_readers.hpp"
 #include "io/ply_header.hpp"
@@ -39,6 +40,9 @@ FormatKind kind_of(Format format) {
     case Format::kUdpCapture:
     case Format::kV4log:
     case Format::kDumplog:
+    case Format::kRosBag:
+    case Format::kRosSqlite:
+    case Format::kMcap:
       return FormatKind::kBeams;
     case Format::kScanGraph:
     case Format::kScanLog:
@@ -70,6 +74,10 @@ FormatKind kind_of(Format format) {
   return FormatKind::kPicture;
 }
 
+bool is_bag(Format format) {
+  return format == Format::kRosBag || format == Format::kRosSqlite || format == Format::kMcap;
+}
+
 std::string_view name_of(Format format) {
   switch (format) {
     case Format::kMat:
@@ -86,6 +94,12 @@ std::string_view name_of(Format format) {
       return "v4log";
     case Format::kDumplog:
       return "dumplog";
+    case Format::kRosBag:
+      return "bag";
+    case Format::kRosSqlite:
+      return "db3";
+    case Format::kMcap:
+      return "mcap";
     case Format::kScanGraph:
       return "graph";
     case Format::kScanLog:
@@ -151,6 +165,9 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
 }
 
 std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning) {
+  if (looks_like_ros1_bag(beginning)) return Format::kRosBag;
+  if (looks_like_sqlite(beginning)) return Format::kRosSqlite;
+  if (looks_like_mcap(beginning)) return Format::kMcap;
   if (looks_like_ping_viewer(beginning)) return Format::kPingViewer;
   if (looks_like_v4log(beginning)) return Format::kV4log;
   if (looks_like_dumplog(beginning)) return Format::kDumplog;

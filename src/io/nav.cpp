@@ -8,6 +8,7 @@
 
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
+#include "pingvox/io/bag.hpp"
 #include "pingvox/io/format.hpp"
 
 namespace pingvox {
@@ -23,6 +24,7 @@ NavSample* NavSources::add(const std::string& name, NavQuantity quantity, const 
 
 Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
   const std::optional<Format> format = format_of(file.view());
+  if (format && is_bag(*format)) return read_nav(ByteStream(file), damage);
   NavReading reading;
   if (format == Format::kTlog) {
     reading = read_tlog(file.view());
@@ -40,6 +42,15 @@ Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
   Result<NavLog> log = NavLog::make(std::move(reading.sources), reading.clock);
   if (!log) return fail(log.error().code, fmt::format("{}: {}", file.name, log.error().message));
   return NavFile{*std::move(log), reading.records, std::move(reading.damage)};
+}
+
+Result<NavFile> read_nav(ByteStream stream, Damage damage) {
+  if (const auto streamed = streamed_format_of(stream.beginning()); streamed && is_bag(*streamed)) {
+    return read_bag(std::move(stream), damage).map([](BagContents bag) { return std::move(bag.nav); });
+  }
+  const Result<FileBytes> file = ByteStream::whole(std::move(stream));
+  if (!file) return tl::unexpected(file.error());
+  return read_nav(*file, damage);
 }
 
 }  // namespace pingvox

@@ -20,8 +20,8 @@ class ByteStream {
 
   /// Bytes in memory.
   ByteStream(FileBytes file);  // NOLINT(google-explicit-constructor): functions of streams accept bytes in memory
-  /// @param path  "-" is standard input
-  /// @return kIo when it cannot be opened or read (not found, no permission, a directory); the message names it
+  /// @param path  "-" is standard input; a folder with one ROS 2 bag (.db3 or .mcap) in it is that bag
+  /// @return kIo when it cannot be opened or read (not found, no permission, another directory); the message names it
   static Result<ByteStream> open(const std::string& path);
 
   ByteStream(ByteStream&&) noexcept;
@@ -29,6 +29,8 @@ class ByteStream {
   ~ByteStream();
 
   const std::string& name() const { return held_.name; }
+  /// The file that is read, for readers that open it again; nullopt: a pipe, or memory.
+  std::optional<std::string> path() const;
   /// The first bytes, at most kBeginning, also after reading on.
   std::span<const std::uint8_t> beginning() const;
 

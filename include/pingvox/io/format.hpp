@@ -17,6 +17,9 @@ enum class Format {
   kUdpCapture,     ///< the same in UDP packets as hexadecimal text: beams
   kV4log,          ///< log of Tritech's program: beams
   kDumplog,        ///< text that SeanetDumpLog makes of a V4LOG: beams
+  kRosBag,         ///< bag of ROS 1: beams, navigation, or both
+  kRosSqlite,      ///< bag of ROS 2 as an SQLite database: the same
+  kMcap,           ///< bag of ROS 2 as MCAP: the same
   kScanGraph,      ///< OctoMap's binary scan graph: point scans
   kScanLog,        ///< OctoMap's scan graph as text, NODE x y z roll pitch yaw: point scans
   kBt,             ///< OctoMap's binary tree: occupied or free
@@ -39,7 +42,10 @@ enum class Format {
 
 enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kNav, kCloud, kMesh, kGrid, kPicture };
 
+/// Bags are of the kind kBeams, though they may hold navigation only (read_bag tells).
 FormatKind kind_of(Format format);
+/// Whether it is one of the bags of ROS.
+bool is_bag(Format format);
 /// Short lower-case name, as in "csv".
 std::string_view name_of(Format format);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pingvox/io/beams.hpp"
+#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
@@ -22,6 +23,8 @@ struct NavFile {
 /// Any navigation log, told by content. Frames are converted: whatever the device counts in, the log is in ours.
 /// @return kUnsupported when the file is none; with Damage::kFail, kCorrupt naming the first damage
 Result<NavFile> read_nav(const FileBytes& file, Damage damage = Damage::kSkip);
+/// The same. ROS bags are read as streams, other logs as a whole.
+Result<NavFile> read_nav(ByteStream stream, Damage damage = Damage::kSkip);
 
 /// Writes all samples as CSV (docs/formats.md). Numbers are written so that reading gives the same to the last bit;
 /// what cannot stand in a name there becomes `_`.

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/ros_message.hpp"
+#include "pingvox/io/byte_stream.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+// The containers of ROS messages: bags of ROS 1, and those of ROS 2 as SQLite databases and MCAP (docs/formats.md).
+namespace pingvox {
+
+/// A topic of a bag. Several may have one name: each publisher can have its own.
+struct BagTopic {
+  std::string name, type;
+  std::string definition;  ///< of the type; may be empty
+  RosEncoding encoding = RosEncoding::kRos1;
+  bool is_readable = true;  ///< false: its messages are in another encoding
+};
+
+/// One message as it was recorded.
+struct BagMessage {
+  std::size_t topic;                    ///< in Bag::topics()
+  double time_s;                        ///< of the recording, since 1970
+  std::span<const std::uint8_t> bytes;  ///< valid until the next call
+  std::uint64_t file_byte;              ///< its position in the file, or that of its compressed chunk
+};
+
+/// Reads the messages of a bag in the order in which they were recorded, one chunk in memory at a time.
+class Bag {
+ public:
+  virtual ~Bag() = default;
+  virtual const std::string& name() const = 0;
+  /// nullopt: the end; an error when the operating system reports one.
+  virtual Result<std::optional<BagMessage>> next() = 0;
+  virtual std::optional<double> share_read() const { return std::nullopt; }
+
+  /// Those met so far.
+  const std::vector<BagTopic>& topics() const { return topics_; }
+  /// Of the container, with positions in the file.
+  const std::vector<DamageKind>& damage() const { return damage_; }
+
+ protected:
+  std::vector<BagTopic> topics_;
+  std::vector<DamageKind> damage_;
+};
+
+bool looks_like_ros1_bag(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<Bag>> open_ros1_bag(ByteStream stream);
+
+bool looks_like_sqlite(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<Bag>> open_sqlite_bag(ByteStream stream);
+
+bool looks_like_mcap(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<Bag>> open_mcap(ByteStream stream);
+
+/// Whichever it is. REQUIRES a stream that looks like one of them.
+Result<std::unique_ptr<Bag>> open_bag(ByteStream stream);
+
+}  // namespace pingvox

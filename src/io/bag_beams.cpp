@@ -1,0 +1,284 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "io/bag_topics.hpp"
+#include "io/device_log.hpp"
+#include "io/readers.hpp"
+#include "pingvox/io/frame_finder.hpp"
+#include "pingvox/io/ping_frame.hpp"
+
+// The beams in bags: drivers' messages, by their type and fields (docs/formats.md).
+namespace pingvox {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// What a message of settings says for the beams behind it.
+struct SonarSettings {
+  std::optional<double> period_25ns;
+};
+
+/// The reason why a message is no beam.
+using NoBeam = tl::unexpected<std::string_view>;
+using Beams = tl::expected<std::vector<Beam>, std::string_view>;
+
+constexpr std::string_view kImpossible = "impossible values", kNoSamples = "ping without samples",
+                           kNoFit = "message that does not fit its definition",
+                           kOtherSamples = "samples that are not of 8 bits";
+
+/// A whole number in its range; nullopt: it is none.
+template <class T>
+std::optional<T> whole(double number) {
+  const bool is_in = number >= std::numeric_limits<T>::min() && number <= std::numeric_limits<T>::max();
+  return is_in ? std::optional(static_cast<T>(number)) : std::nullopt;
+}
+
+Beams beam_of(double bearing_rad, double bin_length_m, std::vector<std::uint8_t> intensities) {
+  constexpr double kMaxAngle_rad = 1e3;  // beyond any number of turns that a driver counts
+  if (intensities.size() < 2) return NoBeam(kNoSamples);
+  if (!(std::fabs(bearing_rad) <= kMaxAngle_rad)) return NoBeam(kImpossible);
+  return std::vector{Beam{0.0, wrap_bearing(bearing_rad), bin_length_m, std::move(intensities)}};
+}
+
+/// From angles as the head counts them, clockwise with half a turn ahead.
+double bearing_of(double head_angle_rad) {
+  return std::numbers::pi - head_angle_rad;
+}
+
+Beams echo_beam(const RosFields& message, SonarSettings&) {
+  std::vector<std::uint8_t> samples = message.bytes(2);
+  const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
+  return beam_of(bearing_of(message.number(0)), bin_length_m, std::move(samples));
+}
+
+Beams ping_beam(const RosFields& message, SonarSettings& settings) {
+  const std::vector<std::uint8_t> samples = message.bytes(2);
+  if (samples.size() < 2) return NoBeam(kNoSamples);  // what is recorded when the head did not answer
+  const auto angle_grad = whole<std::uint16_t>(message.number(0));
+  const auto period_25ns = whole<std::uint16_t>(settings.period_25ns.value_or(message.number(1)));
+  if (!angle_grad || !period_25ns) return NoBeam(kImpossible);
+  Ping360Ping ping;
+  ping.angle_grad = *angle_grad;
+  ping.period_25ns = *period_25ns;
+  ping.data = samples;
+  auto beam = pingvox::beam_of(ping, 0.0);
+  if (!beam) return NoBeam(kImpossible);
+  return std::vector{*std::move(beam)};
+}
+
+Beams ping_settings(const RosFields& message, SonarSettings& settings) {
+  settings.period_25ns = message.number(0);
+  return {};
+}
+
+Beams scan_line_beam(const RosFields& message, SonarSettings&) {
+  return beam_of(-message.number(0) * kRadPerDeg, message.number(1), message.bytes(2));
+}
+
+Beams slice_beam(const RosFields& message, SonarSettings&) {
+  std::vector<std::uint8_t> samples = message.bytes(2);
+  const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
+  return beam_of(bearing_of(message.number(0)), bin_length_m, std::move(samples));
+}
+
+Beams acoustic_beam(const RosFields& message, SonarSettings&) {
+  std::vector<std::uint8_t> samples = message.bytes(2);
+  const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
+  return beam_of(bearing_of(message.number(0) * kRadPerDeg), bin_length_m, std::move(samples));
+}
+
+/// A scan is a beam when it looks in one direction and has the profile in its intensities.
+Beams laser_beam(const RosFields& message, SonarSettings&) {
+  if (message.number(0) != message.number(1)) return std::vector<Beam>{};
+  std::vector<std::uint8_t> samples = message.bytes(3);
+  const double bin_length_m = message.number(2) / static_cast<double>(samples.size());
+  return beam_of(message.number(0), bin_length_m, std::move(samples));
+}
+
+/// All beams of an imaging sonar at once, in its frame: z ahead, y right, x up.
+Beams image_beams(const RosFields& message, SonarSettings&) {
+  constexpr double kBytes = 0.0;
+  if (message.number(4) != kBytes) return NoBeam(kOtherSamples);
+  const std::size_t beams = message.count(0), ranges = message.count(2);
+  const std::vector<std::uint8_t> samples = message.bytes(5);
+  const double count = message.number(3);
+  if (ranges < 2 || beams == 0 || static_cast<double>(beams) != count || samples.size() / ranges != beams ||
+      samples.size() % ranges != 0) {
+    return NoBeam(kImpossible);
+  }
+  // A range is that of the middle of its bin.
+  const double bin_length_m = (message.number(2, ranges - 1) - message.number(2)) / static_cast<double>(ranges - 1);
+  const double before = std::round(message.number(2) / bin_length_m - 0.5);
+  constexpr double kMostBefore = 1e5;
+  if (!(before >= -1.0 && before <= kMostBefore)) return NoBeam(kImpossible);
+  const auto first = static_cast<std::size_t>(std::max(before, 0.0));
+  if (first > ranges * 16) return NoBeam(kImpossible);
+  std::vector<Beam> found;
+  for (std::size_t i = 0; i < beams; ++i) {
+    std::vector<std::uint8_t> intensities(first + ranges);
+    for (std::size_t j = 0; j < ranges; ++j) intensities[first + j] = samples[j * beams + i];
+    auto beam = beam_of(std::atan2(-message.number(0, i), message.number(1, i)), bin_length_m, std::move(intensities));
+    if (!beam) return NoBeam(beam.error());
+    found.push_back(std::move(beam->front()));
+  }
+  return found;
+}
+
+struct SonarType {
+  RosType type;
+  std::string_view device;  ///< empty: unknown
+  Beams (*beams_in)(const RosFields& message, SonarSettings& settings);
+  bool has_beams = true;  ///< false: settings
+};
+
+constexpr std::array kSonarTypes = {
+    SonarType{{"SonarEcho", {"angle", "range", "intensities"}}, "ping360", echo_beam},
+    SonarType{{"Ping360", {"angle_ping360", "sample_period", "data"}}, "ping360", ping_beam},
+    SonarType{{"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, false},
+    SonarType{{"Ping360_config", {"sample_period"}}, "ping360", ping_settings, false},
+    SonarType{{"ScanLine", {"angle", "bin_distance_step", "bins.intensity"}}, "micron", scan_line_beam},
+    SonarType{{"TritechMicronSlice", {"angle", "range", "data"}}, "micron", slice_beam},
+    SonarType{{"AcousticBeam", {"angle", "range_max", "intensities"}}, "miniking", acoustic_beam},
+    SonarType{{"LaserScan", {"angle_min", "angle_max", "range_max", "intensities"}}, "", laser_beam},
+    SonarType{{"ProjectedSonarImage",
+               {"beam_directions.y", "beam_directions.z", "ranges", "image.beam_count", "image.dtype", "image.data"}},
+              "",
+              image_beams},
+};
+
+class BagBeams final : public DeviceLog {
+ public:
+  BagBeams(std::unique_ptr<Bag> bag, Damage damage, std::string wanted)
+      : bag_(std::move(bag)), damage_(damage), wanted_(std::move(wanted)) {}
+
+  /// Reads the first beam. An error also when there is none.
+  Result<void> start() {
+    Result<std::optional<Beam>> first = read();
+    if (!first) return tl::unexpected(first.error());
+    if (!*first) return fail(Error::Code::kUnsupported, why_none());
+    set_first(std::move(first));
+    return {};
+  }
+
+  std::vector<DamageKind> damage() const override {
+    std::vector<DamageKind> kinds = bag_->damage();
+    kinds.insert(kinds.end(), unusable_.begin(), unusable_.end());
+    return kinds;
+  }
+  std::optional<double> share_read() const override { return bag_->share_read(); }
+
+ private:
+  Result<std::optional<Beam>> read() override {
+    while (beams_.empty()) {
+      const Result<std::optional<BagMessage>> message = bag_->next();
+      if (!message) return tl::unexpected(message.error());
+      if (damage_ == Damage::kFail && !bag_->damage().empty()) return damage_error(bag_->damage().front());
+      if (!*message) return std::nullopt;
+      if (const Result<void> added = add(**message); !added) return tl::unexpected(added.error());
+      if (damage_ == Damage::kFail && !unusable_.empty()) return damage_error(unusable_.front());
+    }
+    Beam beam = std::move(beams_.front());
+    beams_.pop_front();
+    return beam;
+  }
+
+  Result<void> add(const BagMessage& message) {
+    while (topics_.size() <= message.topic) topics_.push_back(known_topic(bag_->topics()[topics_.size()], kSonarTypes));
+    const std::optional<KnownTopic>& topic = topics_[message.topic];
+    if (!topic) return {};
+    const SonarType& type = kSonarTypes[topic->type];
+    const std::string& name = bag_->topics()[message.topic].name;
+    if (type.has_beams && !wanted_.empty() && name != wanted_) return {};
+    if (!message_.read(topic->layout, message.bytes)) {
+      add_damage(unusable_, kNoFit, message.file_byte);
+      return {};
+    }
+    Beams beams = type.beams_in(RosFields(message_, topic->fields), settings_);
+    if (!beams) {
+      add_damage(unusable_, beams.error(), message.file_byte);
+      return {};
+    }
+    if (beams->empty()) return {};
+    const double time_s = topic->time_of(message_, message.time_s);
+    for (Beam& beam : *beams) {
+      beam.time_s = time_s;
+      if (!validate(beam)) {
+        add_damage(unusable_, kImpossible, message.file_byte);
+        return {};
+      }
+    }
+    if (chosen_.empty()) chosen_ = name;
+    if (name != chosen_) return several_topics();
+    device_ = device_named(type.device);
+    beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
+    return {};
+  }
+
+  /// Names and types of the topics with beams.
+  std::string sonar_topics() const {
+    std::set<std::string> names;
+    for (const BagTopic& topic : bag_->topics()) {
+      if (is_sonar(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
+  tl::unexpected<Error> several_topics() const {
+    return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with beams: {}: choose one with --topic",
+                                                     bag_->name(), sonar_topics()));
+  }
+
+  std::string why_none() const {
+    const std::string others = sonar_topics();
+    if (!wanted_.empty()) {
+      return fmt::format("{}: has no beams in the topic {}{}", bag_->name(), wanted_,
+                         others.empty() ? "" : ", only in " + others);
+    }
+    return fmt::format("{}: is a ROS bag without beams of a sonar that we know{}", bag_->name(),
+                       damage().empty() ? "" : ", or it is damaged");
+  }
+
+  tl::unexpected<Error> damage_error(const DamageKind& kind) const {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", bag_->name(), kind.first_byte, kind.what));
+  }
+
+  std::unique_ptr<Bag> bag_;
+  Damage damage_;
+  std::string wanted_, chosen_;
+  std::vector<std::optional<KnownTopic>> topics_;
+  SonarSettings settings_;
+  RosMessage message_;
+  std::deque<Beam> beams_;
+  std::vector<DamageKind> unusable_;
+};
+
+}  // namespace
+
+bool is_sonar(const BagTopic& topic) {
+  const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
+  return known && kSonarTypes[known->type].has_beams;
+}
+
+Result<std::unique_ptr<Bag>> open_bag(ByteStream stream) {
+  if (looks_like_ros1_bag(stream.beginning())) return open_ros1_bag(std::move(stream));
+  if (looks_like_mcap(stream.beginning())) return open_mcap(std::move(stream));
+  return open_sqlite_bag(std::move(stream));
+}
+
+Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const std::string& topic) {
+  Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
+  if (!bag) return tl::unexpected(bag.error());
+  auto beams = std::make_unique<BagBeams>(*std::move(bag), damage, topic);
+  if (const Result<void> started = beams->start(); !started) return tl::unexpected(started.error());
+  return beams;
+}
+
+}  // namespace pingvox

@@ -1,0 +1,267 @@
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "io/bag_topics.hpp"
+#include "io/nav_sources.hpp"
+#include "pingvox/io/bag.hpp"
+#include "pingvox/io/frame_finder.hpp"
+
+// The navigation in bags, by type and fields of the messages (docs/formats.md).
+namespace pingvox {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// Where the samples of one message go.
+class Samples {
+ public:
+  Samples(NavSources& sources, const std::string& name, double time_s)
+      : sources_(sources), name_(name), time_s_(time_s) {}
+
+  void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
+    NavSample sample;
+    sample.time_s = time_s_;
+    sample.value = value;
+    sample.valid = valid;
+    sources_.add(name_, quantity, sample);
+  }
+
+ private:
+  NavSources& sources_;
+  const std::string& name_;
+  double time_s_;
+};
+
+/// Three numbers from the field of the first on.
+Eigen::Vector3d three(const RosFields& message, std::size_t first) {
+  return {message.number(first), message.number(first + 1), message.number(first + 2)};
+}
+
+/// An attitude from x, y, z, w. Drivers without one send zeros.
+void add_attitude(const RosFields& message, std::size_t first, bool valid, Samples& samples) {
+  const Eigen::Quaterniond q(message.number(first + 3), message.number(first), message.number(first + 1),
+                             message.number(first + 2));
+  constexpr double kTolerance = 1e-2;
+  if (!(std::fabs(q.norm() - 1.0) <= kTolerance)) return;
+  const Eigen::Matrix3d r = q.normalized().toRotationMatrix();
+  samples.add(NavQuantity::kAttitude,
+              {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))},
+              valid);
+}
+
+/// Pressure in Pa, of drivers that send bar, hPa or Pa: those of the sea down to 490 m do not overlap.
+double pascals(double pressure) {
+  constexpr double kMostBar = 50.0, kMostHpa = 50'000.0;
+  return pressure < kMostBar ? pressure * 1e5 : pressure < kMostHpa ? pressure * 100.0 : pressure;
+}
+
+void add_imu(const RosFields& message, Samples& samples) {
+  const bool has_attitude = message.number(7) != -1.0;  // of the covariance
+  add_attitude(message, 0, has_attitude, samples);
+  samples.add(NavQuantity::kTurnRate, three(message, 4));
+}
+
+void add_pose(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kPosition, three(message, 0));
+  add_attitude(message, 3, true, samples);
+}
+
+void add_velocity(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kVelocity, three(message, 0));
+}
+
+void add_twist(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kVelocity, three(message, 0));
+  samples.add(NavQuantity::kTurnRate, three(message, 3));
+}
+
+void add_fix(const RosFields& message, Samples& samples) {
+  const Eigen::Vector3d fix = three(message, 0);
+  samples.add(NavQuantity::kFix, {fix.x() * kRadPerDeg, fix.y() * kRadPerDeg, fix.z()}, message.number(3) >= 0.0);
+}
+
+void add_xsens_fix(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kFix, {message.number(0) * kRadPerDeg, message.number(1) * kRadPerDeg, 0.0},
+              message.number(2) > 0.0);
+}
+
+void add_pressure(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kPressure, {pascals(message.number(0)), 0.0, 0.0});
+}
+
+void add_depth_and_pressure(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
+  samples.add(NavQuantity::kPressure, {pascals(message.number(1)), 0.0, 0.0});
+}
+
+void add_range(const RosFields& message, Samples& samples) {
+  const double range_m = message.number(0);
+  samples.add(NavQuantity::kRange, {range_m, 0.0, 0.0}, range_m >= message.number(1) && range_m <= message.number(2));
+}
+
+/// Of Water Linked's A50 and A125, whose drivers pass its numbers on: forward, right, down.
+void add_dvl(const RosFields& message, Samples& samples) {
+  const bool valid = message.number(3) != 0.0;
+  samples.add(NavQuantity::kVelocity, from_ned::body(three(message, 0)), valid);
+  const double altitude_m = message.number(4);
+  samples.add(NavQuantity::kRange, {altitude_m, 0.0, 0.0}, valid && altitude_m > 0.0);
+}
+
+/// Its dead reckoning: x ahead at its last reset, y right, z down; angles in degrees.
+void add_dvl_position(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kPosition, from_ned::world(three(message, 0)));
+  samples.add(NavQuantity::kAttitude, from_ned::attitude(three(message, 3) * kRadPerDeg));
+}
+
+/// As MAVLink's ATTITUDE: of a forward-right-down body in north-east-down.
+void add_ned_attitude(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kAttitude, from_ned::attitude(three(message, 0)));
+  samples.add(NavQuantity::kTurnRate, from_ned::body(three(message, 3)));
+}
+
+void add_odometry(const RosFields& message, Samples& samples) {
+  add_pose(message, samples);
+  samples.add(NavQuantity::kVelocity, three(message, 7));
+}
+
+void add_depth(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
+}
+
+struct NavType {
+  RosType type;
+  void (*add)(const RosFields& message, Samples& samples);
+};
+
+constexpr std::array kNavTypes = {
+    NavType{{"Imu",
+             {"orientation.x", "orientation.y", "orientation.z", "orientation.w", "angular_velocity.x",
+              "angular_velocity.y", "angular_velocity.z", "orientation_covariance"}},
+            add_imu},
+    NavType{{"PoseStamped",
+             {"pose.position.x", "pose.position.y", "pose.position.z", "pose.orientation.x", "pose.orientation.y",
+              "pose.orientation.z", "pose.orientation.w"}},
+            add_pose},
+    NavType{{"PoseWithCovarianceStamped",
+             {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
+              "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w"}},
+            add_pose},
+    NavType{{"TwistStamped",
+             {"twist.linear.x", "twist.linear.y", "twist.linear.z", "twist.angular.x", "twist.angular.y",
+              "twist.angular.z"}},
+            add_twist},
+    NavType{{"TwistWithCovarianceStamped", {"twist.twist.linear.x", "twist.twist.linear.y", "twist.twist.linear.z"}},
+            add_velocity},
+    NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix},
+    NavType{{"Xsens700Position", {"lat", "lon", "fixind"}}, add_xsens_fix},
+    NavType{{"FluidPressure", {"fluid_pressure"}}, add_pressure},
+    NavType{{"Range", {"range", "min_range", "max_range"}}, add_range},
+    NavType{{"DVL", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
+    NavType{{"DVLVelocity", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
+    NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}}, add_dvl_position},
+    NavType{{"Attitude", {"roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed"}}, add_ned_attitude},
+    NavType{{"DepthTemperature", {"depth", "pressure"}}, add_depth_and_pressure},
+    NavType{{"Odometry",
+             {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
+              "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w", "twist.twist.linear.x",
+              "twist.twist.linear.y", "twist.twist.linear.z"}},
+            add_odometry},
+    NavType{{"Float64", {"data"}, "depth"}, add_depth},
+    NavType{{"Float32", {"data"}, "depth"}, add_depth},
+    NavType{{"Float64", {"data"}, "pressure"}, add_pressure},
+    NavType{{"Float32", {"data"}, "pressure"}, add_pressure},
+};
+
+/// Gathers the topics and the navigation of a bag.
+class BagSurvey {
+ public:
+  explicit BagSurvey(Bag& bag) : bag_(bag) {}
+
+  void add(const BagMessage& message) {
+    add_topics();
+    Topic& topic = topics_[message.topic];
+    ++summaries_[topic.summary].messages;
+    if (!topic.known) return;
+    if (!message_.read(topic.known->layout, message.bytes)) {
+      add_damage(unusable_, "message that does not fit its definition", message.file_byte);
+      return;
+    }
+    ++records_;
+    Samples samples(sources_, summaries_[topic.summary].name, topic.known->time_of(message_, message.time_s));
+    kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
+  }
+
+  std::vector<DamageKind> damage() const {
+    std::vector<DamageKind> kinds = bag_.damage();
+    kinds.insert(kinds.end(), unusable_.begin(), unusable_.end());
+    return kinds;
+  }
+
+  Result<BagContents> finish() {
+    add_topics();
+    Result<NavLog> log = NavLog::make(sources_.take(), NavClock::kUnix);
+    if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
+    return BagContents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}};
+  }
+
+ private:
+  struct Topic {
+    std::size_t summary;
+    std::optional<KnownTopic> known;
+  };
+
+  void add_topics() {
+    while (topics_.size() < bag_.topics().size()) {
+      const BagTopic& topic = bag_.topics()[topics_.size()];
+      const auto [place, is_new] = places_.try_emplace(topic.name, summaries_.size());
+      std::optional<KnownTopic> known = known_topic(topic, kNavTypes);
+      if (is_new) {
+        using Use = BagTopicSummary::Use;
+        const Use use = is_sonar(topic) ? Use::kBeams : known ? Use::kNavigation : Use::kNone;
+        summaries_.push_back({topic.name, topic.type, 0, use});
+      }
+      topics_.push_back({place->second, std::move(known)});
+    }
+  }
+
+  Bag& bag_;
+  std::vector<Topic> topics_;
+  std::vector<BagTopicSummary> summaries_;
+  std::map<std::string, std::size_t> places_;  ///< in summaries_
+  NavSources sources_;
+  RosMessage message_;
+  std::size_t records_ = 0;
+  std::vector<DamageKind> unusable_;
+};
+
+}  // namespace
+
+Result<BagContents> read_bag(ByteStream stream, Damage damage) {
+  const std::span<const std::uint8_t> beginning = stream.beginning();
+  if (!looks_like_ros1_bag(beginning) && !looks_like_sqlite(beginning) && !looks_like_mcap(beginning)) {
+    return fail(Error::Code::kUnsupported, fmt::format("{}: is not a ROS bag", stream.name()));
+  }
+  const Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
+  if (!bag) return tl::unexpected(bag.error());
+  BagSurvey survey(**bag);
+  for (;;) {
+    const Result<std::optional<BagMessage>> message = (*bag)->next();
+    if (!message) return tl::unexpected(message.error());
+    if (*message) survey.add(**message);
+    if (const auto kinds = survey.damage(); damage == Damage::kFail && !kinds.empty()) {
+      return fail(Error::Code::kCorrupt,
+                  fmt::format("{}: byte {}: {}", (*bag)->name(), kinds.front().first_byte, kinds.front().what));
+    }
+    if (!*message) return survey.finish();
+  }
+}
+
+}  // namespace pingvox

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/bag.hpp"
+#include "io/ros_message.hpp"
+
+namespace pingvox {
+
+/// What a kind of message is: the name of its type without the package, and the fields that we need of it. Packages are
+/// renamed more often than messages.
+struct RosType {
+  std::string_view name;
+  std::array<std::string_view, 10> fields;  ///< empty ones are none
+  std::string_view topic_end = {};          ///< end of the topic's name, for numbers that only it explains
+};
+
+/// The wanted fields of one message.
+class RosFields {
+ public:
+  RosFields(const RosMessage& message, std::span<const std::size_t> fields) : message_(message), fields_(fields) {}
+
+  double number(std::size_t field, std::size_t i = 0) const { return message_.number(fields_[field], i); }
+  std::size_t count(std::size_t field) const { return message_.count(fields_[field]); }
+  std::vector<std::uint8_t> bytes(std::size_t field) const { return message_.bytes(fields_[field]); }
+
+ private:
+  const RosMessage& message_;
+  std::span<const std::size_t> fields_;
+};
+
+/// A topic of a known type.
+struct KnownTopic {
+  std::size_t type;  ///< in the table
+  RosLayout layout;
+  std::vector<std::size_t> fields;
+  std::optional<std::size_t> stamp_s, stamp_ns;
+
+  /// When the message was made: its stamp, if that is within a minute of the recording, else the recording's time.
+  double time_of(const RosMessage& message, double recorded_s) const {
+    constexpr double kNear_s = 60.0;
+    if (!stamp_s || !stamp_ns) return recorded_s;
+    const double time_s = message.number(*stamp_s) + message.number(*stamp_ns) * 1e-9;
+    return std::fabs(time_s - recorded_s) <= kNear_s ? time_s : recorded_s;
+  }
+};
+
+/// nullopt: the topic is of none of these types, or has other fields.
+template <class Types>
+std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types) {
+  if (!topic.is_readable) return std::nullopt;
+  const std::string_view type = topic.type;
+  const std::string_view name = type.substr(type.rfind('/') + 1);  // npos + 1 is 0
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    const RosType& wanted = types[i].type;
+    if (name != wanted.name || !topic.name.ends_with(wanted.topic_end)) continue;
+    std::optional<RosLayout> layout = RosLayout::make(type, topic.definition, topic.encoding);
+    if (!layout) return std::nullopt;
+    std::vector<std::size_t> fields;
+    bool has_all = true;
+    for (const std::string_view path : wanted.fields) {
+      if (path.empty()) break;
+      const std::optional<std::size_t> field = layout->field(path);
+      has_all = has_all && field;
+      fields.push_back(field.value_or(0));
+    }
+    if (!has_all) continue;
+    const auto stamp_s = layout->field("header.stamp.sec"), stamp_ns = layout->field("header.stamp.nanosec");
+    return KnownTopic{i, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
+  }
+  return std::nullopt;
+}
+
+/// Whether messages of the topic are beams.
+bool is_sonar(const BagTopic& topic);
+
+}  // namespace pingvox

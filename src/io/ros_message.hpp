@@ -1,0 +1,94 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Messages of ROS 1 and ROS 2, decoded by the text of their definition (docs/formats.md).
+namespace pingvox {
+
+/// How messages are written as bytes.
+enum class RosEncoding {
+  kRos1,  ///< packed, little-endian
+  kCdr    ///< of ROS 2: aligned, in the byte order that the message names
+};
+
+enum class RosNumber : std::uint8_t { kI8, kU8, kI16, kU16, kI32, kU32, kI64, kU64, kF32, kF64, kText };
+
+/// Where the values of a field are in a message: `count` of them, `stride` bytes apart. Of a text, count is its length.
+struct RosValues {
+  RosNumber type = RosNumber::kU8;
+  std::size_t first = 0, count = 0, stride = 1;
+};
+
+/// The fields of a type of message: those of messages in it have paths, as in "header.stamp.sec".
+class RosLayout {
+ public:
+  /// @param type        as in "sensor_msgs/Imu" or "sensor_msgs/msg/Imu"
+  /// @param definition  its text, with those of the messages in it; may be empty for common types of ROS 2
+  /// @return nullopt when a type is not defined, or the definition has no end
+  static std::optional<RosLayout> make(std::string_view type, std::string_view definition, RosEncoding encoding);
+
+  /// The number of a field; nullopt: there is none of that path.
+  std::optional<std::size_t> field(std::string_view path) const;
+  std::size_t fields() const { return paths_.size(); }
+  RosEncoding encoding() const { return encoding_; }
+
+ private:
+  friend class RosMessage;
+  friend class LayoutMaker;
+  enum class Array : std::uint8_t { kNone, kFixed, kVariable };
+
+  struct Member {
+    Array array = Array::kNone;
+    std::size_t size = 1;  ///< of a fixed array
+    RosNumber type = RosNumber::kU8;
+    std::size_t field = 0;              ///< of a number or text
+    std::optional<std::size_t> record;  ///< of a message in this one, in records_
+  };
+  /// A number in a record of fixed size.
+  struct Place {
+    std::size_t field, offset, count;
+    RosNumber type;
+  };
+  struct Record {
+    std::vector<Member> members;
+    bool is_fixed = false;  ///< each has the same size and places, when it begins at a multiple of `alignment`
+    std::size_t size = 0, alignment = 1;
+    std::vector<Place> places;
+  };
+
+  RosEncoding encoding_ = RosEncoding::kRos1;
+  std::vector<Record> records_;  ///< the last one is the message
+  std::vector<std::string> paths_;
+};
+
+/// Reads messages of a layout. Of an array of messages whose size varies (with texts or arrays in them) only the first
+/// has values.
+class RosMessage {
+ public:
+  /// false: the bytes do not fit the layout. They must outlive the use of the values.
+  bool read(const RosLayout& layout, std::span<const std::uint8_t> bytes);
+
+  std::size_t count(std::size_t field) const { return values_[field].count; }
+  /// NaN when it has less values. Of a text, the codes of its characters.
+  double number(std::size_t field, std::size_t i = 0) const;
+  /// Nothing for a field of numbers.
+  std::string_view text(std::size_t field) const;
+  /// All values, rounded to 0..255.
+  std::vector<std::uint8_t> bytes(std::size_t field) const;
+
+ private:
+  class Walk;
+
+  std::span<const std::uint8_t> bytes_;
+  std::endian order_ = std::endian::little;
+  std::vector<RosValues> values_;
+};
+
+}  // namespace pingvox
