@@ -11,6 +11,7 @@
 
 #include "io/bag_topics.hpp"
 #include "io/nav_sources.hpp"
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
 
@@ -20,11 +21,29 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
+/// The last position of a dead reckoning that may be set to zero while it is recorded.
+struct LastPosition {
+  double time_s = 0.0;
+  Eigen::Vector3d value;
+  bool was_reset = false;
+};
+
 /// Where the samples of one message go.
 class Samples {
  public:
-  Samples(NavSources& sources, const std::string& name, double time_s)
-      : sources_(sources), name_(name), time_s_(time_s) {}
+  Samples(NavSources& sources, const std::string& name, double time_s, std::optional<LastPosition>& last)
+      : sources_(sources), name_(name), time_s_(time_s), last_(last) {}
+
+  /// Adds a position by dead reckoning and its attitude. They are not valid after a reset, because they are in another
+  /// frame then.
+  void add_reckoned(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
+    constexpr double kMostSpeed_m_s = 10.0;
+    const bool was_reset = last_ && (last_->was_reset || (position_m - last_->value).norm() >
+                                                             kMostSpeed_m_s * std::max(time_s_ - last_->time_s, 0.1));
+    last_ = LastPosition{time_s_, position_m, was_reset};
+    add(NavQuantity::kPosition, position_m, !was_reset);
+    add(NavQuantity::kAttitude, attitude, !was_reset);
+  }
 
   void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
     NavSample sample;
@@ -38,11 +57,17 @@ class Samples {
   NavSources& sources_;
   const std::string& name_;
   double time_s_;
+  std::optional<LastPosition>& last_;
 };
 
 /// Three numbers from the field of the first on.
 Eigen::Vector3d three(const RosFields& message, std::size_t first) {
   return {message.number(first), message.number(first + 1), message.number(first + 2)};
+}
+
+/// Roll, pitch, yaw of a rotation.
+Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
+  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
 }
 
 /// An attitude from x, y, z, w. Drivers without one send zeros.
@@ -51,10 +76,7 @@ void add_attitude(const RosFields& message, std::size_t first, bool valid, Sampl
                              message.number(first + 2));
   constexpr double kTolerance = 1e-2;
   if (!(std::fabs(q.norm() - 1.0) <= kTolerance)) return;
-  const Eigen::Matrix3d r = q.normalized().toRotationMatrix();
-  samples.add(NavQuantity::kAttitude,
-              {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))},
-              valid);
+  samples.add(NavQuantity::kAttitude, rpy_of(q.normalized().toRotationMatrix()), valid);
 }
 
 /// Pressure in Pa, of drivers that send bar, hPa or Pa: those of the sea down to 490 m do not overlap.
@@ -107,18 +129,43 @@ void add_range(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kRange, {range_m, 0.0, 0.0}, range_m >= message.number(1) && range_m <= message.number(2));
 }
 
-/// Of Water Linked's A50 and A125, whose drivers pass its numbers on: forward, right, down.
-void add_dvl(const RosFields& message, Samples& samples) {
+/// From the axes of a DVL that looks ahead (x left, y up, z ahead) to forward, right, down.
+Eigen::Matrix3d frd_from_looking_ahead() {
+  Eigen::Matrix3d r;
+  r << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return r;
+}
+
+/// Of Water Linked's A50 and A125, whose drivers pass its numbers on: x forward, y right, z down when it looks down.
+void add_dvl_velocity(const RosFields& message, const Eigen::Matrix3d& frd_from_dvl, Samples& samples) {
   const bool valid = message.number(3) != 0.0;
-  samples.add(NavQuantity::kVelocity, from_ned::body(three(message, 0)), valid);
+  samples.add(NavQuantity::kVelocity, from_ned::body(frd_from_dvl * three(message, 0)), valid);
   const double altitude_m = message.number(4);
   samples.add(NavQuantity::kRange, {altitude_m, 0.0, 0.0}, valid && altitude_m > 0.0);
 }
 
-/// Its dead reckoning: x ahead at its last reset, y right, z down; angles in degrees.
-void add_dvl_position(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kPosition, from_ned::world(three(message, 0)));
-  samples.add(NavQuantity::kAttitude, from_ned::attitude(three(message, 3) * kRadPerDeg));
+/// Its dead reckoning in the axes that it had at its last reset; angles in degrees.
+void add_dvl_position(const RosFields& message, const Eigen::Matrix3d& frd_from_dvl, Samples& samples) {
+  const Eigen::Vector3d rpy = three(message, 3) * kRadPerDeg;
+  const Eigen::Matrix3d turned = pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z()).rotation();
+  samples.add_reckoned(from_ned::world(frd_from_dvl * three(message, 0)),
+                       from_ned::attitude(rpy_of(frd_from_dvl * turned * frd_from_dvl.transpose())));
+}
+
+void add_dvl(const RosFields& message, Samples& samples) {
+  add_dvl_velocity(message, Eigen::Matrix3d::Identity(), samples);
+}
+
+void add_dvl_ahead(const RosFields& message, Samples& samples) {
+  add_dvl_velocity(message, frd_from_looking_ahead(), samples);
+}
+
+void add_reckoning(const RosFields& message, Samples& samples) {
+  add_dvl_position(message, Eigen::Matrix3d::Identity(), samples);
+}
+
+void add_reckoning_ahead(const RosFields& message, Samples& samples) {
+  add_dvl_position(message, frd_from_looking_ahead(), samples);
 }
 
 /// As MAVLink's ATTITUDE: of a forward-right-down body in north-east-down.
@@ -165,8 +212,16 @@ constexpr std::array kNavTypes = {
     NavType{{"FluidPressure", {"fluid_pressure"}}, add_pressure},
     NavType{{"Range", {"range", "min_range", "max_range"}}, add_range},
     NavType{{"DVL", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
+    // Those of SOLAQUA look ahead, at the net.
+    NavType{{"DVLVelocity",
+             {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"},
+             "",
+             "sensors/"},
+            add_dvl_ahead},
+    NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}, "", "sensors/"},
+            add_reckoning_ahead},
     NavType{{"DVLVelocity", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
-    NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}}, add_dvl_position},
+    NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}}, add_reckoning},
     NavType{{"Attitude", {"roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed"}}, add_ned_attitude},
     NavType{{"DepthTemperature", {"depth", "pressure"}}, add_depth_and_pressure},
     NavType{{"Odometry",
@@ -195,7 +250,8 @@ class BagSurvey {
       return;
     }
     ++records_;
-    Samples samples(sources_, summaries_[topic.summary].name, topic.known->time_of(message_, message.time_s));
+    Samples samples(sources_, summaries_[topic.summary].name, topic.known->time_of(message_, message.time_s),
+                    topic.last_position);
     kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
   }
 
@@ -216,6 +272,7 @@ class BagSurvey {
   struct Topic {
     std::size_t summary;
     std::optional<KnownTopic> known;
+    std::optional<LastPosition> last_position;
   };
 
   void add_topics() {
@@ -228,7 +285,7 @@ class BagSurvey {
         const Use use = is_sonar(topic) ? Use::kBeams : known ? Use::kNavigation : Use::kNone;
         summaries_.push_back({topic.name, topic.type, 0, use});
       }
-      topics_.push_back({place->second, std::move(known)});
+      topics_.push_back({place->second, std::move(known), std::nullopt});
     }
   }
 

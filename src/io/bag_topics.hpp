@@ -21,6 +21,7 @@ struct RosType {
   std::string_view name;
   std::array<std::string_view, 10> fields;  ///< empty ones are none
   std::string_view topic_end = {};          ///< end of the topic's name, for numbers that only it explains
+  std::string_view package = {};            ///< for fields that mean something else in one package; empty: any
 };
 
 /// The wanted fields of one message.
@@ -61,20 +62,25 @@ std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types)
   const std::string_view name = type.substr(type.rfind('/') + 1);  // npos + 1 is 0
   for (std::size_t i = 0; i < types.size(); ++i) {
     const RosType& wanted = types[i].type;
-    if (name != wanted.name || !topic.name.ends_with(wanted.topic_end)) continue;
-    std::optional<RosLayout> layout = RosLayout::make(type, topic.definition, topic.encoding);
-    if (!layout) return std::nullopt;
-    std::vector<std::size_t> fields;
-    bool has_all = true;
-    for (const std::string_view path : wanted.fields) {
-      if (path.empty()) break;
-      const std::optional<std::size_t> field = layout->field(path);
-      has_all = has_all && field;
-      fields.push_back(field.value_or(0));
+    if (name != wanted.name || !topic.name.ends_with(wanted.topic_end) || !type.starts_with(wanted.package)) {
+      continue;
     }
-    if (!has_all) continue;
-    const auto stamp_s = layout->field("header.stamp.sec"), stamp_ns = layout->field("header.stamp.nanosec");
-    return KnownTopic{i, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
+    // Some writers leave only a part of the definition; a common type has another.
+    for (const std::string_view definition : {std::string_view(topic.definition), std::string_view()}) {
+      std::optional<RosLayout> layout = RosLayout::make(type, definition, topic.encoding);
+      if (!layout) continue;
+      std::vector<std::size_t> fields;
+      bool has_all = true;
+      for (const std::string_view path : wanted.fields) {
+        if (path.empty()) break;
+        const std::optional<std::size_t> field = layout->field(path);
+        has_all = has_all && field;
+        fields.push_back(field.value_or(0));
+      }
+      if (!has_all) continue;
+      const auto stamp_s = layout->field("header.stamp.sec"), stamp_ns = layout->field("header.stamp.nanosec");
+      return KnownTopic{i, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
+    }
   }
   return std::nullopt;
 }

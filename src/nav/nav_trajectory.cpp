@@ -19,14 +19,16 @@ constexpr std::array<std::string_view, 4> kMainEstimates = {"ATTITUDE", "ATT", "
                                                             "GLOBAL_POSITION_INT"};
 
 /// Only its valid samples; nullopt: there are none.
-std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity) {
+/// @param preferred  taken before other sources, but not before the main estimates
+std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity, std::string_view preferred = {}) {
   const NavSource* chosen = log.best(quantity);
   if (chosen == nullptr) return std::nullopt;
+  bool has_main = false;
   for (const NavSource& source : log.sources()) {
+    if (source.quantity != quantity || std::ranges::none_of(source.samples, &NavSample::valid)) continue;
     const bool is_main = std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end();
-    if (source.quantity == quantity && is_main && std::ranges::any_of(source.samples, &NavSample::valid)) {
-      chosen = &source;
-    }
+    if (is_main || (source.name == preferred && !has_main)) chosen = &source;
+    has_main = has_main || is_main;
   }
   NavSource valid = *chosen;
   std::erase_if(valid.samples, [](const NavSample& sample) { return !sample.valid; });
@@ -92,9 +94,11 @@ Result<std::optional<NavSource>> position_source(const NavLog& log) {
 }  // namespace
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
-  const std::optional<NavSource> attitude = main_source(log, NavQuantity::kAttitude);
   const Result<std::optional<NavSource>> position = position_source(log);
   if (!position) return tl::unexpected(position.error());
+  // A source of both has them in one frame, which need not be that of others.
+  const std::optional<NavSource> attitude =
+      main_source(log, NavQuantity::kAttitude, *position ? std::string_view((*position)->name) : std::string_view());
   if (!attitude || !*position) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));

@@ -16,7 +16,8 @@ struct NavTrajectory {
   std::string attitude, position;  ///< the names of the sources
 };
 
-/// Of each quantity the estimate of the autopilot's main filter, else the source with most valid samples. A position in
+/// Of each quantity the estimate of the autopilot's main filter, else the source with most valid samples; before that, an
+/// attitude that comes with the position. A position in
 /// metres is taken as it is; a log without one gives fixes as metres east and north of the first fix, at the depth
 /// where the log has it, else at the altitude relative to that fix.
 /// @param offset_s  added to all times
