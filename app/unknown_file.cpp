@@ -37,7 +37,7 @@ constexpr std::array kSignatures = {
     Signature{"image: "sv, "describes a grid for map_server", kWrittenOnly},
     Signature{"ncols "sv, "is a grid of heights", kWrittenOnly},
     Signature{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
-    Signature{"#ROSBAG "sv, "is a ROS bag", kAsCsv},
+    Signature{"#ROSBAG "sv, "is a ROS bag of a version before 2.0", "convert it with 'rosbag fix'"},
     Signature{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
 };
 

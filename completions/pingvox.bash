@@ -15,21 +15,21 @@ _pingvox_options() {
   case "$1" in
     "") options+=(--version) ;;
     map)
-      options+=(--output --format --json --quiet --progress --strict --config)
+      options+=(--output --format --json --quiet --progress --strict --topic --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
       options+=(--poses --nav --nav-offset --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
-    info) options+=(--json --strict) ;;
+    info) options+=(--json --strict --topic) ;;
     compare)
       options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
-      options+=(--output --format --strict --quiet --resolution --z --min-z --max-z --height --echoes)
+      options+=(--output --format --strict --topic --quiet --resolution --z --min-z --max-z --height --echoes)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
       options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
-      options+=(--title --strict --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
+      options+=(--title --strict --topic --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;

@@ -30,6 +30,7 @@ inline BeamsRead beams_in(std::span<const std::uint8_t> bytes, Damage damage) {
   }
   for (;;) {
     auto beam = (*source)->next();
+    if (!beam && beam.error().code == Error::Code::kBadOption) break;  // a choice is needed: a topic
     if (!beam) fails(beam.error());
     if (!beam || !*beam) break;
     require(validate(**beam).has_value(), "each beam that is read is valid");

@@ -79,10 +79,12 @@ void add_attitude(const RosFields& message, std::size_t first, bool valid, Sampl
   samples.add(NavQuantity::kAttitude, rpy_of(q.normalized().toRotationMatrix()), valid);
 }
 
-/// Pressure in Pa, of drivers that send bar, hPa or Pa: those of the sea down to 490 m do not overlap.
+/// Pressure in Pa, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
 double pascals(double pressure) {
-  constexpr double kMostBar = 50.0, kMostHpa = 50'000.0;
-  return pressure < kMostBar ? pressure * 1e5 : pressure < kMostHpa ? pressure * 100.0 : pressure;
+  constexpr double kMostBar = 50.0, kMost_kPa = 500.0, kMost_hPa = 50'000.0;
+  if (pressure < kMostBar) return pressure * 1e5;
+  if (pressure < kMost_kPa) return pressure * 1e3;
+  return pressure < kMost_hPa ? pressure * 1e2 : pressure;
 }
 
 void add_imu(const RosFields& message, Samples& samples) {

@@ -79,6 +79,7 @@ std::string as_field(std::string name) {
   for (char& c : name) {
     if (c < ' ' || c > '~' || c == ',' || c == '#') c = '_';
   }
+  if (name.find_first_not_of(' ') == std::string::npos) return "_";
   return name;
 }
 

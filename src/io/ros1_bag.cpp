@@ -19,13 +19,13 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint8_t kMessage = 2, kChunk = 5, kConnection = 7;
+constexpr std::uint8_t kMessage = 2, kBagHeader = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7;
 constexpr std::size_t kMaxHeader = 65'536;
 
 /// The header of a record: what we need of it.
 struct RecordHeader {
   std::uint8_t op = 0;
-  std::uint32_t connection = 0, size = 0;
+  std::uint32_t connection = 0, size = 0, count = 0;
   std::uint32_t time_s = 0, time_ns = 0;
   std::string_view compression, topic, type, definition;
 };
@@ -57,6 +57,8 @@ bool read_fields(Bytes bytes, RecordHeader& header) {
       fits = take_number(value, header.connection);
     } else if (name == "size") {
       fits = take_number(value, header.size);
+    } else if (name == "count") {
+      fits = take_number(value, header.count);
     } else if (name == "time") {
       fits = value.size() == 8 && take_number(value.first(4), header.time_s) &&
              take_number(value.subspan(4), header.time_ns);
@@ -100,6 +102,22 @@ std::optional<Compression> compression_of(const RecordHeader& header) {
   if (header.compression == "bz2") return Compression::kBz2;
   if (header.compression == "lz4") return Compression::kLz4;
   return std::nullopt;
+}
+
+/// Whether the data can be as long as the record says.
+bool has_possible_length(const Record& record) {
+  constexpr std::uint64_t kIndexEntry = 12, kInfoEntry = 8, kMost = 65'536;
+  const std::uint64_t length = record.data;
+  switch (record.header.op) {
+    case kIndex:
+      return length == kIndexEntry * record.header.count;
+    case kChunkInfo:
+      return length == kInfoEntry * record.header.count;
+    case kBagHeader:
+      return length <= kMost;
+    default:
+      return length <= kMaxChunk;
+  }
 }
 
 bool is_chunk(Bytes bytes) {
@@ -148,6 +166,7 @@ class Ros1Bag final : public Bag {
     if (!record || record->data > rest_.size() - record->data_at) {
       // In a chunk that was cut or could not be unpacked, this is not one more damage.
       if (!is_cut_) add_damage(damage_, "damaged record", at);
+      if (!is_packed_) give_back_next_chunk(rest_);
       rest_ = {};
       return std::nullopt;
     }
@@ -198,7 +217,7 @@ class Ros1Bag final : public Bag {
       if (!bytes) return tl::unexpected(bytes.error());
       record = record_in(*bytes);
     }
-    if (!record || (record->header.op == kChunk && record->data > kMaxChunk)) return skip_damage();
+    if (!record || !has_possible_length(*record)) return skip_damage();
     if (record->header.op == kChunk) return open_chunk(*record);
     return pass_over(*record);
   }
@@ -218,15 +237,24 @@ class Ros1Bag final : public Bag {
       return true;
     }
     if (is_cut_) add_damage(damage_, FrameFinder::kCutOff, reader_.position());
-    rest_ = data;
+    if (is_cut_) give_back_next_chunk(data);
+    rest_ = bytes->first(held_).subspan(record.data_at);
     if (is_packed_) {
-      const bool is_whole = unpack(*compression, data, record.header.size, unpacked_);
-      if (!is_whole && !is_cut_) add_damage(damage_, "damaged chunk", reader_.position());
+      const bool is_whole = unpack(*compression, rest_, record.header.size, unpacked_);
+      if (!is_whole && !is_cut_) {
+        add_damage(damage_, "damaged chunk", reader_.position());
+        give_back_next_chunk(data);
+      }
       is_cut_ = is_cut_ || !is_whole;
       rest_ = unpacked_;
     }
     chunk_size_ = rest_.size();
     return true;
+  }
+
+  /// Reads on at a chunk in the last bytes of what is held: its own chunk has a wrong length.
+  void give_back_next_chunk(Bytes last) {
+    if (const auto chunk = next_chunk(last)) held_ -= last.size() - *chunk;
   }
 
   /// Skips a record of the index.

@@ -125,6 +125,12 @@ class SqliteBag final : public Bag {
         break;
       }
       row_ = static_cast<double>(sqlite3_column_int64(row, 3));
+      // A page that the end of a file cuts has rows of nothing.
+      const bool is_row = sqlite3_column_type(row, 0) == SQLITE_INTEGER &&
+                          sqlite3_column_type(row, 1) == SQLITE_INTEGER && sqlite3_column_type(row, 2) == SQLITE_BLOB;
+      if (!is_row && !in_damage_) add_damage(damage_, "damaged database page", 0);
+      in_damage_ = !is_row;
+      if (!is_row) continue;
       const auto topic = numbers_.find(sqlite3_column_int64(row, 0));
       if (topic == numbers_.end()) {
         add_damage(damage_, "message of an unknown topic", 0);
@@ -157,6 +163,7 @@ class SqliteBag final : public Bag {
   std::map<std::int64_t, std::size_t> numbers_;  ///< of topics
   Query messages_;
   std::uint64_t rows_ = 0;
+  bool in_damage_ = false;
   double row_ = 0.0, last_row_ = 0.0;
 };
 

@@ -82,7 +82,7 @@ TEST(Files, TheWrongKindIsNamed) {
 TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
   const Workplace here;
   const std::vector<std::pair<std::string, std::vector<std::string>>> unknown_files = {
-      {"#ROSBAG V2.0\n", {"ROS bag", "bin_length_m", "docs/formats.md"}},
+      {"#ROSBAG V1.2\n", {"ROS bag", "before 2.0", "rosbag fix"}},
       {"\x1f\x8b\x08 tank.csv"s, {"compressed", "unpack"}},
       {"\xff\xfet\0i\0"s, {"UTF-16", "UTF-8"}},
       {"version https://git-lfs.github.com/spec/v1\n", {"git lfs pull"}},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fuzz/bodies/bag.hpp"
 #include "fuzz/bodies/beams.hpp"
 #include "fuzz/bodies/maps.hpp"
 #include "fuzz/bodies/mesh.hpp"
@@ -60,6 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
                          testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
                                          Reader{"pingviewer", fuzz::beams}, Reader{"seanet", fuzz::beams},
                                          Reader{"v4log", fuzz::beams}, Reader{"dumplog", fuzz::beams},
+                                         Reader{"bag", fuzz::bag}, Reader{"db3", fuzz::bag}, Reader{"mcap", fuzz::bag},
                                          Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
                                          Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
                                          Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},

@@ -101,6 +101,7 @@ class Ros1 {
     chunk_.clear();
     // An index, of which nothing is needed.
     Bytes index;
+    field(index, "count", number(1));
     field(index, "op", Bytes{4});
     record(file_, index, Bytes(12));
   }
@@ -180,9 +181,7 @@ class Mcap {
   }
 
   /// Writes what is not in a chunk.
-  void end_flat() {
-    append(file_, std::exchange(chunk_, {}));
-  }
+  void end_flat() { append(file_, std::exchange(chunk_, {})); }
 
   Bytes closed() const {
     Bytes file = file_;
