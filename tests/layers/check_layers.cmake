@@ -13,7 +13,7 @@ set(allowed_mapping base geometry sonar map cloud)
 set(allowed_io base geometry sonar nav map)
 set(allowed_sim base geometry sonar)
 set(allowed_viewer base geometry sonar map mapping io)
-set(allowed_slam base geometry sonar map mapping)
+set(allowed_slam base geometry sonar nav map mapping)
 set(layers base geometry sonar nav map cloud mapping io sim viewer slam)
 
 # Libraries that one layer keeps to itself, in its sources: first part of the include -> layer.

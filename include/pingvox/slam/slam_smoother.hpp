@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/detect_echo.hpp"
+#include "pingvox/sonar/filters.hpp"
+#include "pingvox/sonar/sweep.hpp"
+
+namespace pingvox {
+
+/// Which echoes of different sweeps are matched.
+enum class Matching {
+  kPairs,  ///< each with the nearest of other sweeps near it, point to line
+  kNone,   ///< none: dead reckoning by velocity and headings
+};
+
+struct SlamOptions {
+  Matching matching = Matching::kPairs;
+  std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
+
+  Pose body_from_sonar = Pose::Identity();
+  /// How a source of navigation is mounted: body_from_source by the source's name; the identity for others. Headings
+  /// and velocities are turned by it. The sonar is carried by the body at its place relative to the velocity's source.
+  std::map<std::string, Pose> body_from_source;
+  double nav_offset_s = 0.0;  ///< added to the times of navigation samples to get those of the beams
+
+  /// How echoes are found in logs with intensities. Where a sweep has but one intensity besides 0, somebody else has
+  /// found them: each run of bins is one.
+  FilterOptions filter;
+  EchoOptions echo;
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// A number that was estimated.
+struct Estimate {
+  double value = 0.0;
+  double deviation = 0.0;  ///< its standard deviation
+};
+
+/// What a heading source says beyond the body's yaw: constant + sin1 sin(yaw) + cos1 cos(yaw) + the same of 2 yaw
+/// [rad].
+struct HeadingCalibration {
+  std::string source;
+  Estimate constant_rad, sin1_rad, cos1_rad, sin2_rad, cos2_rad;
+};
+
+/// What is estimated besides the trajectory.
+struct SlamCalibration {
+  Estimate velocity_yaw_rad;      ///< by which the velocity's source is turned against its mount, counter-clockwise
+  Estimate velocity_scale;        ///< true over measured velocity, less 1
+  Estimate wall_in_echo;          ///< where the wall is in a run of bins: -1 its first bin, 0 its middle, 1 its last
+  Estimate sonar_x_m, sonar_y_m;  ///< added to the place of the sonar
+  std::vector<HeadingCalibration> headings;
+};
+
+struct SlamReport {
+  std::size_t beams = 0;
+  std::size_t sweeps = 0;
+  std::size_t echoes = 0;  ///< within the time of the trajectory
+  std::size_t knots = 0;
+  std::size_t pairs = 0;        ///< of echoes, in the last iteration
+  double pair_median_m = 0.0;   ///< median distance from line to point over the pairs
+  std::size_t loops_found = 0;  ///< pairs of sweeps far apart in time and near in place
+  std::size_t loops_kept = 0;   ///< of these, how many have at least ten pairs that count
+  std::size_t velocities = 0;   ///< valid samples
+  std::size_t velocities_clipped = 0;
+  double longest_gap_s = 0.0;     ///< between valid velocities
+  std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
+};
+
+struct SlamSolution {
+  Trajectory trajectory;  ///< map_from_body at each beam: x east, y north as the headings say, the first pose at 0, 0
+  SlamCalibration calibration;
+  SlamReport report;
+};
+
+/// Where a vehicle was and how its sensors are mounted, by one least-squares problem over all that was recorded
+/// (docs/slam.md): knots of position and heading, calibration, and pairs of echoes of different sweeps.
+class SlamSmoother {
+ public:
+  /// REQUIRES valid options.
+  explicit SlamSmoother(SlamOptions options);
+  ~SlamSmoother();
+  SlamSmoother(SlamSmoother&&) noexcept;
+  SlamSmoother& operator=(SlamSmoother&&) noexcept;
+
+  /// Takes the next beam, which must be valid.
+  void add(Beam beam);
+  /// Takes a sample of a source. Velocity, attitude, heading and depth are used; others are passed over, as are samples
+  /// that are not valid.
+  /// @return kCorrupt when a number is not finite
+  Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
+  Result<void> add(const NavLog& log);
+
+  /// Solves for all that was added so far. May be called again after more was added.
+  /// @return kUnsupported saying what is missing: beams, velocity or heading, or a time at which all were recorded;
+  ///         kCorrupt when the times of the beams do not rise
+  Result<SlamSolution> solve() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,257 @@
+#include "slam/echo_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace pingvox {
+namespace {
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+
+/// The line of a wall.
+constexpr std::size_t kLineEchoes = 8, kFewestLineEchoes = 4;
+constexpr double kLineReach_m = 5.0, kWidthOfLength = 0.25;
+
+/// Which sweeps are partners of a sweep: these many before and after it, and some that are near in place only.
+constexpr std::array<std::size_t, 5> kNear = {1, 2, 3, 5, 8};
+constexpr std::size_t kFar = 12, kFarPartners = 10, kLoopPairs = 10;
+constexpr double kFarReach_m = 35.0;
+
+constexpr double kLeastAgreement = 0.85;  ///< of two normals, cosine
+/// Noise of an echo: of its place, of half its length along the beam, of the beam's direction.
+constexpr double kPlace_m = 0.3, kOfHalfLength = 0.3, kBearing_rad = 1.0 * kDegree_rad;
+/// All pairs of an echo together weigh so much.
+constexpr double kWeightOfEcho = 0.5;
+constexpr double kRobustOfGate = 0.35;
+
+Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// The echoes of one sweep in order of x, for searches of the nearest.
+class SweepIndex {
+ public:
+  SweepIndex(std::span<const EchoOnGround> ground, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) echoes_.push_back({ground[i].at, static_cast<std::uint32_t>(i)});
+    std::ranges::sort(echoes_, {}, [](const Entry& e) { return std::pair(e.at.x(), e.echo); });
+  }
+
+  struct Entry {
+    Eigen::Vector2d at;
+    std::uint32_t echo;
+  };
+  /// Calls visit(entry, square of its distance) for each echo within `reach_m`; its return value is the new reach.
+  template <class Visit>
+  void near(const Eigen::Vector2d& place, double reach_m, Visit visit) const {
+    const auto middle = std::ranges::lower_bound(echoes_, place.x(), {}, [](const Entry& e) { return e.at.x(); });
+    auto up = middle, down = middle;
+    double square = reach_m * reach_m;
+    bool has_up = true, has_down = true;
+    while (has_up || has_down) {
+      has_up = up != echoes_.end() && (up->at.x() - place.x()) * (up->at.x() - place.x()) <= square;
+      if (has_up) {
+        if (const double d = (up->at - place).squaredNorm(); d <= square) square = visit(*up, d, square);
+        ++up;
+      }
+      has_down =
+          down != echoes_.begin() && ((down - 1)->at.x() - place.x()) * ((down - 1)->at.x() - place.x()) <= square;
+      if (has_down) {
+        --down;
+        if (const double d = (down->at - place).squaredNorm(); d <= square) square = visit(*down, d, square);
+      }
+    }
+  }
+
+ private:
+  std::vector<Entry> echoes_;
+};
+
+std::vector<SweepIndex> index_sweeps(std::span<const EchoOnGround> ground, std::span<const std::size_t> sweeps) {
+  std::vector<SweepIndex> indices;
+  for (std::size_t s = 0; s + 1 < sweeps.size(); ++s) indices.emplace_back(ground, sweeps[s], sweeps[s + 1]);
+  return indices;
+}
+
+/// Normal of the line through points; zero if they are no line.
+Eigen::Vector2d normal_of(std::span<const Eigen::Vector2d> points) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) mean += p;
+  mean /= static_cast<double>(points.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Vector2d d = p - mean;
+    xx += d.x() * d.x();
+    xy += d.x() * d.y();
+    yy += d.y() * d.y();
+  }
+  const double middle = 0.5 * (xx + yy), half = std::hypot(0.5 * (xx - yy), xy);
+  const double long_square = middle + half, wide_square = std::max(0.0, middle - half);
+  if (!(long_square > 0.0) || wide_square >= kWidthOfLength * kWidthOfLength * long_square) {
+    return Eigen::Vector2d::Zero();
+  }
+  const double along_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  return {-std::sin(along_rad), std::cos(along_rad)};
+}
+
+/// splitmix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+std::uint64_t mix(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal) {
+  const double along = kOfHalfLength * echo.run.half_length_m * normal.dot(ground.ray);
+  const double across = kBearing_rad * echo.run.middle_m * cross(normal, ground.ray);
+  return kPlace_m * kPlace_m + along * along + across * across;
+}
+
+}  // namespace
+
+EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+                        const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo) {
+  EchoOnGround ground;
+  const Eigen::Vector3d knot =
+      unknowns.knots[echo.knot] + echo.share * (unknowns.knots[echo.knot + 1] - unknowns.knots[echo.knot]);
+  const double yaw_rad = echo.main_yaw_rad + knot.z();
+  const double ray_rad = yaw_rad + mount.yaw_rad + echo.run.bearing_rad;
+  ground.ray = {std::cos(ray_rad), std::sin(ray_rad)};
+  const auto& g = unknowns.globals;
+  const Eigen::Vector2d lever = mount.place_m + Eigen::Vector2d(g[global::kSonarX], g[global::kSonarY]);
+  const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+  ground.arm = Eigen::Vector2d(c * lever.x() - s * lever.y(), s * lever.x() + c * lever.y()) +
+               (echo.run.middle_m + g[global::kWall] * echo.run.half_length_m) * ground.ray;
+  ground.bulge = problem.bulge(unknowns, ways[echo.knot], echo.knot, echo.run.time_s);
+  ground.at = knot.head<2>() + ground.bulge + ground.arm;
+  return ground;
+}
+
+std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+                                       const std::vector<SlamProblem::Way>& ways, std::span<const PlacedEcho> echoes,
+                                       std::span<const std::size_t> sweeps) {
+  std::vector<EchoOnGround> ground;
+  ground.reserve(echoes.size());
+  for (const PlacedEcho& echo : echoes) ground.push_back(place_echo(problem, mount, unknowns, ways, echo));
+  const std::vector<SweepIndex> indices = index_sweeps(ground, sweeps);
+  struct Near {
+    double square;
+    Eigen::Vector2d at;
+  };
+  std::vector<Near> nearest;
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t s = 0; s < indices.size(); ++s) {
+    for (std::size_t i = sweeps[s]; i < sweeps[s + 1]; ++i) {
+      nearest.clear();
+      indices[s].near(ground[i].at, kLineReach_m, [&](const SweepIndex::Entry& entry, double d, double reach) {
+        const auto place = std::ranges::upper_bound(nearest, d, {}, &Near::square);
+        nearest.insert(place, {d, entry.at});
+        if (nearest.size() <= kLineEchoes) return reach;
+        nearest.pop_back();
+        return nearest.back().square;
+      });
+      if (nearest.size() < kFewestLineEchoes) continue;
+      points.clear();
+      for (const Near& near : nearest) points.push_back(near.at);
+      ground[i].normal = normal_of(points);
+    }
+  }
+  return ground;
+}
+
+EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
+                     std::span<const std::size_t> sweeps, std::span<const Eigen::Vector2d> sweep_places_m,
+                     const PairOptions& options) {
+  EchoPairs result;
+  const std::vector<SweepIndex> indices = index_sweeps(ground, sweeps);
+  const double robust_m = kRobustOfGate * options.gate_m;
+  std::vector<std::size_t> pairs_of(echoes.size(), 0);
+  std::vector<std::pair<std::uint64_t, std::size_t>> far;
+  for (std::size_t s = 0; s < indices.size(); ++s) {
+    std::vector<std::size_t> partners;
+    for (const std::size_t step : kNear) {
+      if (step <= s) partners.push_back(s - step);
+      if (s + step < indices.size()) partners.push_back(s + step);
+    }
+    const std::size_t near_partners = partners.size();
+    far.clear();
+    for (std::size_t other = 0; other < indices.size(); ++other) {
+      const std::size_t apart = other > s ? other - s : s - other;
+      if (apart <= kFar || (sweep_places_m[s] - sweep_places_m[other]).norm() > kFarReach_m) continue;
+      // The same for both, and in each iteration: fewer blocks in the normal equations.
+      far.emplace_back(mix(mix(mix(options.seed) ^ std::min(s, other)) ^ std::max(s, other)), other);
+    }
+    const std::size_t far_partners = std::min(far.size(), kFarPartners);
+    std::ranges::partial_sort(far, far.begin() + static_cast<std::ptrdiff_t>(far_partners));
+    for (std::size_t i = 0; i < far_partners; ++i) partners.push_back(far[i].second);
+    result.loops_found += far_partners;
+
+    for (std::size_t p = 0; p < partners.size(); ++p) {
+      std::size_t counting = 0;
+      for (std::size_t i = sweeps[s]; i < sweeps[s + 1]; ++i) {
+        if (ground[i].normal.isZero(0.0)) continue;
+        std::optional<std::uint32_t> nearest;
+        indices[partners[p]].near(ground[i].at, options.gate_m, [&](const SweepIndex::Entry& entry, double d, double) {
+          nearest = entry.echo;
+          return d;
+        });
+        if (!nearest) continue;
+        const EchoOnGround& other = ground[*nearest];
+        const double agreement = ground[i].normal.dot(other.normal);
+        if (std::abs(agreement) < kLeastAgreement) continue;
+        EchoPair pair;
+        pair.a = static_cast<std::uint32_t>(i);
+        pair.b = *nearest;
+        pair.normal = (ground[i].normal + (agreement < 0.0 ? -1.0 : 1.0) * other.normal).normalized();
+        pair.distance_m = pair.normal.dot(ground[i].at - other.at);
+        const double variance =
+            variance_of(echoes[i], ground[i], pair.normal) + variance_of(echoes[*nearest], other, pair.normal);
+        // Geman and McClure (1987): the weight of a residual.
+        const double square = robust_m * robust_m;
+        const double share = square / (square + pair.distance_m * pair.distance_m);
+        pair.weight = share * share / variance;
+        if (share > 0.5) ++counting;
+        ++pairs_of[i];
+        result.pairs.push_back(pair);
+      }
+      if (p >= near_partners && counting >= kLoopPairs) ++result.loops_kept;
+    }
+  }
+  for (EchoPair& pair : result.pairs) pair.weight *= kWeightOfEcho / static_cast<double>(pairs_of[pair.a]);
+  return result;
+}
+
+PairRow pair_row(const PlacedEcho& a, const EchoOnGround& ground_a, const PlacedEcho& b, const EchoOnGround& ground_b,
+                 const Unknowns& unknowns, const EchoPair& pair) {
+  PairRow row;
+  row.distance_m = pair.normal.dot(ground_a.at - ground_b.at);
+  const auto add = [&](const PlacedEcho& echo, const EchoOnGround& ground, double sign, Eigen::Index first) {
+    const double rest = 1.0 - echo.share;
+    const double by_yaw = sign * pair.normal.dot(quarter_turn(ground.arm));
+    row.by.segment<2>(first) = sign * rest * pair.normal;
+    row.by[first + 2] = rest * by_yaw;
+    row.by.segment<2>(first + 3) = sign * echo.share * pair.normal;
+    row.by[first + 5] = echo.share * by_yaw;
+    row.by[12] += sign * echo.run.half_length_m * pair.normal.dot(ground.ray);
+    const double error = unknowns.knots[echo.knot].z() +
+                         echo.share * (unknowns.knots[echo.knot + 1].z() - unknowns.knots[echo.knot].z());
+    const double yaw_rad = echo.main_yaw_rad + error;
+    const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
+    row.by[13] += sign * pair.normal.dot(ahead);
+    row.by[14] += sign * pair.normal.dot(quarter_turn(ahead));
+  };
+  add(a, ground_a, 1.0, 0);
+  add(b, ground_b, -1.0, 6);
+  return row;
+}
+
+}  // namespace pingvox

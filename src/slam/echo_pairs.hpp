@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slam/slam_problem.hpp"
+
+/// Echoes on the ground, and pairs of them.
+namespace pingvox {
+
+/// Where an echo is with the present unknowns.
+struct EchoOnGround {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  Eigen::Vector2d bulge = Eigen::Vector2d::Zero();   ///< of the way of the vehicle, see SlamProblem::bulge
+  Eigen::Vector2d arm = Eigen::Vector2d::Zero();     ///< from the velocity's source to the wall
+  Eigen::Vector2d ray = Eigen::Vector2d::Zero();     ///< the beam's direction
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< of the wall; zero where the echoes around form no line
+};
+
+/// How the sonar is mounted, seen from the velocity's source: place and yaw in the frame of the body.
+struct SonarMount {
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0.0;
+};
+
+EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+                        const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo);
+
+/// Places all echoes, and fits the wall's line at each: through the eight nearest of its sweep within five metres.
+/// @param sweeps  where the echoes of each sweep begin, and the end of the last
+std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+                                       const std::vector<SlamProblem::Way>& ways, std::span<const PlacedEcho> echoes,
+                                       std::span<const std::size_t> sweeps);
+
+struct EchoPair {
+  std::uint32_t a = 0, b = 0;                        ///< echoes
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< of the wall, mean of both
+  double distance_m = 0.0;                           ///< from b to a along the normal
+  double weight = 0.0;                               ///< of its square: one over the variance, less for outliers
+};
+
+struct PairOptions {
+  std::uint64_t seed = 1;
+  double gate_m = 10.0;
+};
+
+struct EchoPairs {
+  std::vector<EchoPair> pairs;
+  std::size_t loops_found = 0, loops_kept = 0;  ///< see SlamReport
+};
+
+/// Pairs of each echo with the nearest of other sweeps: of those before and after its own, and of some of those that
+/// are near in place only.
+EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
+                     std::span<const std::size_t> sweeps, std::span<const Eigen::Vector2d> sweep_places_m,
+                     const PairOptions& options);
+
+/// Distance of a pair along its normal, and its derivatives by the knots around both echoes and by the globals from
+/// kWall to kSonarY. The bulges and the normal are held.
+struct PairRow {
+  double distance_m = 0.0;
+  Eigen::Matrix<double, 15, 1> by = Eigen::Matrix<double, 15, 1>::Zero();  ///< a, after a, b, after b, globals
+};
+PairRow pair_row(const PlacedEcho& a, const EchoOnGround& ground_a, const PlacedEcho& b, const EchoOnGround& ground_b,
+                 const Unknowns& unknowns, const EchoPair& pair);
+
+}  // namespace pingvox

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "pingvox/sonar/detect_echo.hpp"
+#include "pingvox/sonar/filters.hpp"
+#include "pingvox/sonar/sweep.hpp"
+
+namespace pingvox {
+
+/// A run of bins in which something reflected.
+struct EchoRun {
+  double time_s = 0.0;
+  double bearing_rad = 0.0;    ///< in the frame of the sonar
+  double middle_m = 0.0;       ///< range of its middle
+  double half_length_m = 0.0;  ///< half of its length along the beam
+};
+
+/// The echoes of a sweep, in the order of its beams. In a sweep with intensities one for each beam that has one; of one
+/// that was thresholded already the two longest runs of each beam.
+/// REQUIRES valid options.
+std::vector<EchoRun> echo_runs(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& echo);
+
+}  // namespace pingvox

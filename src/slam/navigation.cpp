@@ -1,0 +1,180 @@
+#include "slam/navigation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+namespace pingvox {
+namespace {
+
+constexpr std::size_t kWindow = 5;             ///< samples to either side that an outlier is judged by
+constexpr double kClip = 3.0;                  ///< robust standard deviations
+constexpr double kMadToDeviation = 1.4826;     ///< of normal noise
+constexpr double kLeastDeviation_m_s = 0.005;  ///< resolution of common logs
+constexpr double kNoiseWindow_s = 30.0;
+
+double median(std::vector<double> numbers) {
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+/// Valid samples at rising times; of equal times the first counts.
+std::vector<NavSample> usable(const NavSource& source) {
+  std::vector<NavSample> samples;
+  for (const NavSample& sample : source.samples) {
+    if (sample.valid && (samples.empty() || sample.time_s > samples.back().time_s)) samples.push_back(sample);
+  }
+  return samples;
+}
+
+std::vector<double> times_of(std::span<const NavSample> samples) {
+  std::vector<double> times_s(samples.size());
+  std::ranges::transform(samples, times_s.begin(), &NavSample::time_s);
+  return times_s;
+}
+
+/// Values held near the median around; marks those that were not.
+std::vector<double> clip(std::span<const double> values, std::vector<bool>& clipped) {
+  std::vector<double> held(values.begin(), values.end());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t first = i < kWindow ? 0 : i - kWindow, end = std::min(values.size(), i + kWindow + 1);
+    std::vector<double> around(values.begin() + static_cast<std::ptrdiff_t>(first),
+                               values.begin() + static_cast<std::ptrdiff_t>(end));
+    const double middle = median(around);
+    for (double& value : around) value = std::abs(value - middle);
+    const double most = kClip * std::max(kMadToDeviation * median(around), kLeastDeviation_m_s);
+    held[i] = std::clamp(values[i], middle - most, middle + most);
+    if (held[i] != values[i]) clipped[i] = true;
+  }
+  return held;
+}
+
+/// Noise of the integral over time at each sample, from second differences: what moves smoothly has none.
+std::vector<double> noise_density(const std::vector<double>& times_s, std::span<const double> ahead,
+                                  std::span<const double> left) {
+  const std::size_t count = times_s.size();
+  std::vector<double> sums(count + 1, 0.0);  // of squares, before each sample
+  for (std::size_t i = 0; i < count; ++i) {
+    double square = 0.0;
+    if (i > 0 && i + 1 < count) {
+      for (const auto& axis : {ahead, left}) {
+        const double second = axis[i - 1] - 2.0 * axis[i] + axis[i + 1];
+        square += second * second / 12.0;  // 6 by the weights, 2 axes
+      }
+    }
+    sums[i + 1] = sums[i] + square;
+  }
+  std::vector<double> density(count);
+  std::size_t first = 0, end = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    while (times_s[first] < times_s[i] - kNoiseWindow_s) ++first;
+    while (end < count && times_s[end] <= times_s[i] + kNoiseWindow_s) ++end;
+    const double step_s =
+        end - first > 1 ? (times_s[end - 1] - times_s[first]) / static_cast<double>(end - first - 1) : 1.0;
+    const double variance = std::max(0.0, sums[end] - sums[first]) / static_cast<double>(end - first);
+    density[i] = std::max(std::sqrt(variance), kLeastDeviation_m_s) * std::sqrt(step_s);
+  }
+  return density;
+}
+
+}  // namespace
+
+TimeSeries::TimeSeries(std::vector<double> times_s, std::vector<double> values)
+    : times_s_(std::move(times_s)), values_(std::move(values)) {
+  assert(!times_s_.empty() && times_s_.size() == values_.size());
+  if (times_s_.size() < 2) return;
+  std::vector<double> steps_s(times_s_.size() - 1);
+  for (std::size_t i = 0; i < steps_s.size(); ++i) steps_s[i] = times_s_[i + 1] - times_s_[i];
+  usual_limit_s_ = std::max(5.0 * median(std::move(steps_s)), 0.5);
+}
+
+double TimeSeries::at(double time_s) const {
+  const auto after = std::ranges::upper_bound(times_s_, time_s);
+  if (after == times_s_.begin()) return values_.front();
+  if (after == times_s_.end()) return values_.back();
+  const auto i = static_cast<std::size_t>(after - times_s_.begin());
+  const double share = (time_s - times_s_[i - 1]) / (times_s_[i] - times_s_[i - 1]);
+  return values_[i - 1] + share * (values_[i] - values_[i - 1]);
+}
+
+double TimeSeries::gap_s(double from_s, double to_s) const {
+  double gap_s = 0.0;
+  const auto add = [&](double begin_s, double end_s) {
+    gap_s += std::max(0.0, std::min(end_s, to_s) - std::max(begin_s, from_s));
+  };
+  add(from_s, times_s_.front());
+  add(times_s_.back(), to_s);
+  auto next = std::ranges::upper_bound(times_s_, from_s);
+  if (next == times_s_.begin()) ++next;
+  for (; next != times_s_.end() && *(next - 1) < to_s; ++next) {
+    if (*next - *(next - 1) > usual_limit_s_) add(*(next - 1), *next);
+  }
+  return gap_s;
+}
+
+double TimeSeries::longest_step_s() const {
+  double longest_s = 0.0;
+  for (std::size_t i = 1; i < times_s_.size(); ++i) longest_s = std::max(longest_s, times_s_[i] - times_s_[i - 1]);
+  return longest_s;
+}
+
+std::optional<HeadingSource> heading_source(const NavSource& source, const Pose& body_from_source) {
+  const std::vector<NavSample> samples = usable(source);
+  if (samples.empty()) return std::nullopt;
+  const bool is_attitude = source.quantity == NavQuantity::kAttitude;
+  std::vector<double> roll, pitch, yaw;
+  for (const NavSample& sample : samples) {
+    const Eigen::Vector3d rpy = is_attitude ? sample.value : Eigen::Vector3d(0.0, 0.0, sample.value.x());
+    const Eigen::Matrix3d world_from_body =
+        (pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z()) * body_from_source.inverse()).rotation();
+    roll.push_back(std::atan2(world_from_body(2, 1), world_from_body(2, 2)));
+    pitch.push_back(std::asin(std::clamp(-world_from_body(2, 0), -1.0, 1.0)));
+    const double turned = std::atan2(world_from_body(1, 0), world_from_body(0, 0));
+    yaw.push_back(yaw.empty() ? turned : yaw.back() + std::remainder(turned - yaw.back(), 2.0 * std::numbers::pi));
+  }
+  const std::vector<double> times_s = times_of(samples);
+  HeadingSource heading{source.name, TimeSeries(times_s, std::move(yaw)), std::nullopt, std::nullopt};
+  if (is_attitude) {
+    heading.roll_rad.emplace(times_s, std::move(roll));
+    heading.pitch_rad.emplace(times_s, std::move(pitch));
+  }
+  return heading;
+}
+
+std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source) {
+  const std::vector<NavSample> samples = usable(source);
+  if (samples.size() < 2) return std::nullopt;
+  std::vector<bool> outliers(samples.size(), false);
+  std::array<std::vector<double>, 2> axes;  // in the frame of the device, whose noise it is
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    std::vector<double> values;
+    for (const NavSample& sample : samples) values.push_back(sample.value[static_cast<Eigen::Index>(axis)]);
+    axes[axis] = clip(values, outliers);
+  }
+  std::vector<double> times_s = times_of(samples);
+  std::vector<double> density = noise_density(times_s, axes[0], axes[1]);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector3d turned =
+        body_from_source.rotation() * Eigen::Vector3d(axes[0][i], axes[1][i], samples[i].value.z());
+    axes[0][i] = turned.x();
+    axes[1][i] = turned.y();
+  }
+  return VelocitySource{source.name, TimeSeries(times_s, std::move(axes[0])), TimeSeries(times_s, std::move(axes[1])),
+                        TimeSeries(times_s, std::move(density)),
+                        static_cast<std::size_t>(std::ranges::count(outliers, true))};
+}
+
+std::optional<TimeSeries> number_source(const NavSource& source) {
+  const std::vector<NavSample> samples = usable(source);
+  if (samples.empty()) return std::nullopt;
+  std::vector<double> values(samples.size());
+  std::ranges::transform(samples, values.begin(), [](const NavSample& sample) { return sample.value.x(); });
+  return TimeSeries(times_of(samples), std::move(values));
+}
+
+}  // namespace pingvox

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/nav/nav_log.hpp"
+
+/// What a vehicle's navigation says, prepared for dead reckoning.
+namespace pingvox {
+
+/// Numbers over time, linear between the samples.
+class TimeSeries {
+ public:
+  /// REQUIRES at least one sample, and times that rise strictly.
+  TimeSeries(std::vector<double> times_s, std::vector<double> values);
+
+  double from_s() const { return times_s_.front(); }
+  double to_s() const { return times_s_.back(); }
+  std::size_t size() const { return times_s_.size(); }
+  const std::vector<double>& times_s() const { return times_s_; }
+  const std::vector<double>& values() const { return values_; }
+  /// The first and last value go on outside.
+  double at(double time_s) const;
+  /// The part of a stretch of time that lies between samples farther apart than five times their median step, and than
+  /// half a second, or outside of them.
+  double gap_s(double from_s, double to_s) const;
+  double longest_step_s() const;
+
+ private:
+  std::vector<double> times_s_, values_;
+  double usual_limit_s_ = 0.0;
+};
+
+/// Yaw of the body [rad] by one source, without jumps at the half turn.
+struct HeadingSource {
+  std::string name;
+  TimeSeries yaw_rad;
+  std::optional<TimeSeries> roll_rad, pitch_rad;  ///< of a source of attitude
+};
+
+/// Turned into the frame of the body by the mount. nullopt: no valid sample.
+std::optional<HeadingSource> heading_source(const NavSource& source, const Pose& body_from_source);
+
+/// Velocity over ground in the frame of the body [m/s], without outliers.
+struct VelocitySource {
+  std::string name;
+  TimeSeries ahead, left;
+  TimeSeries density;       ///< standard deviation of the way after one second [m / sqrt(s)]
+  std::size_t clipped = 0;  ///< samples that were outliers on either axis
+};
+
+/// Per axis, samples are held within three robust standard deviations of the median of the eleven around. The density
+/// is that of the second differences within 30 s on either side. nullopt: fewer than two valid samples.
+std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source);
+
+/// The only number of a source, as depth. nullopt: no valid sample.
+std::optional<TimeSeries> number_source(const NavSource& source);
+
+}  // namespace pingvox

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/echo_runs.hpp"
+#include "slam/navigation.hpp"
+
+/// The least-squares problem of SlamSmoother: what is known, what is unknown, and the residuals with their derivatives
+/// (docs/slam.md).
+namespace pingvox {
+
+/// Places of the unknowns that are not of a knot. Those of heading source n begin at heading(n): constant, sin1, cos1,
+/// sin2, cos2.
+namespace global {
+inline constexpr std::size_t kVelocityYaw = 0, kVelocityScale = 1, kWall = 2, kSonarX = 3, kSonarY = 4, kHeadings = 5,
+                             kOfHeading = 5;
+inline constexpr std::size_t heading(std::size_t source) {
+  return kHeadings + kOfHeading * source;
+}
+}  // namespace global
+
+struct Unknowns {
+  /// x, y of the velocity's source [m], and the body's yaw less that of the main heading [rad].
+  std::vector<Eigen::Vector3d> knots;
+  Eigen::VectorXd globals;
+};
+
+/// How a heading source is believed.
+struct HeadingPrior {
+  double constant_rad = 0.0;
+  double deviation_rad = 0.0;        ///< of the constant
+  bool turns_with_velocity = false;  ///< same device as the velocity: turned against its mount by the same angle
+};
+
+/// An echo within the time of the knots.
+struct PlacedEcho {
+  EchoRun run;
+  std::size_t sweep = 0;
+  std::size_t knot = 0;  ///< before it
+  double share = 0.0;    ///< of the way to the next knot, in time
+  double main_yaw_rad = 0.0;
+};
+
+/// What is known.
+class SlamProblem {
+ public:
+  /// @param knot_times_s  at least two, rising, within all headings and the velocity
+  /// @param headings  the main one first
+  SlamProblem(std::vector<double> knot_times_s, VelocitySource velocity, std::vector<HeadingSource> headings);
+
+  std::size_t knots() const { return knot_times_s_.size(); }
+  std::size_t globals() const { return global::heading(headings_.size()); }
+  const std::vector<double>& knot_times_s() const { return knot_times_s_; }
+  const VelocitySource& velocity() const { return velocity_; }
+  const std::vector<HeadingSource>& headings() const { return headings_; }
+  const std::vector<HeadingPrior>& heading_priors() const { return heading_priors_; }
+  double main_yaw_rad(double time_s) const { return headings_.front().yaw_rad.at(time_s); }
+  /// The knot before a time, and the share of the way to the next. nullopt: outside of the knots.
+  std::optional<std::pair<std::size_t, double>> between_knots(double time_s) const;
+
+  /// Dead reckoning from the origin, with the headings and the velocity as they are.
+  Unknowns dead_reckoning() const;
+
+  /// The velocity integrated over the time between two knots.
+  struct Way {
+    Eigen::Vector2d moved = Eigen::Vector2d::Zero();     ///< [m]
+    Eigen::Vector2d weighted = Eigen::Vector2d::Zero();  ///< each part of it times its share of the time
+    double deviation_m = 0.0;                            ///< of either axis
+  };
+  std::vector<Way> ways(const Unknowns& unknowns) const;
+  /// How far the integrated velocity, at a time within an interval, is off the straight line between its ends.
+  Eigen::Vector2d bulge(const Unknowns& unknowns, const Way& way, std::size_t knot, double time_s) const;
+
+  /// One weighted residual and its derivatives: by two knots that follow each other, and by the globals.
+  struct Row {
+    double residual = 0.0;
+    std::size_t knot = 0;
+    Eigen::Vector3d by_knot = Eigen::Vector3d::Zero(), by_next = Eigen::Vector3d::Zero();
+    Eigen::VectorXd by_globals;
+  };
+  /// All but the pairs: motion, headings and what is believed beforehand.
+  std::vector<Row> rows(const Unknowns& unknowns, const std::vector<Way>& ways) const;
+
+ private:
+  struct Node {
+    double time_s, share, main_yaw_rad;
+    Eigen::Vector2d velocity;
+  };
+  Row row(std::size_t knot, double residual) const;
+  double deviation_rad(const Unknowns& unknowns, std::size_t source, double yaw_rad) const;
+  /// Residual of a heading at a knot [rad], with derivatives by the error of the knot and the globals of the source.
+  struct HeadingResidual {
+    double residual_rad, by_error;
+    std::array<double, global::kOfHeading> by_source;
+  };
+  HeadingResidual heading_residual(const Unknowns& unknowns, std::size_t source, std::size_t knot) const;
+
+  std::vector<double> knot_times_s_;
+  VelocitySource velocity_;
+  std::vector<HeadingSource> headings_;
+  std::vector<HeadingPrior> heading_priors_;
+  std::vector<std::vector<Node>> nodes_;  ///< of each interval, both ends included
+};
+
+}  // namespace pingvox
