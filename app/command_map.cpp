@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -19,19 +18,11 @@
 #include "pingvox/io/maps.hpp"
 #include "progress.hpp"
 #include "shell_words.hpp"
+#include "stopwatch.hpp"
 #include "threshold_range.hpp"
 
 namespace pingvox::app {
 namespace {
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 /// Totals of all logs.
 struct Totals {
@@ -72,11 +63,6 @@ struct Totals {
 
 std::optional<double> share_read(const Log& log) {
   return std::visit([](const auto& source) { return source->share_read(); }, log);
-}
-
-/// Rounded to microseconds.
-double round_to_us(double seconds) {
-  return std::round(seconds * 1e6) / 1e6;
 }
 
 std::string_view name_of(BeamShape shape) {

@@ -20,6 +20,7 @@
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
@@ -165,6 +166,20 @@ struct SimulateCommand {
   double truth_resolution_m = 0.05;
 };
 
+struct SlamCommand {
+  OutputOptions output_options;
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  std::vector<std::string> navs;  ///< navigation logs
+  std::string output;             ///< TUM lines; "-" is standard output
+  std::optional<std::string> map, calibration;
+  Format map_format = Format::kBt;
+  double map_resolution_m = MapOptions{}.resolution_m;
+  Damage damage = Damage::kSkip;
+  SlamOptions slam;
+  double sound_speed_ratio = 1.0;
+  std::string made_by;  ///< the command line, written into the map
+};
+
 /// Runs the program `pingvox-bench` with these arguments.
 struct BenchCommand {
   OutputOptions output_options;
@@ -172,7 +187,7 @@ struct BenchCommand {
 };
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
-                             SimulateCommand, BenchCommand>;
+                             SimulateCommand, SlamCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -180,6 +195,7 @@ Result<int> run(const CompareCommand& command, Console& console);
 Result<int> run(const ConvertCommand& command, Console& console);
 Result<int> run(const RenderCommand& command, Console& console);
 Result<int> run(const SimulateCommand& command, Console& console);
+Result<int> run(const SlamCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);
 
 }  // namespace pingvox::app

@@ -25,8 +25,8 @@ constexpr double kFarReach_m = 35.0;
 constexpr double kLeastAgreement = 0.85;  ///< of two normals, cosine
 /// Noise of an echo: of its place, of half its length along the beam, of the beam's direction.
 constexpr double kPlace_m = 0.3, kOfHalfLength = 0.3, kBearing_rad = 1.0 * kDegree_rad;
-/// All pairs of an echo together weigh so much.
-constexpr double kWeightOfEcho = 0.5;
+/// The pairs of an echo weigh half an echo together, and a pair is of two echoes.
+constexpr double kWeightOfEcho = 0.25;
 constexpr double kRobustOfGate = 0.35;
 
 Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) {

@@ -12,7 +12,7 @@ namespace pingvox {
 namespace {
 
 constexpr std::size_t kWindow = 5;             ///< samples to either side that an outlier is judged by
-constexpr double kClip = 3.0;                  ///< robust standard deviations
+constexpr double kClip = 2.0;                  ///< robust standard deviations
 constexpr double kMadToDeviation = 1.4826;     ///< of normal noise
 constexpr double kLeastDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
@@ -58,26 +58,20 @@ std::vector<double> clip(std::span<const double> values, std::vector<bool>& clip
 std::vector<double> noise_density(const std::vector<double>& times_s, std::span<const double> ahead,
                                   std::span<const double> left) {
   const std::size_t count = times_s.size();
-  std::vector<double> sums(count + 1, 0.0);  // of squares, before each sample
-  for (std::size_t i = 0; i < count; ++i) {
-    double square = 0.0;
-    if (i > 0 && i + 1 < count) {
-      for (const auto& axis : {ahead, left}) {
-        const double second = axis[i - 1] - 2.0 * axis[i] + axis[i + 1];
-        square += second * second / 12.0;  // 6 by the weights, 2 axes
-      }
-    }
-    sums[i + 1] = sums[i] + square;
-  }
-  std::vector<double> density(count);
+  std::vector<double> density(count), seconds;
   std::size_t first = 0, end = 0;
   for (std::size_t i = 0; i < count; ++i) {
     while (times_s[first] < times_s[i] - kNoiseWindow_s) ++first;
     while (end < count && times_s[end] <= times_s[i] + kNoiseWindow_s) ++end;
+    seconds.clear();
+    for (std::size_t j = first + 1; j + 1 < end; ++j) {
+      for (const auto& axis : {ahead, left}) seconds.push_back(std::abs(axis[j - 1] - 2.0 * axis[j] + axis[j + 1]));
+    }
+    // Squares of the weights 1, -2 and 1 sum up to 6.
+    const double noise = seconds.empty() ? 0.0 : kMadToDeviation * median(seconds) / std::sqrt(6.0);
     const double step_s =
         end - first > 1 ? (times_s[end - 1] - times_s[first]) / static_cast<double>(end - first - 1) : 1.0;
-    const double variance = std::max(0.0, sums[end] - sums[first]) / static_cast<double>(end - first);
-    density[i] = std::max(std::sqrt(variance), kLeastDeviation_m_s) * std::sqrt(step_s);
+    density[i] = std::max(noise, kLeastDeviation_m_s) * std::sqrt(step_s);
   }
   return density;
 }

@@ -52,8 +52,8 @@ struct VelocitySource {
   std::size_t clipped = 0;  ///< samples that were outliers on either axis
 };
 
-/// Per axis, samples are held within three robust standard deviations of the median of the eleven around. The density
-/// is that of the second differences within 30 s on either side. nullopt: fewer than two valid samples.
+/// Per axis, samples are held within two robust standard deviations of the median of the eleven around. The density
+/// is that of the median second difference within 30 s on either side. nullopt: fewer than two valid samples.
 std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source);
 
 /// The only number of a source, as depth. nullopt: no valid sample.

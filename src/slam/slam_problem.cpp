@@ -13,7 +13,7 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// Standard deviations of what is believed beforehand.
 constexpr double kFirstPosition_m = 1e-3;
-constexpr double kVelocityYaw_rad = 10.0 * kDegree_rad, kVelocityScale = 0.02, kWall = 0.5, kLever_m = 0.3;
+constexpr double kVelocityYaw_rad = 10.0 * kDegree_rad, kVelocityScale = 0.005, kWall = 0.5, kLever_m = 0.3;
 constexpr double kConstant_rad = 3.0 * kDegree_rad, kHarmonic_rad = 5.0 * kDegree_rad;
 /// A source whose headings differ more than this from the main one's says where it turned, not where north is.
 constexpr double kRelative_rad = 20.0 * kDegree_rad;

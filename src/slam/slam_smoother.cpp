@@ -401,12 +401,6 @@ Result<SlamSolution> SlamSmoother::solve() const {
     }
     for (const double gate_m : kGates_m) {
       if (!solver.step(gate_m)) return undetermined();
-      if (getenv("SLAM_DEBUG")) {
-        fmt::print(stderr, "gate {} pairs {} loops {}/{} factor {} globals", gate_m, solver.pairs().pairs.size(),
-                   solver.pairs().loops_kept, solver.pairs().loops_found, solver.factor_entries());
-        for (const double g : solver.unknowns().globals) fmt::print(stderr, " {:.4f}", g);
-        fmt::print(stderr, "\n");
-      }
     }
   }
   Result<Trajectory> trajectory = trajectory_of(solver, *navigation, options, times_s);

@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "mapping_options.hpp"
+#include "option_table.hpp"
+#include "option_values.hpp"
+#include "parse_commands.hpp"
+#include "shared_options.hpp"
+#include "shell_words.hpp"
+
+namespace pingvox::app {
+namespace {
+
+constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
+                                   Choice<Matching>{"none", Matching::kNone}};
+constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<Format>{"ot", Format::kOt},
+                                    Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},
+                                    Choice<Format>{"pcd", Format::kPcd}, Choice<Format>{"xyz", Format::kXyz}};
+
+/// "SOURCE=X,Y,Z,R,P,Y"
+Take into_nav_mounts(std::map<std::string, Pose>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0) {
+      return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
+    }
+    Pose mount;
+    if (auto taken = into_mount(mount)(text.substr(equals + 1)); !taken) return taken;
+    if (!target.emplace(text.substr(0, equals), mount).second) {
+      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
+    }
+    return {};
+  };
+}
+
+}  // namespace
+
+Result<Command> slam_command(const Args& args) {
+  SlamCommand command;
+  std::string output, map, calibration;
+  EchoArgs echoes;
+  SlamOptions& slam = command.slam;
+  const auto into_list = [](Args& list) -> Take {
+    return [&list](const std::string& text) -> Result<void> {
+      list.push_back(text);
+      return {};
+    };
+  };
+  Option resolution{"--resolution",
+                    0,
+                    "M",
+                    "edge length of a cell of the map",
+                    number_text(command.map_resolution_m),
+                    into_number(command.map_resolution_m)};
+  resolution.only_with = {{"--map"}};
+  Option nav{"--nav", 0,
+             "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, CSV)",
+             "",      into_list(command.navs)};
+  nav.repeats = Repeats::kEachCounts;
+  Option nav_mount{"--nav-mount",        0,
+                   "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation on the vehicle, as --mount",
+                   "0,0,0,0,0,0",        into_nav_mounts(slam.body_from_source)};
+  nav_mount.repeats = Repeats::kEachCounts;
+  Option seed{"--seed", 0, "N", "of the random choice among the sweeps near a sweep", "1", into_number(slam.seed)};
+  seed.only_with = {{"--matching", {"pairs"}}};
+  OptionTable::Group echo_options = echo_group(echoes, command.sound_speed_ratio);
+  std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--sound-speed"; });
+  for (Option& option : echo_options.options) option.only_for.clear();
+  const OptionTable table{
+      "slam",
+      "Estimates where the vehicle was, from the echoes of a scanning sonar and from navigation: velocity over ground\n"
+      "and at least one heading. How the sensors are turned and the headings deviate is estimated as well.",
+      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", into_list(command.logs)}},
+      {{"Output",
+        {output_option(output,
+                       "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
+         {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", into(map)},
+         std::move(resolution),
+         {"--calibration", 0, "FILE", "what was estimated of the sensors, as TOML", "", into(calibration)},
+         json_option(command.output_options),
+         quiet_option(command.output_options)}},
+       {"Navigation",
+        {std::move(nav),
+         {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
+          within({-1e10, 1e10}, into_number(slam.nav_offset_s))},
+         {"--mount", 0, "X,Y,Z,R,P,Y",
+          "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
+          into_mount(slam.body_from_sonar)},
+         std::move(nav_mount)}},
+       {"Estimation",
+        {choice("--matching", kMatchings, "match pairs of echoes of different sweeps, or none: dead reckoning",
+                slam.matching),
+         std::move(seed)}},
+       std::move(echo_options),
+       {"Input", {strict_option(command.damage), config_option()}}},
+      {"pingvox slam dive.csv --nav nav.csv -o dive.tum --map dive.bt",
+       "pingvox slam dive.csv --nav dive.tlog --nav dvl.csv --nav-mount A50=0,0,0,0,0,-45 -o dive.tum"},
+      "A log whose beams have but one intensity besides 0 holds echoes that were detected already.\n"
+      "Exit status: 0 done, 1 failed, 2 invalid usage."};
+  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+    slam.filter = echoes.filter_options();
+    slam.echo = echoes.echo;
+    if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
+    if (command.navs.empty()) return usage_error("--nav is missing: a navigation log with velocity and heading");
+    if (output == "-" && command.output_options.report == Report::kJson) {
+      return usage_error("-o - and --json: both write to standard output");
+    }
+    Args inputs = command.logs;
+    inputs.insert(inputs.end(), command.navs.begin(), command.navs.end());
+    if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
+    Args outputs = {output};
+    if (!map.empty()) {
+      const Result<Format> format = output_format(map, std::nullopt, kMapFormats);
+      if (!format) return tl::unexpected(format.error());
+      command.map = map;
+      command.map_format = *format;
+      outputs.push_back(map);
+      if (std::ranges::find(command.logs, "-") != command.logs.end()) {
+        return usage_error("--map reads each log twice, which standard input cannot be");
+      }
+    }
+    if (!calibration.empty()) {
+      command.calibration = calibration;
+      outputs.push_back(calibration);
+    }
+    for (const std::string& file : outputs) {
+      if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
+      if (file == "-" && outputs.size() > 1) return usage_error("-: only one output can be standard output");
+    }
+    command.output = output;
+    command.made_by = "pingvox " PINGVOX_VERSION " slam";
+    for (const std::string& word : args) {
+      command.made_by += ' ';
+      command.made_by += quote_for_shell(word);
+    }
+    return command;
+  });
+}
+
+}  // namespace pingvox::app
