@@ -381,6 +381,9 @@ Result<SlamSolution> SlamSmoother::solve() const {
   std::vector<HeardSweep> sweeps = state_->sweeps;
   SweepAssembler rest = state_->assembler;
   if (const auto sweep = rest.finish()) sweeps.push_back(state_->heard(*sweep));
+  if (options.matching == Matching::kPairs && sweeps.size() < 2) {
+    return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
+  }
   const double step_s = sweep_duration_s(sweeps) / kKnotsOfSweep;
   if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
   Result<std::vector<double>> knots = knot_times(*span, step_s, times_s.size());

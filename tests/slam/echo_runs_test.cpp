@@ -1,0 +1,64 @@
+// Runs of bins in sweeps that were thresholded and in sweeps with intensities.
+
+#include "slam/echo_runs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+namespace pingvox::test {
+namespace {
+
+/// One beam of 100 bins of 0.1 m, with runs [first, last] of one intensity.
+Sweep one_beam(std::initializer_list<std::pair<std::size_t, std::size_t>> runs) {
+  Sweep sweep;
+  sweep.beams.push_back({1.0, 0.5, 0.1, std::vector<std::uint8_t>(100, 0)});
+  for (const auto& [first, last] : runs) {
+    for (std::size_t i = first; i <= last; ++i) sweep.beams[0].intensities[i] = 255;
+  }
+  return sweep;
+}
+
+TEST(EchoRuns, OfAThresholdedBeamAreItsTwoLongest) {
+  const auto runs = echo_runs(one_beam({{20, 24}, {40, 50}, {70, 77}}), {}, {});
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_NEAR(runs[0].middle_m, 4.55, 1e-12);
+  EXPECT_NEAR(runs[0].half_length_m, 0.55, 1e-12);
+  EXPECT_NEAR(runs[1].middle_m, 7.4, 1e-12);
+  EXPECT_EQ(runs[1].time_s, 1.0);
+  EXPECT_EQ(runs[1].bearing_rad, 0.5);
+}
+
+TEST(EchoRuns, CrossShortGapsAndLeaveOutSpecksAndRinging) {
+  const auto runs = echo_runs(one_beam({{2, 6}, {30, 31}, {34, 36}, {60, 61}}), {}, {});
+  ASSERT_EQ(runs.size(), 1U) << "2..6 is nearer than 0.75 m, 60..61 has two bins";
+  EXPECT_NEAR(runs[0].middle_m, 3.35, 1e-12);
+  EXPECT_NEAR(runs[0].half_length_m, 0.35, 1e-12);
+}
+
+TEST(EchoRuns, AreWithinTheRangesOfTheOptions) {
+  EchoOptions echo;
+  echo.max_range_m = 5.0;
+  echo.min_bin = 25;
+  const auto runs = echo_runs(one_beam({{10, 20}, {30, 35}, {60, 70}}), {}, echo);
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_NEAR(runs[0].middle_m, 3.3, 1e-12);
+}
+
+TEST(EchoRuns, OfIntensitiesAreTheDetectedEchoes) {
+  Sweep sweep;
+  for (int n = 0; n < 40; ++n) {
+    Beam beam{0.1 * n, 0.05 * n, 0.1, std::vector<std::uint8_t>(200, 10)};
+    for (std::size_t i = 0; i < 10; ++i) beam.intensities[100 + i] = static_cast<std::uint8_t>(40 + 20 * i);
+    sweep.beams.push_back(std::move(beam));
+  }
+  const auto runs = echo_runs(sweep, {}, {});
+  ASSERT_EQ(runs.size(), 40U);
+  for (const EchoRun& run : runs) EXPECT_NEAR(run.middle_m, 10.7, 0.5);
+}
+
+}  // namespace
+}  // namespace pingvox::test
