@@ -74,6 +74,7 @@ Result<void> map_along(const Trajectory& trajectory, const SlamCommand& command,
   BuildOptions build = BuildArgs().build;
   build.filter = command.slam.filter;
   build.echo = command.slam.echo;
+  build.sound_speed_ratio = command.slam.sound_speed_ratio;
   build.body_from_sensor = command.slam.body_from_sonar;
   for (const std::string& name : command.logs) {
     auto beams = open_beam_log(name, command.damage);

@@ -176,7 +176,6 @@ struct SlamCommand {
   double map_resolution_m = MapOptions{}.resolution_m;
   Damage damage = Damage::kSkip;
   SlamOptions slam;
-  double sound_speed_ratio = 1.0;
   std::string made_by;  ///< the command line, written into the map
 };
 

@@ -67,8 +67,8 @@ Result<Command> slam_command(const Args& args) {
   nav_mount.repeats = Repeats::kEachCounts;
   Option seed{"--seed", 0, "N", "of the random choice among the sweeps near a sweep", "1", into_number(slam.seed)};
   seed.only_with = {{"--matching", {"pairs"}}};
-  OptionTable::Group echo_options = echo_group(echoes, command.sound_speed_ratio);
-  std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--sound-speed"; });
+  OptionTable::Group echo_options = echo_group(echoes);
+  std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   for (Option& option : echo_options.options) option.only_for.clear();
   const OptionTable table{
       "slam",
@@ -102,6 +102,8 @@ Result<Command> slam_command(const Args& args) {
       "A log whose beams have but one intensity besides 0 holds echoes that were detected already.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+    if (const auto valid = echoes.validate(); !valid) return tl::unexpected(valid.error());
+    slam.sound_speed_ratio = echoes.sound_speed_ratio();
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());

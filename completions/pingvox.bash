@@ -1,6 +1,6 @@
 # bash completion for pingvox. Needs nothing of the bash-completion package, and uses nothing of it.
 
-_pingvox_commands() { printf '%s\n' map info compare convert render simulate bench; }
+_pingvox_commands() { printf '%s\n' map info compare convert render simulate slam bench; }
 
 # What `pingvox bench list` lists.
 _pingvox_benches() {
@@ -38,6 +38,11 @@ _pingvox_options() {
       options+=(--heading-drift --seed --range --bins --bin-length --beams-per-turn --beam-width --beam-height)
       options+=(--side-lobes --gain --compression --absorption --ringing --speckle --noise --multipath --bubbles --lost)
       ;;
+    slam)
+      options+=(--output --map --resolution --calibration --json --quiet --nav --nav-offset --mount --nav-mount --matching)
+      options+=(--seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
+      options+=(--filter --kernel --sigma --detect --threshold --cfar)
+      ;;
     bench) options+=(--json --markdown --pictures --quiet) ;;
   esac
   printf '%s\n' "${options[@]}"
@@ -51,6 +56,7 @@ _pingvox_words() {
     --cfar) printf '%s\n' ca so go os ;;
     --beam) printf '%s\n' ray fan cone ;;
     --device) printf '%s\n' ping360 micron miniking seaking-325 seaking-675 ;;
+    --matching) printf '%s\n' pairs none ;;
     --ray) printf '%s\n' dda bresenham ;;
     --vote) printf '%s\n' sweep beam ;;
     --hit-from) printf '%s\n' fixed intensity ;;
@@ -95,7 +101,7 @@ _pingvox() {
   if [[ -z $words ]]; then
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --water | --kernel | --sigma | --threshold | \
-        --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
+        --nav-mount | --nav-offset | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)
         return # a number or a text: nothing to offer

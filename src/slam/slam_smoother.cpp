@@ -194,6 +194,9 @@ SlamCalibration calibration_of(const Solver& solver) {
 
 Result<void> SlamOptions::validate() const {
   if (!std::isfinite(nav_offset_s)) return fail(Error::Code::kBadOption, "nav_offset_s: must be finite");
+  if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
+    return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
+  }
   if (const auto valid = filter.validate(); !valid) return valid;
   return echo.validate();
 }
@@ -206,8 +209,13 @@ struct SlamSmoother::State {
   std::vector<NavSource> sources;
 
   HeardSweep heard(const Sweep& sweep) const {
-    return {sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
-            echo_runs(sweep, options.filter, options.echo)};
+    HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
+                     echo_runs(sweep, options.filter, options.echo)};
+    for (EchoRun& run : heard.runs) {
+      run.middle_m *= options.sound_speed_ratio;
+      run.half_length_m *= options.sound_speed_ratio;
+    }
+    return heard;
   }
 };
 
@@ -264,6 +272,13 @@ struct Navigation {
 };
 
 Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) {
+  for (const auto& [name, mount] : options.body_from_source) {
+    if (std::ranges::find(log.sources(), name, &NavSource::name) != log.sources().end()) continue;
+    std::string known;
+    for (const NavSource& source : log.sources()) known += (known.empty() ? "" : ", ") + source.name;
+    return fail(Error::Code::kBadOption,
+                fmt::format("'{}' has a mount, but is no source of the navigation: {}", name, known));
+  }
   const NavSource* fastest = log.best(NavQuantity::kVelocity);
   std::optional<VelocitySource> velocity;
   if (fastest != nullptr) velocity = velocity_source(*fastest, mount_of(options, fastest->name));

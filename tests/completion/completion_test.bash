@@ -32,7 +32,7 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|simulate|bench" pingvox ""
+offers "map|info|compare|convert|render|simulate|slam|bench" pingvox ""
 offers "map" pingvox m
 offers "compare|convert" pingvox co
 offers "--help|--version" pingvox -

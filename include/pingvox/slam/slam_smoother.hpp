@@ -38,6 +38,7 @@ struct SlamOptions {
   /// How echoes are found in logs with intensities. Where a sweep has but one intensity besides 0, somebody else has
   /// found them: each run of bins is one.
   FilterOptions filter;
+  double sound_speed_ratio = 1.0;  ///< true speed of sound over the one that the ranges are reckoned with, > 0
   EchoOptions echo;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
@@ -106,7 +107,7 @@ class SlamSmoother {
 
   /// Solves for all that was added so far. May be called again after more was added.
   /// @return kUnsupported saying what is missing: beams, velocity or heading, or a time at which all were recorded;
-  ///         kCorrupt when the times of the beams do not rise
+  ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke
   Result<SlamSolution> solve() const;
 
  private:
