@@ -12,18 +12,21 @@
 #include "map_log.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
+#include "option_values.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/io/tum.hpp"
 #include "pingvox/map/compare.hpp"
 #include "pingvox/map/map_agreement.hpp"
 #include "pingvox/map/slice.hpp"
 #include "pingvox/map/visible_cells.hpp"
+#include "pingvox/nav/trajectory_score.hpp"
+#include "unknown_file.hpp"
 
 namespace pingvox::app {
 namespace {
 
-Result<MapFile> map_at(const std::string& path) {
-  const Result<FileBytes> file = read_file(path);
+Result<MapFile> map_in(const Result<FileBytes>& file) {
   if (!file) return tl::unexpected(file.error());
   if (const auto format = format_of(file->view()); format && kind_of(*format) != FormatKind::kMap) {
     return fail(Error::Code::kUnsupported,
@@ -157,12 +160,85 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
                                                share_text(agreement.free_true())));
 }
 
+JsonObject json_of(const ErrorStatistics& error) {
+  JsonObject json;
+  return json.add("mean", error.mean_m).add("sd", error.sd_m).add("rmse", error.rmse_m).add("max", error.max_m);
+}
+
+std::string json_of(const TrajectoryScore& score) {
+  JsonObject absolute, relative, json;
+  absolute.add("first_fix", json_of(score.first_fix))
+      .add("translation", json_of(score.translation))
+      .add("se2", json_of(score.se2).add("rotation_deg", score.se2_turn_rad / kDegree_rad));
+  relative.add("per_m", score.per_m).add("segment_m", score.segment_m);
+  json.add("poses", score.poses)
+      .add("outside", score.outside)
+      .add("max_difference_m", score.max_difference_m)
+      .add("ate", absolute)
+      .add("rpe", relative);
+  return json.text() + "\n";
+}
+
+std::string text_of(const ErrorStatistics& error) {
+  return fmt::format("mean {:.4g} m, sd {:.4g} m, rmse {:.4g} m, max {:.4g} m", error.mean_m, error.sd_m, error.rmse_m,
+                     error.max_m);
+}
+
+std::string text_of(const TrajectoryScore& score) {
+  const std::string outside =
+      score.outside > 0 ? fmt::format(", {} of B outside of A's time or in its gaps", score.outside) : "";
+  const std::string relative = std::isnan(score.per_m)
+                                   ? "B did not move"
+                                   : fmt::format("{:.4g} m/m, over segments of {:.4g} m", score.per_m, score.segment_m);
+  return fmt::format("Horizontal error of A at {} poses of B{}, aligned by\n", score.poses, outside) +
+         report_line("first fix", text_of(score.first_fix)) + report_line("translation", text_of(score.translation)) +
+         report_line("SE(2)",
+                     fmt::format("{}, turned by {:.3g} deg", text_of(score.se2), score.se2_turn_rad / kDegree_rad)) +
+         report_line("relative", relative);
+}
+
+Result<Trajectory> trajectory_in(const Result<FileBytes>& file) {
+  if (!file) return tl::unexpected(file.error());
+  if (const auto format = format_of(file->view()); format != Format::kTum) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: {}: a trajectory (TUM) is compared with another one", file->name,
+                            format ? "is " + describe(*format) : describe_unknown_file(file->view())));
+  }
+  return read_tum(*file);
+}
+
+/// Positions this close are the same: files hold them with rounded decimals.
+constexpr double kSame_m = 1e-9;
+
+Result<int> compare_trajectories(const CompareCommand& command, const Result<FileBytes>& file_a,
+                                 const Result<FileBytes>& file_b, Console& console) {
+  if (const auto used = check_limited(command.limited, {"trajectories"}); !used) {
+    return fail(used.error().code, "compare: " + used.error().message);
+  }
+  const Result<Trajectory> a = trajectory_in(file_a);
+  if (!a) return tl::unexpected(a.error());
+  const Result<Trajectory> b = trajectory_in(file_b);
+  if (!b) return tl::unexpected(b.error());
+  const Result<TrajectoryScore> score = score_trajectory(*a, *b);
+  if (!score) return fail(score.error().code, fmt::format("{}: {}", command.b, score.error().message));
+  const Result<void> summary = command.output_options.report == Report::kJson ? console.print(json_of(*score))
+                                                                              : console.summarise(text_of(*score), "");
+  if (!summary) return tl::unexpected(summary.error());
+  return score->outside == 0 && score->max_difference_m <= kSame_m ? 0 : 1;
+}
+
+bool is_trajectory(const Result<FileBytes>& file) {
+  return file && format_of(file->view()) == Format::kTum;
+}
+
 }  // namespace
 
 Result<int> run(const CompareCommand& command, Console& console) {
-  Result<MapFile> a = map_at(command.a);
+  const Result<FileBytes> file_a = read_file(command.a), file_b = read_file(command.b);
+  if (is_trajectory(file_a) || is_trajectory(file_b)) return compare_trajectories(command, file_a, file_b, console);
+  Result<MapFile> a = map_in(file_a);
   if (!a) return tl::unexpected(a.error());
-  Result<MapFile> b = map_at(command.b);
+  Result<MapFile> b = map_in(file_b);
   if (!b) return tl::unexpected(b.error());
   if (!(a->map.lattice() == b->map.lattice())) {
     return fail(Error::Code::kBadOption,

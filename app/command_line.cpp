@@ -32,7 +32,7 @@ struct CommandName {
 constexpr std::array kCommands = {
     CommandName{"map", "logs to a map", &map_command},
     CommandName{"info", "what a log, a cloud, a map or a mesh holds", &info_command},
-    CommandName{"compare", "two maps, cell by cell", &compare_command},
+    CommandName{"compare", "two maps cell by cell, two trajectories by their error", &compare_command},
     CommandName{"convert", "a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
                 &convert_command},
     CommandName{"render", "a picture of a log with its echoes, or of a map", &render_command},

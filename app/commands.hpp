@@ -88,6 +88,7 @@ struct InfoCommand {
 struct CompareCommand {
   OutputOptions output_options;
   std::string a, b;
+  std::vector<LimitedOption> limited;
   std::optional<double> layer_z_m;             ///< compare only the layer of cells at this height
   std::optional<double> occupied_probability;  ///< occupancy threshold of A
   std::optional<std::string> visible_from;     ///< poses from which the cells to find could be seen

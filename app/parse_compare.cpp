@@ -19,6 +19,11 @@ Option seen(Option option) {
   return option;
 }
 
+Option for_maps(Option option) {
+  option.only_for = {std::string(kMaps)};
+  return option;
+}
+
 }  // namespace
 
 Result<Command> compare_command(const Args& args) {
@@ -31,21 +36,25 @@ Result<Command> compare_command(const Args& args) {
       "A or B is a .bt, which has no log-odds, if both cells are free or both are occupied. 'only in A' counts cells\n"
       "that are unknown in B. With B as ground truth: precision is the share of A's occupied cells that lie within\n"
       "one cell of an occupied cell of B, recall the reverse, and 'free' the share of A's free cells that are free in\n"
-      "B.",
-      {{"A", Positional::Count::kOne, "a map; - is standard input", into(command.a)},
-       {"B", Positional::Count::kOne, "a map of the same resolution and depth, such as ground truth", into(command.b)}},
+      "B.\n"
+      "Two trajectories (TUM): the horizontal error of A at the times of B, after aligning the first fix, the mean "
+      "and\n"
+      "the best rigid fit, and the relative error per metre. Headings of B are not used: it may be of GPS fixes.",
+      {{"A", Positional::Count::kOne, "a map or trajectory; - is standard input", into(command.a)},
+       {"B", Positional::Count::kOne,
+        "one of the same kind, such as ground truth: maps of the same resolution and depth", into(command.b)}},
       {{"Options",
-        {{"--layer", 0, "M", "compare only the layer of cells that holds this height", "all layers",
-          within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, into_optional(command.layer_z_m))},
-         {"--occupied", 0, "P", "probability from which on a cell of A is occupied", "0.5",
-          within({0.0, 1.0, Limits::Ends::kBothOut}, into_optional(command.occupied_probability))},
-         json_option(command.output_options),
-         quiet_option(command.output_options)}},
+        {for_maps({"--layer", 0, "M", "compare only the layer of cells that holds this height", "all layers",
+                   within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, into_optional(command.layer_z_m))}),
+         for_maps({"--occupied", 0, "P", "probability from which on a cell of A is occupied", "0.5",
+                   within({0.0, 1.0, Limits::Ends::kBothOut}, into_optional(command.occupied_probability))}),
+         json_option(command.output_options), quiet_option(command.output_options)}},
        {"What could be seen",
-        {{"--visible-from", 0, "POSES",
-          "judge A as `pingvox bench accuracy` does: only what could be seen of B from these poses (TUM) is to be "
-          "found, and what lies beyond a side of B without a wall is left out",
-          "all of B", into(visible_from)},
+        {for_maps(
+             {"--visible-from", 0, "POSES",
+              "judge A as `pingvox bench accuracy` does: only what could be seen of B from these poses (TUM) is to be "
+              "found, and what lies beyond a side of B without a wall is left out",
+              "all of B", into(visible_from)}),
          seen({"--min-range", 0, "M", "nearest range at which a cell is seen", number_text(view.min_range_m),
                within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_number(view.min_range_m))}),
          seen({"--max-range", 0, "M", "farthest range at which a cell is seen: that of the log", "no limit",
@@ -57,11 +66,13 @@ Result<Command> compare_command(const Args& args) {
                into_mount(command.body_from_sensor)})}}},
       {"pingvox compare ours.bt theirs.bt", "pingvox compare before.ot after.ot --json",
        "pingvox compare harbour.ot truth/world.bt --layer 0 --occupied 0.7",
-       "pingvox compare harbour.ot truth/world.bt --visible-from truth/poses.tum --max-range 10"},
+       "pingvox compare harbour.ot truth/world.bt --visible-from truth/poses.tum --max-range 10",
+       "pingvox compare dive.tum gps.tum --json"},
       "Exit status: 0 equal, 1 different, 2 failed."};
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     if (const auto once = check_standard_input({command.a, command.b, visible_from}); !once)
       return tl::unexpected(once.error());
+    command.limited = parsed.limited;
     if (!visible_from.empty()) command.visible_from = visible_from;
     if (!(command.view.max_range_m > command.view.min_range_m)) {
       return usage_error(fmt::format("--max-range: must be above --min-range, which is {:.6g} m, is {:.6g} m",
