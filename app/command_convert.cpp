@@ -114,7 +114,7 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
 
 /// Writes where the vehicle was. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command) {
-  const Result<VehiclePath> path = vehicle_path(std::move(stream), 0.0, command.damage);
+  const Result<VehiclePath> path = vehicle_positions(std::move(stream), command.damage);
   if (!path) return tl::unexpected(path.error());
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });

@@ -89,10 +89,24 @@ Result<VehiclePath> vehicle_path(ByteStream nav, double offset_s, Damage damage)
                      VehiclePath::Nav{made->attitude, made->position, damaged_records(*read)}};
 }
 
+Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
+  const std::string name = nav.name();
+  const Result<NavFile> read = read_nav(std::move(nav), damage);
+  if (!read) return tl::unexpected(read.error());
+  const bool has_attitude = read->log.best(NavQuantity::kAttitude) != nullptr;
+  Result<NavTrajectory> made = has_attitude ? nav_trajectory(read->log) : nav_positions(read->log);
+  if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
+  return VehiclePath{std::move(made->trajectory),
+                     VehiclePath::Nav{made->attitude, made->position, damaged_records(*read)}};
+}
+
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
-  std::string text = fmt::format("{} poses from {} and {}", path.trajectory.poses().size(),
-                                 on_one_line(path.nav->attitude), on_one_line(path.nav->position));
+  std::string text =
+      fmt::format("{} poses from {}", path.trajectory.poses().size(),
+                  path.nav->attitude.empty()
+                      ? fmt::format("{}, not turned: no attitude is known", on_one_line(path.nav->position))
+                      : fmt::format("{} and {}", on_one_line(path.nav->attitude), on_one_line(path.nav->position)));
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += fmt::format(", {} gap{}", gaps, gaps == 1 ? "" : "s");
   }

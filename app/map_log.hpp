@@ -27,6 +27,8 @@ struct VehiclePath {
 Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage);
 /// From a navigation log. @param offset_s  added to its times
 Result<VehiclePath> vehicle_path(ByteStream nav, double offset_s, Damage damage);
+/// The same with no offset; a log that has positions but no attitude gives poses that are not turned.
+Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
 

@@ -47,6 +47,8 @@ std::string describe(Format format) {
   if (format == Format::kUdpCapture) return "a log of beams (SeaNet, UDP packets)";
   if (is_bag(format)) return fmt::format("a ROS bag (.{})", name_of(format));
   if (format == Format::kDumplog) return "a log of beams (SeanetDumpLog)";
+  if (format == Format::kBeamHits) return "a log of beams (bins that were hit)";
+  if (format == Format::kIctineu) return "a navigation log (Ictineu)";
   switch (kind_of(format)) {
     case FormatKind::kBeams:
       return with("a log of beams");

@@ -29,6 +29,8 @@ std::string_view description_of(Format format) {
     case Format::kRosSqlite:
     case Format::kMcap:
       return "a ROS bag";
+    case Format::kBeamHits:
+      return "a list of hits";
     case Format::kScanGraph:
       return "an OctoMap scan graph";
     case Format::kScanLog:
@@ -43,6 +45,7 @@ std::string_view description_of(Format format) {
       return "a trajectory";
     case Format::kTlog:
     case Format::kDataflash:
+    case Format::kIctineu:
     case Format::kNavCsv:
       return "a navigation log";
     case Format::kPly:
@@ -84,6 +87,7 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage,
   const std::optional<Format> format = format_of(file.view());
   if (format == Format::kMat) return open_mat(std::move(file), damage);
   if (format == Format::kCsv) return open_csv(std::move(file), damage);
+  if (format == Format::kBeamHits) return open_beam_hits(std::move(file), damage);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   return wrong_format(file.name, "a log of beams", format);
 }

@@ -43,6 +43,7 @@ FormatKind kind_of(Format format) {
     case Format::kRosBag:
     case Format::kRosSqlite:
     case Format::kMcap:
+    case Format::kBeamHits:
       return FormatKind::kBeams;
     case Format::kScanGraph:
     case Format::kScanLog:
@@ -55,6 +56,7 @@ FormatKind kind_of(Format format) {
       return FormatKind::kTrajectory;
     case Format::kTlog:
     case Format::kDataflash:
+    case Format::kIctineu:
     case Format::kNavCsv:
       return FormatKind::kNav;
     case Format::kPly:
@@ -100,6 +102,8 @@ std::string_view name_of(Format format) {
       return "db3";
     case Format::kMcap:
       return "mcap";
+    case Format::kBeamHits:
+      return "hits";
     case Format::kScanGraph:
       return "graph";
     case Format::kScanLog:
@@ -116,6 +120,8 @@ std::string_view name_of(Format format) {
       return "tlog";
     case Format::kDataflash:
       return "dataflash";
+    case Format::kIctineu:
+      return "ictineu";
     case Format::kNavCsv:
       return "csv";
     case Format::kPly:
@@ -149,6 +155,8 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   }
   if (looks_like_dataflash(bytes)) return Format::kDataflash;
   if (looks_like_tlog(bytes)) return Format::kTlog;
+  if (looks_like_ictineu(bytes)) return Format::kIctineu;
+  if (looks_like_beam_hits(bytes)) return Format::kBeamHits;
   if (looks_like_nav_csv(bytes)) return Format::kNavCsv;
   if (looks_like_ply(bytes)) return is_ply_with_faces(bytes) ? Format::kPlyMesh : Format::kPly;
   if (looks_like_pcd(bytes)) return Format::kPcd;

@@ -30,6 +30,8 @@ Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
     reading = read_tlog(file.view());
   } else if (format == Format::kDataflash) {
     reading = read_dataflash(file.view());
+  } else if (format == Format::kIctineu) {
+    reading = read_ictineu(file.view());
   } else if (format == Format::kNavCsv) {
     reading = read_nav_csv(file.view());
   } else {

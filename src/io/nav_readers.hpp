@@ -23,6 +23,9 @@ NavReading read_tlog(std::span<const std::uint8_t> bytes);
 bool looks_like_dataflash(std::span<const std::uint8_t> bytes);
 NavReading read_dataflash(std::span<const std::uint8_t> bytes);
 
+bool looks_like_ictineu(std::span<const std::uint8_t> bytes);
+NavReading read_ictineu(std::span<const std::uint8_t> bytes);
+
 bool looks_like_nav_csv(std::span<const std::uint8_t> bytes);
 NavReading read_nav_csv(std::span<const std::uint8_t> bytes);
 

@@ -133,4 +133,13 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
   return NavTrajectory{*std::move(trajectory), attitude->name, (*position)->name};
 }
 
+Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
+  const Result<std::optional<NavSource>> position = position_source(log);
+  if (!position) return tl::unexpected(position.error());
+  if (!*position) return fail(Error::Code::kUnsupported, "has no valid position");
+  Result<Trajectory> trajectory = trajectory_of(**position, offset_s, translation);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  return NavTrajectory{*std::move(trajectory), "", (*position)->name};
+}
+
 }  // namespace pingvox

@@ -20,6 +20,7 @@ enum class Format {
   kRosBag,         ///< bag of ROS 1: beams, navigation, or both
   kRosSqlite,      ///< bag of ROS 2 as an SQLite database: the same
   kMcap,           ///< bag of ROS 2 as MCAP: the same
+  kBeamHits,       ///< bins that were hit, as text, and the times of the beams in a file beside it: beams
   kScanGraph,      ///< OctoMap's binary scan graph: point scans
   kScanLog,        ///< OctoMap's scan graph as text, NODE x y z roll pitch yaw: point scans
   kBt,             ///< OctoMap's binary tree: occupied or free
@@ -28,6 +29,7 @@ enum class Format {
   kTum,            ///< a trajectory
   kTlog,           ///< MAVLink telemetry log of a ground station: navigation
   kDataflash,      ///< log that an ArduPilot autopilot keeps: navigation
+  kIctineu,        ///< DVL, MTi or DGPS log of the vehicle Ictineu, as text: navigation
   kNavCsv,         ///< navigation as text (docs/formats.md)
   kPly,            ///< a cloud of points
   kPcd,            ///< a cloud of points, PCL's

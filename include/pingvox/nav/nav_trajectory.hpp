@@ -24,4 +24,9 @@ struct NavTrajectory {
 /// @return kUnsupported when the log has no valid attitude or position, or never both at a time
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
 
+/// The positions alone, as poses that are not turned: the reference that fixes are for another trajectory. `attitude` is
+/// empty.
+/// @return kUnsupported when the log has no valid position
+Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s = 0.0);
+
 }  // namespace pingvox
