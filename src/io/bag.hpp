@@ -31,6 +31,13 @@ struct BagMessage {
   std::uint64_t file_byte;              ///< its position in the file, or that of its compressed chunk
 };
 
+/// A time in nanoseconds [s].
+inline double seconds_of(std::int64_t time_ns) {
+  constexpr std::int64_t kNs = 1'000'000'000;
+  const std::int64_t whole = time_ns / kNs;
+  return static_cast<double>(whole) + static_cast<double>(time_ns - whole * kNs) * 1e-9;
+}
+
 /// Reads the messages of a bag in the order in which they were recorded, one chunk in memory at a time.
 class Bag {
  public:

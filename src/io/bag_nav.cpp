@@ -81,10 +81,10 @@ void add_attitude(const RosFields& message, std::size_t first, bool valid, Sampl
 
 /// Pressure in Pa, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
 double pascals(double pressure) {
-  constexpr double kMostBar = 50.0, kMost_kPa = 500.0, kMost_hPa = 50'000.0;
+  constexpr double kMostBar = 50.0, kMostKpa = 500.0, kMostHpa = 50'000.0;
   if (pressure < kMostBar) return pressure * 1e5;
-  if (pressure < kMost_kPa) return pressure * 1e3;
-  return pressure < kMost_hPa ? pressure * 1e2 : pressure;
+  if (pressure < kMostKpa) return pressure * 1e3;
+  return pressure < kMostHpa ? pressure * 1e2 : pressure;
 }
 
 void add_imu(const RosFields& message, Samples& samples) {

@@ -130,8 +130,7 @@ class Mcap final : public Bag {
       const auto topic = channel ? channels_.find(*channel) : channels_.end();
       is_whole = sequence && time_ns && published_ns;
       if (is_whole && topic != channels_.end()) {
-        constexpr std::uint64_t kNs = 1'000'000'000;
-        const double time_s = static_cast<double>(*time_ns / kNs) + static_cast<double>(*time_ns % kNs) * 1e-9;
+        const double time_s = seconds_of(static_cast<std::int64_t>(*time_ns));
         return BagMessage{topic->second, time_s, body.subspan(reader.position()), at};
       }
       if (is_whole) add_damage(damage_, "message of an unknown topic", at);

@@ -136,9 +136,7 @@ class SqliteBag final : public Bag {
         add_damage(damage_, "message of an unknown topic", 0);
         continue;
       }
-      const std::int64_t time_ns = sqlite3_column_int64(row, 1);
-      constexpr std::int64_t kNs = 1'000'000'000;
-      const double time_s = static_cast<double>(time_ns / kNs) + static_cast<double>(time_ns % kNs) * 1e-9;
+      const double time_s = seconds_of(sqlite3_column_int64(row, 1));
       const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(row, 2));
       const int size = data != nullptr ? sqlite3_column_bytes(row, 2) : 0;
       return BagMessage{topic->second, time_s, {data, static_cast<std::size_t>(size)}, 0};
