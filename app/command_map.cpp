@@ -51,6 +51,7 @@ struct Totals {
     report.echoes += log.echoes;
     report.skipped += log.skipped;
     report.no_pose.count += log.no_pose.count;
+    report.blocked.count += log.blocked.count;
     report.outside.count += log.outside.count;
     report.cells_freed += log.cells_freed;
     report.cells_hit += log.cells_hit;
@@ -129,6 +130,7 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
   JsonObject skipped_for;
   skipped_for.add("damage", totals.damaged)
       .add("no_pose", report.no_pose.count)
+      .add("blocked", report.blocked.count)
       .add("outside_map", report.outside.count);
   json.add("beams", report.beams)
       .add("sweeps", report.sweeps)

@@ -48,6 +48,8 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
                   path.trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
       path.nav ? "--nav must cover the log; --nav-offset corrects its clock"
                : "--poses must cover the log, with times in seconds of the same clock");
+  add(mapped.report.blocked, "before an obstacle of the map that is nearer than --min-range",
+      "all that is heard then are its second echo and what goes round it");
   add(mapped.report.outside,
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),

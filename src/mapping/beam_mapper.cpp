@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
 #include "mapping/without_exceptions.hpp"
+#include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
@@ -98,7 +100,7 @@ class BeamMapper::Stages {
       no_pose_before_ = report_.no_pose.count;
     }
     sweeps_ = stream_.complete_sweeps();
-    report_.skipped = report_.no_pose.count + report_.outside.count;
+    report_.skipped = report_.no_pose.count + report_.outside.count + report_.blocked.count;
     return {};
   }
 
@@ -113,6 +115,11 @@ class BeamMapper::Stages {
         continue;
       }
       placed.push_back({std::move(one), *map_from_body * options_.body_from_sensor});
+      if (is_blocked(placed.back())) {
+        report_.blocked.add(placed.back().heard.beam.time_s);
+        placed.pop_back();
+        continue;
+      }
       if (const auto fits = check_size(placed.back(), options_, map_.lattice()); !fits) {
         return tl::unexpected(fits.error());
       }
@@ -122,6 +129,17 @@ class BeamMapper::Stages {
     }
     report_.beams += placed.size();
     return placed;
+  }
+
+  /// Whether the map has an obstacle on the beam's axis within the blanking range. Its own echo is not heard; what is
+  /// heard are its second echo, or sound that went round it.
+  bool is_blocked(const PlacedBeam& beam) const {
+    const double blanking_m = options_.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
+    if (map_.empty() || !(blanking_m > 0.0)) return false;
+    const double bearing_rad = beam.heard.beam.bearing_rad;
+    const Eigen::Vector3d axis{std::cos(bearing_rad), std::sin(bearing_rad), 0.0};
+    const Pose& pose = beam.map_from_sensor;
+    return cast_ray(map_, pose.translation(), pose.linear() * axis, blanking_m).what == Occupancy::kOccupied;
   }
 
   void count_echo(const Echo& echo) {

@@ -131,6 +131,29 @@ TEST(BuildMap, MountIsAppliedBetweenBodyAndSensor) {
   EXPECT_EQ(turned.classify(Eigen::Vector3d(8.02, 1.02, -0.48)), Occupancy::kOccupied);
 }
 
+// Kills walls that are freed by their own second echo: the head stands 0.4 m before the wall, hears nothing of it
+// within the blanking range, and then something at 3 m.
+TEST(BuildMap, WhatIsHeardPastAnObstacleWithinTheBlankingRangeIsLeftOut) {
+  constexpr double kTurn_s = 0.04 * kBeamsPerTurn;
+  Echoes source(2 * kBeamsPerTurn, [](double time, double) { return time < kTurn_s - 0.01 ? 2.0 : 3.0; });
+  const Pose near_wall = pose_from_rpy({1.6, 0.0, 0.0}, 0.0, 0.0, 0.0);
+  const auto way = Trajectory::make({{0.0, Pose::Identity()},
+                                     {kTurn_s - 0.02, Pose::Identity()},
+                                     {kTurn_s - 0.01, near_wall},
+                                     {3.0 * kTurn_s, near_wall}});
+  ASSERT_TRUE(way);
+  BuildOptions options = clean_options();
+  OccupancyMap map;
+  const auto report = build_map(source, *way, options, map);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.01, 0.01, 0.01)), Occupancy::kOccupied);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(3.01, 0.01, 0.01)), Occupancy::kUnknown);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(-1.39, 0.01, 0.01)), Occupancy::kOccupied) << "the other side is mapped";
+  EXPECT_GT(report->blocked.count, 10U);
+  EXPECT_EQ(report->beams + report->blocked.count, 2U * kBeamsPerTurn);
+  EXPECT_EQ(report->skipped, report->blocked.count);
+}
+
 TEST(BuildMap, BeamsOutsideOfTheTrajectoryAreLeftOutAndCounted) {
   Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
   const auto known = Trajectory::make({{2.0, Pose::Identity()}, {4.0, Pose::Identity()}});

@@ -56,8 +56,9 @@ struct BuildReport {
   std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
   std::size_t sweeps = 0;   ///< complete ones whose beams were all mapped (or point scans)
   std::size_t echoes = 0;   ///< within max_range_m; of point scans all points
-  std::size_t skipped = 0;  ///< damaged, without a pose, or outside
+  std::size_t skipped = 0;  ///< damaged, without a pose, blocked, or outside
   LeftOut no_pose;          ///< of those skipped, those heard when the pose is not known
+  LeftOut blocked;          ///< of those skipped, those with an obstacle of the map nearer than the blanking range
   LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
   std::optional<double> first_s, last_s;            ///< least and greatest time of a beam, mapped or not
