@@ -41,6 +41,7 @@ Args map_keys() {
           "cells_hit",
           "skipped_for.damage",
           "skipped_for.no_pose",
+          "skipped_for.blocked",
           "skipped_for.outside_map",
           "beam.shape",
           "beam.width_deg",
