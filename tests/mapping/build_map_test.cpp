@@ -8,6 +8,8 @@
 #include <functional>
 #include <numbers>
 
+#include "pingvox/map/cast_ray.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -148,7 +150,8 @@ TEST(BuildMap, WhatIsHeardPastAnObstacleWithinTheBlankingRangeIsLeftOut) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(map.classify(Eigen::Vector3d(2.01, 0.01, 0.01)), Occupancy::kOccupied);
   EXPECT_EQ(map.classify(Eigen::Vector3d(3.01, 0.01, 0.01)), Occupancy::kUnknown);
-  EXPECT_EQ(map.classify(Eigen::Vector3d(-1.39, 0.01, 0.01)), Occupancy::kOccupied) << "the other side is mapped";
+  const auto behind_m = [&](double y) { return cast_ray(map, {1.59, y, 0.01}, {-1.0, 0.0, 0.0}, 5.0).range_m; };
+  EXPECT_NEAR(std::min(behind_m(-0.01), behind_m(0.01)), 3.0, 0.1) << "the other side is mapped";
   EXPECT_GT(report->blocked.count, 10U);
   EXPECT_EQ(report->beams + report->blocked.count, 2U * kBeamsPerTurn);
   EXPECT_EQ(report->skipped, report->blocked.count);

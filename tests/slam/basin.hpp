@@ -20,10 +20,10 @@ namespace pingvox::test {
 
 struct Basin {
   static constexpr double kLap_s = 400.0, kDuration_s = 800.0;
-  double compass_cos = 0.06;        ///< deviation of the compass [rad]
-  double velocity_yaw_rad = 0.05;   ///< by which the DVL is turned against the vehicle
+  double compass_cos = 0.06;         ///< deviation of the compass [rad]
+  double velocity_yaw_rad = 0.05;    ///< by which the DVL is turned against the vehicle
   double velocity_noise_m_s = 0.05;  ///< of each ping
-  double sonar_yaw_rad = 0.7;       ///< mount
+  double sonar_yaw_rad = 0.7;        ///< mount
 
   struct State {
     Eigen::Vector2d place;

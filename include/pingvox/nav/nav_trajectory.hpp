@@ -16,16 +16,16 @@ struct NavTrajectory {
   std::string attitude, position;  ///< the names of the sources
 };
 
-/// Of each quantity the estimate of the autopilot's main filter, else the source with most valid samples; before that, an
-/// attitude that comes with the position. A position in
-/// metres is taken as it is; a log without one gives fixes as metres east and north of the first fix, at the depth
-/// where the log has it, else at the altitude relative to that fix.
+/// Of each quantity the estimate of the autopilot's main filter, else the source with most valid samples; before that,
+/// an attitude that comes with the position. A position in metres is taken as it is; a log without one gives fixes as
+/// metres east and north of the first fix, at the depth where the log has it, else at the altitude relative to that
+/// fix.
 /// @param offset_s  added to all times
 /// @return kUnsupported when the log has no valid attitude or position, or never both at a time
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
 
-/// The positions alone, as poses that are not turned: the reference that fixes are for another trajectory. `attitude` is
-/// empty.
+/// The positions alone, as poses that are not turned: the reference that fixes are for another trajectory. `attitude`
+/// is empty.
 /// @return kUnsupported when the log has no valid position
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s = 0.0);
 
