@@ -78,7 +78,7 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
     Result<Background> background =
         learn_background(command.input, *command.background_m, command.damage, command.topic);
     if (!background) return tl::unexpected(background.error());
-    *source = subtract_background(*std::move(source), *std::move(background));
+    *source = subtract_background(std::move(*source), *std::move(background));
   }
   std::string what;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {

@@ -171,7 +171,7 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
       *source = std::make_unique<BeamsInMemory>(background->beams());
       of_head.marks = EchoMarks::kOff;
     } else {
-      *source = subtract_background(*std::move(source), *std::move(background));
+      *source = subtract_background(std::move(*source), *std::move(background));
     }
   }
   Gatherer gatherer(of_head);

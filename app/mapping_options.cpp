@@ -45,7 +45,7 @@ Take into_water(std::optional<Water>& water) {
       return usage_error(
           fmt::format("'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D", text));
     }
-    const Water given{.temperature_C = n[0], .salinity = n[1], .depth_m = n[2]};
+    const Water given{.temperature_c = n[0], .salinity = n[1], .depth_m = n[2]};
     if (const auto valid = given.validate(); !valid) return tl::unexpected(valid.error());
     water = given;
     return {};

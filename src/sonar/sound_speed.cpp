@@ -14,7 +14,7 @@ Result<void> Water::validate() const {
     if (value >= 0.0 && value <= highest) return;
     bad += fmt::format("{} {} must be in 0..{}, is {}", bad.empty() ? "" : ";", name, highest, value);
   };
-  check("temperature [degrees C]", temperature_C, 35.0);
+  check("temperature [degrees C]", temperature_c, 35.0);
   check("salinity", salinity, 45.0);
   check("depth [m]", depth_m, 4000.0);
   if (bad.empty()) return {};
@@ -23,7 +23,7 @@ Result<void> Water::validate() const {
 
 double sound_speed_m_s(const Water& water) {
   assert(water.validate());
-  const double t = water.temperature_C / 10.0, d = water.depth_m / 1000.0, s = water.salinity - 35.0;
+  const double t = water.temperature_c / 10.0, d = water.depth_m / 1000.0, s = water.salinity - 35.0;
   const double at_surface = 1449.05 + t * (45.7 + t * (-5.21 + t * 0.23)) + (1.333 + t * (-0.126 + t * 0.009)) * s;
   return at_surface + (16.23 + 0.253 * t) * d + (0.213 - 0.1 * t) * d * d + (0.016 + 0.0002 * s) * s * t * d;
 }

@@ -24,7 +24,7 @@ TEST(SoundSpeed, AgreesWithOtherEquations) {
                                       {{2.0, 35.0, 4000.0}, 1526.0}}};
   for (const Case& c : cases) {
     EXPECT_NEAR(sound_speed_m_s(c.water), c.speed_m_s, 0.6)
-        << c.water.temperature_C << ", " << c.water.salinity << ", " << c.water.depth_m;
+        << c.water.temperature_c << ", " << c.water.salinity << ", " << c.water.depth_m;
   }
 }
 

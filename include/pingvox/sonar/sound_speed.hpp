@@ -6,7 +6,7 @@ namespace pingvox {
 
 /// What the speed of sound in water depends on.
 struct Water {
-  double temperature_C = 0.0;  ///< 0..35
+  double temperature_c = 0.0;  ///< 0..35
   double salinity = 0.0;       ///< practical salinity (about grams of salt in a kilogram), 0..45: 0 fresh, 35 the ocean
   double depth_m = 0.0;        ///< 0..4000
 
