@@ -86,7 +86,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as by 'info'",
          "all; cartesian: the fullest one", into_optional(panel.sweep)},
         choice("--show", kShownImages,
-               "intensities as recorded, or smoothed by --filter; or what --background subtracts", panel.image),
+               "intensities as recorded, smoothed by --filter, or the background that is subtracted", panel.image),
         choice("--echoes", kEchoMarks, "mark the detected echoes", panel.marks),
         choice("--between", kBetweens, "what --view cartesian draws between beams", panel.between),
         {"--size", 0, "PX",

@@ -33,7 +33,9 @@ TEST(CompareTrajectories, IsZeroOnlyForTheSamePositionsAtTheSameTimes) {
   here.write("a.tum", kPath);
   here.write("b.tum", kPath);
   EXPECT_EQ(here.call({"compare", "a.tum", "b.tum"}).status, 0);
-  here.write("longer.tum", std::string(kPath) + "3 10 10 0 0 0 0 1\n");
+  std::string longer = kPath;
+  longer += "3 10 10 0 0 0 0 1\n";
+  here.write("longer.tum", longer);
   EXPECT_EQ(here.call({"compare", "a.tum", "longer.tum"}).status, 1);
 }
 
