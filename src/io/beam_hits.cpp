@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -96,12 +96,12 @@ Result<std::vector<double>> read_times(const FileBytes& file) {
 
 class HitSource : public BeamSource {
  public:
-  HitSource(std::vector<HitBeam> hits, std::vector<double> times_s, SkippedRecords skipped)
+  HitSource(std::map<std::size_t, std::vector<std::uint16_t>> hits, std::vector<double> times_s, SkippedRecords skipped)
       : hits_(std::move(hits)), times_s_(std::move(times_s)), skipped_(std::move(skipped)) {
     if (hits_.empty()) return;
     // Turns are whole: a beam that is not in the file was heard, and hit nothing.
-    begin_ = next_ = hits_.front().index / kBeamsPerTurn * kBeamsPerTurn;
-    end_ = (hits_.back().index / kBeamsPerTurn + 1) * kBeamsPerTurn;
+    begin_ = next_ = hits_.begin()->first / kBeamsPerTurn * kBeamsPerTurn;
+    end_ = (hits_.rbegin()->first / kBeamsPerTurn + 1) * kBeamsPerTurn;
   }
 
   Result<std::optional<Beam>> next() override {
@@ -112,9 +112,8 @@ class HitSource : public BeamSource {
     beam.bearing_rad = wrap_bearing(-2.0 * std::numbers::pi * angle / kBeamsPerTurn);
     beam.bin_length_m = kBinLength_m;
     beam.intensities.assign(kBins, 0);
-    if (hits_[hit_].index == next_) {
-      for (const std::uint16_t bin : hits_[hit_].bins) beam.intensities[bin] = 255;
-      if (hit_ + 1 < hits_.size()) ++hit_;
+    if (const auto hits = hits_.find(next_); hits != hits_.end()) {
+      for (const std::uint16_t bin : hits->second) beam.intensities[bin] = 255;
     }
     ++next_;
     return beam;
@@ -126,11 +125,10 @@ class HitSource : public BeamSource {
   std::optional<double> share_read() const override { return read_share(end_ - next_, end_ - begin_); }
 
  private:
-  std::vector<HitBeam> hits_;  ///< in order of time
+  std::map<std::size_t, std::vector<std::uint16_t>> hits_;  ///< bins of each beam with echoes
   std::vector<double> times_s_;
   SkippedRecords skipped_;
   std::size_t begin_ = 0, next_ = 0, end_ = 0;  ///< beams
-  std::size_t hit_ = 0;                         ///< of hits_
 };
 
 }  // namespace
@@ -139,26 +137,23 @@ bool looks_like_beam_hits(std::span<const std::uint8_t> bytes) {
   return text_of(bytes).starts_with(kHeader);
 }
 
-Result<std::unique_ptr<BeamSource>> open_beam_hits(FileBytes file, Damage damage) {
+Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage damage) {
   Result<std::vector<double>> times_s = times_beside(file.name).and_then(read_times);
   if (!times_s) return tl::unexpected(times_s.error());
-  std::vector<HitBeam> hits;
+  std::map<std::size_t, std::vector<std::uint16_t>> hits;
   SkippedRecords skipped;
   Lines lines(text_of(file.view()));
   while (const auto line = lines.next_with_content()) {
     tl::expected<HitBeam, std::string> beam = hits_in(*line, times_s->size());
     if (beam) {
-      hits.push_back(*std::move(beam));
+      // Of a beam that is there twice, the first counts.
+      hits.emplace(beam->index, std::move(beam->bins));
       continue;
     }
     const auto damaged =
         handle_damage(damage, skipped, file.name, fmt::format("line {}", lines.number()), beam.error());
     if (!damaged) return tl::unexpected(damaged.error());
   }
-  std::ranges::stable_sort(hits, {}, &HitBeam::index);
-  // Of a beam that is there twice, the first counts.
-  const auto repeated = std::ranges::unique(hits, {}, &HitBeam::index);
-  hits.erase(repeated.begin(), repeated.end());
   return std::make_unique<HitSource>(std::move(hits), *std::move(times_s), std::move(skipped));
 }
 

@@ -87,7 +87,7 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage,
   const std::optional<Format> format = format_of(file.view());
   if (format == Format::kMat) return open_mat(std::move(file), damage);
   if (format == Format::kCsv) return open_csv(std::move(file), damage);
-  if (format == Format::kBeamHits) return open_beam_hits(std::move(file), damage);
+  if (format == Format::kBeamHits) return open_beam_hits(file, damage);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   return wrong_format(file.name, "a log of beams", format);
 }

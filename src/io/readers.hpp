@@ -21,7 +21,7 @@ bool looks_like_csv(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage);
 
 bool looks_like_beam_hits(std::span<const std::uint8_t> bytes);
-Result<std::unique_ptr<BeamSource>> open_beam_hits(FileBytes file, Damage damage);
+Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage damage);
 
 // Logs that are read as streams, recognised by their beginning.
 bool looks_like_ping_viewer(std::span<const std::uint8_t> beginning);

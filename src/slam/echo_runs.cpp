@@ -1,8 +1,10 @@
 #include "slam/echo_runs.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "pingvox/sonar/polar_image.hpp"
 
@@ -48,7 +50,10 @@ void add_runs(const Beam& beam, const EchoOptions& echo, std::vector<EchoRun>& r
     }
   }
   std::erase_if(found, [](const Bins& bins) { return bins.last - bins.first + 1 < kShortest_bins; });
-  std::ranges::stable_sort(found, std::ranges::greater(), [](const Bins& bins) { return bins.last - bins.first; });
+  // The longest first; of equals, the nearest.
+  std::ranges::sort(found, {}, [](const Bins& bins) {
+    return std::pair(-static_cast<std::ptrdiff_t>(bins.last - bins.first), bins.first);
+  });
   if (found.size() > kRunsOfBeam) found.resize(kRunsOfBeam);
   std::ranges::sort(found, {}, &Bins::first);
   for (const Bins& bins : found) runs.push_back(run_of(beam, bins.first, bins.last));

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "slam/echo_pairs.hpp"
@@ -68,7 +69,7 @@ class Solver {
     pairs_ = {};
     if (gate_m) {
       std::vector<Eigen::Vector2d> places;
-      for (const auto& [knot, share] : sweep_middles_) places.push_back(knot_at(knot, share).head<2>());
+      for (const auto& [knot, share] : sweep_middles_) places.emplace_back(knot_at(knot, share).head<2>());
       ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
       pairs_ = echo_pairs(echoes_, ground, sweeps_, places, {seed_, *gate_m});
       // In order of the knots that they join.
@@ -287,7 +288,10 @@ Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) 
     if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
     if (auto heading = heading_source(source, mount_of(options, source.name))) headings.push_back(*std::move(heading));
   }
-  std::ranges::stable_sort(headings, std::ranges::greater(), [](const HeadingSource& h) { return h.yaw_rad.size(); });
+  // The one with the most samples first.
+  std::ranges::sort(headings, [](const HeadingSource& a, const HeadingSource& b) {
+    return std::tuple(b.yaw_rad.size(), a.name) < std::tuple(a.yaw_rad.size(), b.name);
+  });
   if (!velocity || headings.empty()) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
