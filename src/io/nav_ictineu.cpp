@@ -68,11 +68,10 @@ void add_dvl(NavSources& sources, const std::vector<double>& row) {
   velocity.valid = row[14] != 0.0 && velocity_cm_s.cwiseAbs().maxCoeff() < 32767.0;
   const Eigen::AngleAxisd body_from_dvl(-kDvlYaw_rad, Eigen::Vector3d::UnitZ());
   sources.add("DVL", NavQuantity::kVelocity, sample_at(row[0], body_from_dvl * velocity_cm_s / 100.0, velocity));
-  sources.add("DVL compass", NavQuantity::kHeading,
+  sources.add("DVL", NavQuantity::kHeading,
               sample_at(row[0], {from_ned::yaw(row[22] * kDegree_rad - kDvlYaw_rad), 0.0, 0.0}));
   constexpr double kMetresOfCount = 0.00377225, kSurfaceCount = 1440.0;
-  sources.add("DVL pressure", NavQuantity::kDepth,
-              sample_at(row[0], {kMetresOfCount * (row[26] - kSurfaceCount), 0.0, 0.0}));
+  sources.add("DVL", NavQuantity::kDepth, sample_at(row[0], {kMetresOfCount * (row[26] - kSurfaceCount), 0.0, 0.0}));
 }
 
 void add_mti(NavSources& sources, const std::vector<double>& row) {
