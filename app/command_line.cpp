@@ -38,6 +38,7 @@ constexpr std::array kCommands = {
     CommandName{"render", "a picture of a log with its echoes, or of a map", &render_command},
     CommandName{"simulate", "the log of a sonar in a world of your choice", &simulate_command},
     CommandName{"slam", "where the vehicle was, from beams and navigation, and the map", &slam_command},
+    CommandName{"locate", "where the vehicle was, in a map that is known", &locate_command},
     CommandName{"bench", "measurements, when pingvox-bench is installed", &bench_command},
     CommandName{"view", "", &view_command},
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
+#include "pingvox/slam/localizer.hpp"
+#include "pingvox/slam/odometry.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"
@@ -180,6 +183,25 @@ struct SlamCommand {
   std::string made_by;  ///< the command line, written into the map
 };
 
+struct StartPose {
+  double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
+  double deviation_m = 0.5, deviation_rad = 10.0 * std::numbers::pi / 180.0;
+};
+
+struct LocateCommand {
+  OutputOptions output_options;
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  std::string map;
+  std::string output;             ///< TUM lines; "-" is standard output
+  std::vector<std::string> navs;  ///< navigation logs
+  OdometryOptions nav;
+  std::optional<std::string> odometry;     ///< TUM lines in a frame that may drift; not with `navs`
+  std::optional<StartPose> start;          ///< nullopt: anywhere
+  std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's
+  Damage damage = Damage::kSkip;
+  LocalizerOptions localizer;
+};
+
 /// Runs the program `pingvox-bench` with these arguments.
 struct BenchCommand {
   OutputOptions output_options;
@@ -187,7 +209,7 @@ struct BenchCommand {
 };
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
-                             SimulateCommand, SlamCommand, BenchCommand>;
+                             SimulateCommand, SlamCommand, LocateCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -196,6 +218,7 @@ Result<int> run(const ConvertCommand& command, Console& console);
 Result<int> run(const RenderCommand& command, Console& console);
 Result<int> run(const SimulateCommand& command, Console& console);
 Result<int> run(const SlamCommand& command, Console& console);
+Result<int> run(const LocateCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);
 
 }  // namespace pingvox::app

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "option_values.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -125,6 +127,21 @@ Take into_mount(Pose& target) {
     }
     const auto& [x, y, z, roll, pitch, yaw] = *n;
     target = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
+    return {};
+  };
+}
+
+Take into_nav_mounts(std::map<std::string, Pose>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0) {
+      return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
+    }
+    Pose mount;
+    if (auto taken = into_mount(mount)(text.substr(equals + 1)); !taken) return taken;
+    if (!target.emplace(text.substr(0, equals), mount).second) {
+      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
+    }
     return {};
   };
 }

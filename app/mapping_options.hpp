@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -68,6 +69,8 @@ Result<void> check_options(BuildOptions options);
 
 /// "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
 Take into_mount(Pose& target);
+/// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
+Take into_nav_mounts(std::map<std::string, Pose>& target);
 
 /// Groups of options that write into their arguments, which must outlive them.
 OptionTable::Group echo_group(EchoArgs& args);

@@ -21,22 +21,6 @@ constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<
                                     Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},
                                     Choice<Format>{"pcd", Format::kPcd}, Choice<Format>{"xyz", Format::kXyz}};
 
-/// "SOURCE=X,Y,Z,R,P,Y"
-Take into_nav_mounts(std::map<std::string, Pose>& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos || equals == 0) {
-      return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
-    }
-    Pose mount;
-    if (auto taken = into_mount(mount)(text.substr(equals + 1)); !taken) return taken;
-    if (!target.emplace(text.substr(0, equals), mount).second) {
-      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
-    }
-    return {};
-  };
-}
-
 }  // namespace
 
 Result<Command> slam_command(const Args& args) {

@@ -1,0 +1,287 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "json.hpp"
+#include "map_log.hpp"
+#include "map_report.hpp"
+#include "nav_report.hpp"
+#include "open_log.hpp"
+#include "option_values.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/io/nav.hpp"
+#include "pingvox/io/tum.hpp"
+#include "progress.hpp"
+#include "stopwatch.hpp"
+
+namespace pingvox::app {
+namespace {
+
+struct Seconds {
+  double read = 0.0, field = 0.0, locate = 0.0, total = 0.0;
+};
+
+/// How the vehicle moved, as far as it is known.
+struct Motion {
+  std::optional<Trajectory> odometry;
+  std::string text = "none: the vehicle is taken to move little";
+  bool turns_only = false;  ///< x and y are not known
+  std::size_t skipped = 0;
+};
+
+/// What was found.
+struct Found {
+  std::vector<StampedPose> poses;
+  struct Span {
+    double from_s, to_s;
+  };
+  std::vector<Span> sure;  ///< when the pose was sure
+  bool is_sure = false;    ///< at the end
+  std::vector<PoseHypothesis> hypotheses;
+  std::size_t beams = 0, skipped = 0, most_particles = 0;
+  double mean_particles = 0.0, from_s = 0.0, to_s = 0.0;
+};
+
+Result<OccupancyMap> map_in(const std::string& name) {
+  const Result<FileBytes> file = read_file(name);
+  if (!file) return tl::unexpected(file.error());
+  Result<MapFile> map = read_map(*file);
+  if (!map) return tl::unexpected(map.error());
+  return std::move(map->map);
+}
+
+Result<Motion> motion_of(const LocateCommand& command) {
+  Motion motion;
+  if (command.odometry) {
+    Result<Trajectory> odometry = trajectory_of(command.odometry);
+    if (!odometry) return tl::unexpected(odometry.error());
+    motion.text = fmt::format("{} poses of {}", odometry->poses().size(), on_one_line(*command.odometry));
+    motion.odometry = *std::move(odometry);
+    return motion;
+  }
+  if (command.navs.empty()) return motion;
+  std::vector<NavSource> sources;
+  NavClock clock = NavClock::kUnknown;
+  for (const std::string& name : command.navs) {
+    Result<ByteStream> stream = ByteStream::open(name);
+    if (!stream) return tl::unexpected(stream.error());
+    const Result<NavFile> nav = read_nav(std::move(*stream), command.damage);
+    if (!nav) return tl::unexpected(nav.error());
+    motion.skipped += damaged_records(*nav);
+    clock = nav->log.clock();
+    sources.insert(sources.end(), nav->log.sources().begin(), nav->log.sources().end());
+  }
+  const Result<NavLog> log = NavLog::make(std::move(sources), clock);
+  if (!log) return tl::unexpected(log.error());
+  Result<Odometry> odometry = odometry_of(*log, command.nav);
+  if (!odometry)
+    return fail(odometry.error().code, fmt::format("{}: {}", command.navs.front(), odometry.error().message));
+  motion.text = odometry->velocity.empty()
+                    ? fmt::format("heading of {}, no velocity", on_one_line(odometry->heading))
+                    : fmt::format("velocity of {} along the heading of {}", on_one_line(odometry->velocity),
+                                  on_one_line(odometry->heading));
+  motion.turns_only = odometry->velocity.empty();
+  if (motion.turns_only) motion.text += ": the vehicle is taken to move little";
+  motion.odometry = std::move(odometry->odometry_from_body);
+  return motion;
+}
+
+Result<std::vector<Beam>> beams_of(const LocateCommand& command, std::size_t& skipped) {
+  std::vector<Beam> beams;
+  for (const std::string& name : command.logs) {
+    Result<ByteStream> stream = ByteStream::open(name);
+    if (!stream) return tl::unexpected(stream.error());
+    const std::string shown = stream->name();
+    Result<Log> log = open_log(std::move(*stream), command.damage);
+    if (!log) return tl::unexpected(log.error());
+    auto* source = std::get_if<std::unique_ptr<BeamSource>>(&*log);
+    if (source == nullptr) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", shown));
+    }
+    Result<std::vector<Beam>> read = read_all(**source);
+    if (!read) return tl::unexpected(read.error());
+    skipped += (*source)->skipped();
+    std::ranges::move(*read, std::back_inserter(beams));
+  }
+  if (beams.empty())
+    return fail(Error::Code::kUnsupported, fmt::format("{}: there are no beams", command.logs.front()));
+  return beams;
+}
+
+/// The layer of the map around the sonar at the first beam.
+DistanceFieldOptions layer_of(const LocateCommand& command, const std::optional<Pose>& first) {
+  constexpr double kHalf_m = 0.25;
+  const Pose body = first.value_or(Pose::Identity());
+  const double z_m = (body * command.localizer.body_from_sonar.translation()).z();
+  return {command.min_z_m.value_or(z_m - kHalf_m), command.max_z_m.value_or(z_m + kHalf_m)};
+}
+
+Result<Found> locate(std::vector<Beam> beams, const Motion& motion, DistanceField field, const LocateCommand& command) {
+  LocalizerOptions options = command.localizer;
+  if (motion.turns_only) options.noise = MotionNoise::turns_only();
+  Localizer localizer(std::move(field), options);
+  if (command.start) {
+    const StartPose& start = *command.start;
+    localizer.start(start.x_m, start.y_m, start.yaw_rad, start.deviation_m, start.deviation_rad);
+  }
+  Found found;
+  found.beams = beams.size();
+  found.from_s = beams.front().time_s;
+  ProgressBar bar(command.output_options);
+  bool was_sure = false;
+  double sum = 0.0;
+  const auto note = [&](double time_s) {
+    const std::optional<Localizer::Located> located = localizer.pose();
+    if (!located) return;
+    if (!found.poses.empty() && found.poses.back().time_s >= time_s) found.poses.pop_back();
+    found.poses.push_back({time_s, located->map_from_body});
+    found.is_sure = localizer.is_sure();
+    if (found.is_sure && !was_sure) found.sure.push_back({time_s, time_s});
+    if (found.is_sure) found.sure.back().to_s = time_s;
+    was_sure = found.is_sure;
+  };
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const double time_s = beams[i].time_s;
+    if (bar.is_due()) bar.draw(static_cast<double>(i) / static_cast<double>(beams.size()), "locating");
+    if (const auto pose = motion.odometry ? motion.odometry->at(time_s) : std::nullopt) localizer.add({time_s, *pose});
+    if (const auto added = localizer.add(std::move(beams[i])); !added) {
+      return fail(added.error().code, fmt::format("{}: {}", command.logs.front(), added.error().message));
+    }
+    note(time_s);
+    sum += static_cast<double>(localizer.particles());
+    found.most_particles = std::max(found.most_particles, localizer.particles());
+    found.to_s = time_s;
+  }
+  localizer.finish();
+  note(found.to_s);
+  bar.clear();
+  found.hypotheses = localizer.hypotheses();
+  found.mean_particles = sum / static_cast<double>(beams.size());
+  if (found.poses.empty()) {
+    return fail(Error::Code::kUnsupported, fmt::format("{}: no echo fits anywhere in the map", command.logs.front()));
+  }
+  return found;
+}
+
+JsonObject hypothesis_json(const PoseHypothesis& h) {
+  JsonObject json;
+  return json.add("x_m", h.x_m)
+      .add("y_m", h.y_m)
+      .add("yaw_deg", h.yaw_rad / kDegree_rad)
+      .add("sd_m", h.deviation_m)
+      .add("sd_deg", h.deviation_rad / kDegree_rad)
+      .add("weight", h.weight);
+}
+
+std::string json_of(const Found& found, const Motion& motion, std::size_t field_bytes, const Seconds& seconds) {
+  std::vector<JsonObject> hypotheses, spans;
+  for (const PoseHypothesis& h : found.hypotheses) hypotheses.push_back(hypothesis_json(h));
+  for (const Found::Span& span : found.sure) spans.emplace_back().add("from_s", span.from_s).add("to_s", span.to_s);
+  JsonObject particles, took, json;
+  particles.add("mean", found.mean_particles).add("max", found.most_particles);
+  took.add("read", round_to_us(seconds.read))
+      .add("field", round_to_us(seconds.field))
+      .add("locate", round_to_us(seconds.locate))
+      .add("total", round_to_us(seconds.total));
+  json.add("poses", found.poses.size())
+      .add("beams", found.beams)
+      .add("skipped", found.skipped + motion.skipped)
+      .add("motion", motion.text)
+      .add_truth("sure", found.is_sure)
+      .add("hypotheses", hypotheses)
+      .add("sure_spans", spans);
+  if (found.sure.empty()) {
+    json.add_null("converged_at_s");
+  } else {
+    json.add("converged_at_s", found.sure.front().from_s);
+  }
+  json.add("particles", particles)
+      .add("field_bytes", field_bytes)
+      .add("recorded_s", found.to_s - found.from_s)
+      .add("seconds", took);
+  return json.text() + "\n";
+}
+
+std::string text_of(const Found& found, const Motion& motion, const LocateCommand& command, const Seconds& seconds) {
+  std::string text = command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
+  text += report_line("motion", motion.text);
+  text += report_line("trajectory",
+                      fmt::format("{} poses of {} beams, {:.0f} particles on average, {} at most", found.poses.size(),
+                                  found.beams, found.mean_particles, found.most_particles));
+  for (const PoseHypothesis& h : found.hypotheses) {
+    text += report_line("at the end",
+                        fmt::format("{:.3f} {:.3f} m +- {:.3f}, {:.1f} +- {:.1f} degrees, weight {:.3f}", h.x_m, h.y_m,
+                                    h.deviation_m, h.yaw_rad / kDegree_rad, h.deviation_rad / kDegree_rad, h.weight));
+  }
+  text +=
+      report_line("sure", found.sure.empty() ? std::string("never")
+                                             : fmt::format("{} at the end, first at {:.3f} s",
+                                                           found.is_sure ? "yes" : "no", found.sure.front().from_s));
+  return text +
+         report_line("seconds", fmt::format("{:.3f} = {:.3f} read + {:.3f} distance field + {:.3f} locate + rest",
+                                            seconds.total, seconds.read, seconds.field, seconds.locate));
+}
+
+}  // namespace
+
+Result<int> run(const LocateCommand& command, Console& console) {
+  const Stopwatch total;
+  Seconds seconds;
+  const Stopwatch read;
+  const Result<OccupancyMap> map = map_in(command.map);
+  if (!map) return tl::unexpected(map.error());
+  const Result<Motion> motion = motion_of(command);
+  if (!motion) return tl::unexpected(motion.error());
+  std::size_t skipped = 0;
+  Result<std::vector<Beam>> beams = beams_of(command, skipped);
+  if (!beams) return tl::unexpected(beams.error());
+  seconds.read = read.seconds();
+
+  std::optional<Pose> first;
+  if (motion->odometry) {
+    for (const Beam& beam : *beams) {
+      if ((first = motion->odometry->at(beam.time_s))) break;
+    }
+    if (!first) {
+      return fail(Error::Code::kUnsupported,
+                  fmt::format("{}: beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, "
+                              "the navigation is from {:.3f} to {:.3f} s",
+                              command.logs.front(), beams->front().time_s, beams->back().time_s,
+                              motion->odometry->poses().front().time_s, motion->odometry->poses().back().time_s));
+    }
+  }
+  const Stopwatch making;
+  Result<DistanceField> field = DistanceField::make(*map, layer_of(command, first));
+  if (!field) {
+    return fail(field.error().code,
+                fmt::format("{}: {} (see --min-z and --max-z)", command.map, field.error().message));
+  }
+  const std::size_t field_bytes = field->memory_bytes();
+  seconds.field = making.seconds();
+
+  const Stopwatch locating;
+  Result<Found> found = locate(*std::move(beams), *motion, *std::move(field), command);
+  if (!found) return tl::unexpected(found.error());
+  found->skipped = skipped;
+  seconds.locate = locating.seconds();
+
+  const Result<Trajectory> trajectory = Trajectory::make(found->poses);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  const auto written = write_file(command.output, [&](std::ostream& out) { return write_tum(*trajectory, out); });
+  if (!written) return tl::unexpected(written.error());
+  seconds.total = total.seconds();
+  const Result<void> summary = command.output_options.report == Report::kJson
+                                   ? console.print(json_of(*found, *motion, field_bytes, seconds))
+                                   : console.summarise(text_of(*found, *motion, command, seconds), command.output);
+  if (!summary) return tl::unexpected(summary.error());
+  return 0;
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "mapping_options.hpp"
+#include "option_table.hpp"
+#include "option_values.hpp"
+#include "parse_commands.hpp"
+#include "shared_options.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// "anywhere", or x, y, yaw, and optionally their standard deviations: metres and degrees.
+Take into_start(std::optional<StartPose>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    target.reset();
+    if (text == "anywhere") return {};
+    StartPose start;
+    const auto commas = std::ranges::count(text, ',');
+    if (commas == 4) {
+      const auto numbers = numbers_from<5>(text);
+      if (!numbers) return tl::unexpected(numbers.error());
+      const auto& n = *numbers;
+      start = {n[0], n[1], n[2] * kDegree_rad, n[3], n[4] * kDegree_rad};
+    } else if (commas == 2) {
+      const auto numbers = numbers_from<3>(text);
+      if (!numbers) return tl::unexpected(numbers.error());
+      const auto& n = *numbers;
+      start.x_m = n[0];
+      start.y_m = n[1];
+      start.yaw_rad = n[2] * kDegree_rad;
+    } else {
+      return usage_error(fmt::format("'{}': must be anywhere, X,Y,YAW or X,Y,YAW,SIGMA_M,SIGMA_DEG", text));
+    }
+    constexpr double kFar_m = 1e6;
+    const bool is_good = std::abs(start.x_m) <= kFar_m && std::abs(start.y_m) <= kFar_m &&
+                         std::isfinite(start.yaw_rad) && start.deviation_m >= 0.0 && start.deviation_m <= kFar_m &&
+                         start.deviation_rad >= 0.0 && std::isfinite(start.deviation_rad);
+    if (!is_good) return usage_error(fmt::format("'{}': a number is out of range", text));
+    target = start;
+    return {};
+  };
+}
+
+}  // namespace
+
+Result<Command> locate_command(const Args& args) {
+  LocateCommand command;
+  std::string output, odometry;
+  EchoArgs echoes;
+  LocalizerOptions& localizer = command.localizer;
+  const auto into_list = [](Args& list) -> Take {
+    return [&list](const std::string& text) -> Result<void> {
+      list.push_back(text);
+      return {};
+    };
+  };
+  Option nav{"--nav", 0,
+             "FILE",  "navigation log: heading, and velocity over ground where it has one",
+             "",      into_list(command.navs)};
+  nav.repeats = Repeats::kEachCounts;
+  Option nav_offset{"--nav-offset",
+                    0,
+                    "S",
+                    "seconds to add to the times of --nav to get those of the sonar log",
+                    "0",
+                    within({-1e10, 1e10}, into_number(command.nav.offset_s))};
+  nav_offset.only_with = {{"--nav"}};
+  Option nav_mount{"--nav-mount",        0,
+                   "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation on the vehicle, as --mount",
+                   "0,0,0,0,0,0",        into_nav_mounts(command.nav.body_from_source)};
+  nav_mount.repeats = Repeats::kEachCounts;
+  nav_mount.only_with = {{"--nav"}};
+  OptionTable::Group echo_options = echo_group(echoes);
+  std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
+  for (Option& option : echo_options.options) option.only_for.clear();
+  const OptionTable table{
+      "locate",
+      "Finds where the vehicle was in a map that is known, from the echoes of a scanning sonar, and from navigation\n"
+      "where there is any. When several places fit as well, all of them are reported.",
+      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", into_list(command.logs)}},
+      {{"Output",
+        {output_option(output,
+                       "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
+         json_option(command.output_options), quiet_option(command.output_options)}},
+       {"Map",
+        {{"--map", 0, "FILE", "the map: .bt, .ot or .pvx", "", into(command.map)},
+         {"--min-z", 0, "M", "lowest height of the map that is used", "0.25 below the sonar at the first beam",
+          into_optional(command.min_z_m)},
+         {"--max-z", 0, "M", "highest height of the map that is used", "0.25 above the sonar at the first beam",
+          into_optional(command.max_z_m)}}},
+       {"Navigation",
+        {std::move(nav),
+         std::move(nav_offset),
+         std::move(nav_mount),
+         {"--odometry", 0, "FILE", "poses in a frame that may drift, as TUM lines, instead of --nav", "",
+          into(odometry)},
+         {"--mount", 0, "X,Y,Z,R,P,Y",
+          "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
+          into_mount(localizer.body_from_sonar)}}},
+       {"Estimation",
+        {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
+          "where the vehicle was at first, in metres and degrees, with standard deviations (0.5,10); or anywhere",
+          "anywhere", into_start(command.start)},
+         {"--seed", 0, "N", "of the random numbers", "1", into_number(localizer.seed)}}},
+       std::move(echo_options),
+       {"Input", {strict_option(command.damage), config_option()}}},
+      {"pingvox locate dive.csv --map harbour.bt --nav dvl.csv -o dive.tum",
+       "pingvox locate tank.csv --map tank.bt --start 0.1,0.2,45 -o tank.tum --json"},
+      "Exit status: 0 done, 1 failed, 2 invalid usage."};
+  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+    if (const auto valid = echoes.validate(); !valid) return tl::unexpected(valid.error());
+    localizer.sound_speed_ratio = echoes.sound_speed_ratio();
+    localizer.filter = echoes.filter_options();
+    localizer.echo = echoes.echo;
+    if (const auto valid = localizer.validate(); !valid) return tl::unexpected(valid.error());
+    if (command.map.empty()) return usage_error("--map is missing: the map to find the vehicle in");
+    if (output == "-" && command.output_options.report == Report::kJson) {
+      return usage_error("-o - and --json: both write to standard output");
+    }
+    if (!odometry.empty()) {
+      if (!command.navs.empty()) return usage_error("--nav and --odometry: only one of them can say how it moved");
+      command.odometry = odometry;
+    }
+    Args inputs = command.logs;
+    inputs.push_back(command.map);
+    inputs.insert(inputs.end(), command.navs.begin(), command.navs.end());
+    if (command.odometry) inputs.push_back(*command.odometry);
+    if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
+    if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
+    command.output = output;
+    return command;
+  });
+}
+
+}  // namespace pingvox::app

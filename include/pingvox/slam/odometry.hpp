@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+struct OdometryOptions {
+  /// How a source is mounted: body_from_source by its name; the identity for others.
+  std::map<std::string, Pose> body_from_source;
+  double offset_s = 0.0;  ///< added to the times of the navigation
+};
+
+/// How a vehicle moved, as its navigation says: dead reckoning, whose errors add up.
+struct Odometry {
+  Trajectory odometry_from_body;  ///< begins at x, y = 0; z is less the depth, 0 where there is none
+  std::string heading;            ///< name of the source of heading or attitude
+  std::string velocity;           ///< empty: there is none, and x and y stay 0
+};
+
+/// Integrates the velocity with most samples along the heading with most samples.
+/// @return kUnsupported without a valid heading or attitude, or when velocity and heading do not overlap in time
+Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options);
+
+}  // namespace pingvox

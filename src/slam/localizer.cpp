@@ -1,0 +1,555 @@
+#include "pingvox/slam/localizer.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string_view>
+#include <tuple>
+#include <unordered_set>
+#include <utility>
+
+#include "pingvox/geometry/random.hpp"
+#include "pingvox/sonar/echo_stream.hpp"
+#include "slam/beam_likelihood.hpp"
+#include "slam/pose_search.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
+/// Up to a beam short of it counts: heads jitter.
+constexpr double kTurn = 1.98 * kPi;
+constexpr std::size_t kMaxTurnBeams = 2000;  ///< of a head that stands still
+constexpr std::size_t kMaxSearchBeams = 400;
+/// Averages of the echoes' likelihood are over this many echoes, about.
+constexpr double kShortTerm = 40.0, kLongTerm = 600.0;
+/// The vehicle is lost when the short-term likelihood falls under this part of the long-term one. Augmented Monte
+/// Carlo localisation (Thrun et al. 2005, table 8.3) with poses that fit instead of random ones.
+constexpr double kLostShare = 0.55;
+/// Least mean likelihood of a turn's echoes at a pose that is believed. At poses that are wrong it is about 0.2.
+constexpr double kLeastFit = 0.35;
+constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree;
+constexpr std::size_t kMaxHypotheses = 100;
+constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
+/// Spread of the particles around what a search found.
+constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree;
+
+double yaw_of(const Pose& pose) {
+  return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
+}
+
+PlanePose plane_pose(const Pose& pose) {
+  return {pose.translation().x(), pose.translation().y(), yaw_of(pose)};
+}
+
+double turn_between(double a_rad, double b_rad) {
+  return std::remainder(b_rad - a_rad, 2.0 * kPi);
+}
+
+/// Number of particles that keep the Kullback-Leibler distance below 0.05 with probability 0.99 when they lie in
+/// `bins` bins (Fox 2003, equation 7).
+double kld_particles(std::size_t bins) {
+  if (bins < 2) return 1.0;
+  constexpr double kDistance = 0.05, kQuantile = 2.3263;
+  const double free = static_cast<double>(bins - 1), part = 2.0 / (9.0 * free);
+  const double cube = 1.0 - part + std::sqrt(part) * kQuantile;
+  return free / (2.0 * kDistance) * cube * cube * cube;
+}
+
+/// Where the body was when a beam was heard.
+struct Placed {
+  PlanePose odometry;
+  Eigen::Matrix3d level_from_body = Eigen::Matrix3d::Identity();
+  double turned_rad = 0.0;  ///< by the head so far
+};
+
+struct TurnBeam {
+  HeardBeam beam;  ///< in the odometry's frame
+  double turned_rad = 0.0;
+};
+
+struct Particles {
+  std::vector<PlanePose> poses;
+  std::vector<double> log_weights;
+
+  /// Normalised weights.
+  std::vector<double> weights() const {
+    std::vector<double> w(log_weights.size());
+    const double most = log_weights.empty() ? 0.0 : *std::ranges::max_element(log_weights);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < w.size(); ++i) sum += w[i] = std::exp(log_weights[i] - most);
+    for (double& weight : w) weight /= sum;
+    return w;
+  }
+};
+
+/// Systematic resampling: indices of `count` particles.
+std::vector<std::size_t> resampled(const std::vector<double>& weights, std::size_t count, double offset) {
+  std::vector<std::size_t> chosen;
+  chosen.reserve(count);
+  double sum = weights.front();
+  std::size_t i = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double at = (static_cast<double>(n) + offset) / static_cast<double>(count);
+    while (sum < at && i + 1 < weights.size()) sum += weights[++i];
+    chosen.push_back(i);
+  }
+  return chosen;
+}
+
+/// How many boxes of 0.1 m and 3 degrees the chosen particles lie in.
+std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::size_t>& chosen) {
+  std::unordered_set<std::uint64_t> bins;
+  for (const std::size_t i : chosen) {
+    const PlanePose& p = poses[i];
+    const auto part = [](double value, double step) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::clamp(std::floor(value / step), -1e6, 1e6))) &
+             0x1FFFFFU;
+    };
+    bins.insert(part(p.x, 0.1) | part(p.y, 0.1) << 21U | part(std::remainder(p.yaw, 2.0 * kPi), 3.0 * kDegree) << 42U);
+  }
+  return bins.size();
+}
+
+/// Mean and spread of the particles that `is_member` says belong together.
+template <class IsMember>
+PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& weights, const IsMember& is_member) {
+  double weight = 0.0, x = 0.0, y = 0.0, cosine = 0.0, sine = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!is_member(i)) continue;
+    const PlanePose& p = particles.poses[i];
+    weight += weights[i];
+    x += weights[i] * p.x;
+    y += weights[i] * p.y;
+    cosine += weights[i] * std::cos(p.yaw);
+    sine += weights[i] * std::sin(p.yaw);
+  }
+  PoseHypothesis mean;
+  mean.weight = weight;
+  if (!(weight > 0.0)) return mean;
+  mean.x_m = x / weight;
+  mean.y_m = y / weight;
+  mean.yaw_rad = std::atan2(sine, cosine);
+  double squares = 0.0, turns = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!is_member(i)) continue;
+    const PlanePose& p = particles.poses[i];
+    squares += weights[i] * (std::pow(p.x - mean.x_m, 2) + std::pow(p.y - mean.y_m, 2));
+    turns += weights[i] * std::pow(turn_between(mean.yaw_rad, p.yaw), 2);
+  }
+  mean.deviation_m = std::sqrt(squares / weight);
+  mean.deviation_rad = std::sqrt(turns / weight);
+  return mean;
+}
+
+bool is_near(double x_m, double y_m, double yaw_rad, const PlanePose& pose, double near_m, double near_rad) {
+  return std::hypot(x_m - pose.x, y_m - pose.y) <= near_m && std::abs(turn_between(yaw_rad, pose.yaw)) <= near_rad;
+}
+
+/// Particles that lie together, the heaviest group first.
+std::vector<PoseHypothesis> groups_of(const Particles& particles) {
+  const std::vector<double> weights = particles.weights();
+  std::vector<std::size_t> order(weights.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(-weights[i], i); });
+  // Each belongs to the first leader that is near it.
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> group(weights.size(), kNone), leaders;
+  for (const std::size_t i : order) {
+    const PlanePose& p = particles.poses[i];
+    for (std::size_t g = 0; g < leaders.size() && group[i] == kNone; ++g) {
+      if (is_near(p.x, p.y, p.yaw, particles.poses[leaders[g]], kHypothesis_m, kHypothesis_rad)) group[i] = g;
+    }
+    if (group[i] == kNone && leaders.size() < kMaxHypotheses) {
+      group[i] = leaders.size();
+      leaders.push_back(i);
+    }
+  }
+  // Groups whose means are near each other are one.
+  std::vector<PoseHypothesis> means;
+  for (std::size_t g = 0; g < leaders.size(); ++g) {
+    means.push_back(mean_of(particles, weights, [&](std::size_t i) { return group[i] == g; }));
+  }
+  for (std::size_t g = 1; g < means.size(); ++g) {
+    for (std::size_t other = 0; other < g; ++other) {
+      const PlanePose place{means[other].x_m, means[other].y_m, means[other].yaw_rad};
+      if (means[other].weight == 0.0 ||
+          !is_near(means[g].x_m, means[g].y_m, means[g].yaw_rad, place, kHypothesis_m, kHypothesis_rad)) {
+        continue;
+      }
+      for (std::size_t& of : group) of = of == g ? other : of;
+      means[other] = mean_of(particles, weights, [&](std::size_t i) { return group[i] == other; });
+      means[g].weight = 0.0;
+      break;
+    }
+  }
+  std::erase_if(means, [](const PoseHypothesis& mean) { return mean.weight < 1e-3; });
+  std::ranges::sort(means, {}, [](const PoseHypothesis& m) { return std::tuple(-m.weight, m.x_m, m.y_m, m.yaw_rad); });
+  return means;
+}
+
+/// Collects what is wrong with options.
+class Check {
+ public:
+  void within(double value, double low, double high, std::string_view name) {
+    if (!(value >= low && value <= high)) bad_ += fmt::format(" {} must be {}..{}, is {};", name, low, high, value);
+  }
+  Result<void> result(std::string_view stage) {
+    if (bad_.empty()) return {};
+    bad_.pop_back();
+    return fail(Error::Code::kBadOption, fmt::format("{}:{}", stage, bad_));
+  }
+
+ private:
+  std::string bad_;
+};
+
+}  // namespace
+
+Result<void> BeamLikelihood::validate() const {
+  Check check;
+  check.within(range_deviation_m, 1e-3, 10.0, "range_deviation_m");
+  check.within(bearing_deviation_rad, 0.0, 1.0, "bearing_deviation_rad");
+  check.within(stray, 1e-6, 1.0, "stray");
+  check.within(unknown, 1e-6, 1.0, "unknown");
+  check.within(behind, 1e-6, 1.0, "behind");
+  check.within(silent_wall, 1e-6, 1.0, "silent_wall");
+  check.within(beam_weight, 0.0, 1.0, "beam_weight");
+  return check.result("beam likelihood");
+}
+
+Result<void> MotionNoise::validate() const {
+  Check check;
+  check.within(position_m_per_sqrt_s, 0.0, 100.0, "position_m_per_sqrt_s");
+  check.within(position_m_per_sqrt_m, 0.0, 100.0, "position_m_per_sqrt_m");
+  check.within(yaw_rad_per_sqrt_s, 0.0, 2.0 * kPi, "yaw_rad_per_sqrt_s");
+  check.within(yaw_rad_per_sqrt_rad, 0.0, 2.0 * kPi, "yaw_rad_per_sqrt_rad");
+  return check.result("motion noise");
+}
+
+Result<void> LocalizerOptions::validate() const {
+  Check check;
+  check.within(static_cast<double>(min_particles), 10.0, 1e6, "min_particles");
+  check.within(static_cast<double>(max_particles), static_cast<double>(min_particles), 1e6, "max_particles");
+  if (const auto valid = check.result("localizer"); !valid) return valid;
+  if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
+    return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
+  }
+  if (!body_from_sonar.matrix().allFinite()) return fail(Error::Code::kBadOption, "body_from_sonar: must be finite");
+  if (const auto valid = beam.validate(); !valid) return valid;
+  if (const auto valid = noise.validate(); !valid) return valid;
+  if (const auto valid = without.validate(); !valid) return valid;
+  if (const auto valid = filter.validate(); !valid) return valid;
+  return echo.validate();
+}
+
+struct Localizer::State {
+  State(DistanceField the_field, const LocalizerOptions& the_options)
+      : field(std::move(the_field)),
+        options(the_options),
+        random(options.seed),
+        stream(options.filter, options.echo, EchoStream::Wait::kForNeighbours) {}
+
+  DistanceField field;
+  LocalizerOptions options;
+  Random random;
+  EchoStream stream;
+
+  // The motion.
+  std::optional<double> time_s;      ///< of the last beam
+  std::optional<Pose> next, last;    ///< odometry: for the next beam, and the last that was used
+  PlaneFrame odometry{PlanePose{}};  ///< all motion so far
+  PlanePose odometry_pose;           ///< the same
+  Eigen::Matrix3d level_from_body = Eigen::Matrix3d::Identity();
+  double height_m = 0.0;
+
+  // The head.
+  std::optional<double> bearing_rad;
+  double turned_rad = 0.0;  ///< sum of its steps, whichever way
+  std::uint64_t beams = 0;
+  std::map<std::uint64_t, Placed> waiting;  ///< beams whose echo is not known yet, by number
+  std::deque<TurnBeam> turn;                ///< the last turn of the head
+
+  // The filter. No particles: not found yet.
+  Particles particles;
+  std::vector<PoseHypothesis> groups;  ///< as of the last quarter of a turn
+  PlanePose anchor;                    ///< near the most likely one
+  double grouped_rad = 0.0;
+  double since_rad = 0.0;  ///< turned_rad when what is believed began
+  double searched_rad = 0.0;
+  std::optional<double> lost_rad;  ///< turned_rad when it was found to be wrong
+  double short_term = 0.5, long_term = 0.5;
+  double fit = 0.0;  ///< of the last turn at the most likely pose
+
+  void move(double step_s);
+  void take(const EchoStream::BeamWithEcho& heard);
+  void weigh(const HeardBeam& beam);
+  void resample(const std::vector<double>& weights);
+  void look_after();
+  void group();
+  void search();
+  std::vector<HeardBeam> turn_beams() const;
+  void seed(const std::vector<ScoredPose>& found);
+  PoseHypothesis around_anchor() const;
+};
+
+/// Moves the particles with the odometry, and apart.
+void Localizer::State::move(double step_s) {
+  const MotionNoise& noise = next ? options.noise : options.without;
+  PlanePose step;
+  if (next) {
+    const PlanePose now = plane_pose(*next);
+    if (last) {
+      step = PlaneFrame(plane_pose(*last)).inverse() * now;
+      step.yaw = std::remainder(step.yaw, 2.0 * kPi);
+    }
+    level_from_body = Eigen::AngleAxisd(-now.yaw, Eigen::Vector3d::UnitZ()) * next->rotation();
+    height_m = next->translation().z();
+    last = std::exchange(next, std::nullopt);
+  }
+  odometry_pose = odometry * step;
+  odometry = PlaneFrame(odometry_pose);
+  anchor = PlaneFrame(anchor) * step;
+  const double position_m = std::sqrt(std::pow(noise.position_m_per_sqrt_s, 2) * step_s +
+                                      std::pow(noise.position_m_per_sqrt_m, 2) * std::hypot(step.x, step.y));
+  const double yaw_rad = std::sqrt(std::pow(noise.yaw_rad_per_sqrt_s, 2) * step_s +
+                                   std::pow(noise.yaw_rad_per_sqrt_rad, 2) * std::abs(step.yaw));
+  for (PlanePose& pose : particles.poses) {
+    pose = PlaneFrame(pose) * step;
+    pose.x += position_m * random.normal();
+    pose.y += position_m * random.normal();
+    pose.yaw += yaw_rad * random.normal();
+  }
+}
+
+/// Takes a beam whose echo is known.
+void Localizer::State::take(const EchoStream::BeamWithEcho& heard) {
+  const auto place = waiting.find(heard.number);
+  assert(place != waiting.end());
+  const Placed placed = place->second;
+  waiting.erase(place);
+
+  const Eigen::Vector3d sonar = placed.level_from_body * options.body_from_sonar.translation();
+  const Eigen::Vector3d ahead(std::cos(heard.beam.bearing_rad), std::sin(heard.beam.bearing_rad), 0.0);
+  const Eigen::Vector3d direction = placed.level_from_body * (options.body_from_sonar.rotation() * ahead);
+  const double level = direction.head<2>().norm();
+  constexpr double kLeastLevel = 0.1;  // a beam that goes up or down meets no wall
+  if (!(level > kLeastLevel)) return;
+  const double end_m = static_cast<double>(heard.beam.intensities.size()) * heard.beam.bin_length_m;
+  const double range_m = heard.echo ? heard.echo->range_m : std::min(end_m, options.echo.max_range_m);
+  const HeardBeam beam{heard.beam.time_s, sonar.head<2>(), direction.head<2>() / level,
+                       range_m * level * options.sound_speed_ratio, heard.echo.has_value()};
+  const HeardBeam in_odometry = moved_by(PlaneFrame(placed.odometry), beam);
+  turn.push_back({in_odometry, placed.turned_rad});
+  while (!turn.empty() && (turn.size() > kMaxTurnBeams || turn.front().turned_rad < turned_rad - 2.0 * kPi)) {
+    turn.pop_front();
+  }
+  if (!particles.poses.empty()) weigh(moved_by(odometry.inverse(), in_odometry));
+}
+
+void Localizer::State::weigh(const HeardBeam& beam) {
+  const BeamJudge judge(beam, field, options.beam);
+  const std::vector<double> before = particles.weights();
+  double likelihood = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double log = judge.log_likelihood(PlaneFrame(particles.poses[i]));
+    if (beam.has_echo) likelihood += before[i] * std::exp(log);
+    particles.log_weights[i] += options.beam.beam_weight * log;
+  }
+  if (beam.has_echo) {
+    short_term += (likelihood - short_term) / kShortTerm;
+    if (!lost_rad) long_term += (likelihood - long_term) / kLongTerm;
+  }
+  const std::vector<double> weights = particles.weights();
+  double squares = 0.0;
+  for (const double weight : weights) squares += weight * weight;
+  if (1.0 / squares < 0.5 * static_cast<double>(weights.size())) resample(weights);
+}
+
+void Localizer::State::resample(const std::vector<double>& weights) {
+  const double offset = random.uniform();
+  const std::size_t bins = bins_of(particles.poses, resampled(weights, weights.size(), offset));
+  const double count = std::clamp(kld_particles(bins), static_cast<double>(options.min_particles),
+                                  static_cast<double>(options.max_particles));
+  Particles chosen;
+  for (const std::size_t i : resampled(weights, static_cast<std::size_t>(count), offset)) {
+    chosen.poses.push_back(particles.poses[i]);
+  }
+  chosen.log_weights.assign(chosen.poses.size(), 0.0);
+  particles = std::move(chosen);
+}
+
+/// What is done from time to time: groups of particles, and a search when the vehicle is lost.
+void Localizer::State::look_after() {
+  if (particles.poses.empty()) {
+    if (turned_rad - searched_rad >= kTurn) search();
+    return;
+  }
+  if (short_term >= kLostShare * long_term) {
+    lost_rad.reset();
+  } else if (!lost_rad) {
+    lost_rad = turned_rad;
+  }
+  if (lost_rad && turned_rad - *lost_rad >= kTurn && turned_rad - searched_rad >= kTurn) {
+    search();
+  } else if (turned_rad - grouped_rad >= 0.5 * kPi) {
+    group();
+  }
+}
+
+std::vector<HeardBeam> Localizer::State::turn_beams() const {
+  std::vector<HeardBeam> beams_now;
+  const PlaneFrame now_from_odometry = odometry.inverse();
+  const std::size_t count = std::min(turn.size(), kMaxSearchBeams);
+  for (std::size_t i = 0; i < count; ++i) {
+    beams_now.push_back(moved_by(now_from_odometry, turn[i * turn.size() / count].beam));
+  }
+  return beams_now;
+}
+
+void Localizer::State::group() {
+  grouped_rad = turned_rad;
+  groups = groups_of(particles);
+  if (groups.empty()) return;
+  anchor = {groups.front().x_m, groups.front().y_m, groups.front().yaw_rad};
+  fit = fit_of(turn_beams(), field, options.beam, anchor).value_or(0.0);
+}
+
+/// Lets all poses of the map compete with those that are believed, by the last turn of the head.
+void Localizer::State::search() {
+  searched_rad = turned_rad;
+  const std::vector<HeardBeam> beams_now = turn_beams();
+  std::vector<ScoredPose> found = search_poses(field, beams_now, options.beam);
+  std::vector<BeamJudge> judges;
+  for (const HeardBeam& beam : beams_now) judges.emplace_back(beam, field, options.beam);
+  for (const PoseHypothesis& believed : groups) {
+    found.push_back(
+        refine_pose(judges, options.beam, {believed.x_m, believed.y_m, believed.yaw_rad}, 0.1, 2.0 * kDegree));
+  }
+  found = without_neighbours(std::move(found), 0.3, 10.0 * kDegree, kMaxHypotheses);
+  if (found.empty()) return;
+  seed(found);
+  const double best_fit = fit_of(beams_now, field, options.beam, found.front().pose).value_or(0.0);
+  short_term = long_term = best_fit;
+  since_rad = turn.empty() ? turned_rad : turn.front().turned_rad;
+  lost_rad.reset();
+  if (best_fit < kLeastFit) lost_rad = turned_rad;
+  group();
+}
+
+/// Particles around poses, as many around each as it is likely.
+void Localizer::State::seed(const std::vector<ScoredPose>& found) {
+  Particles all;
+  const std::size_t count = std::clamp<std::size_t>(300 * found.size(), options.min_particles, options.max_particles);
+  std::vector<double> weights;
+  for (const ScoredPose& pose : found) {
+    weights.push_back(std::exp(pose.log_likelihood - found.front().log_likelihood));
+  }
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= sum;
+  for (const std::size_t i : resampled(weights, count, random.uniform())) {
+    const PlanePose& pose = found[i].pose;
+    all.poses.push_back({pose.x + kSeed_m * random.normal(), pose.y + kSeed_m * random.normal(),
+                         pose.yaw + kSeed_rad * random.normal()});
+  }
+  all.log_weights.assign(all.poses.size(), 0.0);
+  particles = std::move(all);
+}
+
+PoseHypothesis Localizer::State::around_anchor() const {
+  return mean_of(particles, particles.weights(), [&](std::size_t i) {
+    const PlanePose& p = particles.poses[i];
+    return is_near(p.x, p.y, p.yaw, anchor, 2.0 * kHypothesis_m, 2.0 * kHypothesis_rad);
+  });
+}
+
+Localizer::Localizer(DistanceField field, const LocalizerOptions& options)
+    : state_(std::make_unique<State>(std::move(field), options)) {
+  assert(options.validate());
+}
+Localizer::~Localizer() = default;
+Localizer::Localizer(Localizer&&) noexcept = default;
+Localizer& Localizer::operator=(Localizer&&) noexcept = default;
+
+void Localizer::start(double x_m, double y_m, double yaw_rad, double deviation_m, double deviation_rad) {
+  State& s = *state_;
+  s.particles = {};
+  for (std::size_t i = 0; i < s.options.max_particles; ++i) {
+    s.particles.poses.push_back({x_m + deviation_m * s.random.normal(), y_m + deviation_m * s.random.normal(),
+                                 yaw_rad + deviation_rad * s.random.normal()});
+  }
+  s.particles.log_weights.assign(s.particles.poses.size(), 0.0);
+  s.anchor = {x_m, y_m, yaw_rad};
+  s.since_rad = s.turned_rad;
+  s.lost_rad.reset();
+  s.short_term = s.long_term = 0.5;
+  s.group();
+}
+
+void Localizer::add(const StampedPose& odometry_from_body) {
+  state_->next = odometry_from_body.map_from_body;
+}
+
+Result<void> Localizer::add(Beam beam) {
+  State& s = *state_;
+  if (s.time_s && !(beam.time_s >= *s.time_s)) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("the times of the beams do not rise: beam {} is at {:.3f} s, the one "
+                            "before it at {:.3f} s",
+                            s.beams, beam.time_s, *s.time_s));
+  }
+  s.move(s.time_s ? beam.time_s - *s.time_s : 0.0);
+  s.time_s = beam.time_s;
+  if (s.bearing_rad) s.turned_rad += std::abs(turn_between(*s.bearing_rad, beam.bearing_rad));
+  s.bearing_rad = beam.bearing_rad;
+  s.waiting.emplace(s.beams++, Placed{s.odometry_pose, s.level_from_body, s.turned_rad});
+  for (const EchoStream::BeamWithEcho& heard : s.stream.add(std::move(beam))) s.take(heard);
+  s.look_after();
+  return {};
+}
+
+void Localizer::finish() {
+  State& s = *state_;
+  for (const EchoStream::BeamWithEcho& heard : s.stream.finish()) s.take(heard);
+  if (s.particles.poses.empty()) {
+    s.search();
+  } else {
+    s.group();
+  }
+}
+
+std::optional<Localizer::Located> Localizer::pose() const {
+  const State& s = *state_;
+  if (s.particles.poses.empty() || !s.time_s) return std::nullopt;
+  PoseHypothesis mean = s.around_anchor();
+  if (!(mean.weight > 0.0)) mean = {s.anchor.x, s.anchor.y, s.anchor.yaw, 0.0, 0.0, 0.0};
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(mean.x_m, mean.y_m, s.height_m);
+  pose.linear() = Eigen::AngleAxisd(mean.yaw_rad, Eigen::Vector3d::UnitZ()) * s.level_from_body;
+  return Located{*s.time_s, pose, mean.deviation_m, mean.deviation_rad};
+}
+
+bool Localizer::is_sure() const {
+  const State& s = *state_;
+  if (s.groups.empty() || s.lost_rad || s.turned_rad - s.since_rad < kTurn || s.fit < kLeastFit) return false;
+  if (s.groups.front().weight < kSureWeight) return false;
+  const PoseHypothesis now = s.around_anchor();
+  return now.weight >= kSureWeight && now.deviation_m <= kSure_m && now.deviation_rad <= kSure_rad;
+}
+
+std::vector<PoseHypothesis> Localizer::hypotheses() const {
+  return groups_of(state_->particles);
+}
+
+std::size_t Localizer::particles() const {
+  return state_->particles.poses.size();
+}
+
+}  // namespace pingvox

@@ -1,0 +1,89 @@
+#include "pingvox/slam/odometry.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slam/navigation.hpp"
+
+namespace pingvox {
+namespace {
+
+/// Sources that are silent for longer say nothing of the way in between.
+constexpr double kLongestStep_s = 5.0;
+
+Pose mount_of(const OdometryOptions& options, const std::string& source) {
+  const auto mount = options.body_from_source.find(source);
+  return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
+}
+
+/// The heading with most samples, the first of equals.
+std::optional<HeadingSource> best_heading(const NavLog& log, const OdometryOptions& options) {
+  std::optional<HeadingSource> best;
+  for (const NavSource& source : log.sources()) {
+    if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
+    auto heading = heading_source(source, mount_of(options, source.name));
+    if (heading && (!best || heading->yaw_rad.size() > best->yaw_rad.size())) best = *std::move(heading);
+  }
+  return best;
+}
+
+}  // namespace
+
+Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
+  const std::optional<HeadingSource> heading = best_heading(log, options);
+  if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
+  std::optional<VelocitySource> velocity;
+  if (const NavSource* best = log.best(NavQuantity::kVelocity))
+    velocity = velocity_source(*best, mount_of(options, best->name));
+  std::optional<TimeSeries> depth;
+  if (const NavSource* best = log.best(NavQuantity::kDepth)) depth = number_source(*best);
+
+  double from_s = heading->yaw_rad.from_s(), to_s = heading->yaw_rad.to_s();
+  std::vector<double> times_s = heading->yaw_rad.times_s();
+  if (velocity) {
+    from_s = std::max(from_s, velocity->ahead.from_s());
+    to_s = std::min(to_s, velocity->ahead.to_s());
+    if (!(from_s < to_s)) {
+      return fail(Error::Code::kUnsupported,
+                  fmt::format("the velocity of {} and the heading of {} do not overlap in time", velocity->name,
+                              heading->name));
+    }
+    times_s.insert(times_s.end(), velocity->ahead.times_s().begin(), velocity->ahead.times_s().end());
+  }
+  std::ranges::sort(times_s);
+  times_s.erase(std::ranges::unique(times_s).begin(), times_s.end());
+  std::erase_if(times_s, [&](double time_s) { return time_s < from_s || time_s > to_s; });
+
+  // What is measured at a place of the body is carried to its origin.
+  const Eigen::Vector3d place =
+      velocity ? mount_of(options, velocity->name).translation() : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  std::vector<StampedPose> poses;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const double time_s = times_s[i];
+    if (velocity && i > 0) {
+      const double middle_s = 0.5 * (times_s[i - 1] + time_s), step_s = time_s - times_s[i - 1];
+      const double yaw = heading->yaw_rad.at(middle_s);
+      const double ahead_m = step_s * velocity->ahead.at(middle_s), left_m = step_s * velocity->left.at(middle_s);
+      at += Eigen::Vector2d(std::cos(yaw) * ahead_m - std::sin(yaw) * left_m,
+                            std::sin(yaw) * ahead_m + std::cos(yaw) * left_m);
+    }
+    Pose pose = pose_from_rpy({at.x(), at.y(), depth ? -depth->at(time_s) : 0.0},
+                              heading->roll_rad ? heading->roll_rad->at(time_s) : 0.0,
+                              heading->pitch_rad ? heading->pitch_rad->at(time_s) : 0.0, heading->yaw_rad.at(time_s));
+    pose.translation().head<2>() -= (pose.rotation() * place).head<2>();
+    poses.push_back({time_s + options.offset_s, pose});
+  }
+  const Eigen::Vector2d origin = poses.front().map_from_body.translation().head<2>();
+  for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), kLongestStep_s);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  return Odometry{*std::move(trajectory), heading->name, velocity ? velocity->name : std::string()};
+}
+
+}  // namespace pingvox
