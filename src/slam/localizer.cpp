@@ -34,7 +34,7 @@ constexpr double kShortTerm = 40.0, kLongTerm = 600.0;
 /// Carlo localisation (Thrun et al. 2005, table 8.3) with poses that fit instead of random ones.
 constexpr double kLostShare = 0.55;
 /// Least mean likelihood of a turn's echoes at a pose that is believed. At poses that are wrong it is about 0.2.
-constexpr double kLeastFit = 0.35;
+constexpr double kLeastFit = 0.35, kSureFit = 0.6;
 constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree;
 constexpr std::size_t kMaxHypotheses = 100;
 constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
@@ -538,7 +538,7 @@ std::optional<Localizer::Located> Localizer::pose() const {
 
 bool Localizer::is_sure() const {
   const State& s = *state_;
-  if (s.groups.empty() || s.lost_rad || s.turned_rad - s.since_rad < kTurn || s.fit < kLeastFit) return false;
+  if (s.groups.empty() || s.lost_rad || s.turned_rad - s.since_rad < kTurn || s.fit < kSureFit) return false;
   if (s.groups.front().weight < kSureWeight) return false;
   const PoseHypothesis now = s.around_anchor();
   return now.weight >= kSureWeight && now.deviation_m <= kSure_m && now.deviation_rad <= kSure_rad;

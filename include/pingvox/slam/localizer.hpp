@@ -34,8 +34,8 @@ struct BeamLikelihood {
 
 /// Standard deviations of a motion: of each coordinate and of the yaw, over time and over the way.
 struct MotionNoise {
-  double position_m_per_sqrt_s = 0.01, position_m_per_sqrt_m = 0.03;
-  double yaw_rad_per_sqrt_s = 0.2 * std::numbers::pi / 180.0, yaw_rad_per_sqrt_rad = 0.02;
+  double position_m_per_sqrt_s = 0.02, position_m_per_sqrt_m = 0.05;
+  double yaw_rad_per_sqrt_s = 0.3 * std::numbers::pi / 180.0, yaw_rad_per_sqrt_rad = 0.02;
 
   /// Of a vehicle that nothing is known of but that it moves little.
   static MotionNoise random_walk() { return {0.05, 0.0, std::numbers::pi / 180.0, 0.0}; }
