@@ -167,7 +167,8 @@ JsonObject json_of(const ErrorStatistics& error) {
 
 std::string json_of(const TrajectoryScore& score) {
   JsonObject absolute, relative, json;
-  absolute.add("first_fix", json_of(score.first_fix))
+  absolute.add("none", json_of(score.none))
+      .add("first_fix", json_of(score.first_fix))
       .add("translation", json_of(score.translation))
       .add("se2", json_of(score.se2).add("rotation_deg", score.se2_turn_rad / kDegree_rad));
   relative.add("per_m", score.per_m).add("segment_m", score.segment_m);
@@ -191,7 +192,8 @@ std::string text_of(const TrajectoryScore& score) {
                                    ? "B did not move"
                                    : fmt::format("{:.4g} m/m, over segments of {:.4g} m", score.per_m, score.segment_m);
   return fmt::format("Horizontal error of A at {} poses of B{}, aligned by\n", score.poses, outside) +
-         report_line("first fix", text_of(score.first_fix)) + report_line("translation", text_of(score.translation)) +
+         report_line("nothing", text_of(score.none)) + report_line("first fix", text_of(score.first_fix)) +
+         report_line("translation", text_of(score.translation)) +
          report_line("SE(2)",
                      fmt::format("{}, turned by {:.3g} deg", text_of(score.se2), score.se2_turn_rad / kDegree_rad)) +
          report_line("relative", relative);

@@ -1,6 +1,6 @@
 # bash completion for pingvox. Needs nothing of the bash-completion package, and uses nothing of it.
 
-_pingvox_commands() { printf '%s\n' map info compare convert render simulate slam bench; }
+_pingvox_commands() { printf '%s\n' map info compare convert render simulate slam locate bench; }
 
 # What `pingvox bench list` lists.
 _pingvox_benches() {
@@ -40,6 +40,11 @@ _pingvox_options() {
       ;;
     slam)
       options+=(--output --map --resolution --calibration --json --quiet --nav --nav-offset --mount --nav-mount --matching)
+      options+=(--seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
+      options+=(--filter --kernel --sigma --detect --threshold --cfar)
+      ;;
+    locate)
+      options+=(--output --map --min-z --max-z --json --quiet --nav --nav-offset --mount --nav-mount --odometry --start)
       options+=(--seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
@@ -101,7 +106,7 @@ _pingvox() {
   if [[ -z $words ]]; then
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --water | --kernel | --sigma | --threshold | \
-        --nav-mount | --nav-offset | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
+        --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)
         return # a number or a text: nothing to offer

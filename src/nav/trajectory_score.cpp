@@ -102,6 +102,8 @@ Result<TrajectoryScore> score_trajectory(const Trajectory& trajectory, const Tra
       return (match.ours - at.ours) - (match.reference - at.reference);
     };
   };
+  score.none =
+      statistics_of(matches, [](const Match& match) -> Eigen::Vector2d { return match.ours - match.reference; });
   score.first_fix = statistics_of(matches, shifted_from(matches.front()));
   score.translation = statistics_of(matches, shifted_from(mean));
   score.se2 = statistics_of(matches, [&](const Match& match) -> Eigen::Vector2d {

@@ -32,7 +32,7 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|simulate|slam|bench" pingvox ""
+offers "map|info|compare|convert|render|simulate|slam|locate|bench" pingvox ""
 offers "map" pingvox m
 offers "compare|convert" pingvox co
 offers "--help|--version" pingvox -
@@ -68,7 +68,7 @@ same() {
 }
 
 if [[ -n $program ]]; then
-  for command in map info compare convert render simulate; do
+  for command in map info compare convert render simulate slam locate; do
     help=$("$program" "$command" --help)
     # Lines as in `  -o, --output FILE     what it is`.
     in_help=$(sed -nE 's/^ {2,}(-[a-zA-Z], )?(--[a-z-]+)( .*)?$/\2/p' <<<"$help")

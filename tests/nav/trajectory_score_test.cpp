@@ -57,6 +57,9 @@ TEST(TrajectoryScore, ShiftsTheFirstFixByTheFirstPairAloneAndTheTranslationByThe
               std::sqrt(std::pow(score.first_fix.rmse_m, 2) - std::pow(score.first_fix.mean_m, 2)), 1e-12);
   // From the mean (1/3, 1): (2/3, -1), (-1/3, -1), (-1/3, 2).
   EXPECT_NEAR(score.translation.rmse_m, std::sqrt((4 + 9 + 1 + 9 + 1 + 36) / 9.0 / 3.0), 1e-12);
+  // As they are: (1, 0), (0, 0), (0, 3).
+  EXPECT_NEAR(score.none.mean_m, 4.0 / 3, 1e-12);
+  EXPECT_NEAR(score.none.rmse_m, std::sqrt(10.0 / 3), 1e-12);
   EXPECT_LE(score.se2.rmse_m, score.translation.rmse_m);
   EXPECT_NEAR(score.max_difference_m, 3.0, 1e-12);
 }

@@ -1,3 +1,3 @@
 #pragma once
 
-#include "pingvox/geometry/random.hpp"
+#include "pingvox/geometry/random.hpp"  // where it is now

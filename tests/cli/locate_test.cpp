@@ -1,0 +1,72 @@
+// A vehicle in a map that is known.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "call.hpp"
+
+namespace pingvox::test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Locate, FindsTheSonarInTheTankOfAnotherRun) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "2", "--seed", "1"}).status, 0);
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "b.csv", "--turns", "3", "--seed", "2"}).status, 0);
+  ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.bt"}).status, 0);
+  const Outcome found = here.call({"locate", "b.csv", "--map", "a.bt", "-o", "b.tum", "--json"});
+  ASSERT_EQ(found.status, 0) << found.err;
+  for (const char* part : {R"("sure": true)", R"("hypotheses": [{"x_m": )", R"("converged_at_s": )",
+                           R"("particles": {"mean": )", R"("seconds": {"read": )"}) {
+    EXPECT_THAT(found.out, HasSubstr(part));
+  }
+  // The sonar stands at the origin of both maps.
+  std::istringstream poses(here.read("b.tum"));
+  std::size_t count = 0;
+  for (std::string line; std::getline(poses, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream numbers(line);
+    double time = 0.0, x = 1e9, y = 1e9;
+    numbers >> time >> x >> y;
+    ASSERT_LT(std::hypot(x, y), 0.08) << line;
+    ++count;
+  }
+  EXPECT_GT(count, 300U);
+}
+
+TEST(Locate, TheSameSeedWritesTheSameBytesAndAStartNeedsNoSearch) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t"}).status, 0);
+  for (const char* name : {"a.tum", "b.tum"}) {
+    ASSERT_EQ(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", name, "--start", "0.1,0,5,0.2,5"}).status, 0);
+  }
+  EXPECT_EQ(here.read("a.tum"), here.read("b.tum"));
+  EXPECT_THAT(here.read("a.tum"), HasSubstr("\n0 "));
+}
+
+TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t"}).status, 0);
+  expect_error(here.call({"locate", "a.csv", "-o", "o.tum"}), 2, {"--map is missing"});
+  for (const char* start : {"here", "1,2", "1,2,nan", "1,2,3,-1,5", "1e300,0,0"}) {
+    expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--start", start}), 2,
+                 {"--start"});
+  }
+  expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--min-z", "50", "--max-z", "51"}),
+               1, {"t/world.bt", "nothing is occupied between the heights 50 and 51 m"});
+  here.write("late.tum", "5000 0 0 0 0 0 0 1\n5001 0 0 0 0 0 0 1\n");
+  expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--odometry", "late.tum"}), 1,
+               {"do not overlap in time"});
+  here.write("depth.csv", "time_s,source,quantity,x\n1,bar,depth,2\n2,bar,depth,2\n");
+  expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--nav", "depth.csv"}), 1,
+               {"depth.csv", "no valid heading or attitude"});
+  EXPECT_FALSE(here.has("o.tum"));
+}
+
+}  // namespace
+}  // namespace pingvox::test
