@@ -33,8 +33,9 @@ constexpr double kShortTerm = 40.0, kLongTerm = 600.0;
 /// The vehicle is lost when the short-term likelihood falls under this part of the long-term one. Augmented Monte
 /// Carlo localisation (Thrun et al. 2005, table 8.3) with poses that fit instead of random ones.
 constexpr double kLostShare = 0.55;
-/// Least mean likelihood of a turn's echoes at a pose that is believed. At poses that are wrong it is about 0.2.
-constexpr double kLeastFit = 0.35, kSureFit = 0.6;
+/// Least mean likelihood of echoes at a pose that is believed. In a small
+/// room it is 0.3 at poses that are wrong.
+constexpr double kLeastFit = 0.45, kSureFit = 0.6;
 constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree;
 constexpr std::size_t kMaxHypotheses = 100;
 constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
@@ -392,7 +393,7 @@ void Localizer::State::look_after() {
     if (turned_rad - searched_rad >= kTurn) search();
     return;
   }
-  if (short_term >= kLostShare * long_term) {
+  if (short_term >= std::max(kLostShare * long_term, kLeastFit)) {
     lost_rad.reset();
   } else if (!lost_rad) {
     lost_rad = turned_rad;
