@@ -247,7 +247,8 @@ Result<int> run(const LocateCommand& command, Console& console) {
   std::optional<Pose> first;
   if (motion->odometry) {
     for (const Beam& beam : *beams) {
-      if ((first = motion->odometry->at(beam.time_s))) break;
+      first = motion->odometry->at(beam.time_s);
+      if (first) break;
     }
     if (!first) {
       return fail(Error::Code::kUnsupported,

@@ -18,8 +18,7 @@ HeardBeam moved_by(const PlaneFrame& to_from, const HeardBeam& beam) {
 }
 
 EndTable::EndTable(const HeardBeam& beam, const DistanceField& field, const BeamLikelihood& model,
-                   double more_deviation_m)
-    : log_{} {
+                   double more_deviation_m) {
   if (!beam.has_echo) return;
   const double deviation = std::hypot(deviation_m(beam, field, model), more_deviation_m);
   for (std::size_t value = 0; value < log_.size(); ++value) {

@@ -66,7 +66,7 @@ class EndTable {
   float operator[](std::uint8_t value) const { return log_[value]; }
 
  private:
-  std::array<float, 256> log_;
+  std::array<float, 256> log_{};
 };
 
 /// Log-likelihood of a beam at poses of its frame, before BeamLikelihood::beam_weight.

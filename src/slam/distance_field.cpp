@@ -127,17 +127,17 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
   // A tile around: distances go on there.
   known.min_x -= kTile;
   known.min_y -= kTile;
-  const auto tiles_x = static_cast<double>((known.max_x - known.min_x) / kTile + 2);
-  const auto tiles_y = static_cast<double>((known.max_y - known.min_y) / kTile + 2);
+  const std::int64_t tiles_x = (known.max_x - known.min_x) / kTile + 2;
+  const std::int64_t tiles_y = (known.max_y - known.min_y) / kTile + 2;
   const auto too_large = [&] {
     return fail(Error::Code::kLimit, fmt::format("the layer of the map between {:.3g} and {:.3g} m is too large",
                                                  options.min_z_m, options.max_z_m));
   };
-  if (tiles_x * tiles_y > kMaxBoxTiles) return too_large();
+  if (static_cast<double>(tiles_x) * static_cast<double>(tiles_y) > kMaxBoxTiles) return too_large();
   field.first_x_ = static_cast<double>(known.min_x);
   field.first_y_ = static_cast<double>(known.min_y);
-  field.size_x_ = tiles_x * static_cast<double>(kTile);
-  field.size_y_ = tiles_y * static_cast<double>(kTile);
+  field.size_x_ = static_cast<double>(tiles_x * kTile);
+  field.size_y_ = static_cast<double>(tiles_y * kTile);
   field.tiles_x_ = static_cast<std::size_t>(tiles_x);
   field.tiles_.assign(field.tiles_x_ * static_cast<std::size_t>(tiles_y), 0);
 
