@@ -33,7 +33,7 @@ TEST(NormalEquations, SolveLoopsAndBorderAsDenseOnes) {
     // Residuals of two knots and the globals.
     const Eigen::MatrixXd by = random_matrix(12, 6 + kGlobals, random);
     const Eigen::MatrixXd square = by.transpose() * by;
-    const std::vector<Eigen::Index> at = {3 * Eigen::Index{a}, 3 * Eigen::Index{b}};
+    const Eigen::Vector<Eigen::Index, 2> at(3 * Eigen::Index{a}, 3 * Eigen::Index{b});
     for (Eigen::Index i = 0; i < 2; ++i) {
       for (Eigen::Index j = 0; j < 2; ++j) {
         dense.block<3, 3>(at[i], at[j]) += square.block<3, 3>(3 * i, 3 * j);
