@@ -19,9 +19,21 @@ function(pingvox_compile_options target)
     ${target} PRIVATE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wshadow> -Wconversion -Wnon-virtual-dtor
                       -Wold-style-cast -Woverloaded-virtual $<$<BOOL:${PINGVOX_WARNINGS_AS_ERRORS}>:-Werror>)
   if(PINGVOX_SANITIZE)
+    string(REPLACE "," ";" sanitizers "${PINGVOX_SANITIZE}")
     target_compile_options(${target} PRIVATE -fsanitize=${PINGVOX_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)
+    if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+      target_compile_options(
+        ${target} PRIVATE "-fsanitize-ignorelist=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/sanitizers_ignore.txt")
+    endif()
     target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)
+    # Each compiler tells it in another way.
+    foreach(sanitizer IN ITEMS ADDRESS THREAD)
+      string(TOLOWER ${sanitizer} name)
+      if(name IN_LIST sanitizers)
+        target_compile_definitions(${target} PRIVATE PINGVOX_SANITIZE_${sanitizer})
+      endif()
+    endforeach()
     target_link_options(${target} PUBLIC -fsanitize=${PINGVOX_SANITIZE})
   endif()
 endfunction()

@@ -5,7 +5,7 @@
 #include <new>
 
 // The thread sanitizer does not follow mremap: addresses that another arena once had look like races to it.
-#if defined(__linux__) && !defined(__SANITIZE_THREAD__)
+#if defined(__linux__) && !defined(PINGVOX_SANITIZE_THREAD)
 #define PINGVOX_ARENA_MREMAP
 #include <sys/mman.h>
 #endif

@@ -34,6 +34,7 @@ std::vector<Tick> logarithmic_ticks(const AxisScale& scale, std::size_t most) {
   const double low = std::log10(std::min(scale.at_start, scale.at_end));
   const double high = std::log10(std::max(scale.at_start, scale.at_end));
   std::vector<Tick> ticks;
+  if (!std::isfinite(low) || !std::isfinite(high)) return ticks;
   const auto add = [&](double value) {
     const double exponent = std::log10(value);
     if (exponent >= low - 1e-9 && exponent <= high + 1e-9) ticks.push_back({scale.share_of(value), length_text(value)});

@@ -41,7 +41,8 @@ TEST(Locate, FindsTheSonarInTheTankOfAnotherRun) {
 
 TEST(Locate, TheSameSeedWritesTheSameBytesAndAStartNeedsNoSearch) {
   const Workplace here;
-  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t"}).status, 0);
+  ASSERT_EQ(
+      here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t", "--resolution", "0.1"}).status, 0);
   for (const char* name : {"a.tum", "b.tum"}) {
     ASSERT_EQ(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", name, "--start", "0.1,0,5,0.2,5"}).status, 0);
   }
@@ -51,7 +52,8 @@ TEST(Locate, TheSameSeedWritesTheSameBytesAndAStartNeedsNoSearch) {
 
 TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
   const Workplace here;
-  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t"}).status, 0);
+  ASSERT_EQ(
+      here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t", "--resolution", "0.1"}).status, 0);
   expect_error(here.call({"locate", "a.csv", "-o", "o.tum"}), 2, {"--map is missing"});
   for (const char* start : {"here", "1,2", "1,2,nan", "1,2,3,-1,5", "1e300,0,0"}) {
     expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--start", start}), 2,

@@ -137,7 +137,7 @@ TEST_F(Files, LargerThanTheMemoryAreRefused) {
   if (::truncate(path("huge").c_str(), off_t{1} << 43) != 0) GTEST_SKIP() << "no sparse file of 8 TB here";
   rlimit before = {};
   ASSERT_EQ(::getrlimit(RLIMIT_AS, &before), 0);
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(PINGVOX_SANITIZE_ADDRESS)
   GTEST_SKIP() << "an allocation that fails ends a program with AddressSanitizer";
 #endif
   rlimit small = before;

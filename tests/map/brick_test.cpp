@@ -66,7 +66,7 @@ TEST(BrickPool, KeepsKnownCellsWithTheirValues) {
 
 // Kills indices that part ways when there is memory for the known cells of a brick and none for its values.
 TEST(BrickPool, GoesOnAfterMemoryRanOut) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PINGVOX_SANITIZE_ADDRESS) || defined(PINGVOX_SANITIZE_THREAD)
   GTEST_SKIP() << "an allocation that fails ends a program with a sanitizer";
 #endif
   std::ifstream statm("/proc/self/statm");

@@ -69,7 +69,7 @@ void operator delete[](void* place, std::size_t) noexcept {
   release(place);
 }
 
-#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__linux__) && !defined(PINGVOX_SANITIZE_ADDRESS) && !defined(PINGVOX_SANITIZE_THREAD)
 // The pools of the tree ask the system itself for room.
 extern "C" void* mmap(void* place, std::size_t size, int protection, int flags, int file, off_t offset) noexcept {
   if (has_to_fail()) {
@@ -114,7 +114,7 @@ void until_it_succeeds(Trial&& trial) {
   while (!testing::Test::HasFatalFailure() && !trial(n)) {
     ASSERT_LT(++n, 100'000);
   }
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PINGVOX_SANITIZE_ADDRESS) || defined(PINGVOX_SANITIZE_THREAD)
   if (n <= 5) GTEST_SKIP() << "the sanitizer keeps mmap to itself, so that the pools' room cannot run out";
 #else
   EXPECT_GT(n, 5) << "hardly anything was allocated";

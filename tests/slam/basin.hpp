@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -13,13 +12,15 @@
 
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/sonar/beam.hpp"
+#include "tests/slam/walls.hpp"
 #include "tests/support/uniform.hpp"
 
 /// A basin with a pier, walls drawn as lines, and a vehicle that goes round it with wrong compass and turned DVL.
 namespace pingvox::test {
 
 struct Basin {
-  static constexpr double kLap_s = 400.0, kDuration_s = 800.0;
+  static constexpr double kLap_s = 400.0;
+  double duration_s = 800.0;
   double compass_cos = 0.06;         ///< deviation of the compass [rad]
   double velocity_yaw_rad = 0.05;    ///< by which the DVL is turned against the vehicle
   double velocity_noise_m_s = 0.05;  ///< of each ping
@@ -41,32 +42,22 @@ struct Basin {
   }
 
   static double range_m(const Eigen::Vector2d& from, double yaw_rad) {
-    constexpr std::array<std::array<double, 4>, 9> kWalls = {{{-32, -22, 34, -24},
-                                                              {34, -24, 31, 20},
-                                                              {31, 20, 5, 24},
-                                                              {5, 24, 4, 30},
-                                                              {4, 30, -30, 26},
-                                                              {-30, 26, -32, -22},
-                                                              {-6, 14, 5, 15},
-                                                              {5, 15, 4, 13},
-                                                              {4, 13, -6, 14}}};
-    const Eigen::Vector2d ray(std::cos(yaw_rad), std::sin(yaw_rad));
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const auto& [ax, ay, bx, by] : kWalls) {
-      const Eigen::Vector2d a(ax, ay), wall(bx - ax, by - ay), to = a - from;
-      const double det = ray.x() * wall.y() - ray.y() * wall.x();
-      if (det == 0.0) continue;
-      const double range = (to.x() * wall.y() - to.y() * wall.x()) / det;
-      const double share = (to.x() * ray.y() - to.y() * ray.x()) / det;
-      if (range > 0.0 && share >= 0.0 && share <= 1.0) nearest = std::min(nearest, range);
-    }
-    return nearest;
+    constexpr std::array<Wall, 9> kWalls = {{{-32, -22, 34, -24},
+                                             {34, -24, 31, 20},
+                                             {31, 20, 5, 24},
+                                             {5, 24, 4, 30},
+                                             {4, 30, -30, 26},
+                                             {-30, 26, -32, -22},
+                                             {-6, 14, 5, 15},
+                                             {5, 15, 4, 13},
+                                             {4, 13, -6, 14}}};
+    return range_to_walls_m(kWalls, from, yaw_rad);
   }
 
   /// 100 beams a turn, a turn in ten seconds: each wall as seven bins around it.
   std::vector<Beam> beams() const {
     std::vector<Beam> beams;
-    for (int i = 0; 0.1 * i < kDuration_s; ++i) {
+    for (int i = 0; 0.1 * i < duration_s; ++i) {
       Beam beam{0.1 * i, wrap_bearing(2.0 * std::numbers::pi * i / 100.0), 0.1, std::vector<std::uint8_t>(500, 0)};
       const State state = at(beam.time_s);
       const double range = range_m(state.place, state.yaw_rad + sonar_yaw_rad + beam.bearing_rad);
@@ -84,7 +75,7 @@ struct Basin {
     const double edge = velocity_noise_m_s * std::sqrt(3.0);
     NavSource velocity{"dvl", NavQuantity::kVelocity, {}}, compass{"compass", NavQuantity::kHeading, {}},
         depth{"bar", NavQuantity::kDepth, {}};
-    for (int i = 0; 0.5 * i <= kDuration_s; ++i) {
+    for (int i = 0; 0.5 * i <= duration_s; ++i) {
       NavSample sample;
       sample.time_s = 0.5 * i;
       const State state = at(sample.time_s);
@@ -96,7 +87,7 @@ struct Basin {
       sample.value = {2.0, 0.0, 0.0};
       depth.samples.push_back(sample);
     }
-    for (int i = 0; 0.2 * i <= kDuration_s; ++i) {
+    for (int i = 0; 0.2 * i <= duration_s; ++i) {
       NavSample sample;
       sample.time_s = 0.2 * i;
       const double yaw_rad = at(sample.time_s).yaw_rad;
