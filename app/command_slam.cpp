@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -20,6 +21,8 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/mapping/build_map.hpp"
+#include "pingvox/slam/scan_slam.hpp"
 #include "progress.hpp"
 #include "stopwatch.hpp"
 
@@ -30,19 +33,22 @@ struct Seconds {
   double read = 0.0, solve = 0.0, map = 0.0, write = 0.0, total = 0.0;
 };
 
+Result<Log> open(const std::string& file, Damage damage) {
+  return ByteStream::open(file).and_then([&](ByteStream stream) { return open_log(std::move(stream), damage); });
+}
+
 /// Opens a log of beams.
 Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, Damage damage) {
-  Result<ByteStream> stream = ByteStream::open(file);
-  if (!stream) return tl::unexpected(stream.error());
-  const std::string name = stream->name();
-  Result<Log> log = open_log(std::move(*stream), damage);
+  Result<Log> log = open(file, damage);
   if (!log) return tl::unexpected(log.error());
   if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) return std::move(*beams);
-  return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", name));
+  return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", file));
 }
 
 /// Gives the smoother all beams and navigation. Returns how many records were skipped.
-Result<std::size_t> read_all_into(SlamSmoother& smoother, const SlamCommand& command) {
+/// @param first  the first log, opened
+Result<std::size_t> read_all_into(SlamSmoother& smoother, const SlamCommand& command,
+                                  std::unique_ptr<BeamSource> first) {
   std::size_t skipped = 0;
   for (const std::string& name : command.navs) {
     const Result<FileBytes> file = read_file(name);
@@ -55,7 +61,7 @@ Result<std::size_t> read_all_into(SlamSmoother& smoother, const SlamCommand& com
     skipped += damaged_records(*nav);
   }
   for (const std::string& name : command.logs) {
-    const auto log = open_beam_log(name, command.damage);
+    const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command.damage);
     if (!log) return tl::unexpected(log.error());
     for (;;) {
       Result<std::optional<Beam>> beam = (*log)->next();
@@ -150,16 +156,20 @@ double recorded_s(const SlamSolution& solution) {
   return poses.back().time_s - poses.front().time_s;
 }
 
-std::string json_of(const SlamSolution& solution, const SlamCommand& command, std::size_t skipped,
-                    const Seconds& seconds) {
-  const SlamReport& report = solution.report;
-  JsonObject loops, took, velocity, json;
-  loops.add("found", report.loops_found).add("kept", report.loops_kept);
-  took.add("read", round_to_us(seconds.read))
+JsonObject json_of(const Seconds& seconds) {
+  JsonObject json;
+  return json.add("read", round_to_us(seconds.read))
       .add("solve", round_to_us(seconds.solve))
       .add("map", round_to_us(seconds.map))
       .add("write", round_to_us(seconds.write))
       .add("total", round_to_us(seconds.total));
+}
+
+std::string json_of(const SlamSolution& solution, const SlamCommand& command, std::size_t skipped,
+                    const Seconds& seconds) {
+  const SlamReport& report = solution.report;
+  JsonObject loops, velocity, json;
+  loops.add("found", report.loops_found).add("kept", report.loops_kept);
   velocity.add("source", report.velocity)
       .add("samples", report.velocities)
       .add("clipped", report.velocities_clipped)
@@ -180,7 +190,7 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, st
   } else {
     json.add_null("calibration");
   }
-  json.add("recorded_s", recorded_s(solution)).add("seconds", took);
+  json.add("recorded_s", recorded_s(solution)).add("seconds", json_of(seconds));
   json.add("real_time_factor", recorded_s(solution) / seconds.total);
   return json.text() + "\n";
 }
@@ -189,9 +199,18 @@ std::string degrees_text(const Estimate& estimate) {
   return fmt::format("{:.2f} +- {:.2f}", to_degrees(estimate.value), to_degrees(estimate.deviation));
 }
 
+std::string title_of(const SlamCommand& command) {
+  return command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
+}
+
+std::string seconds_text(const Seconds& seconds) {
+  return fmt::format("{:.3f} = {:.3f} read + {:.3f} solve + {:.3f} map + {:.3f} write + rest", seconds.total,
+                     seconds.read, seconds.solve, seconds.map, seconds.write);
+}
+
 std::string text_of(const SlamSolution& solution, const SlamCommand& command, const Seconds& seconds) {
   const SlamReport& report = solution.report;
-  std::string text = command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
+  std::string text = title_of(command);
   text += report_line(
       "read", fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes));
   text += report_line("velocity",
@@ -216,22 +235,27 @@ std::string text_of(const SlamSolution& solution, const SlamCommand& command, co
                                              to_degrees(std::hypot(heading.sin2_rad.value, heading.cos2_rad.value))));
     }
   }
-  return text + report_line("seconds", fmt::format("{:.3f} = {:.3f} read + {:.3f} solve + {:.3f} map + {:.3f} write "
-                                                   "+ rest; {:.0f} times real time",
-                                                   seconds.total, seconds.read, seconds.solve, seconds.map,
-                                                   seconds.write, recorded_s(solution) / seconds.total));
+  return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
+                                                   recorded_s(solution) / seconds.total));
 }
 
-}  // namespace
+Result<void> write_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command) {
+  auto written = write_file(command.output, [&](std::ostream& out) { return write_tum(trajectory, out); });
+  if (!written || !command.map) return written;
+  return write_map(map, command.map_format, command.made_by, *command.map);
+}
 
-Result<int> run(const SlamCommand& command, Console& console) {
+Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> first, Console& console) {
+  if (command.navs.empty()) {
+    return fail(Error::Code::kBadOption, "slam: --nav is missing: a navigation log with velocity and heading");
+  }
   const Stopwatch total;
   Seconds seconds;
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
   if (!map) return tl::unexpected(map.error());
   SlamSmoother smoother(command.slam);
   const Stopwatch read;
-  const Result<std::size_t> skipped = read_all_into(smoother, command);
+  const Result<std::size_t> skipped = read_all_into(smoother, command, std::move(first));
   if (!skipped) return tl::unexpected(skipped.error());
   seconds.read = read.seconds();
 
@@ -253,13 +277,8 @@ Result<int> run(const SlamCommand& command, Console& console) {
   bar.clear();
 
   const Stopwatch write;
-  const auto written =
-      write_file(command.output, [&](std::ostream& out) { return write_tum(solution->trajectory, out); });
+  const auto written = write_results(solution->trajectory, *map, command);
   if (!written) return tl::unexpected(written.error());
-  if (command.map) {
-    const auto map_written = write_map(*map, command.map_format, command.made_by, *command.map);
-    if (!map_written) return tl::unexpected(map_written.error());
-  }
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
       out << calibration_toml(solution->calibration);
@@ -274,6 +293,125 @@ Result<int> run(const SlamCommand& command, Console& console) {
                                    : console.summarise(text_of(*solution, command, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   return 0;
+}
+
+/// Scans of a log moved to the poses of a trajectory over their numbers.
+class MovedScans : public ScanSource {
+ public:
+  MovedScans(std::unique_ptr<ScanSource> scans, const Trajectory& trajectory)
+      : scans_(std::move(scans)), trajectory_(trajectory) {}
+
+  Result<std::optional<PointScan>> next() override {
+    Result<std::optional<PointScan>> scan = scans_->next();
+    if (!scan || !*scan) return scan;
+    const std::optional<Pose> pose = trajectory_.at(static_cast<double>((*scan)->number));
+    assert(pose);
+    const Pose moved = *pose * Pose(Eigen::Translation3d((*scan)->origin_m) * (*scan)->rotation).inverse();
+    (*scan)->origin_m = pose->translation();
+    for (Eigen::Vector3d& point : (*scan)->points_m) point = moved * point;
+    return scan;
+  }
+
+ private:
+  std::unique_ptr<ScanSource> scans_;
+  const Trajectory& trajectory_;
+};
+
+Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command, OccupancyMap& map) {
+  Result<Log> log = open(command.logs.front(), command.damage);
+  if (!log) return tl::unexpected(log.error());
+  auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
+  if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));
+  MovedScans moved(std::move(*scans), trajectory);
+  const auto built = build_map(moved, BuildOptions{}, map);
+  return built ? Result<void>() : tl::unexpected(built.error());
+}
+
+std::string json_of(const ScanSlamReport& report, std::size_t skipped, const Seconds& seconds) {
+  JsonObject loops, json;
+  loops.add("found", report.loops_found).add("kept", report.loops_kept);
+  json.add("poses", report.scans)
+      .add("scans", report.scans)
+      .add("skipped", skipped)
+      .add("key_frames", report.key_frames)
+      .add("reach_m", report.reach_m)
+      .add("rounds", report.rounds)
+      .add("loops", loops)
+      .add("seconds", json_of(seconds));
+  return json.text() + "\n";
+}
+
+std::string text_of(const ScanSlamReport& report, const SlamCommand& command, const Seconds& seconds) {
+  return title_of(command) +
+         report_line("read", fmt::format("{} scans, {} key frames, reach {:.3g} m", report.scans, report.key_frames,
+                                         report.reach_m)) +
+         report_line(
+             "loops",
+             report.loops_kept == 0
+                 ? fmt::format("none of {} kept: the poses are those of the odometry", report.loops_found)
+                 : fmt::format("{} of {} kept after {} rounds", report.loops_kept, report.loops_found, report.rounds)) +
+         report_line("seconds", seconds_text(seconds));
+}
+
+Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> scans, Console& console) {
+  if (command.logs.size() > 1) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("slam: unexpected argument '{}': scans of points are of one log", command.logs[1]));
+  }
+  const Stopwatch total;
+  Seconds seconds;
+  Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
+  if (!map) return tl::unexpected(map.error());
+  const Stopwatch read;
+  ScanSlam slam;
+  for (;;) {
+    const Result<std::optional<PointScan>> scan = scans->next();
+    if (!scan) return tl::unexpected(scan.error());
+    if (!*scan) break;
+    slam.add(**scan);
+  }
+  seconds.read = read.seconds();
+
+  ProgressBar bar(command.output_options);
+  bar.draw(std::nullopt, "solving");
+  const Stopwatch solve;
+  const Result<ScanSlamSolution> solution = slam.solve();
+  if (!solution) {
+    return fail(solution.error().code, fmt::format("{}: {}", command.logs.front(), solution.error().message));
+  }
+  seconds.solve = solve.seconds();
+  if (command.map) {
+    bar.draw(std::nullopt, "mapping");
+    const Stopwatch mapping;
+    const Result<void> mapped = map_scans(solution->trajectory, command, *map);
+    if (!mapped) return tl::unexpected(mapped.error());
+    seconds.map = mapping.seconds();
+  }
+  bar.clear();
+  const Stopwatch write;
+  const auto written = write_results(solution->trajectory, *map, command);
+  if (!written) return tl::unexpected(written.error());
+  seconds.write = write.seconds();
+  seconds.total = total.seconds();
+  const Result<void> summary = command.output_options.report == Report::kJson
+                                   ? console.print(json_of(solution->report, scans->skipped(), seconds))
+                                   : console.summarise(text_of(solution->report, command, seconds), command.output);
+  if (!summary) return tl::unexpected(summary.error());
+  return 0;
+}
+
+}  // namespace
+
+Result<int> run(const SlamCommand& command, Console& console) {
+  Result<Log> first = open(command.logs.front(), command.damage);
+  if (!first) return tl::unexpected(first.error());
+  const bool is_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*first);
+  if (const auto used = check_limited(command.limited, {kind_text(is_beams ? FormatKind::kBeams : FormatKind::kScans)});
+      !used) {
+    return fail(used.error().code, fmt::format("slam: {}", used.error().message));
+  }
+  return is_beams ? run_beams(command, std::get<std::unique_ptr<BeamSource>>(std::move(*first)), console)
+                  : run_scans(command, std::get<std::unique_ptr<ScanSource>>(std::move(*first)), console);
 }
 
 }  // namespace pingvox::app

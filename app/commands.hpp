@@ -180,6 +180,7 @@ struct SlamCommand {
   double map_resolution_m = MapOptions{}.resolution_m;
   Damage damage = Damage::kSkip;
   SlamOptions slam;
+  std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
 };
 

@@ -53,45 +53,59 @@ Result<Command> slam_command(const Args& args) {
   seed.only_with = {{"--matching", {"pairs"}}};
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
-  for (Option& option : echo_options.options) option.only_for.clear();
+  const std::vector<std::string> beams = {std::string(kBeamLogs)};
+  Option calibration_option{"--calibration",  0, "FILE", "what was estimated of the sensors, as TOML", "",
+                            into(calibration)};
+  calibration_option.only_for = beams;
+  OptionTable::Group navigation{
+      "Navigation",
+      {std::move(nav),
+       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
+        within({-1e10, 1e10}, into_number(slam.nav_offset_s))},
+       {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
+        "0,0,0,0,0,0", into_mount(slam.body_from_sonar)},
+       std::move(nav_mount)}};
+  OptionTable::Group estimation{
+      "Estimation",
+      {choice("--matching", kMatchings, "match pairs of echoes of different sweeps, or none: dead reckoning",
+              slam.matching),
+       std::move(seed)}};
+  for (OptionTable::Group* group : {&navigation, &estimation}) {
+    for (Option& option : group->options) option.only_for = beams;
+  }
   const OptionTable table{
       "slam",
-      "Estimates where the vehicle was, from the echoes of a scanning sonar and from navigation: velocity over ground\n"
-      "and at least one heading. How the sensors are turned and the headings deviate is estimated as well.",
-      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", into_list(command.logs)}},
+      "Estimates where the vehicle was. From the echoes of a scanning sonar and from navigation, velocity over ground\n"
+      "and at least one heading: how the sensors are turned and the headings deviate is estimated as well. Or from\n"
+      "scans of points whose poses are odometry: places that are seen again correct it.",
+      {{"LOG", Positional::Count::kMany,
+        "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
+        into_list(command.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
          {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", into(map)},
          std::move(resolution),
-         {"--calibration", 0, "FILE", "what was estimated of the sensors, as TOML", "", into(calibration)},
+         std::move(calibration_option),
          json_option(command.output_options),
          quiet_option(command.output_options)}},
-       {"Navigation",
-        {std::move(nav),
-         {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
-          within({-1e10, 1e10}, into_number(slam.nav_offset_s))},
-         {"--mount", 0, "X,Y,Z,R,P,Y",
-          "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
-          into_mount(slam.body_from_sonar)},
-         std::move(nav_mount)}},
-       {"Estimation",
-        {choice("--matching", kMatchings, "match pairs of echoes of different sweeps, or none: dead reckoning",
-                slam.matching),
-         std::move(seed)}},
+       std::move(navigation),
+       std::move(estimation),
        std::move(echo_options),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox slam dive.csv --nav nav.csv -o dive.tum --map dive.bt",
-       "pingvox slam dive.csv --nav dive.tlog --nav dvl.csv --nav-mount A50=0,0,0,0,0,-45 -o dive.tum"},
-      "A log whose beams have but one intensity besides 0 holds echoes that were detected already.\n"
+       "pingvox slam dive.csv --nav dive.tlog --nav dvl.csv --nav-mount A50=0,0,0,0,0,-45 -o dive.tum",
+       "pingvox slam scans.graph -o scans.tum --map scans.bt"},
+      "A log whose beams have but one intensity besides 0 holds echoes that were detected already. The times of\n"
+      "trajectories of point scans are the numbers of the scans, from 0.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
+    command.limited = parsed.limited;
     if (const auto valid = echoes.validate(); !valid) return tl::unexpected(valid.error());
     slam.sound_speed_ratio = echoes.sound_speed_ratio();
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
-    if (command.navs.empty()) return usage_error("--nav is missing: a navigation log with velocity and heading");
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
     }

@@ -60,7 +60,7 @@ class ScanGraphSource : public ScanSource {
         if (!damaged) return tl::unexpected(damaged.error());
         continue;
       }
-      ScanBuilder scan({*translation, *rotation});
+      ScanBuilder scan({*translation, *rotation}, node);
       if (!scan.origin_is_finite()) {
         const auto damaged = handle_damage(damage_, skipped_, file_.name, place, "its pose is not finite");
         if (!damaged) return tl::unexpected(damaged.error());

@@ -59,7 +59,8 @@ class ScanLogSource : public ScanSource {
     while (line_ && !scan) {
       std::string_view reason = "a point before the first scan that can be used";
       if (kind_of_line(*line_) == LineKind::kScan) {
-        if (const auto pose = pose_in(*line_)) scan.emplace(*pose);
+        if (const auto pose = pose_in(*line_)) scan.emplace(*pose, scans_);
+        ++scans_;
         if (scan && !scan->origin_is_finite()) scan.reset();
         reason = "NODE must be followed by six finite numbers: x y z roll pitch yaw";
       }
@@ -107,6 +108,7 @@ class ScanLogSource : public ScanSource {
   Damage damage_;
   Lines lines_;
   std::optional<std::string_view> line_;
+  std::size_t scans_ = 0;  ///< begun, damaged ones as well
   SkippedRecords skipped_;
 };
 

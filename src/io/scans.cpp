@@ -17,8 +17,11 @@ bool is_rotation(const std::array<float, 4>& quaternion) {
   return std::fabs(std::sqrt(squares) - 1.0) <= 1e-3;  // false for NaN
 }
 
-ScanBuilder::ScanBuilder(const OctomapPose& pose) : pose_(pose) {
+ScanBuilder::ScanBuilder(const OctomapPose& pose, std::size_t number) : pose_(pose) {
   scan_.origin_m = to_double(pose_.ray_origin());
+  const auto& [w, x, y, z] = pose_.rotation;
+  scan_.rotation = Eigen::Quaternionf(w, x, y, z).cast<double>();
+  scan_.number = number;
 }
 
 bool ScanBuilder::add(const Point3f& point) {

@@ -14,7 +14,8 @@ bool is_rotation(const std::array<float, 4>& quaternion);
 /// Collects the points of an OctoMap scan, transformed to the map frame.
 class ScanBuilder {
  public:
-  explicit ScanBuilder(const OctomapPose& pose);
+  /// @param number  see PointScan
+  ScanBuilder(const OctomapPose& pose, std::size_t number);
 
   bool origin_is_finite() const { return scan_.origin_m.allFinite(); }
   void reserve(std::size_t points) { scan_.points_m.reserve(points); }

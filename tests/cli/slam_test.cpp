@@ -8,7 +8,9 @@
 #include <string>
 
 #include "call.hpp"
+#include "pingvox/geometry/pose.hpp"
 #include "tests/slam/basin.hpp"
+#include "tests/slam/scanned_drive.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -95,6 +97,53 @@ TEST(Slam, SaysWhatIsMissingInTheNavigation) {
                {"beams.csv", "no valid velocity and no heading"});
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "--nav-offset", "5000", "-o", "o.tum"}), 1,
                {"do not overlap in time"});
+  EXPECT_FALSE(here.has("o.tum"));
+}
+
+/// A drive there and back in an odd room, as scans.log.
+void write_scans(const Workplace& here) {
+  constexpr std::array<Wall, 6> kRoom = {
+      {{-5, -9, 45, -12}, {45, -12, 47, 8}, {47, 8, 20, 12}, {20, 12, 18, 6}, {18, 6, -4, 10}, {-4, 10, -5, -9}}};
+  const ScannedDrive drive(kRoom, std::vector<Eigen::Vector2d>{{0, 0}, {36, -3}, {30, 2}, {0, 0}, {36, -3}}, {});
+  std::string log;
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    const auto& [place_m, yaw_rad] = drive.odometry[i];
+    log += fmt::format("NODE {} {} -1 0 0 {}\n", place_m.x(), place_m.y(), yaw_rad);
+    const Pose sensor_from_map =
+        Pose(Eigen::Translation3d(drive.scans[i].origin_m) * drive.scans[i].rotation).inverse();
+    for (const Eigen::Vector3d& point_m : drive.scans[i].points_m) {
+      const Eigen::Vector3d at = sensor_from_map * point_m;
+      log += fmt::format("{} {} {}\n", at.x(), at.y(), at.z());
+    }
+  }
+  here.write("scans.log", log);
+}
+
+TEST(SlamOfScans, WritesTrajectoryAndMap) {
+  const Workplace here;
+  write_scans(here);
+  const Outcome outcome =
+      here.call({"slam", "scans.log", "-o", "out.tum", "--map", "out.bt", "--resolution", "0.5", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* part :
+       {R"("scans": )", R"("skipped": 0)", R"("key_frames": )", R"("loops": {"found": )", R"("seconds": {"read": )"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+  }
+  EXPECT_THAT(here.read("out.tum"), HasSubstr("\n1.000000000 "));
+  EXPECT_EQ(here.call({"info", "out.bt"}).status, 0);
+  ASSERT_EQ(here.call({"slam", "scans.log", "-o", "again.tum"}).status, 0);
+  EXPECT_EQ(here.read("out.tum"), here.read("again.tum"));
+}
+
+TEST(SlamOfScans, SaysWhatIsWrongWithItsWordsAndFiles) {
+  const Workplace here;
+  write_scans(here);
+  expect_error(here.call({"slam", "scans.log", "-o", "o.tum", "--nav", "nav.csv"}), 2, {"--nav", "beams"});
+  expect_error(here.call({"slam", "scans.log", "scans.log", "-o", "o.tum"}), 2, {"unexpected argument"});
+  here.write("one.log", "NODE 0 0 0 0 0 0\n1 2 3\n");
+  expect_error(here.call({"slam", "one.log", "-o", "o.tum"}), 1, {"one.log", "only one scan"});
+  here.write("none.log", "NODE 0 0 0 0 0 0\nNODE 1 0 0 0 0 0\n");
+  expect_error(here.call({"slam", "none.log", "-o", "o.tum"}), 1, {"none.log", "no points"});
   EXPECT_FALSE(here.has("o.tum"));
 }
 

@@ -166,7 +166,8 @@ TEST_F(DamagedGraph, LeavesOutScansWithoutAPose) {
     const auto all = all_scans({"a.graph", bytes_});
     EXPECT_EQ(all.error, "");
     EXPECT_EQ(all.skipped, 1U);
-    EXPECT_EQ(all.items.size(), 1U);
+    ASSERT_EQ(all.items.size(), 1U);
+    EXPECT_EQ(all.items[0].number, 1U);
     EXPECT_THAT(all_scans({"a.graph", bytes_}, Damage::kFail).error, HasSubstr("a.graph: scan 0: its pose"));
   };
   const std::vector<std::uint8_t> whole = bytes_;
@@ -262,6 +263,14 @@ TEST(ScanLog, CountsIndentedLinesThatOctomapTakesForComments) {
   EXPECT_EQ(all.skipped, 1U);
 }
 
+TEST(ScanLog, TellsHowTheSensorWasTurned) {
+  const auto all = all_scans({"a.log", bytes_of("NODE 1 2 3 0 0 1.5707963\n1 0 0\n")});
+  ASSERT_EQ(all.items.size(), 1U);
+  const PointScan& scan = all.items[0];
+  EXPECT_LT((scan.rotation * Eigen::Vector3d::UnitX() + scan.origin_m - scan.points_m.at(0)).norm(), 1e-6);
+  EXPECT_LT((scan.points_m.at(0) - Eigen::Vector3d(1, 3, 3)).norm(), 1e-6);
+}
+
 TEST(ScanLog, LeavesDamagedLinesOutAndNamesTheFirstWhenAsked) {
   const std::string text =
       "NODE 0 0 0 0 0 0\n"
@@ -281,6 +290,7 @@ TEST(ScanLog, LeavesDamagedLinesOutAndNamesTheFirstWhenAsked) {
   ASSERT_EQ(all.items.size(), 2U);
   EXPECT_EQ(all.items[1].points_m.size(), 1U);
   EXPECT_EQ(all.items[1].points_m[0], Eigen::Vector3d(2, 2, 3));
+  EXPECT_EQ(all.items[1].number, 3U);
   EXPECT_EQ(all.skipped, 8U - all.items[0].points_m.size() + 1U);
   EXPECT_EQ(all_scans({"a.log", bytes_of(text)}, Damage::kFail).error,
             "a.log: line 3: is not a point of three finite numbers");

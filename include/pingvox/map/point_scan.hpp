@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@ namespace pingvox {
 struct PointScan {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< map frame
   std::vector<Eigen::Vector3d> points_m;               ///< map frame
+  /// How the sensor was turned: map_from_sensor. The identity where the log does not tell.
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  std::size_t number = 0;  ///< of the scan in its log, counted from 0, with those that were left out
 };
 
 /// Scans in the order in which they were taken.

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/point_scan.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+struct ScanSlamReport {
+  std::size_t scans = 0, key_frames = 0;
+  double reach_m = 0.0;    ///< range that nine of ten points are within; what is searched is in proportion to it
+  std::size_t rounds = 0;  ///< of searching loops and moving the poses
+  /// Places that were recognised, and those of them that agree with each other, in the last round.
+  std::size_t loops_found = 0, loops_kept = 0;
+};
+
+struct ScanSlamSolution {
+  Trajectory trajectory;  ///< of the sensor, one pose a scan; its times are the numbers of the scans
+  ScanSlamReport report;
+};
+
+/// Corrects the poses of point scans (forward-looking sonars, lasers) whose poses are odometry: places that are seen
+/// again are recognised by correlation of submaps, and a graph of poses is solved, in rounds. Scans are matched
+/// in the plane: they are to show walls rather than ground. Heights, rolls and pitches stay as they are
+/// (docs/slam.md).
+class ScanSlam {
+ public:
+  ScanSlam();
+  ~ScanSlam();
+  ScanSlam(ScanSlam&& other) noexcept;
+  ScanSlam& operator=(ScanSlam&& other) noexcept;
+
+  /// Points are expected in the map frame of the odometry, as scan logs are read.
+  void add(const PointScan& scan);
+
+  /// Can be called again after further scans. The first scan keeps its pose. Where no place is seen again the poses
+  /// are those of the odometry.
+  /// @return kUnsupported when there are fewer than two scans or no points; kCorrupt when the numbers of the scans do
+  /// not rise
+  Result<ScanSlamSolution> solve() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pingvox

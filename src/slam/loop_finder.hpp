@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "slam/pose2.hpp"
+#include "slam/pose_graph.hpp"
+
+namespace pingvox {
+
+/// A place on the way from which the surroundings are known.
+struct KeyFrame {
+  Pose2 odometry;                         ///< map_from_vehicle, as measured
+  std::vector<Eigen::Vector2d> points_m;  ///< what was seen around it, in its own frame
+};
+
+struct LoopOptions {
+  double reach_m = 0.0;         ///< of the sensor; cells, windows and distances are in proportion to it
+  double window_m = 0.0;        ///< largest error of the present poses along each axis
+  double window_yaw_rad = 0.0;  ///< ... of their yaws
+};
+
+/// Standard deviations of odometry over a stretch of way.
+Eigen::Vector3d odometry_deviation(double moved_m, double turned_rad, double reach_m);
+
+struct Loops {
+  std::size_t found = 0;       ///< matches of submaps
+  std::vector<PoseEdge> kept;  ///< those that agree with each other
+};
+
+/// Finds key frames that see the same surroundings although the way between them is long, by correlation of submaps
+/// of nine key frames each. Loops are kept that agree with each other, given the odometry between them, and
+/// that have another one near both of their ends: in doubt none.
+/// @param poses  where the key frames are now
+Loops find_loops(std::span<const KeyFrame> frames, std::span<const Pose2> poses, const LoopOptions& options);
+
+}  // namespace pingvox

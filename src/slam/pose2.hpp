@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+
+namespace pingvox {
+
+/// An angle in (-pi, pi] or thereabouts.
+inline double wrap_angle(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
+
+inline Eigen::Matrix2d rotation2(double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return (Eigen::Matrix2d() << c, -s, s, c).finished();
+}
+
+/// A pose in the plane: to_from, as Pose.
+struct Pose2 {
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0.0;
+
+  Pose2 inverse() const { return {-(rotation2(-yaw_rad) * place_m), -yaw_rad}; }
+  Pose2 operator*(const Pose2& other) const {
+    return {place_m + rotation2(yaw_rad) * other.place_m, wrap_angle(yaw_rad + other.yaw_rad)};
+  }
+  Eigen::Vector2d operator*(const Eigen::Vector2d& point_m) const { return place_m + rotation2(yaw_rad) * point_m; }
+};
+
+}  // namespace pingvox

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "slam/pose2.hpp"
+
+namespace pingvox {
+
+/// A measured pose of node b in the frame of node a.
+struct PoseEdge {
+  std::size_t a = 0, b = 0;
+  Pose2 a_from_b;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  ///< inverse covariance of x, y [m], yaw [rad] in a
+};
+
+/// Difference between where the poses put b in the frame of a, and the edge: x, y [m], yaw [rad].
+Eigen::Vector3d residual_of(const PoseEdge& edge, const Pose2& a, const Pose2& b);
+
+/// Moves poses to the least sum of squares of the edges; loops count by Cauchy's function, so that a wrong one hardly
+/// pulls. The first pose stays.
+/// @param poses  where to begin; at least one
+/// @param odometry  from each pose to the next
+/// @return how loops count in the end, 0..1 each
+std::vector<double> solve_pose_graph(std::vector<Pose2>& poses, std::span<const PoseEdge> odometry,
+                                     std::span<const PoseEdge> loops);
+
+}  // namespace pingvox
