@@ -69,6 +69,8 @@ Result<Command> slam_command(const Args& args) {
       "Estimation",
       {choice("--matching", kMatchings, "match pairs of echoes of different sweeps, or none: dead reckoning",
               slam.matching),
+       flag("--causal", "estimate each pose from what was recorded until then, as on board", slam.estimation,
+            Estimation::kCausal),
        std::move(seed)}};
   for (OptionTable::Group* group : {&navigation, &estimation}) {
     for (Option& option : group->options) option.only_for = beams;

@@ -40,7 +40,7 @@ _pingvox_options() {
       ;;
     slam)
       options+=(--output --map --resolution --calibration --json --quiet --nav --nav-offset --mount --nav-mount --matching)
-      options+=(--seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
+      options+=(--causal --seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
     locate)

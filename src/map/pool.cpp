@@ -14,9 +14,6 @@ namespace pingvox::detail {
 namespace {
 
 constexpr std::size_t kPage = 4096;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
-/// What is filled from end to end is asked for in such steps, which costs a third of a page fault for each page.
-constexpr std::size_t kAhead = std::size_t{64} << 10;
 
 std::size_t whole_pages(std::size_t size) {
   return (size + kPage - 1) / kPage * kPage;
@@ -26,6 +23,12 @@ std::size_t room_for(std::size_t size, std::size_t had) {
   if (size > std::numeric_limits<std::size_t>::max() / 4) throw std::bad_alloc();
   return whole_pages(std::max(size, had + had / 2));
 }
+
+#ifdef PINGVOX_ARENA_MREMAP
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+/// What is filled from end to end is asked for in such steps, which costs a third of a page fault for each page.
+constexpr std::size_t kAhead = std::size_t{64} << 10;
+#endif
 
 }  // namespace
 

@@ -11,7 +11,6 @@
 namespace pingvox {
 namespace {
 
-constexpr std::size_t kWindow = 5;             ///< samples to either side that an outlier is judged by
 constexpr double kClip = 2.0;                  ///< robust standard deviations
 constexpr double kMadToDeviation = 1.4826;     ///< of normal noise
 constexpr double kLeastDeviation_m_s = 0.005;  ///< resolution of common logs
@@ -38,11 +37,11 @@ std::vector<double> times_of(std::span<const NavSample> samples) {
   return times_s;
 }
 
-/// Values held near the median around; marks those that were not.
-std::vector<double> clip(std::span<const double> values, std::vector<bool>& clipped) {
+/// Values held near the median of the window; marks those that were not.
+std::vector<double> clip(std::span<const double> values, const OutlierWindow& window, std::vector<bool>& clipped) {
   std::vector<double> held(values.begin(), values.end());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t first = i < kWindow ? 0 : i - kWindow, end = std::min(values.size(), i + kWindow + 1);
+    const std::size_t first = i - std::min(i, window.before), end = std::min(values.size(), i + window.after + 1);
     std::vector<double> around(values.begin() + static_cast<std::ptrdiff_t>(first),
                                values.begin() + static_cast<std::ptrdiff_t>(end));
     const double middle = median(around);
@@ -140,7 +139,8 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
   return heading;
 }
 
-std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source) {
+std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source,
+                                              const OutlierWindow& window) {
   const std::vector<NavSample> samples = usable(source);
   if (samples.size() < 2) return std::nullopt;
   std::vector<bool> outliers(samples.size(), false);
@@ -148,7 +148,7 @@ std::optional<VelocitySource> velocity_source(const NavSource& source, const Pos
   for (std::size_t axis = 0; axis < 2; ++axis) {
     std::vector<double> values;
     for (const NavSample& sample : samples) values.push_back(sample.value[static_cast<Eigen::Index>(axis)]);
-    axes[axis] = clip(values, outliers);
+    axes[axis] = clip(values, window, outliers);
   }
   std::vector<double> times_s = times_of(samples);
   std::vector<double> density = noise_density(times_s, axes[0], axes[1]);

@@ -52,9 +52,15 @@ struct VelocitySource {
   std::size_t clipped = 0;  ///< samples that were outliers on either axis
 };
 
-/// Per axis, samples are held within two robust standard deviations of the median of the eleven around. The density
-/// is that of the median second difference within 30 s on either side. nullopt: fewer than two valid samples.
-std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source);
+/// Which samples an outlier is judged by: itself, and those before and after it.
+struct OutlierWindow {
+  std::size_t before = 5, after = 5;
+};
+
+/// Per axis, samples are held within two robust standard deviations of the median of the window. The density is that of
+/// the median second difference within 30 s on either side. nullopt: fewer than two valid samples.
+std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source,
+                                              const OutlierWindow& window = {});
 
 /// The only number of a source, as depth. nullopt: no valid sample.
 std::optional<TimeSeries> number_source(const NavSource& source);

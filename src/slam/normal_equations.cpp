@@ -107,7 +107,7 @@ std::optional<NormalEquations::Step> NormalEquations::solve() const {
   for (std::size_t k = 0; k < knots_; ++k) {
     const auto from = static_cast<Eigen::Index>(3 * k),
                to = static_cast<Eigen::Index>(3) * places[static_cast<Eigen::Index>(k)];
-    right.block(to, 0, 3, globals) = border.middleRows(from, 3);
+    if (globals > 0) right.block(to, 0, 3, globals) = border.middleRows(from, 3);
     right.block(to, globals, 3, 1) = -gradient.segment(from, 3);
   }
   const Eigen::MatrixXd solved = factor.solve(right);

@@ -6,14 +6,17 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
 
-#include "slam/echo_pairs.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/navigation.hpp"
-#include "slam/normal_equations.hpp"
+#include "slam/pose2.hpp"
 #include "slam/slam_problem.hpp"
+#include "slam/slam_solver.hpp"
 
 namespace pingvox {
 namespace {
@@ -24,6 +27,15 @@ constexpr std::array<double, 18> kGates_m = {10.0, 8.0, 6.0, 5.0, 4.0, 3.0, 3.0,
                                              2.0,  1.5, 1.5, 1.5, 1.5, 1.5, 1.5, 1.5, 1.5};
 /// Iterations without pairs: the problem is nearly linear then.
 constexpr std::size_t kAlone = 4;
+/// Causal: solved anew after so many sweeps, from where the last solution was.
+constexpr std::size_t kSweepsOfStep = 2;
+constexpr std::array<double, 3> kCausalGates_m = {3.0, 2.0, 1.5};
+/// For so long the compasses' deviations are found, and the frame of the poses turns with them.
+constexpr double kSettle_s = 600.0;
+/// As many samples as around, but earlier ones.
+constexpr OutlierWindow kEarlier = {10, 0};
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double yaw_of(const Pose& pose) {
   return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
@@ -35,148 +47,7 @@ double median(std::vector<double> numbers) {
   return *middle;
 }
 
-/// A sweep that ended.
-struct HeardSweep {
-  Sweep::Extent extent;
-  double from_s, to_s;
-  std::vector<EchoRun> runs;
-};
-
-/// The least-squares problem of all sweeps, and its iterations.
-class Solver {
- public:
-  Solver(SlamProblem problem, const SonarMount& mount, const std::vector<HeardSweep>& sweeps, std::uint64_t seed)
-      : problem_(std::move(problem)), mount_(mount), seed_(seed), unknowns_(problem_.dead_reckoning()) {
-    sweeps_.push_back(0);
-    for (const HeardSweep& sweep : sweeps) {
-      for (const EchoRun& run : sweep.runs) {
-        const auto between = problem_.between_knots(run.time_s);
-        if (!between) continue;
-        echoes_.push_back(
-            {run, sweeps_.size() - 1, between->first, between->second, problem_.main_yaw_rad(run.time_s)});
-      }
-      sweeps_.push_back(echoes_.size());
-      const double middle_s = std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(),
-                                         problem_.knot_times_s().back());
-      sweep_middles_.push_back(*problem_.between_knots(middle_s));
-    }
-  }
-
-  /// One Gauss-Newton step. False: the problem does not determine its unknowns.
-  bool step(std::optional<double> gate_m) {
-    const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
-    std::vector<EchoOnGround> ground;
-    pairs_ = {};
-    if (gate_m) {
-      std::vector<Eigen::Vector2d> places;
-      for (const auto& [knot, share] : sweep_middles_) places.emplace_back(knot_at(knot, share).head<2>());
-      ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
-      pairs_ = echo_pairs(echoes_, ground, sweeps_, places, {seed_, *gate_m});
-      // In order of the knots that they join.
-      std::ranges::sort(pairs_.pairs, {}, [&](const EchoPair& pair) {
-        return std::array<std::size_t, 4>{echoes_[pair.a].knot, echoes_[pair.b].knot, pair.a, pair.b};
-      });
-    }
-    return solve(ways, ground);
-  }
-
-  const SlamProblem& problem() const { return problem_; }
-  const Unknowns& unknowns() const { return unknowns_; }
-  const Eigen::MatrixXd& global_covariance() const { return global_covariance_; }
-  const EchoPairs& pairs() const { return pairs_; }
-  std::size_t echoes() const { return echoes_.size(); }
-  std::size_t factor_entries() const { return factor_entries_; }
-
-  Eigen::Vector3d knot_at(std::size_t knot, double share) const {
-    return unknowns_.knots[knot] + share * (unknowns_.knots[knot + 1] - unknowns_.knots[knot]);
-  }
-
- private:
-  bool solve(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) {
-    const auto joined = [&](const EchoPair& pair) {
-      return std::pair{static_cast<std::uint32_t>(echoes_[pair.a].knot),
-                       static_cast<std::uint32_t>(echoes_[pair.b].knot)};
-    };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;
-    for (std::uint32_t k = 0; k + 1 < problem_.knots(); ++k) shared.emplace_back(k, k + 1);
-    for (std::size_t i = 0; i < pairs_.pairs.size(); ++i) {
-      const auto [a, b] = joined(pairs_.pairs[i]);
-      if (i > 0 && joined(pairs_.pairs[i - 1]) == std::pair{a, b}) continue;
-      for (const std::uint32_t x : {a, a + 1}) {
-        for (const std::uint32_t y : {b, b + 1}) shared.emplace_back(x, y);
-      }
-    }
-    NormalEquations equations(problem_.knots(), problem_.globals(), shared);
-    for (const SlamProblem::Row& row : problem_.rows(unknowns_, ways)) add_row(row, equations);
-    add_pairs(ground, equations);
-    const std::optional<NormalEquations::Step> step = equations.solve();
-    if (!step) return false;
-    for (std::size_t k = 0; k < problem_.knots(); ++k) {
-      unknowns_.knots[k] += step->knots.segment<3>(static_cast<Eigen::Index>(3 * k));
-    }
-    unknowns_.globals += step->globals;
-    global_covariance_ = step->global_covariance;
-    factor_entries_ = step->factor_entries;
-    return true;
-  }
-
-  static void add_row(const SlamProblem::Row& row, NormalEquations& equations) {
-    const auto a = static_cast<Eigen::Index>(3 * row.knot), globals = equations.corner.cols();
-    equations.add_block(row.knot, row.knot, row.by_knot * row.by_knot.transpose());
-    equations.add_block(row.knot + 1, row.knot + 1, row.by_next * row.by_next.transpose());
-    equations.add_block(row.knot + 1, row.knot, row.by_next * row.by_knot.transpose());
-    equations.border.middleRows<3>(a) += row.by_knot * row.by_globals.transpose();
-    equations.border.middleRows<3>(a + 3) += row.by_next * row.by_globals.transpose();
-    equations.corner += row.by_globals * row.by_globals.transpose();
-    equations.gradient.segment<3>(a) += row.residual * row.by_knot;
-    equations.gradient.segment<3>(a + 3) += row.residual * row.by_next;
-    equations.gradient.tail(globals) += row.residual * row.by_globals;
-  }
-
-  /// Sums up the pairs that join the same knots before they are added.
-  void add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const {
-    using Sum = Eigen::Matrix<double, 15, 16>;  // J'J, and J'r as its last column
-    const auto& pairs = pairs_.pairs;
-    for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
-      const std::size_t a = echoes_[pairs[first].a].knot, b = echoes_[pairs[first].b].knot;
-      Sum sum = Sum::Zero();
-      for (end = first; end < pairs.size() && echoes_[pairs[end].a].knot == a && echoes_[pairs[end].b].knot == b;
-           ++end) {
-        const EchoPair& pair = pairs[end];
-        const PairRow row = pair_row(echoes_[pair.a], ground[pair.a], echoes_[pair.b], ground[pair.b], unknowns_, pair);
-        Eigen::Matrix<double, 16, 1> wide;
-        wide << row.by, row.distance_m;
-        sum.noalias() += (pair.weight * row.by) * wide.transpose();
-      }
-      const std::array<std::size_t, 4> knots = {a, a + 1, b, b + 1};
-      for (std::size_t i = 0; i < 4; ++i) {
-        const auto row = static_cast<Eigen::Index>(3 * knots[i]), from = static_cast<Eigen::Index>(3 * i);
-        for (std::size_t j = 0; j < 4; ++j) {
-          // Each block of the lower triangle once; all four where both echoes are of one knot.
-          if (knots[i] < knots[j]) continue;
-          equations.add_block(knots[i], knots[j], sum.block<3, 3>(from, static_cast<Eigen::Index>(3 * j)));
-        }
-        equations.border.block<3, 3>(row, global::kWall) += sum.block<3, 3>(from, 12);
-        equations.gradient.segment<3>(row) += sum.block<3, 1>(from, 15);
-      }
-      equations.corner.block<3, 3>(global::kWall, global::kWall) += sum.block<3, 3>(12, 12);
-      equations.gradient.segment<3>(equations.border.rows() + Eigen::Index{global::kWall}) += sum.block<3, 1>(12, 15);
-    }
-  }
-
-  SlamProblem problem_;
-  SonarMount mount_;
-  std::uint64_t seed_;
-  Unknowns unknowns_;
-  std::vector<PlacedEcho> echoes_;
-  std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, and the end
-  std::vector<std::pair<std::size_t, double>> sweep_middles_;
-  EchoPairs pairs_;
-  Eigen::MatrixXd global_covariance_;
-  std::size_t factor_entries_ = 0;
-};
-
-SlamCalibration calibration_of(const Solver& solver) {
+SlamCalibration calibration_of(const SlamSolver& solver) {
   const auto estimate = [&](std::size_t unknown) {
     const auto i = static_cast<Eigen::Index>(unknown);
     return Estimate{solver.unknowns().globals[i], std::sqrt(solver.global_covariance()(i, i))};
@@ -273,6 +144,7 @@ struct Navigation {
 };
 
 Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) {
+  const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
   for (const auto& [name, mount] : options.body_from_source) {
     if (std::ranges::find(log.sources(), name, &NavSource::name) != log.sources().end()) continue;
     std::string known;
@@ -282,7 +154,7 @@ Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) 
   }
   const NavSource* fastest = log.best(NavQuantity::kVelocity);
   std::optional<VelocitySource> velocity;
-  if (fastest != nullptr) velocity = velocity_source(*fastest, mount_of(options, fastest->name));
+  if (fastest != nullptr) velocity = velocity_source(*fastest, mount_of(options, fastest->name), window);
   std::vector<HeadingSource> headings;
   for (const NavSource& source : log.sources()) {
     if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
@@ -309,7 +181,7 @@ struct Span {
 };
 
 /// The time that is common to all that is needed.
-Result<Span> common_span(const std::vector<double>& beam_times_s, const Navigation& navigation) {
+Result<Span> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
   const Span beams{beam_times_s.front(), beam_times_s.back()};
   Span span = beams;
   const auto cut = [&](const TimeSeries& series, const std::string& what) -> Result<void> {
@@ -331,7 +203,7 @@ Result<Span> common_span(const std::vector<double>& beam_times_s, const Navigati
 }
 
 /// Usual time of a sweep: of complete ones, where there are any.
-double sweep_duration_s(const std::vector<HeardSweep>& sweeps) {
+double sweep_duration_s(std::span<const HeardSweep> sweeps) {
   std::vector<double> complete_s, all_s;
   for (const HeardSweep& sweep : sweeps) {
     const double duration_s = sweep.to_s - sweep.from_s;
@@ -353,30 +225,213 @@ Result<std::vector<double>> knot_times(const Span& span, double step_s, std::siz
   return times_s;
 }
 
-/// A pose for each beam.
-Result<Trajectory> trajectory_of(const Solver& solver, const Navigation& navigation, const SlamOptions& options,
-                                 const std::vector<double>& beam_times_s) {
-  const Eigen::Vector3d velocity_place = mount_of(options, navigation.velocity.name).translation();
-  const HeadingSource& main = navigation.headings.front();
+/// What was recorded until some time.
+struct Recording {
+  std::span<const double> beam_times_s;
+  std::span<const HeardSweep> sweeps;
+  Navigation navigation;
+  Span span;
+};
+
+Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                               std::vector<NavSource> sources, const SlamOptions& options) {
+  const Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnknown);
+  if (!log) return tl::unexpected(log.error());
+  Result<Navigation> navigation = navigation_of(*log, options);
+  if (!navigation) return tl::unexpected(navigation.error());
+  const Result<Span> span = common_span(beam_times_s, *navigation);
+  if (!span) return tl::unexpected(span.error());
+  return Recording{beam_times_s, sweeps, *std::move(navigation), *span};
+}
+
+Result<SlamProblem> problem_of(const Recording& recording) {
+  const double step_s = sweep_duration_s(recording.sweeps) / kKnotsOfSweep;
+  if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
+  Result<std::vector<double>> knots = knot_times(recording.span, step_s, recording.beam_times_s.size());
+  if (!knots) return tl::unexpected(knots.error());
+  return SlamProblem(*std::move(knots), recording.navigation.velocity, recording.navigation.headings);
+}
+
+SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start) {
+  const Pose velocity_from_sonar =
+      Pose(Eigen::Translation3d(-mount_of(options, recording.navigation.velocity.name).translation())) *
+      options.body_from_sonar;
+  const SonarMount mount{velocity_from_sonar.translation().head<2>(), yaw_of(velocity_from_sonar)};
+  return SlamSolver(std::move(problem), mount, recording.sweeps, options.seed, std::move(start));
+}
+
+/// The body's pose at each beam that is later than `after_s` and within the time of the knots.
+std::vector<StampedPose> poses_of(const SlamSolver& solver, const Recording& recording, const SlamOptions& options,
+                                  double after_s) {
+  const auto& [velocity, headings, depth] = recording.navigation;
+  const Eigen::Vector3d velocity_place = mount_of(options, velocity.name).translation();
+  const HeadingSource& main = headings.front();
   const std::vector<SlamProblem::Way> ways = solver.problem().ways(solver.unknowns());
   std::vector<StampedPose> poses;
-  for (const double time_s : beam_times_s) {
+  for (const double time_s : recording.beam_times_s) {
     const auto between = solver.problem().between_knots(time_s);
-    if (!between || (!poses.empty() && time_s <= poses.back().time_s)) continue;
+    if (!between || time_s <= (poses.empty() ? after_s : poses.back().time_s)) continue;
     const auto [knot, share] = *between;
     const Eigen::Vector3d state = solver.knot_at(knot, share);
     const Eigen::Vector2d place = state.head<2>() + solver.problem().bulge(solver.unknowns(), ways[knot], knot, time_s);
-    const double depth_m = navigation.depth ? navigation.depth->at(time_s) : 0.0;
-    Pose pose = pose_from_rpy({place.x(), place.y(), -depth_m}, main.roll_rad ? main.roll_rad->at(time_s) : 0.0,
+    Pose pose = pose_from_rpy({place.x(), place.y(), depth ? -depth->at(time_s) : 0.0},
+                              main.roll_rad ? main.roll_rad->at(time_s) : 0.0,
                               main.pitch_rad ? main.pitch_rad->at(time_s) : 0.0, main.yaw_rad.at(time_s) + state.z());
     // The knots are where the velocity is measured.
     const Eigen::Vector3d offset = pose.rotation() * Eigen::Vector3d(velocity_place.x(), velocity_place.y(), 0.0);
     pose.translation().head<2>() -= offset.head<2>();
     poses.push_back({time_s, pose});
   }
+  return poses;
+}
+
+/// What an earlier solution says of a problem that goes on longer; dead reckoning after its end.
+Unknowns continue_from(const SlamSolver& last, const SlamProblem& problem) {
+  Unknowns start = problem.dead_reckoning();
+  start.globals.head(global::kHeadings) = last.unknowns().globals.head(global::kHeadings);
+  const auto& headings = problem.headings();
+  for (std::size_t s = 0; s < headings.size(); ++s) {
+    const auto& before = last.problem().headings();
+    const auto same = std::ranges::find(before, headings[s].name, &HeadingSource::name);
+    if (same == before.end()) continue;
+    const auto from = global::heading(static_cast<std::size_t>(same - before.begin()));
+    start.globals.segment<global::kOfHeading>(static_cast<Eigen::Index>(global::heading(s))) =
+        last.unknowns().globals.segment<global::kOfHeading>(static_cast<Eigen::Index>(from));
+  }
+  const double end_s = last.problem().knot_times_s().back();
+  const std::vector<SlamProblem::Way> ways = last.problem().ways(last.unknowns());
+  std::size_t known = 0;
+  for (std::size_t k = 0; k < problem.knots(); ++k) {
+    const double time_s = problem.knot_times_s()[k], within_s = std::min(time_s, end_s);
+    const auto [knot, share] = *last.problem().between_knots(within_s);
+    Eigen::Vector3d state = last.knot_at(knot, share);
+    state.head<2>() += last.problem().bulge(last.unknowns(), ways[knot], knot, within_s);
+    // The main heading may be another one by now.
+    state.z() = std::remainder(state.z() + last.problem().main_yaw_rad(within_s) - problem.main_yaw_rad(within_s),
+                               2.0 * std::numbers::pi);
+    start.knots[k] = state;
+    if (time_s <= end_s) known = k;
+  }
+  const std::vector<SlamProblem::Way> moved = problem.ways(start);
+  for (std::size_t k = known; k + 1 < problem.knots(); ++k) {
+    start.knots[k + 1].head<2>() = start.knots[k].head<2>() + moved[k].moved;
+  }
+  return start;
+}
+
+SlamReport report_of(const SlamSolver& solver, const Recording& recording) {
+  const VelocitySource& velocity = recording.navigation.velocity;
+  SlamReport report;
+  report.beams = recording.beam_times_s.size();
+  report.sweeps = static_cast<std::size_t>(
+      std::ranges::count_if(recording.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
+  report.echoes = solver.echoes();
+  report.knots = solver.problem().knots();
+  report.pairs = solver.pairs().pairs.size();
+  std::vector<double> distances_m;
+  for (const EchoPair& pair : solver.pairs().pairs) distances_m.push_back(std::abs(pair.distance_m));
+  if (!distances_m.empty()) report.pair_median_m = median(std::move(distances_m));
+  report.loops_found = solver.pairs().loops_found;
+  report.loops_kept = solver.pairs().loops_kept;
+  report.velocities = velocity.ahead.size();
+  report.velocities_clipped = velocity.clipped;
+  report.longest_gap_s = velocity.ahead.longest_step_s();
+  report.velocity = velocity.name;
+  report.heading = recording.navigation.headings.front().name;
+  return report;
+}
+
+Result<SlamSolution> solution_of(const SlamSolver& solver, const Recording& recording, const SlamOptions& options,
+                                 std::vector<StampedPose> poses) {
+  if (poses.empty()) return fail(Error::Code::kUnsupported, "no beam is within the time of the navigation");
   const Eigen::Vector2d origin = poses.front().map_from_body.translation().head<2>();
   for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
-  return Trajectory::make(std::move(poses));
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses));
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  SlamSolution solution{*std::move(trajectory), {}, report_of(solver, recording)};
+  if (options.matching == Matching::kPairs) solution.calibration = calibration_of(solver);
+  return solution;
+}
+
+Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& options) {
+  Result<SlamProblem> problem = problem_of(recording);
+  if (!problem) return tl::unexpected(problem.error());
+  Unknowns start = problem->dead_reckoning();
+  SlamSolver solver = solver_of(*std::move(problem), recording, options, std::move(start));
+  bool determined = true;
+  if (options.matching == Matching::kPairs) {
+    for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
+    for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
+  }
+  if (!determined) {
+    return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
+  }
+  return solution_of(solver, recording, options, poses_of(solver, recording, options, -kInfinity));
+}
+
+std::vector<NavSource> sources_until(const std::vector<NavSource>& sources, double time_s) {
+  std::vector<NavSource> earlier = sources;
+  for (NavSource& source : earlier) {
+    std::erase_if(source.samples, [&](const NavSample& sample) { return sample.time_s > time_s; });
+  }
+  return earlier;
+}
+
+/// The turn and move that brings places nearest to others, in the mean square.
+Pose2 align(const std::vector<Eigen::Vector3d>& places, const std::vector<Eigen::Vector3d>& to) {
+  const auto count = static_cast<double>(places.size());
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero(), mean_to = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    mean += places[k].head<2>() / count;
+    mean_to += to[k].head<2>() / count;
+  }
+  double cosine = 0.0, sine = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Eigen::Vector2d a = places[k].head<2>() - mean, b = to[k].head<2>() - mean_to;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const double yaw_rad = std::atan2(sine, cosine);
+  return {mean_to - rotation2(yaw_rad) * mean, yaw_rad};
+}
+
+/// After each few sweeps, the poses of their beams by dead reckoning from the last solution; then a new solution.
+Result<SlamSolution> solve_causal(const Recording& whole, const std::vector<NavSource>& sources,
+                                  const SlamOptions& options) {
+  std::optional<SlamSolver> last;
+  std::vector<StampedPose> poses;
+  // Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
+  // those before, or their map would bend.
+  Pose2 frame;
+  for (std::size_t end = std::min(kSweepsOfStep, whole.sweeps.size());;
+       end = std::min(end + kSweepsOfStep, whole.sweeps.size())) {
+    const bool is_whole = end == whole.sweeps.size();
+    const double until_s = whole.sweeps[end - 1].to_s;
+    const auto beams = std::ranges::upper_bound(whole.beam_times_s, until_s) - whole.beam_times_s.begin();
+    const Result<Recording> recording = recording_of(whole.beam_times_s.first(static_cast<std::size_t>(beams)),
+                                                     whole.sweeps.first(end), sources_until(sources, is_whole ? kInfinity : until_s), options);
+    Result<SlamProblem> problem = recording.and_then(problem_of);
+    // Too early for velocity and heading: these beams have no pose.
+    if (!problem && !is_whole) continue;
+    if (!problem) return tl::unexpected(problem.error());
+    const Unknowns start = last ? continue_from(*last, *problem) : problem->dead_reckoning();
+    SlamSolver solver = solver_of(*std::move(problem), *recording, options, start);
+    for (const StampedPose& pose :
+         poses_of(solver, *recording, options, poses.empty() ? -kInfinity : poses.back().time_s)) {
+      const Eigen::AngleAxisd turn(frame.yaw_rad, Eigen::Vector3d::UnitZ());
+      Pose moved = turn * pose.map_from_body;
+      moved.translation().head<2>() += frame.place_m;
+      poses.push_back({pose.time_s, moved});
+    }
+    if (options.matching == Matching::kPairs && end > 1) {
+      if (!last) solver.step(std::nullopt);
+      for (const double gate_m : kCausalGates_m) solver.step(gate_m);
+    }
+    if (!poses.empty() && until_s - poses.front().time_s > kSettle_s)
+      frame = frame * align(solver.unknowns().knots, start.knots);
+    if (is_whole) return solution_of(solver, *recording, options, std::move(poses));
+    last.emplace(std::move(solver));
+  }
 }
 
 }  // namespace
@@ -390,63 +445,16 @@ Result<SlamSolution> SlamSmoother::solve() const {
                                                    "next at {:.3f} s",
                                                    back - times_s.begin(), *back, *(back + 1)));
   }
-  Result<NavLog> log = NavLog::make(state_->sources, NavClock::kUnknown);
-  if (!log) return tl::unexpected(log.error());
-  Result<Navigation> navigation = navigation_of(*log, options);
-  if (!navigation) return tl::unexpected(navigation.error());
-  const Result<Span> span = common_span(times_s, *navigation);
-  if (!span) return tl::unexpected(span.error());
-
   std::vector<HeardSweep> sweeps = state_->sweeps;
   SweepAssembler rest = state_->assembler;
   if (const auto sweep = rest.finish()) sweeps.push_back(state_->heard(*sweep));
+  const Result<Recording> recording = recording_of(times_s, sweeps, state_->sources, options);
+  if (!recording) return tl::unexpected(recording.error());
   if (options.matching == Matching::kPairs && sweeps.size() < 2) {
     return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
   }
-  const double step_s = sweep_duration_s(sweeps) / kKnotsOfSweep;
-  if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
-  Result<std::vector<double>> knots = knot_times(*span, step_s, times_s.size());
-  if (!knots) return tl::unexpected(knots.error());
-
-  const Pose velocity_from_sonar =
-      Pose(Eigen::Translation3d(-mount_of(options, navigation->velocity.name).translation())) * options.body_from_sonar;
-  const SonarMount mount{velocity_from_sonar.translation().head<2>(), yaw_of(velocity_from_sonar)};
-  Solver solver(SlamProblem(*std::move(knots), navigation->velocity, navigation->headings), mount, sweeps,
-                options.seed);
-  const auto undetermined = [] {
-    return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
-  };
-  SlamReport report;
-  if (options.matching == Matching::kPairs) {
-    for (std::size_t i = 0; i < kAlone; ++i) {
-      if (!solver.step(std::nullopt)) return undetermined();
-    }
-    for (const double gate_m : kGates_m) {
-      if (!solver.step(gate_m)) return undetermined();
-    }
-  }
-  Result<Trajectory> trajectory = trajectory_of(solver, *navigation, options, times_s);
-  if (!trajectory) return tl::unexpected(trajectory.error());
-  SlamSolution solution{*std::move(trajectory), {}, std::move(report)};
-  if (options.matching == Matching::kPairs) solution.calibration = calibration_of(solver);
-  SlamReport& r = solution.report;
-  r.beams = times_s.size();
-  r.sweeps = static_cast<std::size_t>(
-      std::ranges::count_if(sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
-  r.echoes = solver.echoes();
-  r.knots = solver.problem().knots();
-  r.pairs = solver.pairs().pairs.size();
-  std::vector<double> distances_m;
-  for (const EchoPair& pair : solver.pairs().pairs) distances_m.push_back(std::abs(pair.distance_m));
-  if (!distances_m.empty()) r.pair_median_m = median(std::move(distances_m));
-  r.loops_found = solver.pairs().loops_found;
-  r.loops_kept = solver.pairs().loops_kept;
-  r.velocities = navigation->velocity.ahead.size();
-  r.velocities_clipped = navigation->velocity.clipped;
-  r.longest_gap_s = navigation->velocity.ahead.longest_step_s();
-  r.velocity = navigation->velocity.name;
-  r.heading = navigation->headings.front().name;
-  return solution;
+  return options.estimation == Estimation::kCausal ? solve_causal(*recording, state_->sources, options)
+                                                   : solve_batch(*recording, options);
 }
 
 }  // namespace pingvox

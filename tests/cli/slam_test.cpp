@@ -76,6 +76,15 @@ TEST(Slam, TheSameSeedWritesTheSameBytes) {
   EXPECT_EQ(here.read("a.tum"), here.read("b.tum"));
 }
 
+TEST(Slam, CausalIsAnotherTrajectoryOfTheSameBeams) {
+  const Workplace here;
+  write_basin(here);
+  ASSERT_EQ(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "all.tum"}).status, 0);
+  ASSERT_EQ(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "causal.tum", "--causal"}).status, 0);
+  EXPECT_NE(here.read("all.tum"), here.read("causal.tum"));
+  EXPECT_THAT(here.call({"info", "causal.tum"}).out, HasSubstr("1001"));
+}
+
 TEST(Slam, SaysWhatIsWrongWithItsWords) {
   const Workplace here;
   write_basin(here);

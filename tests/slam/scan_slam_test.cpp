@@ -49,7 +49,8 @@ TEST(ScanSlam, CorrectsTheDriftWhereTheVehicleComesBack) {
   EXPECT_EQ(solution.trajectory.poses()[7].map_from_body.translation().z(), -1.0);
 }
 
-// Metamorphic: where the map's origin is and how it is turned changes nothing.
+// Metamorphic: where the map's origin is and how it is turned changes nothing but the rounding of scores, which decides
+// between matches that are as good. A cell is 0.3 m.
 TEST(ScanSlam, ATurnedAndMovedMapGivesTheTurnedAndMovedTrajectory) {
   const ScannedDrive drive(kHarbour, kRound, {});
   const Pose turn = Eigen::Translation3d(300.0, -200.0, 5.0) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ());
@@ -62,7 +63,7 @@ TEST(ScanSlam, ATurnedAndMovedMapGivesTheTurnedAndMovedTrajectory) {
   const auto poses = solution_of(drive).trajectory.poses(), others = solution_of(turned).trajectory.poses();
   ASSERT_EQ(poses.size(), others.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_LT((turn * poses[i].map_from_body.translation() - others[i].map_from_body.translation()).norm(), 0.3) << i;
+    EXPECT_LT((turn * poses[i].map_from_body.translation() - others[i].map_from_body.translation()).norm(), 0.6) << i;
   }
 }
 

@@ -151,6 +151,31 @@ TEST(SlamSmoother, NavigationOnALateClockIsMovedByTheOffset) {
   EXPECT_LT(error_m(solved->trajectory), 0.4);
 }
 
+// Kills a use of what came later: beams, or navigation.
+TEST(SlamSmoother, CausalPosesAreThoseOfALogThatEndsSooner) {
+  SlamOptions causal;
+  causal.estimation = Estimation::kCausal;
+  const auto whole = solve({.duration_s = 200.0}, causal), part = solve({.duration_s = 120.0}, causal);
+  ASSERT_TRUE(whole && part);
+  const auto &poses = whole->trajectory.poses(), &sooner = part->trajectory.poses();
+  EXPECT_EQ(poses.size(), 2000U);
+  ASSERT_GT(sooner.size(), 1100U);
+  for (std::size_t i = 0; i < 990; ++i) {
+    ASSERT_EQ(poses[i].map_from_body.matrix(), sooner[i].map_from_body.matrix()) << i;
+  }
+}
+
+TEST(SlamSmoother, CausalPosesAreBetterThanDeadReckoning) {
+  SlamOptions alone, causal;
+  alone.matching = Matching::kNone;
+  causal.estimation = Estimation::kCausal;
+  const Basin basin{.duration_s = 500.0};
+  const auto reckoned = solve(basin, alone), solved = solve(basin, causal);
+  ASSERT_TRUE(reckoned && solved);
+  EXPECT_LT(error_m(solved->trajectory), 0.7 * error_m(reckoned->trajectory));
+  EXPECT_GT(solved->report.loops_kept, 0U);
+}
+
 // What it cannot use.
 
 void expect_refused(const SlamSmoother& smoother, const char* reason) {

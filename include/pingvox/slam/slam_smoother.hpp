@@ -25,8 +25,15 @@ enum class Matching {
   kNone,   ///< none: dead reckoning by velocity and headings
 };
 
+/// What the pose of a beam is estimated from.
+enum class Estimation {
+  kBatch,   ///< all that was recorded
+  kCausal,  ///< what was recorded until then, as on board; navigation until its next sample
+};
+
 struct SlamOptions {
   Matching matching = Matching::kPairs;
+  Estimation estimation = Estimation::kBatch;
   std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
 
   Pose body_from_sonar = Pose::Identity();

@@ -1,0 +1,117 @@
+#include "slam/slam_solver.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "slam/normal_equations.hpp"
+
+namespace pingvox {
+namespace {
+
+void add_row(const SlamProblem::Row& row, NormalEquations& equations) {
+  const auto a = static_cast<Eigen::Index>(3 * row.knot), globals = equations.corner.cols();
+  equations.add_block(row.knot, row.knot, row.by_knot * row.by_knot.transpose());
+  equations.add_block(row.knot + 1, row.knot + 1, row.by_next * row.by_next.transpose());
+  equations.add_block(row.knot + 1, row.knot, row.by_next * row.by_knot.transpose());
+  equations.border.middleRows<3>(a) += row.by_knot * row.by_globals.transpose();
+  equations.border.middleRows<3>(a + 3) += row.by_next * row.by_globals.transpose();
+  equations.corner += row.by_globals * row.by_globals.transpose();
+  equations.gradient.segment<3>(a) += row.residual * row.by_knot;
+  equations.gradient.segment<3>(a + 3) += row.residual * row.by_next;
+  equations.gradient.tail(globals) += row.residual * row.by_globals;
+}
+
+}  // namespace
+
+SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps,
+                       std::uint64_t seed, Unknowns start)
+    : problem_(std::move(problem)), mount_(mount), seed_(seed), unknowns_(std::move(start)) {
+  sweeps_.push_back(0);
+  for (const HeardSweep& sweep : sweeps) {
+    for (const EchoRun& run : sweep.runs) {
+      const auto between = problem_.between_knots(run.time_s);
+      if (!between) continue;
+      echoes_.push_back({run, sweeps_.size() - 1, between->first, between->second, problem_.main_yaw_rad(run.time_s)});
+    }
+    sweeps_.push_back(echoes_.size());
+    const double middle_s =
+        std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(), problem_.knot_times_s().back());
+    sweep_middles_.push_back(*problem_.between_knots(middle_s));
+  }
+}
+
+bool SlamSolver::step(std::optional<double> gate_m) {
+  const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
+  std::vector<EchoOnGround> ground;
+  pairs_ = {};
+  if (gate_m) {
+    std::vector<Eigen::Vector2d> places;
+    for (const auto& [knot, share] : sweep_middles_) places.emplace_back(knot_at(knot, share).head<2>());
+    ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
+    pairs_ = echo_pairs(echoes_, ground, sweeps_, places, {seed_, *gate_m});
+    // In order of the knots that they join.
+    std::ranges::sort(pairs_.pairs, {}, [&](const EchoPair& pair) {
+      return std::array<std::size_t, 4>{echoes_[pair.a].knot, echoes_[pair.b].knot, pair.a, pair.b};
+    });
+  }
+  return solve(ways, ground);
+}
+
+bool SlamSolver::solve(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) {
+  const auto joined = [&](const EchoPair& pair) {
+    return std::pair{static_cast<std::uint32_t>(echoes_[pair.a].knot),
+                     static_cast<std::uint32_t>(echoes_[pair.b].knot)};
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;
+  for (std::uint32_t k = 0; k + 1 < problem_.knots(); ++k) shared.emplace_back(k, k + 1);
+  for (std::size_t i = 0; i < pairs_.pairs.size(); ++i) {
+    const auto [a, b] = joined(pairs_.pairs[i]);
+    if (i > 0 && joined(pairs_.pairs[i - 1]) == std::pair{a, b}) continue;
+    for (const std::uint32_t x : {a, a + 1}) {
+      for (const std::uint32_t y : {b, b + 1}) shared.emplace_back(x, y);
+    }
+  }
+  NormalEquations equations(problem_.knots(), problem_.globals(), shared);
+  for (const SlamProblem::Row& row : problem_.rows(unknowns_, ways)) add_row(row, equations);
+  add_pairs(ground, equations);
+  const std::optional<NormalEquations::Step> step = equations.solve();
+  if (!step) return false;
+  for (std::size_t k = 0; k < problem_.knots(); ++k) {
+    unknowns_.knots[k] += step->knots.segment<3>(static_cast<Eigen::Index>(3 * k));
+  }
+  unknowns_.globals += step->globals;
+  global_covariance_ = step->global_covariance;
+  return true;
+}
+
+/// Sums up the pairs that join the same knots before they are added.
+void SlamSolver::add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const {
+  using Sum = Eigen::Matrix<double, 15, 16>;  // J'J, and J'r as its last column
+  const auto& pairs = pairs_.pairs;
+  for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
+    const std::size_t a = echoes_[pairs[first].a].knot, b = echoes_[pairs[first].b].knot;
+    Sum sum = Sum::Zero();
+    for (end = first; end < pairs.size() && echoes_[pairs[end].a].knot == a && echoes_[pairs[end].b].knot == b; ++end) {
+      const EchoPair& pair = pairs[end];
+      const PairRow row = pair_row(echoes_[pair.a], ground[pair.a], echoes_[pair.b], ground[pair.b], unknowns_, pair);
+      Eigen::Matrix<double, 16, 1> wide;
+      wide << row.by, row.distance_m;
+      sum.noalias() += (pair.weight * row.by) * wide.transpose();
+    }
+    const std::array<std::size_t, 4> knots = {a, a + 1, b, b + 1};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto row = static_cast<Eigen::Index>(3 * knots[i]), from = static_cast<Eigen::Index>(3 * i);
+      for (std::size_t j = 0; j < 4; ++j) {
+        // Each block of the lower triangle once; all four where both echoes are of one knot.
+        if (knots[i] < knots[j]) continue;
+        equations.add_block(knots[i], knots[j], sum.block<3, 3>(from, static_cast<Eigen::Index>(3 * j)));
+      }
+      equations.border.block<3, 3>(row, global::kWall) += sum.block<3, 3>(from, 12);
+      equations.gradient.segment<3>(row) += sum.block<3, 1>(from, 15);
+    }
+    equations.corner.block<3, 3>(global::kWall, global::kWall) += sum.block<3, 3>(12, 12);
+    equations.gradient.segment<3>(equations.border.rows() + Eigen::Index{global::kWall}) += sum.block<3, 1>(12, 15);
+  }
+}
+
+}  // namespace pingvox

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "pingvox/sonar/sweep.hpp"
+#include "slam/echo_pairs.hpp"
+#include "slam/echo_runs.hpp"
+#include "slam/slam_problem.hpp"
+
+namespace pingvox {
+
+class NormalEquations;
+
+/// A sweep that ended.
+struct HeardSweep {
+  Sweep::Extent extent;
+  double from_s, to_s;
+  std::vector<EchoRun> runs;
+};
+
+/// The least-squares problem of sweeps, and its iterations.
+class SlamSolver {
+ public:
+  SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
+             Unknowns start);
+
+  /// One Gauss-Newton step. False: the problem does not determine its unknowns, and they stay.
+  /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs
+  bool step(std::optional<double> gate_m);
+
+  const SlamProblem& problem() const { return problem_; }
+  const Unknowns& unknowns() const { return unknowns_; }
+  const Eigen::MatrixXd& global_covariance() const { return global_covariance_; }
+  const EchoPairs& pairs() const { return pairs_; }
+  std::size_t echoes() const { return echoes_.size(); }
+
+  /// Place of the velocity's source and yaw less the main heading, between a knot and the next.
+  Eigen::Vector3d knot_at(std::size_t knot, double share) const {
+    return unknowns_.knots[knot] + share * (unknowns_.knots[knot + 1] - unknowns_.knots[knot]);
+  }
+
+ private:
+  bool solve(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground);
+  void add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
+
+  SlamProblem problem_;
+  SonarMount mount_;
+  std::uint64_t seed_;
+  Unknowns unknowns_;
+  std::vector<PlacedEcho> echoes_;
+  std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, and the end
+  std::vector<std::pair<std::size_t, double>> sweep_middles_;
+  EchoPairs pairs_;
+  Eigen::MatrixXd global_covariance_;
+};
+
+}  // namespace pingvox
