@@ -408,8 +408,9 @@ Result<SlamSolution> solve_causal(const Recording& whole, const std::vector<NavS
     const bool is_whole = end == whole.sweeps.size();
     const double until_s = whole.sweeps[end - 1].to_s;
     const auto beams = std::ranges::upper_bound(whole.beam_times_s, until_s) - whole.beam_times_s.begin();
-    const Result<Recording> recording = recording_of(whole.beam_times_s.first(static_cast<std::size_t>(beams)),
-                                                     whole.sweeps.first(end), sources_until(sources, is_whole ? kInfinity : until_s), options);
+    const Result<Recording> recording =
+        recording_of(whole.beam_times_s.first(static_cast<std::size_t>(beams)), whole.sweeps.first(end),
+                     sources_until(sources, is_whole ? kInfinity : until_s), options);
     Result<SlamProblem> problem = recording.and_then(problem_of);
     // Too early for velocity and heading: these beams have no pose.
     if (!problem && !is_whole) continue;
