@@ -62,9 +62,10 @@ void add_device(Summary& summary, const DeviceProfile& device) {
       .add("blanking_m", device.blanking_m)
       .add("full_scale", device.full_scale);
   summary.json.add("device", json);
-  summary.text += report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, hears from {:.6g} m (--device)",
-                                                    device.title, width_deg, height_deg, device.blanking_m)) +
-                  report_line("intensities", std::string(device.intensity));
+  summary.text +=
+      report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, blanking range {:.6g} m (--device)",
+                                        device.title, width_deg, height_deg, device.blanking_m)) +
+      report_line("intensities", std::string(device.intensity));
 }
 
 void add_damage(Summary& summary, const std::vector<DamageKind>& kinds) {

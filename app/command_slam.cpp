@@ -47,8 +47,7 @@ Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, Damag
 
 /// Gives the smoother all beams and navigation. Returns how many records were skipped.
 /// @param first  the first log, opened
-Result<std::size_t> read_all_into(SlamSmoother& smoother, const SlamCommand& command,
-                                  std::unique_ptr<BeamSource> first) {
+Result<std::size_t> read_all(SlamSmoother& smoother, const SlamCommand& command, std::unique_ptr<BeamSource> first) {
   std::size_t skipped = 0;
   for (const std::string& name : command.navs) {
     const Result<FileBytes> file = read_file(name);
@@ -255,7 +254,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!map) return tl::unexpected(map.error());
   SlamSmoother smoother(command.slam);
   const Stopwatch read;
-  const Result<std::size_t> skipped = read_all_into(smoother, command, std::move(first));
+  const Result<std::size_t> skipped = read_all(smoother, command, std::move(first));
   if (!skipped) return tl::unexpected(skipped.error());
   seconds.read = read.seconds();
 
@@ -323,8 +322,8 @@ Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command,
   auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
   if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));
   MovedScans moved(std::move(*scans), trajectory);
-  const auto built = build_map(moved, BuildOptions{}, map);
-  return built ? Result<void>() : tl::unexpected(built.error());
+  const auto report = build_map(moved, BuildOptions{}, map);
+  return report ? Result<void>() : tl::unexpected(report.error());
 }
 
 std::string json_of(const ScanSlamReport& report, std::size_t skipped, const Seconds& seconds) {

@@ -36,7 +36,7 @@ constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
-Take into_water(std::optional<Water>& water) {
+Take store_water(std::optional<Water>& water) {
   return [&water](const std::string& text) -> Result<void> {
     std::array<double, 3> n{};
     const auto three = numbers_from<3>(text);
@@ -56,15 +56,15 @@ Take into_water(std::optional<Water>& water) {
 
 /// A number, or 'auto' for none.
 template <class Number>
-Take into_or_auto(std::optional<Number>& target) {
+Take store_or_auto(std::optional<Number>& target) {
   return [&target](const std::string& text) -> Result<void> {
-    if (text != "auto") return into_optional(target)(text);
+    if (text != "auto") return store_optional(target)(text);
     target.reset();
     return {};
   };
 }
 
-Take into_degrees(std::optional<double>& target_rad) {
+Take store_degrees(std::optional<double>& target_rad) {
   return [&target_rad](const std::string& text) -> Result<void> {
     const Result<double> degrees = number_from<double>(text);
     if (!degrees) return tl::unexpected(degrees.error());
@@ -84,7 +84,7 @@ Args device_names() {
   return names;
 }
 
-Take into_device(const DeviceProfile*& target) {
+Take store_device(const DeviceProfile*& target) {
   return [&target](const std::string& text) -> Result<void> {
     target = device_named(text);
     if (target != nullptr) return {};
@@ -94,8 +94,8 @@ Take into_device(const DeviceProfile*& target) {
   };
 }
 
-Take into_kernel(std::optional<int>& target) {
-  const Take take = within({1.0, 99.0}, into_optional(target));
+Take store_kernel(std::optional<int>& target) {
+  const Take take = within({1.0, 99.0}, store_optional(target));
   return [&target, take](const std::string& text) -> Result<void> {
     if (auto taken = take(text); !taken) return taken;
     if (*target % 2 == 0) return usage_error(fmt::format("must be odd, is {}", text));
@@ -103,7 +103,7 @@ Take into_kernel(std::optional<int>& target) {
   };
 }
 
-Take into_clamp(Clamp& target) {
+Take store_clamp(Clamp& target) {
   return [&target](const std::string& text) -> Result<void> {
     const auto p = numbers_from<2>(text);
     if (!p) return tl::unexpected(p.error());
@@ -118,7 +118,7 @@ Take into_clamp(Clamp& target) {
 
 }  // namespace
 
-Take into_mount(Pose& target) {
+Take store_mount(Pose& target) {
   return [&target](const std::string& text) -> Result<void> {
     const auto n = numbers_from<6>(text);
     if (!n) return usage_error(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
@@ -131,14 +131,14 @@ Take into_mount(Pose& target) {
   };
 }
 
-Take into_nav_mounts(std::map<std::string, Pose>& target) {
+Take store_nav_mounts(std::map<std::string, Pose>& target) {
   return [&target](const std::string& text) -> Result<void> {
     const std::size_t equals = text.rfind('=');
     if (equals == std::string::npos || equals == 0) {
       return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
     }
     Pose mount;
-    if (auto taken = into_mount(mount)(text.substr(equals + 1)); !taken) return taken;
+    if (auto taken = store_mount(mount)(text.substr(equals + 1)); !taken) return taken;
     if (!target.emplace(text.substr(0, equals), mount).second) {
       return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
     }
@@ -169,34 +169,35 @@ OptionTable::Group echo_group(EchoArgs& args) {
       "Echoes",
       {{"--min-range", 0, "M|auto", "ignore echoes nearer than M (transducer ringing); auto measures it per sweep",
         number_text(EchoOptions::kDefaultBlanking_m),
-        within({0.0, kAnyHigh, Limits::Ends::kHighOut}, into_or_auto(echo.min_range_m))},
+        within({0.0, kAnyHigh, Limits::Ends::kHighOut}, store_or_auto(echo.min_range_m))},
        {"--min-bin", 0, "N", "ignore bins before bin N (the first is 0)", fmt::format("{}", echo.min_bin),
-        into_number(echo.min_bin)},
+        store_number(echo.min_bin)},
        {"--max-range", 0, "M",
         "ignore echoes and cells farther than M; a beam whose only echo is farther marks cells "
         "up to M free",
-        "none", within({0.0, kAnyHigh, Limits::Ends::kLowOut}, into_number(echo.max_range_m))},
+        "none", within({0.0, kAnyHigh, Limits::Ends::kLowOut}, store_number(echo.max_range_m))},
        {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
         number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
-               into_optional(args.sound_speed_m_s))},
+               store_optional(args.sound_speed_m_s))},
        {"--water", 0, "T,S[,D]",
         "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m", "none",
-        into_water(args.water)},
+        store_water(args.water)},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; none leaves more beams silent",
               args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",
-        into_kernel(args.kernel)},
+        store_kernel(args.kernel)},
        {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
-        within({0.0, 1000.0, Limits::Ends::kLowOut}, into_optional(args.sigma))},
+        within({0.0, 1000.0, Limits::Ends::kLowOut}, store_optional(args.sigma))},
        choice("--detect", kDetectors, "echo detector", echo.detector),
        {"--threshold", 0, "T|auto", "rise, level or gradient (canny) from which on a bin is an echo",
-        "automatic, from the contrast of nearby beams", into_or_auto(echo.threshold)},
+        "automatic, from the contrast of nearby beams", store_or_auto(echo.threshold)},
        choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
               echo.cfar.noise),
        {"--background", 0, "M",
-        "subtract what each direction always hears nearer than M: the vehicle itself; reads the log twice", "off",
-        within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, into_optional(args.background_m))}}};
+        "subtract what is always heard at each bearing nearer than M, such as the vehicle itself; reads the log twice",
+        "off",
+        within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, store_optional(args.background_m))}}};
   for (Option& option : group.options) {
     if (option.name != "--max-range") option.only_for = beams;
     if (option.name == "--kernel") option.only_with = {{"--filter", {"mean", "median", "gaussian"}}};
@@ -220,20 +221,20 @@ OptionTable::Group map_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Map",
-      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m), into_number(map.resolution_m)},
+      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m), store_number(map.resolution_m)},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
-        into_number(map.depth)},
+        store_number(map.depth)},
        {"--hit", 0, "P", "probability that a cell is occupied after one echo in it",
-        number_text(model.hit.probability()), within({0.5, 1.0, Limits::Ends::kBothOut}, into_probability(model.hit))},
+        number_text(model.hit.probability()), within({0.5, 1.0, Limits::Ends::kBothOut}, store_probability(model.hit))},
        {"--miss", 0, "P", "probability that a cell is occupied after one beam passed through it",
         number_text(args.build.miss.probability()),
-        within({0.0, 0.5, Limits::Ends::kBothOut}, into_probability(args.build.miss))},
+        within({0.0, 0.5, Limits::Ends::kBothOut}, store_probability(args.build.miss))},
        {"--clamp", 0, "P,P", "lowest and highest probability a cell can reach",
         number_text(map.clamp.lowest.probability()) + "," + number_text(map.clamp.highest.probability()),
-        into_clamp(map.clamp)},
+        store_clamp(map.clamp)},
        choice("--vote", kVotes, "update a cell once per sweep (a hit beats a miss) or once per beam", args.build.vote),
        {"--memory-limit", 0, "BYTES", "stop before the map grows larger; also 512M, 2G", "none",
-        into_bytes(map.memory_limit_bytes)}}};
+        store_bytes(map.memory_limit_bytes)}}};
   for (Option& option : group.options) {
     if (option.name == "--vote") option.only_for = {std::string(kBeamLogs)};
   }
@@ -245,24 +246,24 @@ OptionTable::Group sensor_group(BuildArgs& args) {
   OptionTable::Group group = {
       "Sensor",
       {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "it does not move",
-        into(args.poses)},
+        store(args.poses)},
        {"--nav", 0, "FILE",
         "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, ROS bag, CSV), instead of --poses", "",
-        into(args.nav)},
+        store(args.nav)},
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
-        within({-1e10, 1e10}, into_number(args.nav_offset_s))},
+        within({-1e10, 1e10}, store_number(args.nav_offset_s))},
        {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
-        "0,0,0,0,0,0", into_mount(args.build.body_from_sensor)},
+        "0,0,0,0,0,0", store_mount(args.build.body_from_sensor)},
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
               model.shape),
        {"--beam-width", 0, "DEG", "horizontal beam width, full angle", of_device(model.width_rad),
-        within({0.0, 180.0, Limits::Ends::kLowOut}, into_degrees(args.head.beam_width_rad))},
+        within({0.0, 180.0, Limits::Ends::kLowOut}, store_degrees(args.head.beam_width_rad))},
        {"--beam-height", 0, "DEG", "vertical beam width, full angle", of_device(model.height_rad),
-        within({0.0, 180.0, Limits::Ends::kBothOut}, into_degrees(args.head.beam_height_rad))},
+        within({0.0, 180.0, Limits::Ends::kBothOut}, store_degrees(args.head.beam_height_rad))},
        {"--device", 0, fmt::format("{}", fmt::join(device_names(), "|")),
-        "sonar head, which gives the width and height of its beam", "as the log says", into_device(args.head.device)},
+        "sonar head, which gives the width and height of its beam", "as the log says", store_device(args.head.device)},
        {"--free-share", 0, "S", "central fraction of the beam (0..1) that marks cells free",
-        number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, into_number(model.free_share))},
+        number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, store_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),
        choice("--hit-from", kHitsFrom, "evidence of an echo: the same for all, or by its intensity", model.hit_from),
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};

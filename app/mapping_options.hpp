@@ -68,9 +68,9 @@ struct BuildArgs {
 Result<void> check_options(BuildOptions options);
 
 /// "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
-Take into_mount(Pose& target);
+Take store_mount(Pose& target);
 /// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
-Take into_nav_mounts(std::map<std::string, Pose>& target);
+Take store_nav_mounts(std::map<std::string, Pose>& target);
 
 /// Groups of options that write into their arguments, which must outlive them.
 OptionTable::Group echo_group(EchoArgs& args);

@@ -44,7 +44,7 @@ Take within(const Limits& limits, Take take) {
   };
 }
 
-Take into(std::string& target) {
+Take store(std::string& target) {
   return [&target](const std::string& text) -> Result<void> {
     if (text.empty()) return usage_error("is empty");
     target = text;
@@ -52,7 +52,14 @@ Take into(std::string& target) {
   };
 }
 
-Take into_probability(LogOdds& target) {
+Take store_each(Args& targets) {
+  return [&targets](const std::string& text) -> Result<void> {
+    targets.push_back(text);
+    return {};
+  };
+}
+
+Take store_probability(LogOdds& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<double> value = number_from<double>(text);
     if (!value) return tl::unexpected(value.error());
@@ -63,7 +70,7 @@ Take into_probability(LogOdds& target) {
   };
 }
 
-Take into_bytes(std::size_t& target) {
+Take store_bytes(std::size_t& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<std::size_t> bytes = bytes_from(text);
     if (!bytes) return tl::unexpected(bytes.error());

@@ -72,11 +72,13 @@ Result<std::array<double, N>> numbers_from(std::string_view text) {
 Result<std::size_t> bytes_from(std::string_view text);
 
 /// Any non-empty text.
-Take into(std::string& target);
+Take store(std::string& target);
+/// Any text, appended to what was given before.
+Take store_each(Args& targets);
 
 /// A number of any kind; typed in units of `unit`.
 template <class Number>
-Take into_number(Number& target, Number unit = Number{1}) {
+Take store_number(Number& target, Number unit = Number{1}) {
   return [&target, unit](const std::string& text) -> Result<void> {
     const Result<Number> value = number_from<Number>(text);
     if (!value) return tl::unexpected(value.error());
@@ -86,7 +88,7 @@ Take into_number(Number& target, Number unit = Number{1}) {
 }
 
 template <class Number>
-Take into_optional(std::optional<Number>& target) {
+Take store_optional(std::optional<Number>& target) {
   return [&target](const std::string& text) -> Result<void> {
     const Result<Number> value = number_from<Number>(text);
     if (!value) return tl::unexpected(value.error());
@@ -112,9 +114,9 @@ inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
 /// Refuses numbers outside of the limits, then calls `take`, which also refuses other text.
 Take within(const Limits& limits, Take take);
 
-Take into_probability(LogOdds& target);
+Take store_probability(LogOdds& target);
 /// At least one byte.
-Take into_bytes(std::size_t& target);
+Take store_bytes(std::size_t& target);
 
 /// A word that an option accepts, and its value.
 template <class Enum>

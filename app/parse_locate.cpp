@@ -15,7 +15,7 @@ namespace pingvox::app {
 namespace {
 
 /// "anywhere", or x, y, yaw, and optionally their standard deviations: metres and degrees.
-Take into_start(std::optional<StartPose>& target) {
+Take store_start(std::optional<StartPose>& target) {
   return [&target](const std::string& text) -> Result<void> {
     target.reset();
     if (text == "anywhere") return {};
@@ -53,26 +53,20 @@ Result<Command> locate_command(const Args& args) {
   std::string output, odometry;
   EchoArgs echoes;
   LocalizerOptions& localizer = command.localizer;
-  const auto into_list = [](Args& list) -> Take {
-    return [&list](const std::string& text) -> Result<void> {
-      list.push_back(text);
-      return {};
-    };
-  };
   Option nav{"--nav", 0,
-             "FILE",  "navigation log: heading, and velocity over ground where it has one",
-             "",      into_list(command.navs)};
+             "FILE",  "navigation log, as for 'slam': a heading, and velocity over ground where it has one",
+             "",      store_each(command.navs)};
   nav.repeats = Repeats::kEachCounts;
   Option nav_offset{"--nav-offset",
                     0,
                     "S",
                     "seconds to add to the times of --nav to get those of the sonar log",
                     "0",
-                    within({-1e10, 1e10}, into_number(command.nav.offset_s))};
+                    within({-1e10, 1e10}, store_number(command.nav.offset_s))};
   nav_offset.only_with = {{"--nav"}};
   Option nav_mount{"--nav-mount",        0,
                    "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation on the vehicle, as --mount",
-                   "0,0,0,0,0,0",        into_nav_mounts(command.nav.body_from_source)};
+                   "0,0,0,0,0,0",        store_nav_mounts(command.nav.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
   nav_mount.only_with = {{"--nav"}};
   OptionTable::Group echo_options = echo_group(echoes);
@@ -81,32 +75,32 @@ Result<Command> locate_command(const Args& args) {
   const OptionTable table{
       "locate",
       "Finds where the vehicle was in a map that is known, from the echoes of a scanning sonar, and from navigation\n"
-      "where there is any. When several places fit as well, all of them are reported.",
-      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", into_list(command.logs)}},
+      "where there is any. If several places fit equally well, all are reported.",
+      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
          json_option(command.output_options), quiet_option(command.output_options)}},
        {"Map",
-        {{"--map", 0, "FILE", "the map: .bt, .ot or .pvx", "", into(command.map)},
+        {{"--map", 0, "FILE", "the map, required: .bt, .ot or .pvx", "", store(command.map)},
          {"--min-z", 0, "M", "lowest height of the map that is used", "0.25 below the sonar at the first beam",
-          into_optional(command.min_z_m)},
+          store_optional(command.min_z_m)},
          {"--max-z", 0, "M", "highest height of the map that is used", "0.25 above the sonar at the first beam",
-          into_optional(command.max_z_m)}}},
+          store_optional(command.max_z_m)}}},
        {"Navigation",
         {std::move(nav),
          std::move(nav_offset),
          std::move(nav_mount),
          {"--odometry", 0, "FILE", "poses in a frame that may drift, as TUM lines, instead of --nav", "",
-          into(odometry)},
+          store(odometry)},
          {"--mount", 0, "X,Y,Z,R,P,Y",
           "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
-          into_mount(localizer.body_from_sonar)}}},
+          store_mount(localizer.body_from_sonar)}}},
        {"Estimation",
         {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
           "where the vehicle was at first, in metres and degrees, with standard deviations (0.5,10); or anywhere",
-          "anywhere", into_start(command.start)},
-         {"--seed", 0, "N", "of the random numbers", "1", into_number(localizer.seed)}}},
+          "anywhere", store_start(command.start)},
+         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}}},
        std::move(echo_options),
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox locate dive.csv --map harbour.bt --nav dvl.csv -o dive.tum",

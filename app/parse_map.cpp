@@ -32,7 +32,7 @@ Result<Command> map_command(const Args& args) {
   MapOptions& map = build.map;
   const Take thread_count = [&](const std::string& text) -> Result<void> {
     int threads = 0;
-    if (auto taken = into_number(threads)(text); !taken) return taken;
+    if (auto taken = store_number(threads)(text); !taken) return taken;
     if (threads < 1 || threads > 256) return usage_error(fmt::format("{} is not in 1..256", text));
     build.build.threads = static_cast<std::size_t>(threads);
     return {};
@@ -43,10 +43,6 @@ Result<Command> map_command(const Args& args) {
     const Eigen::Vector3d place(n->data());
     if (!place.allFinite()) return usage_error(fmt::format("'{}': must be finite", text));
     command.cloud_origin_m = place;
-    return {};
-  };
-  const Take log = [&](const std::string& text) -> Result<void> {
-    command.logs.push_back(text);
     return {};
   };
   const Take format = [&](const std::string& text) -> Result<void> {
@@ -73,9 +69,8 @@ Result<Command> map_command(const Args& args) {
       "before it free and those at it occupied.",
       {{"LOG", Positional::Count::kMany,
         "beams (Ping Viewer's .bin, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's .graph and .log) or "
-        "clouds of "
-        "points (PLY, PCD, XYZ), recognised by content; - is standard input",
-        log}},
+        "clouds of points (PLY, PCD, XYZ), recognised by content; - is standard input",
+        store_each(command.logs)}},
       {{"Output",
         {output_option(output,
                        "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply .pcd .xyz (occupied cells as "

@@ -80,11 +80,11 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
          "polar of a log, above of a map", view},
         choice("--from", kSides, "side from which --view side looks, seen from the vehicle", args.from),
         {"--z", 0, "M", "a height in the layer that --view slice draws", "none",
-         within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, into_optional(args.slice_z_m))},
-        {"--min-z", 0, "M", "draw nothing of a map below", "none", into_optional(panel.map_picture.min_z_m)},
-        {"--max-z", 0, "M", "draw nothing of a map above", "none", into_optional(panel.map_picture.max_z_m)},
+         within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(args.slice_z_m))},
+        {"--min-z", 0, "M", "draw nothing of a map below", "none", store_optional(panel.map_picture.min_z_m)},
+        {"--max-z", 0, "M", "draw nothing of a map above", "none", store_optional(panel.map_picture.max_z_m)},
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as by 'info'",
-         "all; cartesian: the fullest one", into_optional(panel.sweep)},
+         "all; cartesian: the fullest one", store_optional(panel.sweep)},
         choice("--show", kShownImages,
                "intensities as recorded, smoothed by --filter, or the background that is subtracted", panel.image),
         choice("--echoes", kEchoMarks, "mark the detected echoes", panel.marks),
@@ -92,9 +92,9 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
         {"--size", 0, "PX",
          "size of the drawing without axes and legend, 16..3072: longer side of a map, largest width of a polar "
          "picture, both sides of a Cartesian one",
-         "1000; of several pictures 640", within({16.0, 3072.0}, into_optional(args.size_px))},
+         "1000; of several pictures 640", within({16.0, 3072.0}, store_optional(args.size_px))},
         {"--caption", 0, "TEXT", "text below the picture", "the options that differ between pictures",
-         into(panel.caption)}}},
+         store(panel.caption)}}},
       echo_group(args.build.echoes),
       map_group(args.build),
       sensor_group(args.build)};
@@ -210,18 +210,12 @@ Result<Command> render_command(const Args& args) {
   RenderCommand command;
   Args inputs, beside;
   PanelArgs first;
-  const auto into_list = [](Args& list) -> Take {
-    return [&list](const std::string& text) -> Result<void> {
-      list.push_back(text);
-      return {};
-    };
-  };
   OptionTable table{
       "render",
       "Draws a PNG: of a log of beams what was heard, with a mark on each echo; of a map (or a log, mapped as by\n"
       "'pingvox map') what is where. Several FILEs, and several settings of one, stand side by side.",
       {{"FILE", Positional::Count::kMany, "a log or a map, recognised by content; - is standard input",
-        into_list(inputs)}},
+        store_each(inputs)}},
       panel_groups(first),
       {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50",
        "pingvox render tank.mat -o sweep.png --view cartesian --show filtered", "pingvox render tank.bt -o map.png",
@@ -234,8 +228,8 @@ Result<Command> render_command(const Args& args) {
   options.insert(options.begin(), output_option(command.output, "the picture, .png; - is standard output"));
   options.push_back({"--beside", 0, "OPTIONS",
                      "draw the same again beside it with these options changed, as in '--filter none'; repeatable",
-                     "none", into_list(beside), Repeats::kEachCounts});
-  options.push_back({"--title", 0, "TEXT", "text above the picture", "none", into(command.title)});
+                     "none", store_each(beside), Repeats::kEachCounts});
+  options.push_back({"--title", 0, "TEXT", "text above the picture", "none", store(command.title)});
   options.push_back(strict_option(command.damage));
   options.push_back(topic_option(command.topic));
   options.push_back(quiet_option(command.output_options));

@@ -28,46 +28,41 @@ Result<Command> slam_command(const Args& args) {
   std::string output, map, calibration;
   EchoArgs echoes;
   SlamOptions& slam = command.slam;
-  const auto into_list = [](Args& list) -> Take {
-    return [&list](const std::string& text) -> Result<void> {
-      list.push_back(text);
-      return {};
-    };
-  };
   Option resolution{"--resolution",
                     0,
                     "M",
                     "edge length of a cell of the map",
                     number_text(command.map_resolution_m),
-                    into_number(command.map_resolution_m)};
+                    store_number(command.map_resolution_m)};
   resolution.only_with = {{"--map"}};
   Option nav{"--nav", 0,
-             "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, CSV)",
-             "",      into_list(command.navs)};
+             "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, ROS bag, CSV)",
+             "",      store_each(command.navs)};
   nav.repeats = Repeats::kEachCounts;
   Option nav_mount{"--nav-mount",        0,
                    "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation on the vehicle, as --mount",
-                   "0,0,0,0,0,0",        into_nav_mounts(slam.body_from_source)};
+                   "0,0,0,0,0,0",        store_nav_mounts(slam.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
-  Option seed{"--seed", 0, "N", "of the random choice among the sweeps near a sweep", "1", into_number(slam.seed)};
+  Option seed{
+      "--seed", 0, "N", "seed of the random choice among the sweeps near a sweep", "1", store_number(slam.seed)};
   seed.only_with = {{"--matching", {"pairs"}}};
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
-  Option calibration_option{"--calibration",  0, "FILE", "what was estimated of the sensors, as TOML", "",
-                            into(calibration)};
+  Option calibration_option{"--calibration",   0, "FILE", "what was estimated of the sensors, as TOML", "",
+                            store(calibration)};
   calibration_option.only_for = beams;
   OptionTable::Group navigation{
       "Navigation",
       {std::move(nav),
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
-        within({-1e10, 1e10}, into_number(slam.nav_offset_s))},
+        within({-1e10, 1e10}, store_number(slam.nav_offset_s))},
        {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
-        "0,0,0,0,0,0", into_mount(slam.body_from_sonar)},
+        "0,0,0,0,0,0", store_mount(slam.body_from_sonar)},
        std::move(nav_mount)}};
   OptionTable::Group estimation{
       "Estimation",
-      {choice("--matching", kMatchings, "match pairs of echoes of different sweeps, or none: dead reckoning",
+      {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none is dead reckoning",
               slam.matching),
        flag("--causal", "estimate each pose from what was recorded until then, as on board", slam.estimation,
             Estimation::kCausal),
@@ -77,16 +72,17 @@ Result<Command> slam_command(const Args& args) {
   }
   const OptionTable table{
       "slam",
-      "Estimates where the vehicle was. From the echoes of a scanning sonar and from navigation, velocity over ground\n"
-      "and at least one heading: how the sensors are turned and the headings deviate is estimated as well. Or from\n"
-      "scans of points whose poses are odometry: places that are seen again correct it.",
+      "Estimates where the vehicle was, from beams and navigation: velocity over ground and at least one heading. The\n"
+      "mounting angles of the sensors and the deviation of the headings are estimated, too. Of point scans, whose "
+      "poses\n"
+      "are taken as odometry, it corrects the drift where a place is seen again.",
       {{"LOG", Positional::Count::kMany,
         "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
-        into_list(command.logs)}},
+        store_each(command.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
-         {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", into(map)},
+         {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", store(map)},
          std::move(resolution),
          std::move(calibration_option),
          json_option(command.output_options),
@@ -98,8 +94,8 @@ Result<Command> slam_command(const Args& args) {
       {"pingvox slam dive.csv --nav nav.csv -o dive.tum --map dive.bt",
        "pingvox slam dive.csv --nav dive.tlog --nav dvl.csv --nav-mount A50=0,0,0,0,0,-45 -o dive.tum",
        "pingvox slam scans.graph -o scans.tum --map scans.bt"},
-      "A log whose beams have but one intensity besides 0 holds echoes that were detected already. The times of\n"
-      "trajectories of point scans are the numbers of the scans, from 0.\n"
+      "In a log whose beams have only one intensity besides 0, the echoes are taken as already detected. Trajectories\n"
+      "of point scans have the number of the scan, from 0, as time.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     command.limited = parsed.limited;

@@ -25,7 +25,7 @@ tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
 }  // namespace
 
 Option output_option(std::string& target, std::string help) {
-  return {"--output", 'o', "FILE", std::move(help), "", into(target)};
+  return {"--output", 'o', "FILE", std::move(help), "", store(target)};
 }
 
 Option config_option() {
@@ -42,8 +42,8 @@ Option strict_option(Damage& damage) {
 }
 
 Option topic_option(std::string& topic) {
-  Option option{"--topic",  0, "NAME", "the topic of a ROS bag whose beams are read", "the only one with beams",
-                into(topic)};
+  Option option{"--topic",   0, "NAME", "the topic of a ROS bag whose beams are read", "the only one with beams",
+                store(topic)};
   option.only_for = {std::string(kBeamLogs)};
   return option;
 }

@@ -60,7 +60,7 @@ std::uint64_t peak_growth(const std::function<void()>& work) {
 std::uint64_t live_growth(const std::function<std::shared_ptr<const void>()>& build) {
   malloc_trim(0);
   const std::uint64_t before = status_bytes("VmRSS");
-  const std::shared_ptr<const void> built = build();
+  const std::shared_ptr<const void> object = build();
   malloc_trim(0);
   const std::uint64_t after = status_bytes("VmRSS");
   return before != 0 && after > before ? after - before : 0;

@@ -45,24 +45,24 @@ constexpr Shown kShown[] = {{"tank", "still", "tank, still"},
                             {"cave", "loop", "cave"}};
 
 /// A series of a chart: one number of one row of each recording.
-struct Picked {
+struct Column {
   std::string name, key;
   std::vector<std::pair<std::string_view, std::string_view>> where;
 };
 
-Chart bars(const std::vector<Row>& rows, std::string title, const std::vector<Picked>& picks) {
+Chart bars(const std::vector<Row>& rows, std::string title, const std::vector<Column>& columns) {
   Chart chart{.kind = Chart::Kind::kBars, .title = std::move(title), .y_label = "per cent"};
   chart.width = 1400;
   for (const Shown& shown : kShown) chart.categories.emplace_back(shown.label);
-  for (const Picked& pick : picks) {
-    Series series{.name = pick.name, .y = {}};
+  for (const Column& column : columns) {
+    Series series{.name = column.name, .y = {}};
     for (const Shown& shown : kShown) {
       double value = 0.0;
       for (const Row& row : rows) {
         bool is_it = says(row, "world", shown.world) && says(row, "poses", shown.poses);
-        for (const auto& [key, text] : pick.where) is_it = is_it && says(row, key, text);
+        for (const auto& [key, text] : column.where) is_it = is_it && says(row, key, text);
         const Value* resolution = field(row, "resolution_m");
-        if (is_it && (!resolution || number(row, "resolution_m") == 0.05)) value = 100.0 * number(row, pick.key);
+        if (is_it && (!resolution || number(row, "resolution_m") == 0.05)) value = 100.0 * number(row, column.key);
       }
       series.y.push_back(value);
     }
@@ -89,7 +89,7 @@ Result<void> draw_accuracy(const std::vector<Row>& rows, const std::string& fold
                              {"default, false", "echoes_false", {{"detector", "default"}}}});
   if (auto written = write(echoes, std::filesystem::path(folder) / "accuracy-echoes.png"); !written) return written;
   const auto in_plane = [](std::string name, std::string key, std::string_view source) {
-    return Picked{std::move(name), std::move(key), {{"where", "plane"}, {"beam", "ray"}, {"echoes", source}}};
+    return Column{std::move(name), std::move(key), {{"where", "plane"}, {"beam", "ray"}, {"echoes", source}}};
   };
   const Chart maps =
       bars(rows, "Maps in the plane of the head, cells of 5 cm, ray",

@@ -77,15 +77,15 @@ bool is_within_rounding(std::span<const Ray> rays, const Eigen::Vector3d& middle
 
 std::vector<Key> cells_beyond_rounding(const Lattice& lattice, std::span<const RayCloud> scans,
                                        std::span<const Key> cells) {
-  std::vector<Key> settled(cells.begin(), cells.end());
+  std::vector<Key> beyond(cells.begin(), cells.end());
   for (const RayCloud& scan : scans) {
-    if (settled.empty()) break;
+    if (beyond.empty()) break;
     const std::vector<Ray> rays = rays_of(lattice, scan);
-    std::erase_if(settled, [&](const Key& cell) {
+    std::erase_if(beyond, [&](const Key& cell) {
       return is_within_rounding(rays, lattice.centre_of(cell) / lattice.resolution_m());
     });
   }
-  return settled;
+  return beyond;
 }
 
 }  // namespace pingvox::bench

@@ -96,13 +96,13 @@ Result<MapDifference> check_equal(const OccupancyMap& ours, const octomap::OcTre
     return fail(Error::Code::kCorrupt,
                 fmt::format("not what liboctomap makes: {} of {} cells differ", found.differs, found.cells));
   }
-  const std::vector<Key> settled = cells_beyond_rounding(ours.lattice(), scans, found.keys);
-  if (settled.empty()) return found;
-  const Eigen::Vector3d first_m = ours.lattice().centre_of(settled.front());
+  const std::vector<Key> beyond = cells_beyond_rounding(ours.lattice(), scans, found.keys);
+  if (beyond.empty()) return found;
+  const Eigen::Vector3d first_m = ours.lattice().centre_of(beyond.front());
   return fail(Error::Code::kCorrupt,
               fmt::format("not what liboctomap makes: {} of {} cells differ, {} of them beyond rounding, the first at "
                           "({}, {}, {}) m",
-                          found.differs, found.cells, settled.size(), first_m.x(), first_m.y(), first_m.z()));
+                          found.differs, found.cells, beyond.size(), first_m.x(), first_m.y(), first_m.z()));
 }
 
 Result<void> check_identical(const OccupancyMap& ours, const octomap::OcTree& peer) {

@@ -187,7 +187,7 @@ Result<std::vector<Row>> rows_by_size() {
 }
 
 /// Fills a map in at most `most` steps. @return number of steps before the limit
-Result<std::uint64_t> steps_into(Basin& basin, std::uint64_t most) {
+Result<std::uint64_t> fill_basin(Basin& basin, std::uint64_t most) {
   for (std::uint64_t step = 0; step < most; ++step) {
     const auto filled = basin.fill(basin.filled() + 16 * kBlock);
     if (filled) continue;
@@ -203,14 +203,14 @@ Result<Row> row_of_limit() {
   constexpr std::uint64_t kMaxSteps = kSizes.back() / (16 * kBlock);
   const MapOptions options{.resolution_m = kCell_m, .memory_limit_bytes = kLimit_bytes};
   OccupancyMap first(options), map(options);
-  Basin into_first(first), into_map(map);
-  const auto steps = steps_into(into_first, kMaxSteps);
+  Basin first_basin(first), basin(map);
+  const auto steps = fill_basin(first_basin, kMaxSteps);
   if (!steps) return tl::unexpected(steps.error());
-  if (const auto again = steps_into(into_map, *steps); !again || *again != *steps) {
+  if (const auto again = fill_basin(basin, *steps); !again || *again != *steps) {
     return fail(Error::Code::kCorrupt, fmt::format("the limit let {} scans in at first", *steps));
   }
   const OccupancyMap before = map;
-  const auto refused = steps_into(into_map, 1);
+  const auto refused = fill_basin(basin, 1);
   if (*steps == kMaxSteps || !refused || *refused != 0) {
     return fail(Error::Code::kCorrupt, "the memory limit stopped nothing");
   }

@@ -78,8 +78,8 @@ Result<double> share_of_other_classes(const std::vector<Beam>& beams, const Occu
   BeamsInMemory source(beams);
   BuildOptions options = vehicle_options();
   options.timing = Timing::kBySweep;
-  const auto built = build_map(source, Trajectory::still(Pose::Identity()), options, map);
-  if (!built) return tl::unexpected(built.error());
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
+  if (!report) return tl::unexpected(report.error());
   const auto found = compare_maps(live_map, map, Sameness::kOccupancy);
   if (!found) return tl::unexpected(found.error());
   if (found->cells() == 0 || found->only_a + found->only_b > 0) {

@@ -117,8 +117,8 @@ Beams image_beams(const RosFields& message, SonarSettings&) {
   // A range is that of the middle of its bin.
   const double bin_length_m = (message.number(2, ranges - 1) - message.number(2)) / static_cast<double>(ranges - 1);
   const double before = std::round(message.number(2) / bin_length_m - 0.5);
-  constexpr double kMostBefore = 1e5;
-  if (!(before >= -1.0 && before <= kMostBefore)) return NoBeam(kImpossible);
+  constexpr double kMaxBefore = 1e5;
+  if (!(before >= -1.0 && before <= kMaxBefore)) return NoBeam(kImpossible);
   const auto first = static_cast<std::size_t>(std::max(before, 0.0));
   if (first > ranges * 16) return NoBeam(kImpossible);
   std::vector<Beam> found;

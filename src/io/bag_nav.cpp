@@ -36,10 +36,10 @@ class Samples {
 
   /// Adds a position by dead reckoning and its attitude. They are not valid after a reset, because they are in another
   /// frame then.
-  void add_reckoned(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
-    constexpr double kMostSpeed_m_s = 10.0;
+  void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
+    constexpr double kMaxSpeed_m_s = 10.0;
     const bool was_reset = last_ && (last_->was_reset || (position_m - last_->value).norm() >
-                                                             kMostSpeed_m_s * std::max(time_s_ - last_->time_s, 0.1));
+                                                             kMaxSpeed_m_s * std::max(time_s_ - last_->time_s, 0.1));
     last_ = LastPosition{time_s_, position_m, was_reset};
     add(NavQuantity::kPosition, position_m, !was_reset);
     add(NavQuantity::kAttitude, attitude, !was_reset);
@@ -81,10 +81,10 @@ void add_attitude(const RosFields& message, std::size_t first, bool valid, Sampl
 
 /// Pressure in Pa, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
 double pascals(double pressure) {
-  constexpr double kMostBar = 50.0, kMostKpa = 500.0, kMostHpa = 50'000.0;
-  if (pressure < kMostBar) return pressure * 1e5;
-  if (pressure < kMostKpa) return pressure * 1e3;
-  return pressure < kMostHpa ? pressure * 1e2 : pressure;
+  constexpr double kMaxBar = 50.0, kMaxKpa = 500.0, kMaxHpa = 50'000.0;
+  if (pressure < kMaxBar) return pressure * 1e5;
+  if (pressure < kMaxKpa) return pressure * 1e3;
+  return pressure < kMaxHpa ? pressure * 1e2 : pressure;
 }
 
 void add_imu(const RosFields& message, Samples& samples) {
@@ -150,8 +150,8 @@ void add_dvl_velocity(const RosFields& message, const Eigen::Matrix3d& frd_from_
 void add_dvl_position(const RosFields& message, const Eigen::Matrix3d& frd_from_dvl, Samples& samples) {
   const Eigen::Vector3d rpy = three(message, 3) * kRadPerDeg;
   const Eigen::Matrix3d turned = pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z()).rotation();
-  samples.add_reckoned(from_ned::world(frd_from_dvl * three(message, 0)),
-                       from_ned::attitude(rpy_of(frd_from_dvl * turned * frd_from_dvl.transpose())));
+  samples.add_dead_reckoning(from_ned::world(frd_from_dvl * three(message, 0)),
+                             from_ned::attitude(rpy_of(frd_from_dvl * turned * frd_from_dvl.transpose())));
 }
 
 void add_dvl(const RosFields& message, Samples& samples) {

@@ -19,7 +19,7 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 enum class Column { kTime, kBearingRad, kBearingDeg, kBearingClockwiseDeg, kBinLength, kIntensities, kOther };
 
-Column column_named(std::string_view name) {
+Column column_of(std::string_view name) {
   if (name == "time_s") return Column::kTime;
   if (name == "bearing_rad") return Column::kBearingRad;
   if (name == "bearing_deg") return Column::kBearingDeg;
@@ -44,7 +44,7 @@ std::vector<Column> columns_in(std::string_view header) {
   while (const auto name = cut_field(header, separator)) {
     // Limits the work on a line of commas.
     if (columns.size() == 64) break;
-    columns.push_back(column_named(*name));
+    columns.push_back(column_of(*name));
   }
   return columns;
 }

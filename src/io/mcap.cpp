@@ -252,7 +252,7 @@ class Mcap final : public Bag {
 
   /// There is no mark between records: the next thing that is one without doubt is a chunk.
   Result<std::optional<BagMessage>> skip_damage() {
-    constexpr std::size_t kBlock = std::size_t{1} << 18, kMostOfHeader = 64;
+    constexpr std::size_t kBlock = std::size_t{1} << 18, kMaxHeader = 64;
     add_damage(damage_, "damaged record", reader_.position());
     for (;;) {
       const auto bytes = reader_.peek(kBlock);
@@ -265,7 +265,7 @@ class Mcap final : public Bag {
         at_end_ = true;
         return std::nullopt;
       }
-      reader_.skip(kBlock - kMostOfHeader);  // a header may be across the end of the block
+      reader_.skip(kBlock - kMaxHeader);  // a header may be across the end of the block
     }
   }
 

@@ -11,7 +11,7 @@
 namespace pingvox {
 namespace {
 
-std::optional<Scalar> type_named(std::string_view name) {
+std::optional<Scalar> type_of(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, Scalar>, 16> kNames = {{{"char", Scalar::kInt8},
                                                                            {"int8", Scalar::kInt8},
                                                                            {"uchar", Scalar::kUint8},
@@ -80,13 +80,13 @@ Result<PlyHeader> read_ply_header(std::string_view file, std::span<const std::ui
       std::optional<Scalar> type;
       std::string_view type_name = cut_word(rest).value_or("");
       if (type_name == "list") {
-        property.list_count = type_named(cut_word(rest).value_or(""));
+        property.list_count = type_of(cut_word(rest).value_or(""));
         if (!property.list_count || !is_integer(*property.list_count)) {
           return off("a list needs a whole number for its length");
         }
         type_name = cut_word(rest).value_or("");
       }
-      type = type_named(type_name);
+      type = type_of(type_name);
       property.name = std::string(cut_word(rest).value_or(""));
       if (!type || property.name.empty()) return off("an unknown type, or no name");
       property.type = *type;

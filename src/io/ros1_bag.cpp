@@ -106,7 +106,7 @@ std::optional<Compression> compression_of(const RecordHeader& header) {
 
 /// Whether the data can be as long as the record says.
 bool has_possible_length(const Record& record) {
-  constexpr std::uint64_t kIndexEntry = 12, kInfoEntry = 8, kMost = 65'536;
+  constexpr std::uint64_t kIndexEntry = 12, kInfoEntry = 8, kMaxRecordHeader = 65'536;
   const std::uint64_t length = record.data;
   switch (record.header.op) {
     case kIndex:
@@ -114,7 +114,7 @@ bool has_possible_length(const Record& record) {
     case kChunkInfo:
       return length == kInfoEntry * record.header.count;
     case kBagHeader:
-      return length <= kMost;
+      return length <= kMaxRecordHeader;
     default:
       return length <= kMaxChunk;
   }

@@ -54,8 +54,8 @@ bool unpack(Compression compression, std::span<const std::uint8_t> packed, std::
             std::vector<std::uint8_t>& to) {
   assert(compression != Compression::kNone);
   // No sonar compresses like this, but a damaged size does.
-  constexpr std::uint64_t kMostRatio = 1024, kMostSmall = 65'536;
-  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMostSmall + kMostRatio * packed.size()) {
+  constexpr std::uint64_t kMaxRatio = 1024, kMaxUnchecked = 65'536;
+  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMaxUnchecked + kMaxRatio * packed.size()) {
     to.clear();
     return false;
   }

@@ -87,7 +87,7 @@ class BeamMapper::Stages {
   std::optional<std::size_t> delay_beams() const { return stream_.delay_beams(); }
 
  private:
-  /// Maps the beams whose echoes are settled.
+  /// Maps the beams whose echoes are final.
   Result<void> take(std::vector<EchoStream::BeamWithEcho> heard) {
     watch_.lap(report_.seconds.detect);
     if (options_.timing == Timing::kBySweep) no_pose_before_ = report_.no_pose.count;  // these beams are one sweep

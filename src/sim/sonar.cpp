@@ -59,7 +59,7 @@ double two_way(double one_way_amplitude) {
   return power * power;
 }
 
-double scattered(const Material& material, double cosine) {
+double backscatter(const Material& material, double cosine) {
   const double off = std::acos(std::min(cosine, 1.0)) / kGlintWidth_rad;
   return material.scatter * cosine + material.glint * std::exp(-off * off);
 }
@@ -149,7 +149,7 @@ std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_s
         const double middle = way / cell_m;
         const double loss_here = std::pow(loss(o, way), 1.0 - o.gain);
         add_evenly(middle - 0.5 * spread, middle + 0.5 * spread,
-                   share * scattered(material, cosine) * loss_here * loss_here, cells);
+                   share * backscatter(material, cosine) * loss_here * loss_here, cells);
         share *= std::pow(material.mirror * o.multipath, 2.0);
         const auto mirror = [&hit](Vector3d& v) { v -= 2.0 * v.dot(hit->normal) * hit->normal; };
         ray.origin_m = ray.at(hit->range_m);

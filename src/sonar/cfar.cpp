@@ -12,7 +12,7 @@ namespace {
 /// `times` the noise estimated from the squares of the training bins.
 
 /// Finn and Johnson 1968: T = times the mean of n.
-double rate_averaging(double times, std::size_t n) {
+double rate_of_averages(double times, std::size_t n) {
   const auto count = static_cast<double>(n);
   return std::pow(1.0 + times / count, -count);
 }
@@ -36,7 +36,7 @@ double rate_greatest(double times, std::size_t m) {
 }
 
 /// Rohling 1983: T = times the k-th smallest of n.
-double rate_ordered(double times, std::size_t k, std::size_t n) {
+double rate_of_ordered(double times, std::size_t k, std::size_t n) {
   double rate = 1.0;
   for (std::size_t i = 0; i < k; ++i) rate *= static_cast<double>(n - i) / (static_cast<double>(n - i) + times);
   return rate;
@@ -51,7 +51,7 @@ double rate(double times, const CfarOptions& options) {
   const std::size_t n = 2 * options.training;
   switch (options.noise) {
     case CfarOptions::Noise::kCellAveraging:
-      return rate_averaging(times, n);
+      return rate_of_averages(times, n);
     case CfarOptions::Noise::kSmallestOf:
       return rate_smallest(times, options.training);
     case CfarOptions::Noise::kGreatestOf:
@@ -59,7 +59,7 @@ double rate(double times, const CfarOptions& options) {
     case CfarOptions::Noise::kOrdered:
       break;
   }
-  return rate_ordered(times, rank_of(n), n);
+  return rate_of_ordered(times, rank_of(n), n);
 }
 
 /// Training bins before and after a bin.

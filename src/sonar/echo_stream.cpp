@@ -53,7 +53,7 @@ std::vector<EchoStream::BeamWithEcho> EchoStream::add(Beam beam) {
   const Found found = echoes_of(window, filter_, echo_);
   const std::uint64_t number = first_ + pending.size() - 1 - *delay_;
   heard.push_back({number, around[*delay_], found.echoes[*delay_], found.beyond[*delay_]});
-  ++settled_;
+  ++returned_;
   return heard;
 }
 
@@ -66,12 +66,12 @@ std::vector<EchoStream::BeamWithEcho> EchoStream::rest_of(Sweep sweep) {
   const Found found = echoes_of(sweep, filter_, echo_);
   std::vector<BeamWithEcho> rest;
   for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
-    const bool settled = settled_ > 0 && n >= *delay_ && n < *delay_ + settled_;
-    if (!settled) rest.push_back({first_ + n, std::move(sweep.beams[n]), found.echoes[n], found.beyond[n]});
+    const bool was_returned = returned_ > 0 && n >= *delay_ && n < *delay_ + returned_;
+    if (!was_returned) rest.push_back({first_ + n, std::move(sweep.beams[n]), found.echoes[n], found.beyond[n]});
   }
   first_ += sweep.beams.size();
   complete_sweeps_ += sweep.extent == Sweep::Extent::kCut ? 0 : 1;
-  settled_ = 0;
+  returned_ = 0;
   return rest;
 }
 

@@ -52,7 +52,7 @@ class Region {
   std::array<WideWord, 3> corner_{};
 };
 
-/// A map under random changes; look-ups are held against `node_at`, which goes down from the root.
+/// A map under random changes; look-ups are compared with `node_at`, which goes down from the root.
 class LookUps {
  public:
   LookUps(int depth, std::uint64_t seed) : random_(seed), region_(depth, random_), map_(options(depth)) {

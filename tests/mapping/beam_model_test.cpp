@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(BeamModel, Cone, testing::Values(Tracing::kGeometry, Tr
                            return tracing.param == Tracing::kGeometry ? "geometry" : "bundle";
                          });
 
-// The two ways to trace a cone, held against each other: what a dense bundle of rays marks, geometry marks, alike.
+// The two ways to trace a cone mark the same cells: a dense bundle of rays, and geometry.
 TEST(BeamModel, GeometryMarksEachCellThatTheBundleMarks) {
   std::size_t alike = 0, grazed = 0, more = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {

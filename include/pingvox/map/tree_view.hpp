@@ -38,7 +38,7 @@ struct Entry {
   static constexpr std::uint32_t kLeaf = 1;  ///< value holds for the whole cell
   std::uint32_t link = kNone;                ///< else: index of its Group, or at brick level of its Brick
   /// Of an inner node: what it says of its children. At brick level, whenever a map can be read, a maximum is never
-  /// less than the values below, also where an editor has not settled it yet: writers trust that.
+  /// less than the values below, also where an editor has not brought it up to date yet: writers rely on that.
   float value = 0.0F;
 
   static Entry leaf(float value) { return {kLeaf, value}; }

@@ -56,7 +56,7 @@ class EchoStream {
   SweepAssembler assembler_;
   std::uint64_t first_ = 0;  ///< number of the pending sweep's first beam
   std::size_t complete_sweeps_ = 0;
-  std::size_t settled_ = 0;  ///< beams of the pending sweep that were returned, from the delay_-th on
+  std::size_t returned_ = 0;  ///< beams of the pending sweep that were returned, from the delay_-th on
 };
 
 }  // namespace pingvox
