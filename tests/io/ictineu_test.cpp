@@ -110,7 +110,7 @@ class IctineuHits : public testing::Test {
       std::filesystem::temp_directory_path() / fmt::format("pingvox_hits_{}", getpid());
 };
 
-TEST_F(IctineuHits, AreBeamsOfATurnTowardsFallingNumbersWithSilentOnesBetween) {
+TEST_F(IctineuHits, BecomeBeamsOfATurnWithSilentBeamsBetween) {
   write_times();
   auto source = open("2 0 1 500\n2 199 2 1 30\n");
   ASSERT_TRUE(source) << source.error().message;

@@ -27,7 +27,7 @@ TrajectoryScore score_of(std::vector<StampedPose> ours, std::vector<StampedPose>
   return *score;
 }
 
-TEST(TrajectoryScore, OfATurnedAndShiftedCopyIsZeroInSE2AndKnownInTheOthers) {
+TEST(TrajectoryScore, OfARotatedAndShiftedCopyIsZeroOnlyAfterRigidAlignment) {
   const double turn_rad = 0.1;
   const Pose moved = pose_from_rpy({500, -300, 2}, 0, 0, turn_rad);
   std::vector<StampedPose> turned = hook();

@@ -43,7 +43,7 @@ TEST(PaperDetector, AsWrittenMissesAWallThatRisesOverSomeBins) {
   EXPECT_TRUE(echoes_of(sweep_of(bins)).front());
 }
 
-TEST(PaperDetector, ByThePaperCountsTheThresholdItselfAndNothingBeforeTheFirstBin) {
+TEST(PaperDetector, CountsAStepEqualToTheThresholdAndNothingBeforeTheFirstBin) {
   const std::vector<std::uint8_t> bins = {0, 200, 0, 0, 69, 139, 0};
   const auto edge = paper_edge(bins, 2, 70);
   ASSERT_TRUE(edge);
@@ -70,7 +70,7 @@ TEST(PaperDetector, ASilentBeamIsNoWallAtTheEndOfItsRange) {
   EXPECT_EQ(occupied(std::nullopt, Silent::kFree), 0U);
 }
 
-TEST(PaperDetector, OfTheFourThresholdsSeventyIsBestWhereItsDifferencesAreAddedUp) {
+TEST(PaperDetector, FindsThresholdSeventyBestWhenDifferencesAreSummed) {
   const auto logs = tank_logs();
   ASSERT_TRUE(logs);
   for (const TankLog& log : *logs) {

@@ -92,7 +92,7 @@ TEST(BlankingRange, IsAtMostHalfOfTheRange) {
   EXPECT_LE(blanking_range_m(PolarImage(sweep), sweep), 2.5);
 }
 
-TEST(BlankingRange, FoundInTheTankRecordingEndsBetweenTheRingingAndTheWalls) {
+TEST(BlankingRange, EndsBetweenRingingAndWallsInTheTankRecording) {
   std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
   if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
   for (std::size_t turn = 0; turn < 28; ++turn) {

@@ -64,7 +64,7 @@ double tolerance_of(Filter filter) {
   return 0.0;
 }
 
-TEST(ApplyFilter, IsWhatItsNameSaysAlsoAcrossTheSeamAndInImagesSmallerThanTheKernel) {
+TEST(ApplyFilter, EqualsItsDefinitionAlsoAcrossTheSeamAndInSmallImages) {
   std::size_t checked = 0;
   for (std::uint64_t seed = 1; seed <= 360; ++seed) {
     SCOPED_TRACE(seed);

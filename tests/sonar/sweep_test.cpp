@@ -70,7 +70,7 @@ TEST(SweepAssembler, CutsTurnsTheOtherWayRound) {
               ElementsAre(Cut{Extent::kTurn, 200}, Cut{Extent::kTurn, 200}, Cut{Extent::kCut, 3}));
 }
 
-TEST(SweepAssembler, DoesNotRunOneBeamOverWhenBearingsAreRoundedToSinglePrecision) {
+TEST(SweepAssembler, EndsATurnInTimeWhenBearingsAreInSinglePrecision) {
   for (const double step : {1.8, 0.9, 0.45, 0.225, 0.05625, -1.8, -0.9, 3.6, 7.2}) {
     SCOPED_TRACE(step);
     const int beams = static_cast<int>(std::lround(360.0 / std::abs(step)));
