@@ -31,7 +31,7 @@ struct Seconds {
 /// How the vehicle moved, as far as it is known.
 struct Motion {
   std::optional<Trajectory> odometry;
-  std::string text = "none: the vehicle is taken to move little";
+  std::string text = "none: the vehicle is assumed to move little";
   bool turns_only = false;  ///< x and y are not known
   std::size_t skipped = 0;
 };
@@ -88,7 +88,7 @@ Result<Motion> motion_of(const LocateCommand& command) {
                     : fmt::format("velocity of {} along the heading of {}", on_one_line(odometry->velocity),
                                   on_one_line(odometry->heading));
   motion.turns_only = odometry->velocity.empty();
-  if (motion.turns_only) motion.text += ": the vehicle is taken to move little";
+  if (motion.turns_only) motion.text += ": the vehicle is assumed to move little";
   motion.odometry = std::move(odometry->odometry_from_body);
   return motion;
 }

@@ -104,11 +104,14 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
 
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
+  const std::string position = on_one_line(path.nav->position), attitude = on_one_line(path.nav->attitude);
   std::string text =
-      fmt::format("{} poses from {}", path.trajectory.poses().size(),
-                  path.nav->attitude.empty()
-                      ? fmt::format("{}, not turned: no attitude is known", on_one_line(path.nav->position))
-                      : fmt::format("{} and {}", on_one_line(path.nav->attitude), on_one_line(path.nav->position)));
+      fmt::format("{} poses from {}", path.trajectory.poses().size(), attitude.empty() ? position : attitude);
+  if (attitude.empty()) {
+    text += ", not turned: no attitude is known";
+  } else if (attitude != position) {
+    text += " and " + position;
+  }
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += fmt::format(", {} gap{}", gaps, gaps == 1 ? "" : "s");
   }
