@@ -67,20 +67,10 @@ Result<Motion> motion_of(const LocateCommand& command) {
     return motion;
   }
   if (command.navs.empty()) return motion;
-  std::vector<NavSource> sources;
-  NavClock clock = NavClock::kUnknown;
-  for (const std::string& name : command.navs) {
-    Result<ByteStream> stream = ByteStream::open(name);
-    if (!stream) return tl::unexpected(stream.error());
-    const Result<NavFile> nav = read_nav(std::move(*stream), command.damage);
-    if (!nav) return tl::unexpected(nav.error());
-    motion.skipped += damaged_records(*nav);
-    clock = nav->log.clock();
-    sources.insert(sources.end(), nav->log.sources().begin(), nav->log.sources().end());
-  }
-  const Result<NavLog> log = NavLog::make(std::move(sources), clock);
-  if (!log) return tl::unexpected(log.error());
-  Result<Odometry> odometry = odometry_of(*log, command.nav);
+  const Result<NavFiles> nav = read_navs(command.navs, command.damage);
+  if (!nav) return tl::unexpected(nav.error());
+  motion.skipped = nav->damaged;
+  Result<Odometry> odometry = odometry_of(nav->log, command.nav);
   if (!odometry)
     return fail(odometry.error().code, fmt::format("{}: {}", command.navs.front(), odometry.error().message));
   motion.text = odometry->velocity.empty()

@@ -104,7 +104,8 @@ JsonObject nav_json(const VehiclePath& path) {
       .add("position", path.nav->position)
       .add("poses", path.trajectory.poses().size())
       .add("gaps", path.trajectory.gaps())
-      .add("skipped", path.nav->damaged);
+      .add("skipped", path.nav->damaged)
+      .add("velocity", path.nav->velocity);
 }
 
 std::string json_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
@@ -237,7 +238,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       }
       const bool has_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*log);
       if (const auto beside = trajectory_beside(name);
-          beside && has_beams && !command.path.poses && !command.path.nav) {
+          beside && has_beams && !command.path.poses && command.path.navs.empty()) {
         bar.clear();
         console.say(fmt::format("{}: mapped as if the vehicle did not move; its trajectory may be --poses {}", name,
                                 quote_for_shell(*beside)));

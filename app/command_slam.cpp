@@ -48,17 +48,10 @@ Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, Damag
 /// Gives the smoother all beams and navigation. Returns how many records were skipped.
 /// @param first  the first log, opened
 Result<std::size_t> read_all(SlamSmoother& smoother, const SlamCommand& command, std::unique_ptr<BeamSource> first) {
-  std::size_t skipped = 0;
-  for (const std::string& name : command.navs) {
-    const Result<FileBytes> file = read_file(name);
-    if (!file) return tl::unexpected(file.error());
-    const Result<NavFile> nav = read_nav(*file, command.damage);
-    if (!nav) return tl::unexpected(nav.error());
-    if (const auto added = smoother.add(nav->log); !added) {
-      return fail(added.error().code, fmt::format("{}: {}", file->name, added.error().message));
-    }
-    skipped += damaged_records(*nav);
-  }
+  const Result<NavFiles> nav = read_navs(command.navs, command.damage);
+  if (!nav) return tl::unexpected(nav.error());
+  if (const auto added = smoother.add(nav->log); !added) return tl::unexpected(added.error());
+  std::size_t skipped = nav->damaged;
   for (const std::string& name : command.logs) {
     const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command.damage);
     if (!log) return tl::unexpected(log.error());

@@ -56,10 +56,10 @@ struct HeadArgs {
   }
 };
 
-/// Where the vehicle was: at most one of the two files.
+/// Where the vehicle was: at most one of the two.
 struct PathArgs {
   std::optional<std::string> poses;  ///< TUM lines
-  std::optional<std::string> nav;    ///< a navigation log
+  std::vector<std::string> navs;     ///< navigation logs
   double nav_offset_s = 0.0;         ///< added to its times
 };
 

@@ -1,6 +1,6 @@
 #include "map_log.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <cassert>
 #include <cmath>
@@ -16,6 +16,7 @@
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
+#include "pingvox/slam/odometry.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -72,23 +73,32 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
 }
 
 Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage) {
-  if (!path.nav)
+  if (path.navs.empty()) {
     return trajectory_of(path.poses).map([](Trajectory trajectory) {
       return VehiclePath{std::move(trajectory), std::nullopt};
     });
-  Result<ByteStream> stream = ByteStream::open(*path.nav);
-  if (!stream) return tl::unexpected(stream.error());
-  return vehicle_path(std::move(*stream), path.nav_offset_s, damage);
-}
-
-Result<VehiclePath> vehicle_path(ByteStream nav, double offset_s, Damage damage) {
-  const std::string name = nav.name();
-  const Result<NavFile> read = read_nav(std::move(nav), damage);
-  if (!read) return tl::unexpected(read.error());
-  Result<NavTrajectory> made = nav_trajectory(read->log, offset_s);
-  if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
-  return VehiclePath{std::move(made->trajectory),
-                     VehiclePath::Nav{made->attitude, made->position, damaged_records(*read)}};
+  }
+  const Result<NavFiles> nav = read_navs(path.navs, damage);
+  if (!nav) return tl::unexpected(nav.error());
+  const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
+  const auto name_files = [&](Error error) {
+    error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
+    return error;
+  };
+  if (!has(NavQuantity::kPosition) && !has(NavQuantity::kFix) && has(NavQuantity::kVelocity)) {
+    return odometry_of(nav->log, {.body_from_source = {}, .offset_s = path.nav_offset_s})
+        .map([&](Odometry odometry) {
+          return VehiclePath{std::move(odometry.odometry_from_body),
+                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged}};
+        })
+        .map_error(name_files);
+  }
+  return nav_trajectory(nav->log, path.nav_offset_s)
+      .map([&](NavTrajectory made) {
+        return VehiclePath{std::move(made.trajectory),
+                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged}};
+      })
+      .map_error(name_files);
 }
 
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
@@ -99,23 +109,25 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
   Result<NavTrajectory> made = has_attitude ? nav_trajectory(read->log) : nav_positions(read->log);
   if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
   return VehiclePath{std::move(made->trajectory),
-                     VehiclePath::Nav{made->attitude, made->position, damaged_records(*read)}};
+                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read)}};
 }
 
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
-  const std::string position = on_one_line(path.nav->position), attitude = on_one_line(path.nav->attitude);
-  std::string text =
-      fmt::format("{} poses from {}", path.trajectory.poses().size(), attitude.empty() ? position : attitude);
-  if (attitude.empty()) {
-    text += ", not turned: no attitude is known";
+  const auto& [attitude, position, velocity, damaged] = *path.nav;
+  std::string sources = on_one_line(attitude.empty() ? position : attitude);
+  if (!velocity.empty()) {
+    sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));
+  } else if (attitude.empty()) {
+    sources += ", not turned: no attitude is known";
   } else if (attitude != position) {
-    text += " and " + position;
+    sources += " and " + on_one_line(position);
   }
+  std::string text = fmt::format("{} poses from {}", path.trajectory.poses().size(), sources);
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += fmt::format(", {} gap{}", gaps, gaps == 1 ? "" : "s");
   }
-  if (path.nav->damaged > 0) text += fmt::format("; skipped {} damaged", path.nav->damaged);
+  if (damaged > 0) text += fmt::format("; skipped {} damaged", damaged);
   return text;
 }
 

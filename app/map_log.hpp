@@ -19,15 +19,15 @@ struct VehiclePath {
   Trajectory trajectory;
   struct Nav {
     std::string attitude, position;  ///< its sources
+    std::string velocity;            ///< dead reckoning: its source; there is no position then
     std::size_t damaged = 0;         ///< records that could not be read
   };
   std::optional<Nav> nav;  ///< nullopt: it is not from a navigation log
 };
-/// Without a file the vehicle stays at the origin.
+/// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
+/// reckoning.
 Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage);
-/// From a navigation log. @param offset_s  added to its times
-Result<VehiclePath> vehicle_path(ByteStream nav, double offset_s, Damage damage);
-/// The same with no offset; a log that has positions but no attitude gives poses that are not turned.
+/// What one navigation log says; one that has positions but no attitude gives poses that are not turned.
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);

@@ -208,10 +208,10 @@ OptionTable::Group echo_group(EchoArgs& args) {
 }
 
 Result<PathArgs> BuildArgs::path() const {
-  if (!poses.empty() && !nav.empty()) return usage_error("--poses and --nav: exclude each other");
+  if (!poses.empty() && !navs.empty()) return usage_error("--poses and --nav: exclude each other");
   PathArgs path;
   if (!poses.empty()) path.poses = poses;
-  if (!nav.empty()) path.nav = nav;
+  path.navs = navs;
   path.nav_offset_s = nav_offset_s;
   return path;
 }
@@ -249,7 +249,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
         store(args.poses)},
        {"--nav", 0, "FILE",
         "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, ROS bag, CSV), instead of --poses", "",
-        store(args.nav)},
+        store_each(args.navs), Repeats::kEachCounts},
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
         within({-1e10, 1e10}, store_number(args.nav_offset_s))},
        {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",

@@ -50,7 +50,8 @@ struct BuildArgs {
   BuildOptions build;  ///< filter and echo: see `echoes`
   HeadArgs head;
   EchoArgs echoes;
-  std::string poses, nav;
+  std::string poses;
+  std::vector<std::string> navs;
   double nav_offset_s = 0.0;
 
   BuildOptions build_options() const {
@@ -60,7 +61,7 @@ struct BuildArgs {
     all.sound_speed_ratio = echoes.sound_speed_ratio();
     return all;
   }
-  /// kBadOption when both files are given.
+  /// kBadOption when both are given.
   Result<PathArgs> path() const;
 };
 

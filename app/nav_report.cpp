@@ -3,6 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "console.hpp"
@@ -14,6 +17,31 @@ std::size_t damaged_records(const NavFile& nav) {
   std::size_t count = 0;
   for (const DamageKind& kind : nav.damage) count += kind.count;
   return count;
+}
+
+Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage) {
+  assert(!names.empty());
+  std::vector<NavSource> sources;
+  std::optional<NavClock> clock;
+  std::size_t damaged = 0;
+  for (const std::string& name : names) {
+    Result<ByteStream> stream = ByteStream::open(name);
+    if (!stream) return tl::unexpected(stream.error());
+    const Result<NavFile> nav = read_nav(std::move(*stream), damage);
+    if (!nav) return tl::unexpected(nav.error());
+    damaged += damaged_records(*nav);
+    clock = clock.value_or(nav->log.clock()) == nav->log.clock() ? nav->log.clock() : NavClock::kUnknown;
+    for (const NavSource& source : nav->log.sources()) {
+      const auto same = std::ranges::find_if(
+          sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });
+      if (same == sources.end()) {
+        sources.push_back(source);
+      } else {
+        same->samples.insert(same->samples.end(), source.samples.begin(), source.samples.end());
+      }
+    }
+  }
+  return NavLog::make(std::move(sources), *clock).map([&](NavLog log) { return NavFiles{std::move(log), damaged}; });
 }
 
 void add_nav(JsonObject& json, const NavFile& nav) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "json.hpp"
 #include "pingvox/io/nav.hpp"
@@ -10,6 +11,15 @@ namespace pingvox::app {
 
 /// How many were skipped.
 std::size_t damaged_records(const NavFile& nav);
+
+/// Navigation logs of one vehicle on one clock, put together.
+struct NavFiles {
+  NavLog log;               ///< sources of the same name and quantity are one
+  std::size_t damaged = 0;  ///< records that could not be read
+};
+/// @param names  at least one; - is standard input
+Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage);
+
 /// What `info` says of a navigation log: the members of its JSON object after "kind" and "format", but for the kinds of
 /// damage.
 void add_nav(JsonObject& json, const NavFile& nav);

@@ -116,7 +116,7 @@ Result<Command> map_command(const Args& args) {
     command.path = *path;
     Args inputs = command.logs;
     inputs.push_back(build.poses);
-    inputs.push_back(build.nav);
+    inputs.insert(inputs.end(), build.navs.begin(), build.navs.end());
     if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;

@@ -244,10 +244,13 @@ Result<Command> render_command(const Args& args) {
       if (!changed) return usage_error("--beside: " + changed.error().message);
       PanelArgs next = first;
       next.panel.caption.clear();
+      // What is given again replaces what the other panel has.
+      std::vector<std::string> navs = std::exchange(next.build.navs, {});
       const Result<Parsed> taken = parse({"render: --beside", "", {}, panel_groups(next), {}, ""}, *changed);
       if (!taken) return tl::unexpected(taken.error());
       command.limited.insert(command.limited.end(), taken->limited.begin(), taken->limited.end());
       if (taken->is_help_wanted) return usage_error("--beside: takes no --help");
+      if (next.build.navs.empty()) next.build.navs = std::move(navs);
       settings.push_back(std::move(next));
     }
     if (const auto used = check_limited(command.limited, possible_kinds(settings)); !used) {
@@ -271,7 +274,8 @@ Result<Command> render_command(const Args& args) {
     }
     Args files = inputs;
     for (const PanelArgs& setting : settings) {
-      if (setting.build.poses == "-" || setting.build.nav == "-") files.emplace_back("-");
+      files.push_back(setting.build.poses);
+      files.insert(files.end(), setting.build.navs.begin(), setting.build.navs.end());
     }
     if (const auto once = check_standard_input(files); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());

@@ -22,6 +22,8 @@ constexpr std::array kNames = {std::pair{NavQuantity::kVelocity, std::string_vie
                                std::pair{NavQuantity::kRange, std::string_view("range")},
                                std::pair{NavQuantity::kPressure, std::string_view("pressure")}};
 
+constexpr double kMostInAir_pa = 110'000.0, kSurface_pa = 101'325.0, kSeaWater_kg_m3 = 1025.0, kGravity_m_s2 = 9.80665;
+
 double median(std::vector<double> numbers) {
   const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
   std::nth_element(numbers.begin(), middle, numbers.end());
@@ -100,6 +102,28 @@ const NavSource* NavLog::best(NavQuantity quantity) const {
     most = valid;
   }
   return best;
+}
+
+std::optional<NavSource> depth_source(const NavLog& log) {
+  if (const NavSource* depth = log.best(NavQuantity::kDepth)) return *depth;
+  const NavSource* chosen = nullptr;
+  double highest_pa = kMostInAir_pa;
+  for (const NavSource& source : log.sources()) {
+    if (source.quantity != NavQuantity::kPressure) continue;
+    for (const NavSample& sample : source.samples) {
+      if (!sample.valid || sample.value.x() <= highest_pa) continue;
+      highest_pa = sample.value.x();
+      chosen = &source;
+    }
+  }
+  if (chosen == nullptr) return std::nullopt;
+  NavSource depth = *chosen;
+  depth.quantity = NavQuantity::kDepth;
+  for (NavSample& sample : depth.samples) {
+    sample.value.x() = (sample.value.x() - kSurface_pa) / (kSeaWater_kg_m3 * kGravity_m_s2);
+    sample.deviation.x() /= kSeaWater_kg_m3 * kGravity_m_s2;
+  }
+  return depth;
 }
 
 NavSummary summary_of(const NavSource& source) {

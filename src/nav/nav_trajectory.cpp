@@ -84,7 +84,8 @@ Result<std::optional<NavSource>> position_source(const NavLog& log) {
   std::optional<NavSource> fixes = main_source(log, NavQuantity::kFix);
   if (!fixes) return std::nullopt;
   make_positions(*fixes);
-  if (const auto depth = main_source(log, NavQuantity::kDepth)) {
+  if (auto depth = depth_source(log)) {
+    std::erase_if(depth->samples, [](const NavSample& sample) { return !sample.valid; });
     if (const auto done = set_depths(*fixes, *depth); !done) return tl::unexpected(done.error());
   }
   if (fixes->samples.empty()) return std::nullopt;

@@ -41,7 +41,7 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   if (const NavSource* best = log.best(NavQuantity::kVelocity))
     velocity = velocity_source(*best, mount_of(options, best->name));
   std::optional<TimeSeries> depth;
-  if (const NavSource* best = log.best(NavQuantity::kDepth)) depth = number_source(*best);
+  if (const auto source = depth_source(log)) depth = number_source(*source);
 
   double from_s = heading->yaw_rad.from_s(), to_s = heading->yaw_rad.to_s();
   std::vector<double> times_s = heading->yaw_rad.times_s();

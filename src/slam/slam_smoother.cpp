@@ -171,7 +171,7 @@ Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) 
                                                                                             : "heading or attitude"));
   }
   Navigation navigation{*std::move(velocity), std::move(headings), std::nullopt};
-  if (const NavSource* depth = log.best(NavQuantity::kDepth)) navigation.depth = number_source(*depth);
+  if (const auto depth = depth_source(log)) navigation.depth = number_source(*depth);
   return navigation;
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "call.hpp"
@@ -87,6 +88,53 @@ TEST(Nav, MapsAsTheSamePosesDo) {
   const Outcome written = here.call({"convert", "nav.csv", "-o", "nav.tum"});
   EXPECT_EQ(written.status, 0) << written.err;
   EXPECT_THAT(here.call({"info", "nav.tum", "--json"}).out, HasSubstr("\"kind\": \"trajectory\""));
+}
+
+// Kills readers that take the last file alone, or sources of the same name for two.
+TEST(Nav, SeveralLogsOfADiveAreOne) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2"}).status, 0);
+  const std::string nav = nav_of_poses(here.read("dive.tum"), 0.0);
+  const std::string head = nav.substr(0, nav.find('\n') + 1);
+  std::string attitude = head, early = head, late = head;
+  std::istringstream lines(nav.substr(head.size()));
+  int positions = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::string& file = line.find("attitude") != std::string::npos ? attitude : ++positions < 300 ? early : late;
+    file += line + "\n";
+  }
+  here.write("nav.csv", nav);
+  here.write("attitude.csv", attitude);
+  here.write("early.csv", early);
+  here.write("late.csv", late);
+  ASSERT_EQ(here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "one.ot"}).status, 0);
+  const Outcome mapped = here.call(
+      {"map", "dive.csv", "--nav", "late.csv", "--nav", "attitude.csv", "--nav", "early.csv", "-o", "several.ot"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_EQ(mapped.err, "");
+  EXPECT_EQ(here.call({"compare", "one.ot", "several.ot"}).status, 0);
+  expect_error(here.call({"map", "dive.csv", "--nav", "early.csv", "--nav", "late.csv", "-o", "o.ot"}), 1,
+               {"early.csv, late.csv", "no valid attitude"});
+}
+
+TEST(Nav, WithoutAPositionAVelocityGivesDeadReckoning) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--turns", "2"}).status, 0);
+  // A quarter of a metre a second to the north, at the depth of 101,325 + 2 x 1025 x 9.80665 Pa.
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 100; ++i) {
+    nav += fmt::format("{0},ahrs,attitude,0,0,{1}\n{0},dvl,velocity,0.25,0,0\n{0},bar,pressure,121428.63,,\n", i * 0.25,
+                       std::numbers::pi / 2.0);
+  }
+  here.write("nav.csv", nav);
+  const Outcome mapped = here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "map.bt", "--json"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr(R"("nav": {"attitude": "ahrs", "position": "", "poses": 101)"));
+  EXPECT_THAT(mapped.out, HasSubstr(R"("velocity": "dvl"})"));
+  EXPECT_THAT(here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "map.bt"}).out,
+              HasSubstr("ahrs and dead reckoning by dvl"));
+  const Outcome render = here.call({"render", "dive.csv", "--view", "above", "--nav", "nav.csv", "-o", "map.png"});
+  EXPECT_EQ(render.status, 0) << render.err;
 }
 
 TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {

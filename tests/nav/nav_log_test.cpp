@@ -49,6 +49,31 @@ TEST(NavLog, TakesTheSourceWithMostValidSamples) {
   EXPECT_EQ(log->best(NavQuantity::kFix), nullptr);
 }
 
+// Kills the barometer within the hull as a depth, and hectopascals.
+TEST(DepthSource, IsThatOfThePressureInWaterWhereThereIsNoDepth) {
+  const auto pressures = [](std::string name, const std::vector<double>& values_pa) {
+    NavSource source{std::move(name), NavQuantity::kPressure, {}};
+    for (const double value_pa : values_pa) {
+      NavSample sample;
+      sample.time_s = static_cast<double>(source.samples.size());
+      sample.value.x() = value_pa;
+      source.samples.push_back(sample);
+    }
+    return source;
+  };
+  const NavSource inside = pressures("inside", {101'000, 102'000, 103'000, 103'000}),
+                  outside = pressures("outside", {101'325, 151'325, 201'325});
+  const auto depth = depth_source(*NavLog::make({inside, outside}, NavClock::kBoot));
+  ASSERT_TRUE(depth);
+  EXPECT_EQ(depth->name, "outside");
+  EXPECT_EQ(depth->quantity, NavQuantity::kDepth);
+  // 100 kPa over 10.05 kPa for a metre of sea water.
+  EXPECT_NEAR(depth->samples[2].value.x(), 9.95, 0.01);
+  EXPECT_NEAR(depth->samples[0].value.x(), 0.0, 1e-9);
+  EXPECT_FALSE(depth_source(*NavLog::make({inside}, NavClock::kBoot))) << "air";
+  EXPECT_EQ(depth_source(*NavLog::make({outside, depths("bar", {1, 2})}, NavClock::kBoot))->name, "bar");
+}
+
 TEST(NavSummary, CountsGapsAndIgnoresRepeatedTimes) {
   NavSource source = depths("a", {0, 0.1, 0.1, 0.2, 0.3, 5, 5.1, 5.2});
   source.samples[1].valid = false;

@@ -77,6 +77,10 @@ class NavLog {
   NavClock clock_;
 };
 
+/// Depth by the source with most valid samples; in a log without depth by the highest pressure, if it exceeds 1100 hPa,
+/// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.
+std::optional<NavSource> depth_source(const NavLog& log);
+
 /// A source at a glance.
 struct NavSummary {
   std::size_t samples = 0;
