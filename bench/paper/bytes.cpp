@@ -15,8 +15,8 @@ Result<std::vector<Row>> paper_bytes(const BenchOptions&) {
   OccupancyMap map({.resolution_m = PaperCube::kCell_m});
   octomap::OcTree tree(PaperCube::kCell_m);
   const PaperCube cube;
-  cube.fill(map, Pruning::kWhenSettled);
-  cube.fill(tree, Pruning::kWhenSettled);
+  cube.fill(map, Pruning::kLazy);
+  cube.fill(tree, Pruning::kLazy);
   if (const auto same = check_identical(map, tree); !same) return tl::unexpected(same.error());
 
   const MapCounts counts = map.counts();
@@ -37,11 +37,11 @@ Result<std::vector<Row>> paper_bytes(const BenchOptions&) {
   std::unique_ptr<octomap::OcTree> fresh_tree;
   const std::uint64_t peak = peak_memory_bytes([&] {
     fresh.emplace(MapOptions{.resolution_m = PaperCube::kCell_m});
-    cube.fill(*fresh, Pruning::kWhenSettled);
+    cube.fill(*fresh, Pruning::kLazy);
   });
   const std::uint64_t peer_peak = peak_memory_bytes([&] {
     fresh_tree = std::make_unique<octomap::OcTree>(PaperCube::kCell_m);
-    cube.fill(*fresh_tree, Pruning::kWhenSettled);
+    cube.fill(*fresh_tree, Pruning::kLazy);
   });
   return std::vector{
       row("bytes-eight-pointers", std::uint64_t{1'260'000}, eight, {}, Holds::kYes,

@@ -35,7 +35,7 @@ void PaperCube::fill(octomap::OcTree& tree, Pruning pruning) const {
                     evidence.value(), lazy);
   });
   if (lazy) tree.updateInnerOccupancy();
-  if (pruning == Pruning::kWhenSettled) tree.prune();
+  if (pruning == Pruning::kLazy) tree.prune();
 }
 
 }  // namespace pingvox::bench

@@ -58,7 +58,7 @@ Result<std::vector<Row>> paper_key_width(const BenchOptions&) {
   std::vector<Row> rows;
   octomap::OcTree tree(PaperCube::kCell_m);
   const PaperCube cube;
-  const double tree_s = seconds_of([&] { tree.clear(); }, [&] { cube.fill(tree, Pruning::kWhenSettled); });
+  const double tree_s = seconds_of([&] { tree.clear(); }, [&] { cube.fill(tree, Pruning::kLazy); });
   constexpr std::array kDepths = {8, 16, 32, 64, 128};
   for (const int depth : kDepths) {
     with_key_word(depth, [&]<KeyWord W>() {

@@ -39,7 +39,7 @@ int highest_bit(WideWord word) {
 
 Entry prune(BrickTree& tree, Entry entry, int depth, Parents parents) {
   if (!entry.is_inner()) return entry;
-  if (depth == tree.brick_depth()) return settle_brick(tree, entry.link, parents, Pruning::kWhenSettled);
+  if (depth == tree.brick_depth()) return settle_brick(tree, entry.link, parents, Pruning::kLazy);
   for (std::size_t o = 0; o < 8; ++o) {
     const Entry child = prune(tree, tree.groups[entry.link].child[o], depth + 1, parents);
     tree.groups[entry.link].child[o] = child;
@@ -50,7 +50,7 @@ Entry prune(BrickTree& tree, Entry entry, int depth, Parents parents) {
     tree.groups.release(entry.link);
     return {};
   }
-  return settle_group(tree, entry.link, parents, Pruning::kWhenSettled);
+  return settle_group(tree, entry.link, parents, Pruning::kLazy);
 }
 
 /// Copies what hangs below an entry of another tree into this one, clamped.
@@ -62,14 +62,14 @@ Entry copy_from(BrickTree& tree, const BrickTree& other, Entry entry, int depth,
     for (std::size_t i = 0; i < 64; ++i) {
       if ((brick.known >> i) & 1) brick.value[i] = clamp_to(brick.value[i], clamp);
     }
-    return settle_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kWhenSettled);
+    return settle_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kLazy);
   }
   const std::uint32_t index = tree.groups.allocate({});
   for (std::size_t o = 0; o < 8; ++o) {
     const Entry child = copy_from(tree, other, other.groups[entry.link].child[o], depth + 1, parents, clamp);
     tree.groups[index].child[o] = child;
   }
-  return settle_group(tree, index, parents, Pruning::kWhenSettled);
+  return settle_group(tree, index, parents, Pruning::kLazy);
 }
 
 Entry merge_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Parents parents, const Clamp& clamp) {
@@ -82,7 +82,7 @@ Entry merge_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Par
     into.value[i] = known ? clamp_to(into.value[i] + from.value[i], clamp) : clamp_to(from.value[i], clamp);
   }
   into.known |= from.known;
-  return settle_brick(tree, index, parents, Pruning::kWhenSettled);
+  return settle_brick(tree, index, parents, Pruning::kLazy);
 }
 
 }  // namespace
@@ -274,7 +274,7 @@ Entry merge(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth
     const Entry child = merge(tree, tree.groups[index].child[o], other, from, depth + 1, parents, clamp);
     tree.groups[index].child[o] = child;
   }
-  return settle_group(tree, index, parents, Pruning::kWhenSettled);
+  return settle_group(tree, index, parents, Pruning::kLazy);
 }
 
 Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry) {

@@ -146,7 +146,7 @@ Entry merge(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth
 /// How a cursor changes a tree.
 struct CursorRules {
   Parents parents = Parents::kMax;
-  Pruning pruning = Pruning::kWhenSettled;
+  Pruning pruning = Pruning::kLazy;
   EarlyDrop early_drop = EarlyDrop::kOn;
   Clamp clamp{};
 };

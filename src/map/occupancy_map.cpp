@@ -340,7 +340,7 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
           with_cursor_word(tree_->levels, [&]<KeyWord W>() { return growth_of<W>(*tree_, scan, options_.clamp); });
       if (const auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return tl::unexpected(fits.error());
     }
-    const detail::CursorRules rules = rules_of(*tree_, options_, Pruning::kWhenSettled);
+    const detail::CursorRules rules = rules_of(*tree_, options_, Pruning::kLazy);
     return with_cursor_word(tree_->levels, [&]<KeyWord W>() { return apply_scan<W>(*tree_, rules, scan); });
   } catch (const std::bad_alloc&) {
     detail::prune_all(*tree_, options_.parents);
@@ -364,7 +364,7 @@ Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evi
       if (auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return fits;
     }
     batch.gather(keys);
-    apply_batch(*tree_, rules_of(*tree_, options_, Pruning::kWhenSettled), batch, evidence);
+    apply_batch(*tree_, rules_of(*tree_, options_, Pruning::kLazy), batch, evidence);
     return {};
   } catch (const std::bad_alloc&) {
     detail::prune_all(*tree_, options_.parents);

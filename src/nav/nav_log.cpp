@@ -22,7 +22,7 @@ constexpr std::array kNames = {std::pair{NavQuantity::kVelocity, std::string_vie
                                std::pair{NavQuantity::kRange, std::string_view("range")},
                                std::pair{NavQuantity::kPressure, std::string_view("pressure")}};
 
-constexpr double kMostInAir_pa = 110'000.0, kSurface_pa = 101'325.0, kSeaWater_kg_m3 = 1025.0, kGravity_m_s2 = 9.80665;
+constexpr double kMaxInAir_pa = 110'000.0, kSurface_pa = 101'325.0, kSeaWater_kg_m3 = 1025.0, kGravity_m_s2 = 9.80665;
 
 double median(std::vector<double> numbers) {
   const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
@@ -107,7 +107,7 @@ const NavSource* NavLog::best(NavQuantity quantity) const {
 std::optional<NavSource> depth_source(const NavLog& log) {
   if (const NavSource* depth = log.best(NavQuantity::kDepth)) return *depth;
   const NavSource* chosen = nullptr;
-  double highest_pa = kMostInAir_pa;
+  double highest_pa = kMaxInAir_pa;
   for (const NavSource& source : log.sources()) {
     if (source.quantity != NavQuantity::kPressure) continue;
     for (const NavSample& sample : source.samples) {

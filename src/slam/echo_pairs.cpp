@@ -8,13 +8,15 @@
 #include <optional>
 #include <utility>
 
+#include "slam/pose2.hpp"
+
 namespace pingvox {
 namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// The line of a wall.
-constexpr std::size_t kLineEchoes = 8, kFewestLineEchoes = 4;
+constexpr std::size_t kLineEchoes = 8, kMinLineEchoes = 4;
 constexpr double kLineReach_m = 5.0, kWidthOfLength = 0.25;
 
 /// Which sweeps are partners of a sweep: these many before and after it, and some that are near in place only.
@@ -22,16 +24,12 @@ constexpr std::array<std::size_t, 5> kNear = {1, 2, 3, 5, 8};
 constexpr std::size_t kFar = 12, kFarPartners = 10, kLoopPairs = 10;
 constexpr double kFarReach_m = 35.0;
 
-constexpr double kLeastAgreement = 0.85;  ///< of two normals, cosine
+constexpr double kMinAgreement = 0.85;  ///< of two normals, cosine
 /// Noise of an echo: of its place, of half its length along the beam, of the beam's direction.
 constexpr double kPlace_m = 0.3, kOfHalfLength = 0.3, kBearing_rad = 1.0 * kDegree_rad;
 /// The pairs of an echo weigh half an echo together, and a pair is of two echoes.
 constexpr double kWeightOfEcho = 0.25;
 constexpr double kRobustOfGate = 0.35;
-
-Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) {
-  return {-v.y(), v.x()};
-}
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -159,7 +157,7 @@ std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMo
         nearest.pop_back();
         return nearest.back().square;
       });
-      if (nearest.size() < kFewestLineEchoes) continue;
+      if (nearest.size() < kMinLineEchoes) continue;
       points.clear();
       for (const Near& near : nearest) points.push_back(near.at);
       ground[i].normal = normal_of(points);
@@ -207,7 +205,7 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
         if (!nearest) continue;
         const EchoOnGround& other = ground[*nearest];
         const double agreement = ground[i].normal.dot(other.normal);
-        if (std::abs(agreement) < kLeastAgreement) continue;
+        if (std::abs(agreement) < kMinAgreement) continue;
         EchoPair pair;
         pair.a = static_cast<std::uint32_t>(i);
         pair.b = *nearest;

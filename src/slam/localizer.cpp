@@ -35,7 +35,7 @@ constexpr double kShortTerm = 40.0, kLongTerm = 600.0;
 constexpr double kLostShare = 0.55;
 /// Least mean likelihood of echoes at a pose that is believed. In a small
 /// room it is 0.3 at poses that are wrong.
-constexpr double kLeastFit = 0.45, kSureFit = 0.6;
+constexpr double kMinFit = 0.45, kSureFit = 0.6;
 constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree;
 constexpr std::size_t kMaxHypotheses = 100;
 constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
@@ -341,8 +341,8 @@ void Localizer::State::take(const EchoStream::BeamWithEcho& heard) {
   const Eigen::Vector3d ahead(std::cos(heard.beam.bearing_rad), std::sin(heard.beam.bearing_rad), 0.0);
   const Eigen::Vector3d direction = placed.level_from_body * (options.body_from_sonar.rotation() * ahead);
   const double level = direction.head<2>().norm();
-  constexpr double kLeastLevel = 0.1;  // a beam that goes up or down meets no wall
-  if (!(level > kLeastLevel)) return;
+  constexpr double kMinLevel = 0.1;  // a beam that goes up or down meets no wall
+  if (!(level > kMinLevel)) return;
   const double end_m = static_cast<double>(heard.beam.intensities.size()) * heard.beam.bin_length_m;
   const double range_m = heard.echo ? heard.echo->range_m : std::min(end_m, options.echo.max_range_m);
   const HeardBeam beam{heard.beam.time_s, sonar.head<2>(), direction.head<2>() / level,
@@ -393,7 +393,7 @@ void Localizer::State::look_after() {
     if (turned_rad - searched_rad >= kTurn) search();
     return;
   }
-  if (short_term >= std::max(kLostShare * long_term, kLeastFit)) {
+  if (short_term >= std::max(kLostShare * long_term, kMinFit)) {
     lost_rad.reset();
   } else if (!lost_rad) {
     lost_rad = turned_rad;
@@ -441,7 +441,7 @@ void Localizer::State::search() {
   short_term = long_term = best_fit;
   since_rad = turn.empty() ? turned_rad : turn.front().turned_rad;
   lost_rad.reset();
-  if (best_fit < kLeastFit) lost_rad = turned_rad;
+  if (best_fit < kMinFit) lost_rad = turned_rad;
   group();
 }
 

@@ -11,9 +11,9 @@
 namespace pingvox {
 namespace {
 
-constexpr double kClip = 2.0;                  ///< robust standard deviations
-constexpr double kMadToDeviation = 1.4826;     ///< of normal noise
-constexpr double kLeastDeviation_m_s = 0.005;  ///< resolution of common logs
+constexpr double kClip = 2.0;                ///< robust standard deviations
+constexpr double kMadToDeviation = 1.4826;   ///< of normal noise
+constexpr double kMinDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
 
 double median(std::vector<double> numbers) {
@@ -46,7 +46,7 @@ std::vector<double> clip(std::span<const double> values, const OutlierWindow& wi
                                values.begin() + static_cast<std::ptrdiff_t>(end));
     const double middle = median(around);
     for (double& value : around) value = std::abs(value - middle);
-    const double most = kClip * std::max(kMadToDeviation * median(around), kLeastDeviation_m_s);
+    const double most = kClip * std::max(kMadToDeviation * median(around), kMinDeviation_m_s);
     held[i] = std::clamp(values[i], middle - most, middle + most);
     if (held[i] != values[i]) clipped[i] = true;
   }
@@ -70,7 +70,7 @@ std::vector<double> noise_density(const std::vector<double>& times_s, std::span<
     const double noise = seconds.empty() ? 0.0 : kMadToDeviation * median(seconds) / std::sqrt(6.0);
     const double step_s =
         end - first > 1 ? (times_s[end - 1] - times_s[first]) / static_cast<double>(end - first - 1) : 1.0;
-    density[i] = std::max(noise, kLeastDeviation_m_s) * std::sqrt(step_s);
+    density[i] = std::max(noise, kMinDeviation_m_s) * std::sqrt(step_s);
   }
   return density;
 }

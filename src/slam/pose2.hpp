@@ -16,6 +16,10 @@ inline Eigen::Matrix2d rotation2(double angle_rad) {
   return (Eigen::Matrix2d() << c, -s, s, c).finished();
 }
 
+inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
 /// A pose in the plane: to_from, as Pose.
 struct Pose2 {
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();

@@ -17,7 +17,7 @@ constexpr double kMaxPoses = 1.5e6;  ///< of the coarse grid: beyond, its places
 constexpr std::size_t kCandidates = 150;
 /// A vehicle may be this far within unknown space: the blanking range of a sonar that stood still.
 constexpr double kReach_m = 1.0;
-constexpr double kLeastLog = -13.8;  ///< one in a million
+constexpr double kMinLog = -13.8;  ///< one in a million
 
 std::vector<HeardBeam> some_echoes(std::span<const HeardBeam> beams, std::size_t most) {
   std::vector<HeardBeam> echoes, some;
@@ -125,7 +125,7 @@ std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const
   }
   std::vector<ScoredPose> found = without_neighbours(std::move(candidates), 0.3, 10.0 * kPi / 180.0, kCandidates);
   if (!found.empty()) {
-    const double least = found.front().log_likelihood + kLeastLog;
+    const double least = found.front().log_likelihood + kMinLog;
     std::erase_if(found, [&](const ScoredPose& pose) { return pose.log_likelihood < least; });
   }
   return found;

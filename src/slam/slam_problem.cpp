@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "slam/pose2.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -23,20 +25,7 @@ constexpr double kHeading_rad = 2.0 * kDegree_rad, kTurn_rad = 0.3 * kDegree_rad
 constexpr double kVelocityInGap_m_s = 0.3;
 /// Longest step of the integration.
 constexpr double kStep_s = 0.25;
-constexpr double kMostSteps = 64.0;
-
-Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-Eigen::Vector2d turned(const Eigen::Vector2d& v, double angle_rad) {
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
+constexpr double kMaxSteps = 64.0;
 
 /// The mean of angles on the circle.
 double mean_angle(const HeadingSource& source, const HeadingSource& main) {
@@ -70,7 +59,7 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
     std::vector<double> times_s = {from_s};
     const auto fill_to = [&](double end_s) {
       const double begin_s = times_s.back();
-      const double steps = std::min(std::ceil((end_s - begin_s) / kStep_s), kMostSteps);
+      const double steps = std::min(std::ceil((end_s - begin_s) / kStep_s), kMaxSteps);
       for (double i = 1.0; i < steps; i += 1.0) times_s.push_back(begin_s + (end_s - begin_s) * i / steps);
       times_s.push_back(end_s);
     };
@@ -124,7 +113,7 @@ struct WorldVelocity {
   template <class Node>
   Eigen::Vector2d at(const Node& node) const {
     const double error = error_rad + node.share * (next_error_rad - error_rad);
-    return scale * turned(node.velocity, node.main_yaw_rad + error + yaw_rad);
+    return scale * (rotation2(node.main_yaw_rad + error + yaw_rad) * node.velocity);
   }
 };
 
@@ -192,7 +181,7 @@ SlamProblem::HeadingResidual SlamProblem::heading_residual(const Unknowns& unkno
   const double deviation = g[first] + g[first + 1] * s1 + g[first + 2] * c1 + g[first + 3] * s2 + g[first + 4] * c2;
   const double slope = g[first + 1] * c1 - g[first + 2] * s1 + 2.0 * g[first + 3] * c2 - 2.0 * g[first + 4] * s2;
   const double with_velocity = heading_priors_[source].turns_with_velocity ? g[global::kVelocityYaw] : 0.0;
-  return {wrapped(headings_[source].yaw_rad.at(time_s) - yaw_rad - with_velocity - deviation),
+  return {wrap_angle(headings_[source].yaw_rad.at(time_s) - yaw_rad - with_velocity - deviation),
           -1.0 - slope,
           {-1.0, -s1, -c1, -s2, -c2}};
 }
@@ -241,7 +230,7 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
     const double weight =
         1.0 / std::sqrt(kTurn_rad * kTurn_rad * (to_s - from_s) + kTurnInGap_rad * kTurnInGap_rad * gap_s);
     const HeadingResidual a = heading_residual(unknowns, 0, k), b = heading_residual(unknowns, 0, k + 1);
-    Row r = row(k, weight * wrapped(b.residual_rad - a.residual_rad));
+    Row r = row(k, weight * wrap_angle(b.residual_rad - a.residual_rad));
     r.by_knot[2] = -weight * a.by_error;
     r.by_next[2] = weight * b.by_error;
     for (std::size_t i = 0; i < global::kOfHeading; ++i) {

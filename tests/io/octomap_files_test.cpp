@@ -142,7 +142,7 @@ TEST(Bt, WritesWhatAnEditorHasNotSettledYet) {
     std::mt19937_64 random(seed);
     const MapOptions options{.parents = seed % 4 == 0 ? Parents::kMean : Parents::kMax};
     OccupancyMap changed(options), settled(options);
-    Editor unsettling = changed.edit(seed % 3 == 0 ? Pruning::kNever : Pruning::kWhenSettled);
+    Editor unsettling = changed.edit(seed % 3 == 0 ? Pruning::kNever : Pruning::kLazy);
     Editor settling = settled.edit(Pruning::kEachUpdate);
     Bytes last;
     for (int step = 0; step < 200; ++step) {
@@ -423,7 +423,7 @@ TEST(Bt, LeavesOutWhatIsBetweenTheThresholds) {
 TEST(Bt, JoinsWhatTheMapWasToldNotToJoin) {
   OccupancyMap unjoined({.resolution_m = 0.1}), joined({.resolution_m = 0.1});
   for (OccupancyMap* const map : {&unjoined, &joined}) {
-    Editor editor = map->edit(map == &joined ? Pruning::kWhenSettled : Pruning::kNever);
+    Editor editor = map->edit(map == &joined ? Pruning::kLazy : Pruning::kNever);
     for (int i = 0; i < 4096; ++i) {
       const auto word = [&](int shift) { return static_cast<std::uint16_t>(32768 + ((i >> shift) & 15)); };
       editor.update(Key{word(0), word(4), word(8)}, LogOdds(0.85F));

@@ -123,7 +123,7 @@ OccupancyMap random_map(int depth, std::mt19937_64& random) {
   OccupancyMap map({.resolution_m = 0.5, .depth = depth, .thresholds = {LogOdds(-0.5F), LogOdds(0.5F)}});
   const WideWord middle = WideWord{1} << (depth - 1);
   const WideWord reach = std::min<WideWord>(middle, 40);
-  Editor editor = map.edit(random() % 4 == 0 ? Pruning::kNever : Pruning::kWhenSettled);
+  Editor editor = map.edit(random() % 4 == 0 ? Pruning::kNever : Pruning::kLazy);
   for (int i = 0; i < 300; ++i) {
     const auto word = [&] { return middle - reach + static_cast<WideWord>(random()) % (2 * reach); };
     const int levels = static_cast<int>(random() % 4);

@@ -83,7 +83,7 @@ TEST(Editor, ParentsSeeAChangeBeforeTheCursorMovedOnToASibling) {
 }
 
 TEST(Editor, SettingACellReplacesAllThatWasInIt) {
-  for (const Pruning pruning : {Pruning::kEachUpdate, Pruning::kWhenSettled, Pruning::kNever}) {
+  for (const Pruning pruning : {Pruning::kEachUpdate, Pruning::kLazy, Pruning::kNever}) {
     OccupancyMap map({.depth = 20});
     std::mt19937_64 random(2);
     {

@@ -66,7 +66,7 @@ TEST(Octomap, SingleUpdatesGiveTheSameTree) {
     for (int round = 0; round < 4; ++round) {
       {
         Editor at_once_editor = at_once.edit(Pruning::kEachUpdate);
-        Editor settled_editor = settled.edit(Pruning::kWhenSettled);
+        Editor settled_editor = settled.edit(Pruning::kLazy);
         const bool fills = random() % 2 == 0;
         for (int i = 0; i < 4'000; ++i) {
           // In a filling round each cell of a cube of 16 gets the same.

@@ -13,7 +13,7 @@ Key key_at(int x, int y, int z) {
 
 // The paper's table 1: a cube of 100^3 cells, updated cell by cell. (Its row of 19,769 leaves counts all nodes.)
 TEST(OccupancyMap, CubeOfThePapersFirstTableHasItsNodes) {
-  for (const Pruning pruning : {Pruning::kNever, Pruning::kWhenSettled, Pruning::kEachUpdate}) {
+  for (const Pruning pruning : {Pruning::kNever, Pruning::kLazy, Pruning::kEachUpdate}) {
     OccupancyMap map({.resolution_m = 1.0});
     {
       Editor editor = map.edit(pruning);

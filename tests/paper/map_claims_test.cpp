@@ -38,7 +38,7 @@ void expect_checked(const std::vector<Row>& rows) {
 
 TEST(PaperTable1, ItsLeavesAreAllNodesForOctomapToo) {
   octomap::OcTree tree(PaperCube::kCell_m);
-  PaperCube{}.fill(tree, Pruning::kWhenSettled);
+  PaperCube{}.fill(tree, Pruning::kLazy);
   EXPECT_EQ(tree.size(), 19'769U) << "the paper: 19,769 leaves";
   EXPECT_EQ(tree.getNumLeafNodes(), 14'568U);
 }

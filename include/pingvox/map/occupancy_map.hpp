@@ -112,7 +112,7 @@ class OccupancyMap {
   Result<void> merge(const OccupancyMap& other);
 
   /// For many single updates. REQUIRES no other editor of this map alive.
-  [[nodiscard]] Editor edit(Pruning pruning = Pruning::kWhenSettled);
+  [[nodiscard]] Editor edit(Pruning pruning = Pruning::kLazy);
 
   /// Forgets everything and gives the storage back.
   void clear();

@@ -23,9 +23,9 @@ enum class Parents {
 
 /// When eight equal leaves become one.
 enum class Pruning {
-  kEachUpdate,   ///< at once, and parents are right after each update (paper: "w/ pruning")
-  kWhenSettled,  ///< parents and pruning wait for `synchronize` (paper: "lazy evaluation")
-  kNever,        ///< parents wait for `synchronize`, nothing is joined (paper: "wo/ pruning")
+  kEachUpdate,  ///< at once, and parents are right after each update (paper: "w/ pruning")
+  kLazy,        ///< parents and pruning wait for `synchronize` (paper: "lazy evaluation")
+  kNever,       ///< parents wait for `synchronize`, nothing is joined (paper: "wo/ pruning")
 };
 
 namespace detail {
