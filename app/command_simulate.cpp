@@ -11,10 +11,12 @@
 
 #include "commands.hpp"
 #include "map_log.hpp"
+#include "option_values.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
+#include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
 #include "unknown_file.hpp"
 #include "world_map.hpp"
@@ -117,8 +119,42 @@ Result<OccupancyMap> true_map(const Scene& scene, const Trajectory& way, double 
   return world_map(scene.world, water, way.poses().front().map_from_body.translation(), resolution_m);
 }
 
+/// What navigation says while the sonar is on.
+Result<SimulatedNav> navigation_of(const Journey& journey, const SonarOptions& sonar, const NavSensorOptions& sensors) {
+  const std::vector<StampedPose>& poses = journey.way.poses();
+  const double from_s = poses.front().time_s;
+  const double sonar_s = static_cast<double>(journey.turns * sonar.beams_per_turn) / sonar.beams_per_s;
+  const double duration_s = poses.size() > 1 ? std::min(sonar_s, poses.back().time_s - from_s) : sonar_s;
+  constexpr double kLongest_s = 1e5;
+  if (duration_s > kLongest_s) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("simulate: --nav: {:.0f} s are longer than the longest, {:.0f} s", duration_s, kLongest_s));
+  }
+  return simulate_nav(journey.way, from_s, from_s + duration_s, sensors);
+}
+
+/// Names and signs are those of the calibration that `slam` writes.
+Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& e, const NavSensorOptions& sensors) {
+  return write_file(path, [&](std::ostream& out) -> Result<void> {
+    out << "# Errors of the simulated navigation.\n"
+        << fmt::format("nav-offset = {:.6g}\nvelocity-yaw-deg = {:.6g}\nvelocity-scale = {:.6g}\n", -sensors.delay_s,
+                       e.dvl_yaw_rad / kDegree_rad, e.dvl_scale)
+        << fmt::format("turn-rate-bias-start-deg-s = {:.6g}\nturn-rate-bias-end-deg-s = {:.6g}\n",
+                       e.gyro_bias_start_rad_s / kDegree_rad, e.gyro_bias_end_rad_s / kDegree_rad)
+        << "\n[[heading]]\nsource = \"IMU\"\n"
+        << fmt::format(
+               "constant-deg = {:.6g}\nsin1-deg = {:.6g}\ncos1-deg = {:.6g}\nsin2-deg = {:.6g}\n"
+               "cos2-deg = {:.6g}\n",
+               e.constant_rad / kDegree_rad, e.sin1_rad / kDegree_rad, e.cos1_rad / kDegree_rad,
+               e.sin2_rad / kDegree_rad, e.cos2_rad / kDegree_rad);
+    if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: could not be written", path));
+    return {};
+  });
+}
+
 Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map, const Trajectory& way,
-                         const SonarSimulator& simulator, const TruthRecorder& recorder, const SonarOptions& sonar) {
+                         const SonarSimulator& simulator, const TruthRecorder& recorder, const SonarOptions& sonar,
+                         const std::optional<SimulatedNav>& nav) {
   const std::filesystem::path folder = *command.truth;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -131,6 +167,10 @@ Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map
     return write_mesh_ply(simulator.world().mesh(0.1 * command.truth_resolution_m), out);
   });
   if (!written) return written;
+  if (nav) {
+    written = write_nav_errors(in_folder("nav.toml"), nav->errors, command.nav_sensors);
+    if (!written) return written;
+  }
   return write_map(map, in_folder("world.bt"));
 }
 
@@ -159,6 +199,12 @@ Result<int> run(const SimulateCommand& command, Console& console) {
     if (!made) return tl::unexpected(made.error());
     map = *std::move(made);
   }
+  std::optional<SimulatedNav> nav;
+  if (command.nav) {
+    Result<SimulatedNav> made = navigation_of(*journey, sonar, command.nav_sensors);
+    if (!made) return tl::unexpected(made.error());
+    nav = *std::move(made);
+  }
 
   SonarSimulator simulator(scene->world, journey->way, sonar, journey->turns);
   TruthRecorder recorder(simulator);
@@ -180,11 +226,22 @@ Result<int> run(const SimulateCommand& command, Console& console) {
     if (!reports) return tl::unexpected(reports.error());
     summary += fmt::format("{}: {} reported poses\n", on_one_line(companion), journey->way.poses().size());
   }
+  if (nav) {
+    std::size_t samples = 0;
+    const Result<void> done = write_file(*command.nav, [&](std::ostream& out) -> Result<void> {
+      const Result<std::size_t> count = write_nav_csv(nav->log, out);
+      if (!count) return tl::unexpected(count.error());
+      samples = *count;
+      return {};
+    });
+    if (!done) return tl::unexpected(done.error());
+    summary += fmt::format("{}: {} samples of navigation\n", on_one_line(*command.nav), samples);
+  }
   if (map) {
-    const auto truth = write_truth(command, *map, journey->way, simulator, recorder, sonar);
+    const auto truth = write_truth(command, *map, journey->way, simulator, recorder, sonar, nav);
     if (!truth) return tl::unexpected(truth.error());
-    summary +=
-        fmt::format("{}: ground truth (poses.tum, ranges.csv, world.ply, world.bt)\n", on_one_line(*command.truth));
+    summary += fmt::format("{}: ground truth (poses.tum, ranges.csv, world.ply, world.bt{})\n",
+                           on_one_line(*command.truth), nav ? ", nav.toml" : "");
   }
   const auto printed = console.summarise(summary, command.output);
   if (!printed) return tl::unexpected(printed.error());

@@ -17,6 +17,7 @@
 #include "pingvox/map/visible_cells.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
@@ -166,6 +167,8 @@ struct SimulateCommand {
   TravelOptions travel;
   DriftOptions drift;
   std::optional<std::size_t> turns;  ///< nullopt: for the whole route
+  std::optional<std::string> nav;    ///< file for what navigation sensors say
+  NavSensorOptions nav_sensors;
   std::optional<std::string> truth;  ///< folder for the ground truth
   double truth_resolution_m = 0.05;
 };

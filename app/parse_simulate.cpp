@@ -28,6 +28,7 @@ Result<Command> simulate_command(const Args& args) {
   SimulateCommand command;
   TankOptions& tank = command.tank;
   SonarOptions& sonar = command.sonar;
+  NavSensorOptions& sensors = command.nav_sensors;
   const Take world = [&](const std::string& text) -> Result<void> {
     const Args known = {"tank", "harbour", "seabed", "cave"};
     std::error_code error;
@@ -39,7 +40,7 @@ Result<Command> simulate_command(const Args& args) {
     command.world = text;
     return {};
   };
-  std::string poses, truth;
+  std::string poses, truth, nav;
   OptionTable table{
       "simulate",
       "Simulates the log of a scanning sonar in a world of your choice, with ground truth if asked. The same options\n"
@@ -54,6 +55,8 @@ Result<Command> simulate_command(const Args& args) {
                        "beside it as .tum"),
          {"--truth", 0, "DIR", "folder for ground truth: poses.tum, ranges.csv, world.ply (a mesh), world.bt (a map)",
           "none", store(truth)},
+         {"--nav", 0, "FILE", "what navigation sensors of the vehicle say, as CSV: a DVL, a compass, gyros, depth",
+          "none", store(nav)},
          {"--resolution", 0, "M", "edge length of a cell of world.bt", number_text(command.truth_resolution_m),
           store_number(command.truth_resolution_m)},
          quiet_option(command.output_options)}},
@@ -75,6 +78,34 @@ Result<Command> simulate_command(const Args& args) {
          {"--heading-drift", 0, "DEG", "error of the reported heading after a minute (standard deviation)",
           number_text(command.drift.heading_rad / kDegree_rad),
           within({0.0, 572.95}, store_number(command.drift.heading_rad, kDegree_rad))}}},
+       {"Navigation",
+        {{"--dvl-noise", 0, "M/S", "noise of the velocity (standard deviation on each axis)",
+          number_text(sensors.dvl_noise_m_s), within({0.0, 10.0}, store_number(sensors.dvl_noise_m_s))},
+         {"--dvl-outliers", 0, "S", "fraction of velocities that are wrong by some 1 m/s",
+          number_text(sensors.dvl_outliers), within({0.0, 1.0}, store_number(sensors.dvl_outliers))},
+         {"--dvl-lost", 0, "S", "fraction of time without bottom lock", number_text(sensors.dvl_lost),
+          within({0.0, 1.0, Limits::Ends::kHighOut}, store_number(sensors.dvl_lost))},
+         {"--dvl-yaw", 0, "DEG", "angle by which the DVL is turned (standard deviation over seeds)",
+          number_text(sensors.dvl_yaw_rad / kDegree_rad),
+          within({0.0, 57.29}, store_number(sensors.dvl_yaw_rad, kDegree_rad))},
+         {"--dvl-scale", 0, "S", "true over measured velocity, less 1 (likewise)", number_text(sensors.dvl_scale),
+          within({0.0, 0.1}, store_number(sensors.dvl_scale))},
+         {"--compass-deviation", 0, "DEG", "amplitude of the deviation curve of the compass (likewise)",
+          number_text(sensors.compass_deviation_rad / kDegree_rad),
+          within({0.0, 17.18}, store_number(sensors.compass_deviation_rad, kDegree_rad))},
+         {"--attitude-noise", 0, "DEG", "noise of roll, pitch and yaw (standard deviation)",
+          number_text(sensors.attitude_noise_rad / kDegree_rad),
+          within({0.0, 57.29}, store_number(sensors.attitude_noise_rad, kDegree_rad))},
+         {"--gyro-noise", 0, "DEG/S", "noise of the turn rate (standard deviation)",
+          number_text(sensors.gyro_noise_rad_s / kDegree_rad),
+          within({0.0, 57.29}, store_number(sensors.gyro_noise_rad_s, kDegree_rad))},
+         {"--gyro-drift", 0, "DEG/S", "bias of the turn rate, and its change in ten minutes (standard deviation)",
+          number_text(sensors.gyro_drift_rad_s / kDegree_rad),
+          within({0.0, 57.29}, store_number(sensors.gyro_drift_rad_s, kDegree_rad))},
+         {"--depth-noise", 0, "M", "noise of the depth (standard deviation)", number_text(sensors.depth_noise_m),
+          within({0.0, 10.0}, store_number(sensors.depth_noise_m))},
+         {"--nav-delay", 0, "S", "by how much the times of the navigation are later than those of the sonar",
+          number_text(sensors.delay_s), within({-3600.0, 3600.0}, store_number(sensors.delay_s))}}},
        {"Sonar",
         {{"--seed", 0, "N", "seed of the random numbers", fmt::format("{}", sonar.seed), store_number(sonar.seed)},
          {"--range", 0, "M", "range of the last bin's end", "by world", store_optional(command.range_m)},
@@ -116,6 +147,7 @@ Result<Command> simulate_command(const Args& args) {
       ""};
   for (auto& group : table.groups) {
     for (Option& option : group.options) {
+      if (group.title == "Navigation") option.only_with = {{"--nav"}};
       const Condition moves{"--trajectory", {"line", "lawn-mower", "loop"}}, follows{"--poses"};
       if (option.name == "--side") option.only_with = {{"WORLD", {"tank"}}};
       if (option.name == "--resolution") option.only_with = {{"--truth"}};
@@ -128,7 +160,9 @@ Result<Command> simulate_command(const Args& args) {
     if (!output_as) return tl::unexpected(output_as.error());
     if (!poses.empty()) command.poses = poses;
     if (!truth.empty()) command.truth = truth;
+    if (!nav.empty()) command.nav = nav;
     command.drift.seed = sonar.seed;
+    sensors.seed = sonar.seed;
     if (command.range_m && command.bin_length_m) return usage_error("--range and --bin-length: exclude each other");
     if (command.poses && command.motion != Motion::kStill)
       return usage_error("--poses and --trajectory: exclude each other");
@@ -157,8 +191,13 @@ Result<Command> simulate_command(const Args& args) {
     if (const auto valid = tank.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.travel.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.drift.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = sensors.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto once = check_standard_input({command.world, poses}); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
+    if (nav == "-") return usage_error("--nav -: give the name of a file");
+    if (command.nav) {
+      if (const auto folder = check_folder_of(nav); !folder) return tl::unexpected(folder.error());
+    }
     return command;
   });
 }

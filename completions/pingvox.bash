@@ -34,9 +34,11 @@ _pingvox_options() {
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     simulate)
-      options+=(--output --config --quiet --truth --resolution --side --trajectory --poses --mount --speed --turns --drift)
+      options+=(--output --config --quiet --truth --nav --resolution --side --trajectory --poses --mount --speed --turns --drift)
       options+=(--heading-drift --seed --range --bins --bin-length --beams-per-turn --beam-width --beam-height)
       options+=(--side-lobes --gain --compression --absorption --ringing --speckle --noise --multipath --bubbles --lost)
+      options+=(--dvl-noise --dvl-outliers --dvl-lost --dvl-yaw --dvl-scale --compass-deviation --attitude-noise)
+      options+=(--gyro-noise --gyro-drift --depth-noise --nav-delay)
       ;;
     slam)
       options+=(--output --map --resolution --calibration --json --quiet --nav --nav-offset --mount --nav-mount --matching)
@@ -108,7 +110,8 @@ _pingvox() {
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --water | --kernel | --sigma | --threshold | \
         --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
-        --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)
+        --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
+        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)
         return # a number or a text: nothing to offer
         ;;
     esac

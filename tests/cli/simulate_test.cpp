@@ -106,5 +106,41 @@ TEST(Simulate, MakesTheSameFilesAgain) {
   }
 }
 
+TEST(Simulate, WritesNavigationThatInfoAndSlamRead) {
+  const Workplace here;
+  std::vector<std::string> made;
+  for (const std::string seed : {"4", "4", "5"}) {
+    const Outcome simulated =
+        here.call({"simulate", "harbour", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2", "--seed", seed,
+                   "--nav", "nav.csv", "--nav-delay", "0.25", "--truth", "truth", "--resolution", "0.5"});
+    ASSERT_EQ(simulated.status, 0) << simulated.err;
+    EXPECT_THAT(simulated.out, HasSubstr("samples of navigation"));
+    made.push_back(here.read("nav.csv") + here.read("truth/nav.toml"));
+  }
+  EXPECT_EQ(made[0], made[1]);
+  EXPECT_NE(made[0], made[2]);
+
+  const Outcome info = here.call({"info", "nav.csv", "--json"});
+  ASSERT_EQ(info.status, 0) << info.err;
+  for (const char* source : {R"("name": "DVL", "quantity": "velocity")", R"("name": "IMU", "quantity": "attitude")",
+                             R"("name": "IMU", "quantity": "turn rate")", R"("name": "depth", "quantity": "depth")"}) {
+    EXPECT_THAT(info.out, HasSubstr(source));
+  }
+  const Outcome solved = here.call({"slam", "dive.csv", "--nav", "nav.csv", "--nav-offset", "-0.25", "-o", "slam.tum",
+                                    "--calibration", "found.toml", "--quiet"});
+  ASSERT_EQ(solved.status, 0) << solved.err;
+  const std::string truth = here.read("truth/nav.toml"), found = here.read("found.toml");
+  EXPECT_THAT(truth, HasSubstr("nav-offset = -0.25\n"));
+  for (const char* name : {"velocity-yaw-deg = ", "velocity-scale = ", "[[heading]]\nsource = \"IMU\"\nconstant-deg = ",
+                           "\nsin1-deg = ", "\ncos2-deg = "}) {
+    EXPECT_THAT(truth, HasSubstr(name));
+    EXPECT_THAT(found, HasSubstr(name)) << "the same names";
+  }
+
+  expect_error(here.call({"simulate", "tank", "-o", "tank.csv", "--dvl-noise", "0.2"}), 2, {"--dvl-noise", "--nav"});
+  expect_error(here.call({"simulate", "tank", "-o", "tank.csv", "--nav", "nav.csv", "--dvl-lost", "1"}), 2,
+               {"--dvl-lost"});
+}
+
 }  // namespace
 }  // namespace pingvox::test
