@@ -11,6 +11,7 @@
 #include "pingvox/map/ray_dda.hpp"
 #include "support/exact_segment.hpp"
 #include "support/kernels.hpp"
+#include "support/rounds.hpp"
 
 namespace pingvox::detail {
 namespace {
@@ -129,7 +130,7 @@ TEST(RayKernels, PlacesAreThoseOfTheCellsWithPoints) {
 template <class Point>
 void expect_marks() {
   std::size_t marked = 0, taken = 0, left_out = 0;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(200); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const double cells_per_m = seed % 3 == 0 ? 1.0 : 1.7;
@@ -169,9 +170,9 @@ void expect_marks() {
       marked += expected.size();
     });
   }
-  EXPECT_GT(marked, 100'000U);
-  EXPECT_GT(taken, 4'000U);
-  EXPECT_GT(left_out, 500U);
+  EXPECT_GT(marked, test::rounds(100'000));
+  EXPECT_GT(taken, test::rounds(4'000));
+  EXPECT_GT(left_out, test::rounds(500));
 }
 
 // Kills a lane that takes another face than the plain stepper (ties, backward steps, ends on faces), a carry that does
@@ -186,7 +187,7 @@ TEST(RayKernels, MarkedCellsAreThoseOfFaceCrossings) {
 TEST(RayKernels, MarkedCellsAreThoseOfExactArithmetic) {
   using test::ExactSegment;
   std::size_t cells = 0;
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(300); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const auto coordinate = [&] { return static_cast<std::int64_t>(random() >> 17) - kHalf * ExactSegment::kUnit; };
@@ -228,7 +229,7 @@ TEST(RayKernels, MarkedCellsAreThoseOfExactArithmetic) {
       }
     });
   }
-  EXPECT_GT(cells, 20'000U);
+  EXPECT_GT(cells, test::rounds(20'000));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "pingvox/map/ray_dda.hpp"
+#include "support/rounds.hpp"
 
 using namespace pingvox;
 
@@ -135,7 +136,7 @@ OccupancyMap random_map(int depth, std::mt19937_64& random) {
 
 TEST(CastRay, EndsWhereTheWalkFromCellToCellEnds) {
   std::size_t ends[3] = {}, border = 0;
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(300); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const int depths[] = {1, 2, 3, 5, 8, 16, 33, 52, 64, 65, 128};
@@ -163,10 +164,10 @@ TEST(CastRay, EndsWhereTheWalkFromCellToCellEnds) {
       border += end.what == Occupancy::kFree && end.range_m < range_m - 1e-9;
     }
   }
-  EXPECT_GT(ends[0], 1'000U);
-  EXPECT_GT(ends[1], 1'000U);
-  EXPECT_GT(ends[2], 500U);
-  EXPECT_GT(border, 500U);
+  EXPECT_GT(ends[0], test::rounds(1'000));
+  EXPECT_GT(ends[1], test::rounds(1'000));
+  EXPECT_GT(ends[2], test::rounds(500));
+  EXPECT_GT(border, test::rounds(500));
 }
 
 // The longest that is walked node by node, and the first that is not.

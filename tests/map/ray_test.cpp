@@ -14,6 +14,7 @@
 #include "support/differences.hpp"
 #include "support/exact_segment.hpp"
 #include "support/oracle_map.hpp"
+#include "support/rounds.hpp"
 #include "support/scan_cells.hpp"
 
 using namespace pingvox;
@@ -155,9 +156,9 @@ std::size_t check_traversal(const std::vector<Cell>& cells, const Point& from, c
 
 TEST(Dda, CrossesTheCellsOfTheExactSegment) {
   std::size_t cells = 0, different = 0;
-  const auto run = [&](const Lattice& lattice, std::int64_t reach, int count) {
+  const auto run = [&](const Lattice& lattice, std::int64_t reach, std::size_t count) {
     Segments segments(static_cast<std::uint64_t>(reach), reach);
-    for (int i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < test::rounds(count); ++i) {
       SCOPED_TRACE(testing::Message() << "reach " << reach << ", segment " << i);
       const auto [from, to] = segments.next();
       with_key_word(lattice.depth(), [&, from = from, to = to]<KeyWord W>() {
@@ -176,7 +177,7 @@ TEST(Dda, CrossesTheCellsOfTheExactSegment) {
   run(Lattice(1.0, 32), 1'000'000, 6);
   run(Lattice(1.0, 65), 1'000, 500);
   run(Lattice(2.0, 128), 1'000, 500);
-  EXPECT_GT(cells, 10'000'000U);
+  EXPECT_GT(cells, test::rounds(10'000'000));
   // Where a segment runs through edges and corners, rounding may choose; anywhere else it hardly ever comes into it.
   EXPECT_LT(different * 500, cells);
   RecordProperty("cells", static_cast<int>(cells));
@@ -187,7 +188,7 @@ TEST(Dda, OfAnyResolutionStaysWithinAHairOfTheSegment) {
   std::mt19937_64 random(7);
   std::size_t checked = 0;
   const auto metre = [&] { return (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * 100.0; };
-  for (int i = 0; i < 3'000; ++i) {
+  for (std::size_t i = 0; i < test::rounds(3'000); ++i) {
     SCOPED_TRACE(i);
     const double resolution_m = std::array{0.05, 0.1, 0.0125, 0.3}[random() % 4];
     const Lattice lattice(resolution_m);
@@ -208,7 +209,7 @@ TEST(Dda, OfAnyResolutionStaysWithinAHairOfTheSegment) {
     }
     checked += cells.size();
   }
-  EXPECT_GT(checked, 1'000'000U);
+  EXPECT_GT(checked, test::rounds(1'000'000));
 }
 
 TEST(Dda, WalksTheSameCellsOnEveryKeyWidth) {

@@ -7,6 +7,7 @@
 #include "pingvox/map/scan_update.hpp"
 #include "support/differences.hpp"
 #include "support/oracle_map.hpp"
+#include "support/rounds.hpp"
 
 namespace pingvox {
 namespace {
@@ -115,7 +116,7 @@ TEST(RepeatedScans, GiveWhatEachCellByItselfGives) {
   for (const Way& way : all_ways()) {
     SCOPED_TRACE(testing::Message() << "depth " << way.depth << ", parents " << static_cast<int>(way.parents)
                                     << ", early drop " << static_cast<int>(way.early_drop));
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= test::rounds(6); ++seed) {
       SCOPED_TRACE(seed);
       RepeatedScans scans(way, seed);
       scans.run();

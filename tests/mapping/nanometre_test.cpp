@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pingvox/mapping/beam_model.hpp"
+#include "support/rounds.hpp"
 #include "tests/support/scan_cells.hpp"
 #include "tests/support/uniform.hpp"
 
@@ -95,7 +96,7 @@ TEST_P(Nanometre, AStepFromTheCornerOfACellChangesOnlyCellsAtTheBordersOfBeams) 
   const bool is_of_rays = model.shape == BeamShape::kRay || model.tracing == Tracing::kBundle;
   const double most = is_of_rays ? 0.01 : 0.005;
   std::size_t changed = 0, all = 0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(12); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const double resolution_m = std::array{0.05, 0.1, 0.0125, 0.02, 0.3, 0.07}[seed % 6];
@@ -132,7 +133,7 @@ TEST_P(Nanometre, AStepFromTheCornerOfACellChangesOnlyCellsAtTheBordersOfBeams) 
       changed += different;
     }
   }
-  EXPECT_GT(all, 50'000U);
+  EXPECT_GT(all, test::rounds(50'000));
   RecordProperty("cells", static_cast<int>(all));
   RecordProperty("changed", static_cast<int>(changed));
 }
