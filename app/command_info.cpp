@@ -72,8 +72,12 @@ void add_damage(Summary& summary, const std::vector<DamageKind>& kinds) {
   if (kinds.empty()) return;
   std::vector<JsonObject> list;
   for (const DamageKind& kind : kinds) {
-    list.emplace_back().add("what", kind.what).add("count", kind.count).add("first_byte", kind.first_byte);
-    summary.text += report_line("", fmt::format("{} x {}, first at byte {}", kind.count, kind.what, kind.first_byte));
+    JsonObject& json = list.emplace_back();
+    json.add("what", kind.what).add("count", kind.count);
+    if (kind.first_byte) json.add("first_byte", *kind.first_byte);
+    summary.text +=
+        report_line("", fmt::format("{} x {}", kind.count, kind.what) +
+                            (kind.first_byte ? fmt::format(", first at byte {}", *kind.first_byte) : std::string()));
   }
   summary.json.add("damage", std::span<const JsonObject>(list));
 }

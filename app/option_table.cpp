@@ -296,8 +296,12 @@ std::string help_of(const OptionTable& table) {
   for (const Positional& positional : table.positionals) {
     out += " " + positional.name + (positional.count == Positional::Count::kMany ? "..." : "");
   }
-  const Option* output = find_option(table, "--output");
-  if (output) out += " -o " + output->value;
+  for (const auto& group : table.groups) {
+    for (const Option& option : group.options) {
+      if (!option.is_required) continue;
+      out += fmt::format(" {} {}", option.letter != 0 ? std::string{'-', option.letter} : option.name, option.value);
+    }
+  }
   out += " [OPTION]...\n";
   out += table.purpose + "\n\n";
   for (const Positional& positional : table.positionals) out += help_entry(positional.name, positional.help);

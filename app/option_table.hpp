@@ -38,6 +38,8 @@ struct Option {
   std::vector<Condition> only_with = {};
   /// Kinds of input or output on which the option has an effect, checked after opening the files; empty: all.
   std::vector<std::string> only_for = {};
+  /// Whether the usage line shows it; who reads the value says when it is missing.
+  bool is_required = false;
 };
 
 /// A positional argument.

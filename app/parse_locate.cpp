@@ -72,6 +72,8 @@ Result<Command> locate_command(const Args& args) {
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   for (Option& option : echo_options.options) option.only_for.clear();
+  Option map{"--map", 0, "FILE", "the map, .bt, .ot or .pvx", "", store(command.map)};
+  map.is_required = true;
   const OptionTable table{
       "locate",
       "Finds where the vehicle was in a map that is known, from the echoes of a scanning sonar, and from navigation\n"
@@ -82,7 +84,7 @@ Result<Command> locate_command(const Args& args) {
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
          json_option(command.output_options), quiet_option(command.output_options)}},
        {"Map",
-        {{"--map", 0, "FILE", "the map, required: .bt, .ot or .pvx", "", store(command.map)},
+        {std::move(map),
          {"--min-z", 0, "M", "lowest height of the map that is used", "0.25 below the sonar at the first beam",
           store_optional(command.min_z_m)},
          {"--max-z", 0, "M", "highest height of the map that is used", "0.25 above the sonar at the first beam",

@@ -25,7 +25,9 @@ tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
 }  // namespace
 
 Option output_option(std::string& target, std::string help) {
-  return {"--output", 'o', "FILE", std::move(help), "", store(target)};
+  Option output{"--output", 'o', "FILE", std::move(help), "", store(target)};
+  output.is_required = true;
+  return output;
 }
 
 Option config_option() {

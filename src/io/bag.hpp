@@ -28,7 +28,8 @@ struct BagMessage {
   std::size_t topic;                    ///< in Bag::topics()
   double time_s;                        ///< of the recording, since 1970
   std::span<const std::uint8_t> bytes;  ///< valid until the next call
-  std::uint64_t file_byte;              ///< its position in the file, or that of its compressed chunk
+  /// Its position in the file, or that of its compressed chunk; nullopt in a database.
+  std::optional<std::uint64_t> file_byte;
 };
 
 /// A time in nanoseconds [s].

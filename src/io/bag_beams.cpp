@@ -247,7 +247,7 @@ class BagBeams final : public DeviceLog {
   }
 
   tl::unexpected<Error> damage_error(const DamageKind& kind) const {
-    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", bag_->name(), kind.first_byte, kind.what));
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", bag_->name(), first_damage_text(kind)));
   }
 
   std::unique_ptr<Bag> bag_;

@@ -316,8 +316,7 @@ Result<BagContents> read_bag(ByteStream stream, Damage damage) {
     if (!message) return tl::unexpected(message.error());
     if (*message) survey.add(**message);
     if (const auto kinds = survey.damage(); damage == Damage::kFail && !kinds.empty()) {
-      return fail(Error::Code::kCorrupt,
-                  fmt::format("{}: byte {}: {}", (*bag)->name(), kinds.front().first_byte, kinds.front().what));
+      return fail(Error::Code::kCorrupt, fmt::format("{}: {}", (*bag)->name(), first_damage_text(kinds.front())));
     }
     if (!*message) return survey.finish();
   }

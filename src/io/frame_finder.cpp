@@ -47,7 +47,7 @@ void FrameFinder::pass(const FrameCheck& check) {
   position_ += passed;
 }
 
-void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::uint64_t at_byte) {
+void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::optional<std::uint64_t> at_byte) {
   const auto known = std::ranges::find(kinds, what, &DamageKind::what);
   if (known != kinds.end()) {
     ++known->count;

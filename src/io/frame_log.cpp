@@ -107,7 +107,7 @@ class FrameLog final : public DeviceLog {
       auto beam = protocol_.beam_in(frame->bytes, places_.time_s(frame->end() - 1));
       if (!beam) {
         add_damage(unusable_, "impossible values", places_.file_byte(frame->at));
-        if (damage_ == Damage::kFail) return damage_error(unusable_.front().first_byte, beam.error());
+        if (damage_ == Damage::kFail) return damage_error({beam.error(), 1, unusable_.front().first_byte});
       } else if (*beam) {
         if (device_ == nullptr) device_ = protocol_.device_of(frame->bytes);
         places_.forget_before(frame->end());
@@ -134,21 +134,19 @@ class FrameLog final : public DeviceLog {
   /// Stores positions in the file before the pieces are dropped.
   void note_places() {
     for (std::size_t i = first_bytes_.size(); i < finder_.damage().size(); ++i) {
-      first_bytes_.push_back(places_.file_byte(finder_.damage()[i].first_byte));
+      first_bytes_.push_back(places_.file_byte(*finder_.damage()[i].first_byte));
     }
   }
 
   Result<void> check_damage() const {
     if (damage_ == Damage::kSkip) return {};
-    if (!container_->damage().empty()) {
-      return damage_error(container_->damage().front().first_byte, std::string(container_->damage().front().what));
-    }
-    if (!first_bytes_.empty()) return damage_error(first_bytes_.front(), std::string(finder_.damage().front().what));
+    if (!container_->damage().empty()) return damage_error(container_->damage().front());
+    if (!first_bytes_.empty()) return damage_error({finder_.damage().front().what, 1, first_bytes_.front()});
     return {};
   }
 
-  tl::unexpected<Error> damage_error(std::uint64_t byte, const std::string& what) const {
-    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", container_->name(), byte, what));
+  tl::unexpected<Error> damage_error(const DamageKind& kind) const {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", container_->name(), first_damage_text(kind)));
   }
 
   std::unique_ptr<FrameContainer> container_;

@@ -38,8 +38,7 @@ Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
     return fail(Error::Code::kUnsupported, fmt::format("{}: is not a navigation log", file.name));
   }
   if (damage == Damage::kFail && !reading.damage.empty()) {
-    const DamageKind& first = reading.damage.front();
-    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", file.name, first.first_byte, first.what));
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, first_damage_text(reading.damage.front())));
   }
   Result<NavLog> log = NavLog::make(std::move(reading.sources), reading.clock);
   if (!log) return fail(log.error().code, fmt::format("{}: {}", file.name, log.error().message));

@@ -54,7 +54,7 @@ std::optional<NamedSample> sample_in(std::string_view line, const std::vector<st
   if (!line.empty()) return std::nullopt;
   NamedSample named;
   const auto time_s = number_in(fields[kTime]);
-  const auto quantity = nav_quantity_named(fields[kQuantity]);
+  const auto quantity = nav_quantity_of(fields[kQuantity]);
   if (!time_s || !quantity || fields[kSource].empty()) return std::nullopt;
   named.source = fields[kSource];
   named.quantity = *quantity;

@@ -121,25 +121,25 @@ class SqliteBag final : public Bag {
       sqlite3_stmt* row = messages_.get();
       // The smallest row takes four bytes: more of them are pages that are read over and over.
       if (++rows_ > size_ / 4) {
-        add_damage(damage_, "damaged database page", 0);
+        add_damage(damage_, "damaged database page", std::nullopt);
         break;
       }
       row_ = static_cast<double>(sqlite3_column_int64(row, 3));
       // A page that the end of a file cuts has rows of nothing.
       const bool is_row = sqlite3_column_type(row, 0) == SQLITE_INTEGER &&
                           sqlite3_column_type(row, 1) == SQLITE_INTEGER && sqlite3_column_type(row, 2) == SQLITE_BLOB;
-      if (!is_row && !in_damage_) add_damage(damage_, "damaged database page", 0);
+      if (!is_row && !in_damage_) add_damage(damage_, "damaged database page", std::nullopt);
       in_damage_ = !is_row;
       if (!is_row) continue;
       const auto topic = numbers_.find(sqlite3_column_int64(row, 0));
       if (topic == numbers_.end()) {
-        add_damage(damage_, "message of an unknown topic", 0);
+        add_damage(damage_, "message of an unknown topic", std::nullopt);
         continue;
       }
       const double time_s = seconds_of(sqlite3_column_int64(row, 1));
       const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(row, 2));
       const int size = data != nullptr ? sqlite3_column_bytes(row, 2) : 0;
-      return BagMessage{topic->second, time_s, {data, static_cast<std::size_t>(size)}, 0};
+      return BagMessage{topic->second, time_s, {data, static_cast<std::size_t>(size)}, std::nullopt};
     }
     messages_.reset();
     return std::nullopt;
@@ -150,7 +150,7 @@ class SqliteBag final : public Bag {
   bool has_row(sqlite3_stmt* query) {
     const int result = sqlite3_step(query);
     if (result == SQLITE_ROW) return true;
-    if (result != SQLITE_DONE) add_damage(damage_, "damaged database page", 0);
+    if (result != SQLITE_DONE) add_damage(damage_, "damaged database page", std::nullopt);
     return false;
   }
 

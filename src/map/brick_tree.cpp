@@ -394,7 +394,7 @@ template <KeyWord W>
 void Cursor<W>::settle_down_to(int depth) {
   if (reach_ == tree_.brick_depth()) settle_brick();
   for (int d = reach_ - 1; d >= std::max(depth, 0); --d) {
-    // With all above settled after each update, nothing is stale above what is not.
+    // With all parents right after each update, nothing is stale above what is not.
     if (rules_.pruning == Pruning::kEachUpdate && !stale_[static_cast<std::size_t>(d)]) break;
     settle_group(d);
   }

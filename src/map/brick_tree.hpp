@@ -77,7 +77,7 @@ struct BrickTree {
   bool pruned = true;
   EarlyDrop early_drop = EarlyDrop::kOn;
   Entry root;
-  /// Always right: it is dropped when a link at or above its nodes changes, and made again when that is settled.
+  /// Always right: it is dropped when a link at or above its nodes changes, and made again when their parents are.
   std::optional<Shortcut> shortcut;
   Pool<Group> groups;
   BrickPool bricks;
@@ -133,7 +133,7 @@ std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
 /// What a brick that changed became: itself, or less when it is uniform.
 Entry settle_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
-/// The same for a group whose children are settled.
+/// The same for a group whose children are right.
 Entry settle_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
 
 /// Frees all that hangs below an entry of `depth`.

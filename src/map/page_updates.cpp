@@ -7,7 +7,7 @@
 namespace pingvox::detail {
 namespace {
 
-/// The updates of one page. A node that changed is settled once, when all of its children are.
+/// The updates of one page. A node that changed gets its value once, when all of its children have theirs.
 class PageUpdater {
  public:
   PageUpdater(BrickTree& tree, const CursorRules& rules, const ScanUpdate& scan, const ScanUpdate::Page& page)

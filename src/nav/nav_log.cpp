@@ -45,7 +45,7 @@ std::string_view name_of(NavQuantity quantity) {
   return {};
 }
 
-std::optional<NavQuantity> nav_quantity_named(std::string_view name) {
+std::optional<NavQuantity> nav_quantity_of(std::string_view name) {
   for (const auto& [quantity, known] : kNames) {
     if (known == name) return quantity;
   }

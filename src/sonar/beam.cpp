@@ -29,6 +29,10 @@ double wrap_bearing(double angle_rad) {
   return wrapped > 0.0 && wrapped < kTurn ? wrapped : 0.0;
 }
 
+std::string first_damage_text(const DamageKind& kind) {
+  return kind.first_byte ? fmt::format("byte {}: {}", *kind.first_byte, kind.what) : std::string(kind.what);
+}
+
 std::size_t BeamSource::skipped() const {
   std::size_t count = 0;
   for (const DamageKind& kind : damage()) count += kind.count;
@@ -37,7 +41,7 @@ std::size_t BeamSource::skipped() const {
 
 std::string BeamSource::first_damage() const {
   const std::vector<DamageKind> kinds = damage();
-  return kinds.empty() ? "" : fmt::format("byte {}: {}", kinds.front().first_byte, kinds.front().what);
+  return kinds.empty() ? "" : first_damage_text(kinds.front());
 }
 
 Result<std::optional<Beam>> BeamsInMemory::next() {

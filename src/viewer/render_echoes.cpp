@@ -18,7 +18,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kLeft = 110, kRight = 126, kTop = 44, kBottom = 96;
+constexpr std::ptrdiff_t kLeft = 110, kRight = 182, kTop = 44, kBottom = 96;
 constexpr std::size_t kMaxRows = 2000, kMinHeight = 800;
 constexpr std::size_t kMinWidth = static_cast<std::size_t>(kEchoLegendWidth);
 constexpr std::ptrdiff_t kMarkWidth = 3;
@@ -159,7 +159,7 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
     const double passed = is_rising ? std::floor(bearing + kNear) : std::ceil(bearing - kNear);
     if (is_rising ? passed > before + kNear : passed < before - kNear) mark(b, passed);
   }
-  draw_label(picture, x + kGap, kGap, "bearing", kTextScale, kInk);
+  draw_label(picture, x + kGap, kGap, "bearing in deg", kTextScale, kInk);
 }
 
 }  // namespace

@@ -195,6 +195,15 @@ TEST(Usage, EachCommandExplainsItselfWithExamples) {
   }
 }
 
+TEST(Usage, TheFirstLineOfHelpShowsTheOptionsThatAreRequired) {
+  const Workplace here;
+  EXPECT_THAT(here.call({"map", "--help"}).out,
+              ::testing::StartsWith("Usage: pingvox map LOG... -o FILE [OPTION]...\n"));
+  EXPECT_THAT(here.call({"info", "--help"}).out, ::testing::StartsWith("Usage: pingvox info FILE [OPTION]...\n"));
+  EXPECT_THAT(here.call({"locate", "--help"}).out,
+              ::testing::StartsWith("Usage: pingvox locate LOG... -o FILE --map FILE [OPTION]...\n"));
+}
+
 // A name from inside of the program, or of a stage, says nothing to who typed an option.
 TEST(Usage, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
   struct Case {

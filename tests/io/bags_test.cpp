@@ -417,6 +417,21 @@ TEST(SqliteBag, ReadsWhatThereIsBeforeTheCut) {
   EXPECT_LE(cut.skipped, 3U) << "the page at the cut, what is in it, and the next one";
 }
 
+TEST(SqliteBag, NamesNoByteOfDamageAsADatabaseHasNone) {
+  Database database;
+  add_echoes(database, 3);
+  database.run("INSERT INTO messages VALUES(99, 77, 0, x'00')");
+  database.close();
+  const auto source = open_beams(*read_file(database.file()));
+  ASSERT_TRUE(source) << source.error().message;
+  while (const auto beam = (*source)->next()) {
+    if (!*beam) break;
+  }
+  ASSERT_EQ((*source)->damage().size(), 1U);
+  EXPECT_EQ((*source)->damage().front().first_byte, std::nullopt);
+  EXPECT_EQ((*source)->first_damage(), "message of an unknown topic");
+}
+
 TEST(SqliteBag, RefusesOtherDatabasesAndEndlessViews) {
   Database other;
   other.run("CREATE TABLE things(id INTEGER)");

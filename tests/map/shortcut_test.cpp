@@ -320,7 +320,7 @@ TEST(Shortcut, StaysWhileOnlyWhatIsBelowChanges) {
     Editor editor = map.edit();
     editor.update(Key{32700, 32700, 32700}, LogOdds(0.8F));
     editor.update(Key{32800, 32800, 32800}, LogOdds(0.8F));
-    EXPECT_FALSE(MapAccess::tree(map).shortcut);  // nothing is settled yet
+    EXPECT_FALSE(MapAccess::tree(map).shortcut);  // no parent has its value yet
   }
   Editor editor = map.edit(Pruning::kEachUpdate);
   ASSERT_TRUE(MapAccess::tree(map).shortcut);

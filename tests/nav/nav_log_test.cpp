@@ -90,9 +90,9 @@ TEST(NavSummary, CountsGapsAndIgnoresRepeatedTimes) {
 
 TEST(NavQuantity, IsFoundByItsName) {
   for (const auto quantity : {NavQuantity::kVelocity, NavQuantity::kTurnRate, NavQuantity::kPressure}) {
-    EXPECT_EQ(nav_quantity_named(name_of(quantity)), quantity);
+    EXPECT_EQ(nav_quantity_of(name_of(quantity)), quantity);
   }
-  EXPECT_EQ(nav_quantity_named("speed"), std::nullopt);
+  EXPECT_EQ(nav_quantity_of("speed"), std::nullopt);
 }
 
 // The oracle turns vectors by matrices instead of angles.

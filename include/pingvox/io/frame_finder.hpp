@@ -69,6 +69,6 @@ class FrameFinder {
 };
 
 /// Counts one more damage of this kind.
-void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::uint64_t at_byte);
+void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::optional<std::uint64_t> at_byte);
 
 }  // namespace pingvox

@@ -28,8 +28,8 @@ enum class NavQuantity {
 
 /// Lower-case name, as in "turn rate".
 std::string_view name_of(NavQuantity quantity);
-/// nullopt: no quantity has that name.
-std::optional<NavQuantity> nav_quantity_named(std::string_view name);
+/// The quantity of a name that `name_of` gives; nullopt: none has it.
+std::optional<NavQuantity> nav_quantity_of(std::string_view name);
 /// How many of a sample's numbers mean something: 1 or 3.
 int numbers_of(NavQuantity quantity);
 

@@ -35,10 +35,14 @@ double wrap_bearing(double angle_rad);
 
 /// One kind of damage that a source skipped.
 struct DamageKind {
-  std::string_view what;         ///< in a few words, as in "wrong checksum"; lives as long as the program
-  std::size_t count = 0;         ///< number of occurrences
-  std::uint64_t first_byte = 0;  ///< position of the first one in the log, from 0
+  std::string_view what;  ///< in a few words, as in "wrong checksum"; lives as long as the program
+  std::size_t count = 0;  ///< number of occurrences
+  /// Position of the first one in the log, from 0; nullopt where it is not known (in databases).
+  std::optional<std::uint64_t> first_byte;
 };
+
+/// Place and reason of the first one, as in "byte 23: wrong checksum".
+std::string first_damage_text(const DamageKind& kind);
 
 /// Beams in the order in which they were heard: a log, a simulator, later a live device.
 class BeamSource {
