@@ -164,6 +164,9 @@ Result<std::string> write_heights(const OccupancyMap& map, const ConvertCommand&
 }
 
 Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
+  Result<OccupancyMap> looked_at = command.occupancy.apply_to(std::move(read.map));
+  if (!looked_at) return tl::unexpected(with_name(looked_at.error(), command.input));
+  read.map = *std::move(looked_at);
   if (command.format == Format::kGrid) return write_grid(read.map, command);
   if (command.format == Format::kAsc) return write_heights(read.map, command);
   if (command.slice.min_z_m || command.slice.max_z_m) {

@@ -16,6 +16,7 @@
 #include "option_values.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/map/cut_tree.hpp"
 #include "progress.hpp"
 #include "shell_words.hpp"
 #include "stopwatch.hpp"
@@ -245,6 +246,8 @@ Result<int> run(const MapCommand& command, Console& console) {
       }
     }
   }
+
+  if (command.occupancy.cut_depth) map = cut_tree(*map, *command.occupancy.cut_depth);
 
   const Stopwatch write;
   const Result<void> written = write_map(*map, command.format, command.made_by, command.output);

@@ -260,7 +260,11 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
                 fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name, describe(*format), hint));
   }
   const PictureView view = view_of(panel, kind);
-  const auto to_draw = [&](OccupancyMap map) { return Prepared(MapToDraw{std::move(map), view}); };
+  const auto to_draw = [&](OccupancyMap map) -> Result<Prepared> {
+    Result<OccupancyMap> looked_at = panel.occupancy.apply_to(std::move(map));
+    if (!looked_at) return fail(looked_at.error().code, fmt::format("render: {}", looked_at.error().message));
+    return Prepared(MapToDraw{*std::move(looked_at), view});
+  };
   if (view == PictureView::kPolar || view == PictureView::kCartesian) {
     if (kind != FormatKind::kBeams) {
       return fail(Error::Code::kBadOption,
@@ -272,9 +276,9 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
     return std::move(drawn).map([](Drawn done) { return Prepared(std::move(done)); });
   }
   if (kind == FormatKind::kMap) {
-    return read_map(file).map([&](MapFile read) { return to_draw(std::move(read.map)); });
+    return read_map(file).and_then([&](MapFile read) { return to_draw(std::move(read.map)); });
   }
-  return map_of_log(std::move(file), panel, command).map(to_draw);
+  return map_of_log(std::move(file), panel, command).and_then(to_draw);
 }
 
 /// Refuses a slice without known cells, since an empty picture would not tell why.

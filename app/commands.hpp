@@ -57,6 +57,20 @@ struct HeadArgs {
   }
 };
 
+/// How a map is looked at: what counts as occupied and as free, and down to which level.
+struct OccupancyArgs {
+  std::optional<double> occupied_from;  ///< probability from which on a cell is occupied; nullopt: as the map says
+  std::optional<double> free_below;     ///< probability below which a cell is free; nullopt: as the map says
+  std::optional<int> cut_depth;         ///< levels that are kept; nullopt: all
+
+  /// kBadOption when they contradict each other.
+  Result<void> validate() const;
+  /// The thresholds that are given; of the others those of `usual`, as far as they fit.
+  Thresholds apply_to(const Thresholds& usual) const;
+  /// @return kBadOption when the map has fewer levels than `cut_depth`
+  Result<OccupancyMap> apply_to(OccupancyMap map) const;
+};
+
 /// Where the vehicle was: at most one of the two.
 struct PathArgs {
   std::optional<std::string> poses;  ///< TUM lines
@@ -74,6 +88,7 @@ struct MapCommand {
   Damage damage = Damage::kSkip;
   std::string topic;  ///< of a bag; empty: the only one with beams
   MapOptions map;
+  OccupancyArgs occupancy;  ///< of the finished map
   BuildOptions build;
   HeadArgs head;
   std::optional<double> background_m;  ///< range of the background to subtract
@@ -107,6 +122,7 @@ struct ConvertCommand {
   Damage damage = Damage::kSkip;
   std::string topic;                   ///< of a bag; empty: the only one with beams
   std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the default
+  OccupancyArgs occupancy;             ///< of a map
   SliceOptions slice;                  ///< of a map
   bool has_echoes = false;             ///< the detected echoes of a log instead of its beams
   FilterOptions filter;
@@ -138,7 +154,8 @@ struct PanelCommand {
   BetweenBeams between = BetweenBeams::kInterpolate;
   EchoPictureOptions echo_picture;
   MapPictureOptions map_picture;
-  MapOptions map;  ///< for logs that are mapped
+  MapOptions map;           ///< for logs that are mapped
+  OccupancyArgs occupancy;  ///< of the map that is drawn
   BuildOptions build;
   HeadArgs head;
   std::optional<double> background_m;

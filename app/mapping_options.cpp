@@ -11,6 +11,8 @@
 
 #include "option_values.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/map/cut_tree.hpp"
+#include "pingvox/map/map_agreement.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox::app {
@@ -205,6 +207,43 @@ OptionTable::Group echo_group(EchoArgs& args) {
     if (option.name == "--cfar") option.only_with = {{"--detect", {"cfar"}}};
   }
   return group;
+}
+
+Result<void> OccupancyArgs::validate() const {
+  if (occupied_from && free_below && *free_below > *occupied_from) {
+    return usage_error(fmt::format("--free: must be at most --occupied, which is {}, is {}",
+                                   number_text(*occupied_from), number_text(*free_below)));
+  }
+  return {};
+}
+
+Thresholds OccupancyArgs::apply_to(const Thresholds& usual) const {
+  Thresholds thresholds = usual;
+  if (occupied_from) thresholds.upper = LogOdds::from_probability(*occupied_from);
+  if (free_below) thresholds.lower = LogOdds::from_probability(*free_below);
+  if (thresholds.lower <= thresholds.upper) return thresholds;
+  return occupied_from ? Thresholds{thresholds.upper, thresholds.upper}
+                       : Thresholds{thresholds.lower, thresholds.lower};
+}
+
+Result<OccupancyMap> OccupancyArgs::apply_to(OccupancyMap map) const {
+  const int levels = map.lattice().depth();
+  if (cut_depth && *cut_depth > levels) {
+    return usage_error(fmt::format("--cut-depth: must be in 1..{}, the levels of the map, is {}", levels, *cut_depth));
+  }
+  if (occupied_from || free_below) map = with_thresholds(map, apply_to(map.options().thresholds));
+  if (cut_depth) map = cut_tree(map, *cut_depth);
+  return map;
+}
+
+std::vector<Option> occupancy_options(OccupancyArgs& args) {
+  const Limits probability{0.0, 1.0, Limits::Ends::kBothOut};
+  return {{"--occupied", 0, "P", "probability from which on a cell is occupied", "0.5; .pvx: its own",
+           within(probability, store_optional(args.occupied_from))},
+          {"--free", 0, "P", "probability below which a cell is free; unknown between the two", "0.5; .pvx: its own",
+           within(probability, store_optional(args.free_below))},
+          {"--cut-depth", 0, "N", "keep only the upper N levels of the octree: one less doubles the edge of a cell",
+           "all", within({1.0, static_cast<double>(kMaxDepth)}, store_optional(args.cut_depth))}};
 }
 
 Result<PathArgs> BuildArgs::path() const {

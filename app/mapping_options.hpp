@@ -75,6 +75,7 @@ Take store_nav_mounts(std::map<std::string, Pose>& target);
 
 /// Groups of options that write into their arguments, which must outlive them.
 OptionTable::Group echo_group(EchoArgs& args);
+std::vector<Option> occupancy_options(OccupancyArgs& args);
 OptionTable::Group map_group(BuildArgs& args);
 OptionTable::Group sensor_group(BuildArgs& args);
 

@@ -43,6 +43,8 @@ std::string describe(Format format) {
   const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
   // Formats without a suffix of their own.
   if (format == Format::kPingViewer) return "a log of beams (Ping Viewer)";
+  if (format == Format::kPingText) return "a log of beams (print of a Ping360's pings)";
+  if (format == Format::kSonarView) return "a log of beams (SonarView)";
   if (format == Format::kSeanetCapture) return "a log of beams (SeaNet, serial line)";
   if (format == Format::kUdpCapture) return "a log of beams (SeaNet, UDP packets)";
   if (is_bag(format)) return fmt::format("a ROS bag (.{})", name_of(format));

@@ -93,8 +93,10 @@ Result<Command> convert_command(const Args& args) {
        "pingvox convert harbour.bt -o harbour.yaml --min-z -0.5 --max-z 0.5", "pingvox convert seabed.ot -o seabed.asc",
        "pingvox convert hull.stl -o hull.bt --resolution 0.1"},
       "A column of a grid is occupied if any of its cells is, free if one is free and none is occupied, else unknown."};
+  std::vector<Option>& map_options = table.groups[3].options;
+  for (Option& option : occupancy_options(command.occupancy)) map_options.push_back(std::move(option));
   for (Option& option : table.groups[2].options) option.only_for = {std::string(kMeshes)};
-  for (Option& option : table.groups[3].options) option.only_for = maps;
+  for (Option& option : map_options) option.only_for = maps;
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     if (format_for_writing(command.output) == Format::kPng) {
       return usage_error(fmt::format("{}: pictures are drawn by 'pingvox render'", command.output));
@@ -117,6 +119,7 @@ Result<Command> convert_command(const Args& args) {
     if (layer_m && (command.slice.min_z_m || command.slice.max_z_m))
       return usage_error("--z: excludes --min-z and --max-z");
     if (layer_m) command.slice = {layer_m, layer_m};
+    if (const auto valid = command.occupancy.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.slice.validate(); !valid) return tl::unexpected(valid.error());
     if (command.resolution_m) {
       if (const auto lattice = Lattice::make(*command.resolution_m); !lattice) return tl::unexpected(lattice.error());

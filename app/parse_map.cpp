@@ -57,6 +57,7 @@ Result<Command> map_command(const Args& args) {
       choice("--parents", kParents, "parent value: maximum or mean of its children", map.parents));
   map_options.options.push_back(
       {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count});
+  for (Option& option : occupancy_options(command.occupancy)) map_options.options.push_back(std::move(option));
   OptionTable::Group sensor_options = sensor_group(build);
   Option origin_option{
       "--origin", 0, "X,Y,Z", "position from which a cloud was recorded, in the map frame", "0,0,0; PCD: its VIEWPOINT",
@@ -68,7 +69,7 @@ Result<Command> map_command(const Args& args) {
       "Builds a 3D occupancy map from sonar logs, in the order given: detects the echo of each beam, marks the cells\n"
       "before it free and those at it occupied.",
       {{"LOG", Positional::Count::kMany,
-        "beams (Ping Viewer's .bin, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's .graph and .log) or "
+        "beams (Ping Viewer's .bin, SonarView's .svlog, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's .graph and .log) or "
         "clouds of points (PLY, PCD, XYZ), recognised by content; - is standard input",
         store_each(command.logs)}},
       {{"Output",
@@ -97,6 +98,12 @@ Result<Command> map_command(const Args& args) {
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
     command.limited = parsed.limited;
+    if (const auto valid = command.occupancy.validate(); !valid) return tl::unexpected(valid.error());
+    if (command.occupancy.cut_depth > map.depth) {
+      return usage_error(fmt::format("--cut-depth: must be in 1..{}, the levels of the map, is {}", map.depth,
+                                     *command.occupancy.cut_depth));
+    }
+    map.thresholds = command.occupancy.apply_to(map.thresholds);
     command.map = map;
     if (const auto valid = build.echoes.validate(); !valid) return tl::unexpected(valid.error());
     command.build = build.build_options();

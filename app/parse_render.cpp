@@ -98,6 +98,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
       echo_group(args.build.echoes),
       map_group(args.build),
       sensor_group(args.build)};
+  for (Option& option : occupancy_options(panel.occupancy)) groups[0].options.push_back(std::move(option));
   const auto limit = [&](std::string_view name, const std::vector<std::string>& only_for) {
     for (auto& group : groups) {
       for (Option& option : group.options) {
@@ -112,8 +113,9 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   }
   limit("--z", {view_kind(PictureView::kSlice)});
   limit("--from", {view_kind(PictureView::kSide)});
-  limit("--min-z", {std::string(kDrawnMaps)});
-  limit("--max-z", {std::string(kDrawnMaps)});
+  for (const char* name : {"--min-z", "--max-z", "--occupied", "--free", "--cut-depth"}) {
+    limit(name, {std::string(kDrawnMaps)});
+  }
   for (const char* name : {"--sweep", "--show", "--echoes"}) limit(name, {polar, cartesian});
   limit("--between", {cartesian});
   limit("--max-range", {std::string(kBeamLogs), mapped});
@@ -174,6 +176,8 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   if (panel.view == PictureView::kSlice && (low_m || high_m)) {
     return usage_error("--view slice: draws one layer, that at --z: no --min-z, no --max-z");
   }
+  if (const auto valid = panel.occupancy.validate(); !valid) return tl::unexpected(valid.error());
+  panel.map.thresholds = panel.occupancy.apply_to(panel.map.thresholds);
   if (const auto valid = panel.map_picture.validate(); !valid) return tl::unexpected(valid.error());
   if (const auto valid = panel.map.validate(); !valid) return tl::unexpected(valid.error());
   if (const auto valid = check_options(panel.build); !valid) return tl::unexpected(valid.error());

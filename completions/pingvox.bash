@@ -16,7 +16,7 @@ _pingvox_options() {
     "") options+=(--version) ;;
     map)
       options+=(--output --format --json --quiet --progress --strict --topic --config)
-      options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads)
+      options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads --occupied --free --cut-depth)
       options+=(--poses --nav --nav-offset --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
@@ -24,11 +24,11 @@ _pingvox_options() {
     compare)
       options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
-      options+=(--output --format --strict --topic --quiet --resolution --z --min-z --max-z --height --echoes)
+      options+=(--output --format --strict --topic --quiet --resolution --z --min-z --max-z --height --occupied --free --cut-depth --echoes)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
-      options+=(--output --view --from --z --min-z --max-z --sweep --show --echoes --between --size --caption --beside)
+      options+=(--output --view --from --z --min-z --max-z --occupied --free --cut-depth --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --topic --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
@@ -111,7 +111,7 @@ _pingvox() {
         --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
-        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --z | --min-z | --max-z | --caption | --title | --beside)
+        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --caption | --title | --beside)
         return # a number or a text: nothing to offer
         ;;
     esac

@@ -19,6 +19,10 @@ std::string_view description_of(Format format) {
       return "a CSV file of beams";
     case Format::kPingViewer:
       return "a log of Ping Viewer";
+    case Format::kPingText:
+      return "a print of pings";
+    case Format::kSonarView:
+      return "a log of SonarView";
     case Format::kSeanetCapture:
     case Format::kUdpCapture:
       return "a capture of a SeaNet sonar";
@@ -77,6 +81,8 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage,
   const std::optional<Format> streamed = streamed_format_of(stream.beginning());
   if (streamed && is_bag(*streamed)) return open_bag_beams(std::move(stream), damage, topic);
   if (streamed == Format::kPingViewer) return open_ping_viewer(std::move(stream), damage);
+  if (streamed == Format::kPingText) return open_ping_text(std::move(stream), damage);
+  if (streamed == Format::kSonarView) return open_sonarview(std::move(stream), damage);
   if (streamed == Format::kSeanetCapture) return open_seanet_capture(std::move(stream), damage);
   if (streamed == Format::kUdpCapture) return open_udp_capture(std::move(stream), damage);
   if (streamed == Format::kV4log) return open_v4log(std::move(stream), damage);

@@ -36,6 +36,8 @@ FormatKind kind_of(Format format) {
     case Format::kMat:
     case Format::kCsv:
     case Format::kPingViewer:
+    case Format::kPingText:
+    case Format::kSonarView:
     case Format::kSeanetCapture:
     case Format::kUdpCapture:
     case Format::kV4log:
@@ -88,6 +90,10 @@ std::string_view name_of(Format format) {
       return "csv";
     case Format::kPingViewer:
       return "pingviewer";
+    case Format::kPingText:
+      return "pingtext";
+    case Format::kSonarView:
+      return "svlog";
     case Format::kSeanetCapture:
       return "seanet";
     case Format::kUdpCapture:
@@ -180,7 +186,9 @@ std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning
   if (looks_like_v4log(beginning)) return Format::kV4log;
   if (looks_like_dumplog(beginning)) return Format::kDumplog;
   if (looks_like_udp_capture(beginning)) return Format::kUdpCapture;
-  // It has no mark of its own: other files may have such bytes in them, but not at their beginning.
+  if (looks_like_ping_text(beginning)) return Format::kPingText;
+  // These have no mark of their own: other files may have such bytes in them, but not at their beginning.
+  if (looks_like_sonarview(beginning)) return Format::kSonarView;
   if (looks_like_seanet_capture(beginning)) return Format::kSeanetCapture;
   return std::nullopt;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/device_log.hpp"
+#include "io/stream_reader.hpp"
 #include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 
@@ -71,6 +72,27 @@ class PlacesInFile {
 
   std::deque<Known> pieces_;
   std::uint64_t end_ = 0;
+};
+
+class RawCapture final : public FrameContainer {
+ public:
+  explicit RawCapture(StreamReader reader) : reader_(std::move(reader)) {}
+
+  const std::string& name() const override { return reader_.name(); }
+  std::optional<double> share_read() const override { return reader_.share_read(); }
+
+  Result<std::optional<Piece>> next() override {
+    constexpr std::size_t kAtOnce = std::size_t{1} << 16;
+    const Result<std::span<const std::uint8_t>> bytes = reader_.peek(kAtOnce);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (bytes->empty()) return std::nullopt;
+    const std::uint64_t at = reader_.position();
+    reader_.skip(bytes->size());
+    return Piece{*bytes, at, 1, static_cast<double>(at + 1) * kSerialByte_s, kSerialByte_s};
+  }
+
+ private:
+  StreamReader reader_;
 };
 
 class FrameLog final : public DeviceLog {
@@ -166,9 +188,18 @@ const FrameProtocol& ping_protocol() {
   return kPing;
 }
 
+const FrameProtocol& sonarview_protocol() {
+  static constexpr FrameProtocol kSonarView = {check_sonarview_frame, ping_beam_in, ping_device_of};
+  return kSonarView;
+}
+
 const FrameProtocol& seanet_protocol() {
   static constexpr FrameProtocol kSeanet = {check_seanet_frame, seanet_beam_in, seanet_device_of};
   return kSeanet;
+}
+
+std::unique_ptr<FrameContainer> raw_capture(ByteStream stream) {
+  return std::make_unique<RawCapture>(StreamReader(std::move(stream)));
 }
 
 std::unique_ptr<BeamSource> beams_of(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol,

@@ -47,7 +47,14 @@ struct FrameProtocol {
 };
 
 const FrameProtocol& ping_protocol();
+const FrameProtocol& sonarview_protocol();
 const FrameProtocol& seanet_protocol();
+
+/// Time that a byte takes at the usual rate of 115,200 bits/s, ten bits a byte: for logs without times.
+inline constexpr double kSerialByte_s = 10.0 / 115200.0;
+
+/// The bytes of a serial line and nothing else. Their times are those at the usual rate.
+std::unique_ptr<FrameContainer> raw_capture(ByteStream stream);
 
 /// The beams in a container; the time of each is that of its frame's last byte.
 std::unique_ptr<BeamSource> beams_of(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol,

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cstring>
+#include <limits>
 #include <numbers>
 
 #include "io/byte_reader.hpp"
@@ -14,8 +15,8 @@ namespace {
 using Verdict = FrameCheck::Verdict;
 
 constexpr std::size_t kHeader = 8, kChecksum = 2;
-/// More than any message needs; limits how many frames a damaged length delays.
-constexpr std::size_t kMaxPayload = 4096;
+/// More than any message of a Ping360 needs; limits how many frames a damaged length delays.
+constexpr std::size_t kMaxPing360Payload = 4096;
 
 constexpr std::uint16_t kDeviceData = 2300, kAutoDeviceData = 2301;
 
@@ -35,9 +36,7 @@ std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint16_t>(sum);
 }
 
-}  // namespace
-
-FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
+FrameCheck check_frame(std::span<const std::uint8_t> bytes, std::size_t max_payload) {
   const auto* b = static_cast<const std::uint8_t*>(std::memchr(bytes.data(), 'B', bytes.size()));
   const std::size_t before = b != nullptr ? static_cast<std::size_t>(b - bytes.data()) : bytes.size();
   if (before > 0) return {Verdict::kNothing, before};
@@ -46,7 +45,7 @@ FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 4) return {Verdict::kIncomplete};
 
   const std::size_t payload = u16_at(bytes, 2);
-  if (payload > kMaxPayload) return {Verdict::kBroken, 4, "impossible length"};
+  if (payload > max_payload) return {Verdict::kBroken, 4, "impossible length"};
   const std::size_t size = kHeader + payload + kChecksum;
   if (bytes.size() < size) return {Verdict::kIncomplete};
   const std::span<const std::uint8_t> summed = bytes.first(size - kChecksum);
@@ -56,6 +55,16 @@ FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
     if (!fits) return {Verdict::kBroken, size, "impossible length"};
   }
   return {Verdict::kFrame, size};
+}
+
+}  // namespace
+
+FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
+  return check_frame(bytes, kMaxPing360Payload);
+}
+
+FrameCheck check_sonarview_frame(std::span<const std::uint8_t> bytes) {
+  return check_frame(bytes, std::numeric_limits<std::uint16_t>::max());
 }
 
 std::optional<Ping360Ping> ping360_ping(std::span<const std::uint8_t> frame) {

@@ -27,6 +27,12 @@ Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage
 bool looks_like_ping_viewer(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage);
 
+bool looks_like_ping_text(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_ping_text(ByteStream stream, Damage damage);
+
+bool looks_like_sonarview(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_sonarview(ByteStream stream, Damage damage);
+
 bool looks_like_seanet_capture(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_seanet_capture(ByteStream stream, Damage damage);
 

@@ -31,29 +31,6 @@ bool holds_seanet_line(Bytes bytes) {
   return false;
 }
 
-class SerialCapture : public FrameContainer {
- public:
-  explicit SerialCapture(StreamReader reader) : reader_(std::move(reader)) {}
-
-  const std::string& name() const override { return reader_.name(); }
-  std::optional<double> share_read() const override { return reader_.share_read(); }
-
-  Result<std::optional<Piece>> next() override {
-    // Raw captures have no times: assume the default rate of 115,200 bits/s, ten bits a byte.
-    constexpr double kByte_s = 10.0 / 115200.0;
-    constexpr std::size_t kAtOnce = std::size_t{1} << 16;
-    const Result<Bytes> bytes = reader_.peek(kAtOnce);
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (bytes->empty()) return std::nullopt;
-    const std::uint64_t at = reader_.position();
-    reader_.skip(bytes->size());
-    return Piece{*bytes, at, 1, static_cast<double>(at + 1) * kByte_s, kByte_s};
-  }
-
- private:
-  StreamReader reader_;
-};
-
 /// A line "2017.11.02 08.58.46.723;10.3.0.40;4002;0F 11 0F".
 struct Packet {
   double time_s;
@@ -151,7 +128,7 @@ bool looks_like_seanet_capture(Bytes beginning) {
 }
 
 Result<std::unique_ptr<BeamSource>> open_seanet_capture(ByteStream stream, Damage damage) {
-  return beams_of(std::make_unique<SerialCapture>(StreamReader(std::move(stream))), seanet_protocol(), damage);
+  return beams_of(raw_capture(std::move(stream)), seanet_protocol(), damage);
 }
 
 bool looks_like_udp_capture(Bytes beginning) {

@@ -115,6 +115,38 @@ TEST(Meshes, BecomeTheMapOfTheirSurface) {
   EXPECT_EQ(info(here, "coarse.pvx").at("resolution"), "0.2");
 }
 
+TEST(Thresholds, ChangeWhatCountsAsOccupiedAndAsFree) {
+  const Workplace here;
+  here.simulate_tank();
+  expect_done(here, {"map", "tank.csv", "-o", "tank.pvx"});
+  expect_done(here, {"map", "tank.csv", "-o", "strict.pvx", "--occupied", "0.7", "--free", "0.2"});
+  const FlatJson plain = info(here, "tank.pvx"), strict = info(here, "strict.pvx");
+  EXPECT_LT(std::stoull(strict.at("occupied_cells")), std::stoull(plain.at("occupied_cells")));
+  EXPECT_LT(std::stoull(strict.at("free_cells")), std::stoull(plain.at("free_cells")));
+  EXPECT_EQ(here.call({"compare", "tank.pvx", "strict.pvx"}).status, 0) << "the beliefs are the same";
+
+  expect_done(here, {"convert", "tank.pvx", "-o", "judged.pvx", "--occupied", "0.7", "--free", "0.2"});
+  EXPECT_EQ(info(here, "judged.pvx").at("occupied_cells"), strict.at("occupied_cells"));
+  EXPECT_EQ(info(here, "judged.pvx").at("free_cells"), strict.at("free_cells"));
+  expect_done(here, {"convert", "tank.pvx", "-o", "strict.bt", "--occupied", "0.7", "--free", "0.2"});
+  EXPECT_EQ(info(here, "strict.bt").at("occupied_cells"), strict.at("occupied_cells"));
+  EXPECT_EQ(info(here, "strict.bt").at("free_cells"), strict.at("free_cells"));
+}
+
+TEST(CutDepth, GivesTheSameMapWhenWrittenAndWhenConverted) {
+  const Workplace here;
+  here.simulate_tank();
+  expect_done(here, {"map", "tank.csv", "-o", "tank.ot"});
+  expect_done(here, {"map", "tank.csv", "-o", "cut.ot", "--cut-depth", "14"});
+  expect_done(here, {"convert", "tank.ot", "-o", "converted.ot", "--cut-depth", "14"});
+  EXPECT_EQ(here.read("converted.ot"), here.read("cut.ot"));
+  EXPECT_LT(std::stoull(info(here, "cut.ot").at("leaves")), std::stoull(info(here, "tank.ot").at("leaves")));
+  EXPECT_EQ(std::stoull(info(here, "cut.ot").at("occupied_cells")) % 64, 0U) << "in cells of the finest resolution";
+  expect_error(here.call({"convert", "tank.ot", "-o", "a.bt", "--cut-depth", "17"}), 2,
+               {"tank.ot", "--cut-depth: must be in 1..16"});
+  expect_done(here, {"render", "tank.ot", "-o", "coarse.png", "--cut-depth", "13", "--occupied", "0.6"});
+}
+
 TEST(Grids, AreAPictureAndItsYamlWhicheverIsNamed) {
   const Workplace here;
   here.simulate_tank();

@@ -57,18 +57,17 @@ TEST_P(Mutation, KeepsItsPromises) {
   EXPECT_GT(readable, kMutants / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Readers, Mutation,
-                         testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams},
-                                         Reader{"pingviewer", fuzz::beams}, Reader{"seanet", fuzz::beams},
-                                         Reader{"v4log", fuzz::beams}, Reader{"dumplog", fuzz::beams},
-                                         Reader{"bag", fuzz::bag}, Reader{"db3", fuzz::bag}, Reader{"mcap", fuzz::bag},
-                                         Reader{"graph", fuzz::scans}, Reader{"log", fuzz::scans},
-                                         Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
-                                         Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},
-                                         Reader{"tum", fuzz::tum}, Reader{"tlog", fuzz::nav},
-                                         Reader{"dataflash", fuzz::nav}, Reader{"navcsv", fuzz::nav},
-                                         Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Readers, Mutation,
+    testing::Values(Reader{"mat", fuzz::beams}, Reader{"csv", fuzz::beams}, Reader{"pingviewer", fuzz::beams},
+                    Reader{"svlog", fuzz::beams}, Reader{"pingtext", fuzz::beams}, Reader{"seanet", fuzz::beams},
+                    Reader{"v4log", fuzz::beams}, Reader{"dumplog", fuzz::beams}, Reader{"bag", fuzz::bag},
+                    Reader{"db3", fuzz::bag}, Reader{"mcap", fuzz::bag}, Reader{"graph", fuzz::scans},
+                    Reader{"log", fuzz::scans}, Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
+                    Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh}, Reader{"tum", fuzz::tum},
+                    Reader{"tlog", fuzz::nav}, Reader{"dataflash", fuzz::nav}, Reader{"navcsv", fuzz::nav},
+                    Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace pingvox

@@ -13,6 +13,8 @@ enum class Format {
   kMat,            ///< MATLAB 5: beams
   kCsv,            ///< beams as text (docs/formats.md)
   kPingViewer,     ///< Ping Viewer's log of a Ping360: beams
+  kPingText,       ///< pings of a Ping360 as Blue Robotics' Python library prints them: beams
+  kSonarView,      ///< log of SonarView, or capture of the line of a Ping360: beams
   kSeanetCapture,  ///< capture of the serial line of a SeaNet head: beams
   kUdpCapture,     ///< the same in UDP packets as hexadecimal text: beams
   kV4log,          ///< log of Tritech's program: beams

@@ -12,8 +12,11 @@
 // The Ping protocol of Blue Robotics, as used by scanning sonars (docs/formats.md).
 namespace pingvox {
 
-/// For FrameFinder: checks a frame, its checksum and the length of its message.
+/// For FrameFinder: checks a frame, its checksum and the length of its message. No frame of a Ping360 has a payload of
+/// more than 4096 bytes; longer ones are damage.
 FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes);
+/// The same for logs of SonarView, where payloads of other messages have up to 65,535 bytes.
+FrameCheck check_sonarview_frame(std::span<const std::uint8_t> bytes);
 
 /// One ping of a Ping360 (device_data, auto_device_data), in raw units.
 struct Ping360Ping {
