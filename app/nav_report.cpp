@@ -10,6 +10,7 @@
 
 #include "console.hpp"
 #include "map_report.hpp"
+#include "unknown_file.hpp"
 
 namespace pingvox::app {
 
@@ -27,6 +28,9 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
   for (const std::string& name : names) {
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
+    if (const auto unread = describe_unread_file(stream->beginning())) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", stream->name(), *unread));
+    }
     const Result<NavFile> nav = read_nav(std::move(*stream), damage);
     if (!nav) return tl::unexpected(nav.error());
     damaged += damaged_records(*nav);

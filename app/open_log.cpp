@@ -51,6 +51,8 @@ std::string describe(Format format) {
   if (format == Format::kDumplog) return "a log of beams (SeanetDumpLog)";
   if (format == Format::kBeamHits) return "a log of beams (bins that were hit)";
   if (format == Format::kIctineu) return "a navigation log (Ictineu)";
+  if (format == Format::kDvlA50) return "a navigation log (Water Linked DVL)";
+  if (format == Format::kNmea) return "a navigation log (NMEA 0183)";
   switch (kind_of(format)) {
     case FormatKind::kBeams:
       return with("a log of beams");

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 namespace pingvox::app {
 namespace {
@@ -17,6 +18,8 @@ constexpr std::string_view kUtf16 = "is text in UTF-16", kSaveAgain = "save it a
 constexpr std::string_view kAsCsv =
     "write its beams as CSV, with 'time_s,bearing_cw_deg,bin_length_m,intensities' as the first line "
     "(bearings clockwise from ahead, as most sonars count them; bearing_deg is counter-clockwise; docs/formats.md)";
+constexpr std::string_view kAsNavCsv =
+    "write its velocities as CSV, with 'time_s,source,quantity,x,y,z' as the first line (docs/formats.md)";
 constexpr std::string_view kWrittenOnly = "pingvox writes this format, but does not read it";
 
 /// Common files of other kinds, by their first bytes.
@@ -39,6 +42,8 @@ constexpr std::array kSignatures = {
     Signature{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
     Signature{"#ROSBAG "sv, "is a ROS bag of a version before 2.0", "convert it with 'rosbag fix'"},
     Signature{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
+    Signature{"\x7f\x7f"sv, "is a DVL log in PD0, which pingvox does not read", kAsNavCsv},
+    Signature{":SA,"sv, "is a DVL log in PD6, which pingvox does not read", kAsNavCsv},
 };
 
 /// Whether the bytes are text.
@@ -52,11 +57,17 @@ bool is_text(std::string_view bytes) {
 
 }  // namespace
 
-std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
+std::optional<std::string> describe_unread_file(std::span<const std::uint8_t> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto known =
       std::ranges::find_if(kSignatures, [&](const Signature& signature) { return text.starts_with(signature.begin); });
-  if (known != kSignatures.end()) return fmt::format("{}: {}", known->what, known->advice);
+  if (known == kSignatures.end()) return std::nullopt;
+  return fmt::format("{}: {}", known->what, known->advice);
+}
+
+std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
+  if (auto known = describe_unread_file(bytes)) return *std::move(known);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::string_view what =
       is_text(text) ? "is text, but its first line names no columns of beams, and it is no scan log, cloud or mesh"
                     : "is none of the logs, clouds, maps, meshes and trajectories that pingvox reads";

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/bag_topics.hpp"
+#include "io/dvl_a50.hpp"
 #include "io/nav_sources.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
@@ -21,29 +22,22 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// The last position of a dead reckoning that may be set to zero while it is recorded.
-struct LastPosition {
-  double time_s = 0.0;
-  Eigen::Vector3d value;
-  bool was_reset = false;
-};
-
 /// Where the samples of one message go.
 class Samples {
  public:
-  Samples(NavSources& sources, const std::string& name, double time_s, std::optional<LastPosition>& last)
-      : sources_(sources), name_(name), time_s_(time_s), last_(last) {}
+  Samples(NavSources& sources, const std::string& name, double time_s, DeadReckoningFrame& frame)
+      : sources_(sources), name_(name), time_s_(time_s), frame_(frame) {}
 
   /// Adds a position by dead reckoning and its attitude. They are not valid after a reset, because they are in another
   /// frame then.
   void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
-    constexpr double kMaxSpeed_m_s = 10.0;
-    const bool was_reset = last_ && (last_->was_reset || (position_m - last_->value).norm() >
-                                                             kMaxSpeed_m_s * std::max(time_s_ - last_->time_s, 0.1));
-    last_ = LastPosition{time_s_, position_m, was_reset};
-    add(NavQuantity::kPosition, position_m, !was_reset);
-    add(NavQuantity::kAttitude, attitude, !was_reset);
+    const bool valid = frame_.holds(time_s_, position_m);
+    add(NavQuantity::kPosition, position_m, valid);
+    add(NavQuantity::kAttitude, attitude, valid);
   }
+
+  /// What a DVL said in its own words; the message is as late as they say.
+  void add(const A50Report& report) { add_a50_report(sources_, name_, time_s_ - report.latency_s, report, frame_); }
 
   void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
     NavSample sample;
@@ -57,7 +51,7 @@ class Samples {
   NavSources& sources_;
   const std::string& name_;
   double time_s_;
-  std::optional<LastPosition>& last_;
+  DeadReckoningFrame& frame_;
 };
 
 /// Three numbers from the field of the first on.
@@ -170,6 +164,12 @@ void add_reckoning_ahead(const RosFields& message, Samples& samples) {
   add_dvl_position(message, frd_from_looking_ahead(), samples);
 }
 
+void add_json(const RosFields& message, Samples& samples) {
+  const auto members = json_members(message.text(0));
+  if (!members) return;
+  if (const A50Reading report = a50_report(*members)) samples.add(*report);
+}
+
 /// As MAVLink's ATTITUDE: of a forward-right-down body in north-east-down.
 void add_ned_attitude(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kAttitude, from_ned::attitude(three(message, 0)));
@@ -231,6 +231,7 @@ constexpr std::array kNavTypes = {
               "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w", "twist.twist.linear.x",
               "twist.twist.linear.y", "twist.twist.linear.z"}},
             add_odometry},
+    NavType{{"String", {"data"}, "dvl/json_data"}, add_json},
     NavType{{"Float64", {"data"}, "depth"}, add_depth},
     NavType{{"Float32", {"data"}, "depth"}, add_depth},
     NavType{{"Float64", {"data"}, "pressure"}, add_pressure},
@@ -253,7 +254,7 @@ class BagSurvey {
     }
     ++records_;
     Samples samples(sources_, summaries_[topic.summary].name, topic.known->time_of(message_, message.time_s),
-                    topic.last_position);
+                    topic.frame);
     kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
   }
 
@@ -274,7 +275,7 @@ class BagSurvey {
   struct Topic {
     std::size_t summary;
     std::optional<KnownTopic> known;
-    std::optional<LastPosition> last_position;
+    DeadReckoningFrame frame;
   };
 
   void add_topics() {
@@ -287,7 +288,7 @@ class BagSurvey {
         const Use use = is_sonar(topic) ? Use::kBeams : known ? Use::kNavigation : Use::kNone;
         summaries_.push_back({topic.name, topic.type, 0, use});
       }
-      topics_.push_back({place->second, std::move(known), std::nullopt});
+      topics_.push_back({place->second, std::move(known), {}});
     }
   }
 

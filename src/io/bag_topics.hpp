@@ -31,6 +31,7 @@ class RosFields {
 
   double number(std::size_t field, std::size_t i = 0) const { return message_.number(fields_[field], i); }
   std::size_t count(std::size_t field) const { return message_.count(fields_[field]); }
+  std::string_view text(std::size_t field) const { return message_.text(fields_[field]); }
   std::vector<std::uint8_t> bytes(std::size_t field) const { return message_.bytes(fields_[field]); }
 
  private:

@@ -50,6 +50,8 @@ std::string_view description_of(Format format) {
     case Format::kTlog:
     case Format::kDataflash:
     case Format::kIctineu:
+    case Format::kDvlA50:
+    case Format::kNmea:
     case Format::kNavCsv:
       return "a navigation log";
     case Format::kPly:

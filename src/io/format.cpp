@@ -59,6 +59,8 @@ FormatKind kind_of(Format format) {
     case Format::kTlog:
     case Format::kDataflash:
     case Format::kIctineu:
+    case Format::kDvlA50:
+    case Format::kNmea:
     case Format::kNavCsv:
       return FormatKind::kNav;
     case Format::kPly:
@@ -128,6 +130,10 @@ std::string_view name_of(Format format) {
       return "dataflash";
     case Format::kIctineu:
       return "ictineu";
+    case Format::kDvlA50:
+      return "a50";
+    case Format::kNmea:
+      return "nmea";
     case Format::kNavCsv:
       return "csv";
     case Format::kPly:
@@ -163,6 +169,7 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (looks_like_tlog(bytes)) return Format::kTlog;
   if (looks_like_ictineu(bytes)) return Format::kIctineu;
   if (looks_like_beam_hits(bytes)) return Format::kBeamHits;
+  if (looks_like_a50(bytes)) return Format::kDvlA50;
   if (looks_like_nav_csv(bytes)) return Format::kNavCsv;
   if (looks_like_ply(bytes)) return is_ply_with_faces(bytes) ? Format::kPlyMesh : Format::kPly;
   if (looks_like_pcd(bytes)) return Format::kPcd;
@@ -171,6 +178,7 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (looks_like_scan_graph(bytes)) return Format::kScanGraph;
   if (looks_like_scan_log(bytes)) return Format::kScanLog;
   if (looks_like_csv(bytes)) return Format::kCsv;
+  if (looks_like_nmea(bytes)) return Format::kNmea;
   if (looks_like_off(bytes)) return Format::kOff;
   if (looks_like_binary_stl(bytes) || looks_like_stl_text(bytes)) return Format::kStl;
   if (looks_like_tum(bytes)) return Format::kTum;

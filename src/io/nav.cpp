@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -22,6 +24,21 @@ NavSample* NavSources::add(const std::string& name, NavQuantity quantity, const 
   return &samples.back();
 }
 
+bool DeadReckoningFrame::holds(double time_s, const Eigen::Vector3d& position_m) {
+  constexpr double kMaxSpeed_m_s = 10.0, kShortestStep_s = 0.1;
+  if (last_) {
+    const double step_s = std::max(time_s - last_->time_s, kShortestStep_s);
+    was_reset_ = was_reset_ || (position_m - last_->position_m).norm() > kMaxSpeed_m_s * step_s;
+  }
+  last_ = Last{time_s, position_m};
+  return !was_reset_;
+}
+
+double angle_of_degrees_minutes(double number) {
+  const double degrees = std::trunc(number / 100.0);
+  return (degrees + (number - 100.0 * degrees) / 60.0) * std::numbers::pi / 180.0;
+}
+
 Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
   const std::optional<Format> format = format_of(file.view());
   if (format && is_bag(*format)) return read_nav(ByteStream(file), damage);
@@ -32,6 +49,10 @@ Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
     reading = read_dataflash(file.view());
   } else if (format == Format::kIctineu) {
     reading = read_ictineu(file.view());
+  } else if (format == Format::kDvlA50) {
+    reading = read_a50(file.view());
+  } else if (format == Format::kNmea) {
+    reading = read_nmea(file.view());
   } else if (format == Format::kNavCsv) {
     reading = read_nav_csv(file.view());
   } else {

@@ -88,15 +88,9 @@ void add_mti(NavSources& sources, const std::vector<double>& row) {
               sample_at(row[0], from_ned::body(body_from_mti * Eigen::Vector3d(row[4], row[5], row[6]))));
 }
 
-/// Degrees and minutes as one number, ddmm.mmm.
-double angle_rad(double degrees_minutes) {
-  const double degrees = std::trunc(degrees_minutes / 100.0);
-  return (degrees + (degrees_minutes - 100.0 * degrees) / 60.0) * kDegree_rad;
-}
-
 /// Whether it is a place on the earth.
 bool add_dgps(NavSources& sources, const std::vector<double>& row) {
-  const Eigen::Vector3d fix(angle_rad(row[1]), angle_rad(row[2]), row[4]);
+  const Eigen::Vector3d fix(angle_of_degrees_minutes(row[1]), angle_of_degrees_minutes(row[2]), row[4]);
   if (std::fabs(fix.x()) > std::numbers::pi / 2.0 || std::fabs(fix.y()) > std::numbers::pi) return false;
   NavSample sample;
   sample.valid = row[3] != 0.0;

@@ -26,6 +26,12 @@ NavReading read_dataflash(std::span<const std::uint8_t> bytes);
 bool looks_like_ictineu(std::span<const std::uint8_t> bytes);
 NavReading read_ictineu(std::span<const std::uint8_t> bytes);
 
+bool looks_like_a50(std::span<const std::uint8_t> bytes);
+NavReading read_a50(std::span<const std::uint8_t> bytes);
+
+bool looks_like_nmea(std::span<const std::uint8_t> bytes);
+NavReading read_nmea(std::span<const std::uint8_t> bytes);
+
 bool looks_like_nav_csv(std::span<const std::uint8_t> bytes);
 NavReading read_nav_csv(std::span<const std::uint8_t> bytes);
 

@@ -105,4 +105,11 @@ std::optional<std::uint64_t> count_in(std::string_view text) {
   return value;
 }
 
+std::optional<unsigned> hex_byte_in(std::string_view text) {
+  unsigned value = 0;
+  const char* const end = text.data() + text.size();
+  if (text.size() != 2 || std::from_chars(text.data(), end, value, 16).ptr != end) return std::nullopt;
+  return value;
+}
+
 }  // namespace pingvox

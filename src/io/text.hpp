@@ -53,5 +53,7 @@ std::optional<double> number_in(std::string_view text);
 std::optional<float> float_in(std::string_view text);
 /// Parses all of `text` as an unsigned integer. nullopt: invalid.
 std::optional<std::uint64_t> count_in(std::string_view text);
+/// Parses two hexadecimal digits. nullopt: invalid.
+std::optional<unsigned> hex_byte_in(std::string_view text);
 
 }  // namespace pingvox

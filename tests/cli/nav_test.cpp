@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "call.hpp"
 
@@ -40,6 +41,17 @@ TEST(Nav, InfoSaysWhatEachSourceHolds) {
   EXPECT_THAT(text.out, HasSubstr("velocity"));
   EXPECT_THAT(text.out, HasSubstr("first at byte"));
   expect_error(here.call({"info", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
+}
+
+TEST(Nav, RefusesOtherDvlsByName) {
+  const Workplace here;
+  here.write("dive.pd0", "\x7f\x7f\x10\x01");
+  here.write("dive.pd6", ":SA,+0.12,-3.40,91.20\r\n:TS,26112317040000,35.0,+12.5,0.0,1500.0,0\r\n");
+  here.write("beams.csv", "time_s,bearing_deg,bin_length_m,intensities\n0,0,0.1,1,2,3\n");
+  for (const auto& [file, name] : {std::pair("dive.pd0", "PD0"), std::pair("dive.pd6", "PD6")}) {
+    expect_error(here.call({"info", file}), 1, {file, name});
+    expect_error(here.call({"map", "beams.csv", "--nav", file, "-o", "map.bt"}), 1, {file, name});
+  }
 }
 
 TEST(Nav, BecomesCsvAndNothingElse) {

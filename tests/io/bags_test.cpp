@@ -560,10 +560,25 @@ TEST(BagRecordings, ADvlA50) {
     if (path.empty()) GTEST_SKIP() << "no recording";
     const auto nav = read_nav(*ByteStream::open(path));
     ASSERT_TRUE(nav);
-    ASSERT_THAT(nav->log.sources(), SizeIs(2));
-    const NavSummary summary = summary_of(nav->log.sources().front());
-    EXPECT_EQ(summary.samples, reports);
-    EXPECT_EQ(summary.samples - summary.invalid, valid);
+    // Velocity and range as its driver sends them, and as the device says them itself.
+    ASSERT_THAT(nav->log.sources(), SizeIs(4));
+    const NavSource* own = nullptr;
+    const NavSource* sent = nullptr;
+    for (const NavSource& source : nav->log.sources()) {
+      if (source.quantity != NavQuantity::kVelocity) continue;
+      const NavSummary summary = summary_of(source);
+      EXPECT_EQ(summary.samples, reports);
+      EXPECT_EQ(summary.samples - summary.invalid, valid);
+      (source.name == "/dvl/json_data" ? own : sent) = &source;
+    }
+    ASSERT_TRUE(own != nullptr && sent != nullptr);
+    for (std::size_t i = 0; i < reports; ++i) {
+      ASSERT_EQ(own->samples[i].value, sent->samples[i].value);
+      // By the README: what the device held back before it sent it.
+      const double late_s = sent->samples[i].time_s - own->samples[i].time_s;
+      ASSERT_GT(late_s, 0.09) << i;
+      ASSERT_LT(late_s, name == std::string("dvl_circle.bag") ? 4.7 : 0.4) << i;
+    }
   }
 }
 

@@ -66,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Reader{"log", fuzz::scans}, Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
                     Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh}, Reader{"tum", fuzz::tum},
                     Reader{"tlog", fuzz::nav}, Reader{"dataflash", fuzz::nav}, Reader{"navcsv", fuzz::nav},
-                    Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
+                    Reader{"a50", fuzz::nav}, Reader{"nmea", fuzz::nav}, Reader{"bt", fuzz::maps},
+                    Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

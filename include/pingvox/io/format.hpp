@@ -32,6 +32,8 @@ enum class Format {
   kTlog,           ///< MAVLink telemetry log of a ground station: navigation
   kDataflash,      ///< log that an ArduPilot autopilot keeps: navigation
   kIctineu,        ///< DVL, MTi or DGPS log of the vehicle Ictineu, as text: navigation
+  kDvlA50,         ///< lines of a Water Linked DVL, JSON or serial: navigation
+  kNmea,           ///< NMEA 0183: navigation
   kNavCsv,         ///< navigation as text (docs/formats.md)
   kPly,            ///< a cloud of points
   kPcd,            ///< a cloud of points, PCL's

@@ -1,0 +1,154 @@
+// Logs of Water Linked's DVLs: JSON, serial, and tables of the same names.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/io/nav.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+FileBytes file_of(const std::string& text) {
+  return {"dvl.log", {text.begin(), text.end()}};
+}
+
+NavFile read(const std::string& text) {
+  auto nav = read_nav(file_of(text));
+  EXPECT_TRUE(nav) << nav.error().message;
+  return nav ? *std::move(nav) : NavFile{*NavLog::make({}, NavClock::kUnknown), 0, {}};
+}
+
+const std::vector<NavSample>& samples_of(const NavFile& nav, NavQuantity quantity) {
+  for (const NavSource& source : nav.log.sources()) {
+    if (source.quantity == quantity) return source.samples;
+  }
+  static const std::vector<NavSample> kNone;
+  return kNone;
+}
+
+std::string velocity(const std::string& time, const std::string& valid, const std::string& more = "") {
+  return R"({"time":100,"vx":0.5,"vy":-0.25,"vz":0.125,"fom":0.01,"covariance":[[1,2],[3,4]],"altitude":1.5,)"
+         R"("transducers":[{"id":0,"velocity":9,"beam_valid":true}],"velocity_valid":)" +
+         valid + R"(,"status":0,"format":"json_v3","type":"velocity")" + more + time + "}\r\n";
+}
+
+std::string at_us(const std::string& made, const std::string& sent) {
+  return ",\"time_of_validity\":" + made + ",\"time_of_transmission\":" + sent;
+}
+
+TEST(A50, ReadsJsonInOurFramesAndAtTheTimeOfValidity) {
+  const std::string log = velocity(at_us("5000000", "5350000"), "true") +
+                          R"({"response_to":"get_config","success":true,"format":"json_v3","type":"response"})"
+                          "\n" +
+                          velocity(at_us("5100000", "36100000"), "false") +
+                          R"({"ts":5.2,"x":1,"y":2,"z":3,"std":0.1,"roll":10,"pitch":20,"yaw":30,"status":0,)"
+                          R"("format":"json_v3","type":"position_local"})"
+                          "\n";
+  EXPECT_EQ(format_of(file_of(log).view()), Format::kDvlA50);
+  const NavFile nav = read(log);
+  EXPECT_EQ(nav.records, 4U);
+  EXPECT_TRUE(nav.damage.empty());
+  EXPECT_EQ(nav.log.clock(), NavClock::kUnknown) << "the device's own";
+  const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
+  ASSERT_EQ(velocities.size(), 2U);
+  EXPECT_EQ(velocities[0].value, Eigen::Vector3d(0.5, 0.25, -0.125)) << "not those of a beam";
+  EXPECT_EQ(velocities[0].deviation.x(), 0.01);
+  EXPECT_DOUBLE_EQ(velocities[0].time_s, 5.0);
+  EXPECT_TRUE(velocities[0].valid);
+  EXPECT_DOUBLE_EQ(velocities[1].time_s, 5.1) << "31 s late, and still then";
+  EXPECT_FALSE(velocities[1].valid) << "its pretty numbers do not count";
+  EXPECT_FALSE(samples_of(nav, NavQuantity::kRange).at(1).valid);
+  EXPECT_EQ(samples_of(nav, NavQuantity::kPosition).at(0).value, Eigen::Vector3d(2, 1, -3));
+  EXPECT_NEAR(samples_of(nav, NavQuantity::kAttitude).at(0).value.z(), 60 * kDegree, 1e-12);
+}
+
+TEST(A50, OldReportsHaveTheSumOfTheirStepsAsTime) {
+  const NavFile nav = read(velocity("", "true") + velocity("", "true"));
+  const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
+  ASSERT_EQ(velocities.size(), 2U);
+  EXPECT_NEAR(velocities[1].time_s - velocities[0].time_s, 0.1, 1e-12);
+}
+
+TEST(A50, ReadsTheSerialProtocolWithAnyLineEnd) {
+  const std::string log =
+      "wrz,0.120,-0.400,2.000,y,1.30,1.855,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,7,14,123.00,1*50\r"
+      "wru,0,0.070,1.10,-40,-95*9c\n"
+      "wrp,49056.809,0.41,0.15,1.23,0.4,53.9,13.0,19.3,0*de\r\n";
+  EXPECT_EQ(format_of(file_of(log).view()), Format::kDvlA50);
+  const NavFile nav = read(log);
+  EXPECT_EQ(nav.records, 3U);
+  EXPECT_TRUE(nav.damage.empty());
+  const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
+  ASSERT_EQ(velocities.size(), 1U);
+  EXPECT_EQ(velocities[0].value, Eigen::Vector3d(0.12, 0.4, -2.0));
+  EXPECT_EQ(velocities[0].deviation.x(), 1.855);
+  EXPECT_DOUBLE_EQ(velocities[0].time_s, 7e-6);
+  EXPECT_EQ(samples_of(nav, NavQuantity::kRange).at(0).value.x(), 1.3);
+  EXPECT_EQ(samples_of(nav, NavQuantity::kPosition).at(0).value, Eigen::Vector3d(0.15, 0.41, -1.23));
+  EXPECT_DOUBLE_EQ(samples_of(nav, NavQuantity::kPosition).at(0).time_s, 49056.809);
+}
+
+TEST(A50, CountsDamageByKindAndPlace) {
+  const std::string good = "wru,0,0.070,1.10,-40,-95*9c\n";
+  const NavFile nav =
+      read(good + "wru,1,0.070,1.10,-40,-95*9c\n" + velocity("", "true") + "{\"type\":\"velo\n" +
+           R"({"type":"velocity","vx":1,"vy":null,"vz":0,"velocity_valid":true})" + "\nnoise\n" + good + R"({"time":)");
+  EXPECT_EQ(nav.records, 3U);
+  ASSERT_EQ(nav.damage.size(), 4U);
+  EXPECT_EQ(nav.damage[0].what, "wrong checksum");
+  EXPECT_EQ(nav.damage[0].first_byte, good.size());
+  EXPECT_EQ(nav.damage[1].what, "line that is no report");
+  EXPECT_EQ(nav.damage[1].count, 2U);
+  EXPECT_EQ(nav.damage[2].what, "report without its numbers");
+  EXPECT_EQ(nav.damage[3].what, "cut off at the end");
+  EXPECT_FALSE(read_nav(file_of(good + "noise\n"), Damage::kFail));
+  // The vendor's example for water tracking has a wrong checksum.
+  EXPECT_FALSE(
+      format_of(file_of("wrs,0.120,-0.400,2.000,y,1.855,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,7,14,123.00,1*50\n").view()));
+}
+
+TEST(A50, ReadsATableWithTheTimesOfTheHost) {
+  const std::string log =
+      "timestamp,vx,vy,vz,altitude,velocity_valid,time_of_validity,time_of_transmission\n"
+      "1700000000.5,1,2,3,0.5,True,1000000,4000000\n"
+      "1700000001.5,1,2,3,0.5,False,2000000,5000000\n"
+      "1700000002,1,2,3\n";
+  EXPECT_EQ(format_of(file_of(log).view()), Format::kDvlA50);
+  const NavFile nav = read(log);
+  EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
+  const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
+  ASSERT_EQ(velocities.size(), 2U);
+  EXPECT_DOUBLE_EQ(velocities[0].time_s, 1699999997.5) << "when it was true, not when it came";
+  EXPECT_TRUE(velocities[0].valid);
+  EXPECT_FALSE(velocities[1].valid);
+  ASSERT_EQ(nav.damage.size(), 1U);
+}
+
+TEST(A50, TheRecordingHasAsManyReportsAsItsReadmeSays) {
+  const auto path = std::filesystem::path(PINGVOX_SHARED_DATA) / "dvl-a50/20211119-133009dvl_data_time.csv";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const auto file = read_file(path.string());
+  ASSERT_TRUE(file);
+  const auto nav = read_nav(*file);
+  ASSERT_TRUE(nav) << nav.error().message;
+  EXPECT_EQ(nav->records, 751U);
+  EXPECT_TRUE(nav->damage.empty());
+  const NavSource* source = nav->log.best(NavQuantity::kVelocity);
+  ASSERT_NE(source, nullptr);
+  const NavSummary summary = summary_of(*source);
+  EXPECT_EQ(summary.samples, 751U);
+  EXPECT_EQ(summary.samples - summary.invalid, 745U);
+  EXPECT_NEAR(summary.to_s - summary.from_s, 59.0, 0.1);
+}
+
+}  // namespace
+}  // namespace pingvox
