@@ -287,7 +287,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
       {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "it does not move",
         store(args.poses)},
        {"--nav", 0, "FILE",
-        "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, ROS bag, CSV), instead of --poses", "",
+        "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of --poses", "",
         store_each(args.navs), Repeats::kEachCounts},
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
         within({-1e10, 1e10}, store_number(args.nav_offset_s))},

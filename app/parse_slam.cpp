@@ -36,7 +36,7 @@ Result<Command> slam_command(const Args& args) {
                     store_number(command.map_resolution_m)};
   resolution.only_with = {{"--map"}};
   Option nav{"--nav", 0,
-             "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, ROS bag, CSV)",
+             "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)",
              "",      store_each(command.navs)};
   nav.repeats = Repeats::kEachCounts;
   Option nav_mount{"--nav-mount",        0,
