@@ -11,7 +11,8 @@ namespace pingvox {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr std::string_view kNoNumbers = "report without its numbers", kChecksum = "wrong checksum";
+constexpr std::string_view kNoNumbers = "report without its numbers", kChecksum = "wrong checksum",
+                           kNoChecksum = "line without checksum";
 
 /// Reads JSON from the front of a text.
 class JsonText {
@@ -188,7 +189,7 @@ A50Reading a50_report(const TextMembers& members) {
 A50Reading a50_serial_report(std::string_view line) {
   const std::size_t star = line.rfind('*');
   if (!line.starts_with('w')) return tl::unexpected(kNoReport);
-  if (star == std::string_view::npos || line.size() != star + 3) return tl::unexpected("line without checksum");
+  if (star == std::string_view::npos || line.size() != star + 3) return tl::unexpected(kNoChecksum);
   std::string_view rest = line.substr(0, star);
   if (hex_byte_in(line.substr(star + 1)) != crc8(rest)) return tl::unexpected(kChecksum);
   std::vector<std::string_view> fields;

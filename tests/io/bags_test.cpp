@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -572,12 +573,15 @@ TEST(BagRecordings, ADvlA50) {
       (source.name == "/dvl/json_data" ? own : sent) = &source;
     }
     ASSERT_TRUE(own != nullptr && sent != nullptr);
-    for (std::size_t i = 0; i < reports; ++i) {
-      ASSERT_EQ(own->samples[i].value, sent->samples[i].value);
+    for (const NavSample& sample : own->samples) {
+      if (!sample.valid) continue;
+      const auto same =
+          std::ranges::find_if(sent->samples, [&](const NavSample& s) { return s.value == sample.value; });
+      ASSERT_NE(same, sent->samples.end());
       // By the README: what the device held back before it sent it.
-      const double late_s = sent->samples[i].time_s - own->samples[i].time_s;
-      ASSERT_GT(late_s, 0.09) << i;
-      ASSERT_LT(late_s, name == std::string("dvl_circle.bag") ? 4.7 : 0.4) << i;
+      const double late_s = same->time_s - sample.time_s;
+      ASSERT_GT(late_s, 0.09);
+      ASSERT_LT(late_s, name == std::string("dvl_circle.bag") ? 4.7 : 0.4);
     }
   }
 }

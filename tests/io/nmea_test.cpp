@@ -94,7 +94,7 @@ TEST(Nmea, ReadsCompassSounderAndLog) {
 
 TEST(Nmea, CountsDamageByKindAndPlace) {
   std::string wrong = kRmc;
-  wrong[20] = '7';
+  wrong[20] = '8';
   const std::string cut = "$GPGGA,000000.50,4736.45";
   const NavFile nav = read(kRmc + wrong + cut + kRmc + "$GPGLL,9136.45,N,12220.47,W,000001.00,A*1B\r\n$GPHDT,9");
   EXPECT_EQ(nav.records, 3U);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace pingvox {
+
+/// The date and time of day in the name of a log, as Ping Viewer writes it ("20240405-091648974.bin") and others do
+/// ("2024-04-05 09-19-03.csv"): seconds since 1970 if it were UTC, though programs write local time. nullopt: there is
+/// none.
+std::optional<double> date_in_name(std::string_view path);
+
+/// A stretch of time.
+struct TimeSpan {
+  double from_s = 0.0, to_s = 0.0;
+};
+
+/// What must be added to UTC to get local time: the quarter hours, 14 hours at most, with which the two overlap.
+/// nullopt: there are none, or several.
+std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc);
+
+}  // namespace pingvox

@@ -1,0 +1,100 @@
+#include "pingvox/io/clock.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/nav.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::Optional;
+
+TEST(Clock, ADateInTheNameOfALog) {
+  // 2024-04-05 09:16:48.974
+  EXPECT_THAT(date_in_name("dives/2024/20240405-091648974.bin"), Optional(1712308608.974));
+  EXPECT_THAT(date_in_name("2024-04-05 09-16-48.csv"), Optional(1712308608.0));
+  EXPECT_EQ(date_in_name("20240405.bin"), std::nullopt) << "no time of day";
+  EXPECT_EQ(date_in_name("20241305-091648974.bin"), std::nullopt) << "no 13th month";
+  EXPECT_EQ(date_in_name("dive 20240405-091648974.bin"), std::nullopt);
+  EXPECT_EQ(date_in_name(""), std::nullopt);
+}
+
+TEST(Clock, TheTimeZoneIsTheOnlyOneWithWhichTheLogsOverlap) {
+  EXPECT_THAT(local_from_utc_s({3600.0 - 100.0, 3600.0 + 200.0}, {0.0, 300.0}), Optional(3600.0));
+  EXPECT_THAT(local_from_utc_s({-12600.0, -12590.0}, {0.0, 300.0}), Optional(-12600.0)) << "Newfoundland";
+  EXPECT_EQ(local_from_utc_s({3600.0, 3700.0}, {0.0, 1000.0}), std::nullopt) << "an hour, and a quarter less";
+  EXPECT_EQ(local_from_utc_s({400.0, 500.0}, {0.0, 300.0}), std::nullopt) << "neither";
+}
+
+// A Ping1D's log, named by its local time, and what the vehicle recorded of the same pings.
+TEST(Clock, ALogOfPingViewerIsOnTheClockOfItsVehicle) {
+  const auto folder = std::filesystem::path(PINGVOX_SHARED_DATA) / "bluerov2-echosounder-nav";
+  const std::string name = (folder / "20240405-091648974.bin").string();
+  if (!std::filesystem::exists(name)) GTEST_SKIP() << name << " is not there";
+  const auto log = read_file(name);
+  const auto nav = read_nav(*read_file((folder / "2024-04-05 09-25-32.tlog").string()));
+  ASSERT_TRUE(log && nav);
+  const NavSource* distances = nullptr;
+  for (const NavSource& source : nav->log.sources()) {
+    if (source.name == "DISTANCE_SENSOR 1/194") distances = &source;
+  }
+  ASSERT_NE(distances, nullptr);
+
+  // Each read of the serial line has its time in front, in UTF-16 of 24 bytes; a profile (1300) begins with the
+  // distance in mm.
+  struct Ping {
+    double time_s;
+    double distance_m;
+  };
+  std::vector<Ping> pings;
+  const auto& bytes = log->bytes;
+  const auto equals = [&](std::size_t at, const std::vector<std::uint8_t>& wanted) {
+    return std::equal(wanted.begin(), wanted.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  double read_s = 0.0;
+  for (std::size_t at = 0; at + 40 < bytes.size(); ++at) {
+    if (equals(at, {0, 0, 0, 24, 0, '0'}) && equals(at + 8, {0, ':'})) {
+      const auto two = [&](std::size_t i) { return 10 * (bytes[at + 5 + 2 * i] - '0') + bytes[at + 7 + 2 * i] - '0'; };
+      read_s = 3600 * two(0) + 60 * two(3) + two(6) + two(9) / 100.0 + (bytes[at + 27] - '0') / 1000.0;
+    }
+    if (!equals(at, {'B', 'R'}) || !equals(at + 4, {0x14, 0x05})) continue;
+    const int mm = bytes[at + 8] + 256 * bytes[at + 9] + 65536 * bytes[at + 10];
+    pings.push_back({read_s, mm / 10 / 100.0});
+  }
+  EXPECT_GT(pings.size(), 6400U) << "of 6428; some are cut by the end of a read";
+
+  const std::optional<double> start_s = date_in_name(name);
+  ASSERT_TRUE(start_s);
+  const auto& samples = distances->samples;
+  const auto zone_s = local_from_utc_s({*start_s + pings.front().time_s, *start_s + pings.back().time_s},
+                                       {samples.front().time_s, samples.back().time_s});
+  EXPECT_THAT(zone_s, Optional(-7 * 3600.0)) << "Seattle in summer";
+  std::vector<double> late_s;
+  for (const Ping& ping : pings) {
+    const double utc_s = *start_s - *zone_s + ping.time_s;
+    double nearest_s = 0.5;
+    for (auto sample = std::ranges::lower_bound(samples, utc_s - 0.5, {}, &NavSample::time_s);
+         sample != samples.end() && sample->time_s < utc_s + 0.5; ++sample) {
+      if (std::abs(sample->value.x() - ping.distance_m) > 1e-6) continue;
+      const double difference_s = sample->time_s - utc_s;
+      if (std::abs(difference_s) < std::abs(nearest_s)) nearest_s = difference_s;
+    }
+    if (nearest_s < 0.5) late_s.push_back(nearest_s);
+  }
+  ASSERT_GT(late_s.size(), 3000U);
+  std::ranges::nth_element(late_s, late_s.begin() + static_cast<std::ptrdiff_t>(late_s.size() / 2));
+  EXPECT_NEAR(late_s[late_s.size() / 2], 0.0, 0.02);
+}
+
+}  // namespace
+}  // namespace pingvox
