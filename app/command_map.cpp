@@ -106,7 +106,8 @@ JsonObject nav_json(const VehiclePath& path) {
       .add("poses", path.trajectory.poses().size())
       .add("gaps", path.trajectory.gaps())
       .add("skipped", path.nav->damaged)
-      .add("velocity", path.nav->velocity);
+      .add("velocity", path.nav->velocity)
+      .add("clock", json_of(path.nav->offset));
 }
 
 std::string json_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
@@ -171,8 +172,9 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
     beams = report_line("beam", beam_text(totals.beam)) +
             report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
-  return name + "\n" + report_line("read", read) + (path.nav ? report_line("nav", nav_text(path)) : "") + beams +
-         map_text(map, map.counts()) +
+  return name + "\n" + report_line("read", read) +
+         (path.nav ? report_line("nav", nav_text(path)) + report_line("nav clock", text_of(path.nav->offset)) : "") +
+         beams + map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
@@ -185,7 +187,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   const Stopwatch total;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const Result<VehiclePath> path = vehicle_path(command.path, command.damage);
+  const Result<VehiclePath> path = vehicle_path(command.path, {command.logs.front(), command.topic}, command.damage);
   if (!path) return tl::unexpected(path.error());
 
   Totals totals;

@@ -14,6 +14,7 @@
 #include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
+#include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
@@ -47,11 +48,10 @@ Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, Damag
 
 /// Gives the smoother all beams and navigation. Returns how many records were skipped.
 /// @param first  the first log, opened
-Result<std::size_t> read_all(SlamSmoother& smoother, const SlamCommand& command, std::unique_ptr<BeamSource> first) {
-  const Result<NavFiles> nav = read_navs(command.navs, command.damage);
-  if (!nav) return tl::unexpected(nav.error());
-  if (const auto added = smoother.add(nav->log); !added) return tl::unexpected(added.error());
-  std::size_t skipped = nav->damaged;
+Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCommand& command,
+                             std::unique_ptr<BeamSource> first) {
+  if (const auto added = smoother.add(nav.log); !added) return tl::unexpected(added.error());
+  std::size_t skipped = nav.damaged;
   for (const std::string& name : command.logs) {
     const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command.damage);
     if (!log) return tl::unexpected(log.error());
@@ -157,8 +157,8 @@ JsonObject json_of(const Seconds& seconds) {
       .add("total", round_to_us(seconds.total));
 }
 
-std::string json_of(const SlamSolution& solution, const SlamCommand& command, std::size_t skipped,
-                    const Seconds& seconds) {
+std::string json_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
+                    std::size_t skipped, const Seconds& seconds) {
   const SlamReport& report = solution.report;
   JsonObject loops, velocity, json;
   loops.add("found", report.loops_found).add("kept", report.loops_kept);
@@ -176,7 +176,8 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, st
       .add("pair_median_m", report.pair_median_m)
       .add("loops", loops)
       .add("velocity", velocity)
-      .add("heading", report.heading);
+      .add("heading", report.heading)
+      .add("nav_clock", json_of(offset));
   if (command.slam.matching == Matching::kPairs) {
     json.add("calibration", calibration_json(solution.calibration));
   } else {
@@ -200,11 +201,13 @@ std::string seconds_text(const Seconds& seconds) {
                      seconds.read, seconds.solve, seconds.map, seconds.write);
 }
 
-std::string text_of(const SlamSolution& solution, const SlamCommand& command, const Seconds& seconds) {
+std::string text_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
+                    const Seconds& seconds) {
   const SlamReport& report = solution.report;
   std::string text = title_of(command);
   text += report_line(
       "read", fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes));
+  text += report_line("nav clock", text_of(offset));
   text += report_line("velocity",
                       fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s", on_one_line(report.velocity),
                                   report.velocities, report.velocities_clipped, report.longest_gap_s));
@@ -245,9 +248,16 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   Seconds seconds;
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
   if (!map) return tl::unexpected(map.error());
-  SlamSmoother smoother(command.slam);
   const Stopwatch read;
-  const Result<std::size_t> skipped = read_all(smoother, command, std::move(first));
+  const Result<NavFiles> nav = read_navs(command.navs, command.damage);
+  if (!nav) return tl::unexpected(nav.error());
+  const Result<NavOffset> offset =
+      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), ""}, command.damage);
+  if (!offset) return tl::unexpected(offset.error());
+  SlamOptions options = command.slam;
+  options.nav_offset_s = offset->offset_s;
+  SlamSmoother smoother(std::move(options));
+  const Result<std::size_t> skipped = read_all(smoother, *nav, command, std::move(first));
   if (!skipped) return tl::unexpected(skipped.error());
   seconds.read = read.seconds();
 
@@ -281,8 +291,8 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   seconds.write = write.seconds();
   seconds.total = total.seconds();
   const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(*solution, command, *skipped, seconds))
-                                   : console.summarise(text_of(*solution, command, seconds), command.output);
+                                   ? console.print(json_of(*solution, command, *offset, *skipped, seconds))
+                                   : console.summarise(text_of(*solution, command, *offset, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   return 0;
 }

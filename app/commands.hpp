@@ -73,9 +73,9 @@ struct OccupancyArgs {
 
 /// Where the vehicle was: at most one of the two.
 struct PathArgs {
-  std::optional<std::string> poses;  ///< TUM lines
-  std::vector<std::string> navs;     ///< navigation logs
-  double nav_offset_s = 0.0;         ///< added to its times
+  std::optional<std::string> poses;    ///< TUM lines
+  std::vector<std::string> navs;       ///< navigation logs
+  std::optional<double> nav_offset_s;  ///< added to their times; nullopt: to be found
 };
 
 struct MapCommand {
@@ -200,6 +200,7 @@ struct SlamCommand {
   double map_resolution_m = MapOptions{}.resolution_m;
   Damage damage = Damage::kSkip;
   SlamOptions slam;
+  std::optional<double> nav_offset_s;  ///< added to the times of `navs`; nullopt: to be found
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
 };

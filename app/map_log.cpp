@@ -72,7 +72,7 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, describe(*format)));
 }
 
-Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage) {
+Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage) {
   if (path.navs.empty()) {
     return trajectory_of(path.poses).map([](Trajectory trajectory) {
       return VehiclePath{std::move(trajectory), std::nullopt};
@@ -80,23 +80,25 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage) {
   }
   const Result<NavFiles> nav = read_navs(path.navs, damage);
   if (!nav) return tl::unexpected(nav.error());
+  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, sonar, damage);
+  if (!offset) return tl::unexpected(offset.error());
   const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
   const auto name_files = [&](Error error) {
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
     return error;
   };
   if (!has(NavQuantity::kPosition) && !has(NavQuantity::kFix) && has(NavQuantity::kVelocity)) {
-    return odometry_of(nav->log, {.body_from_source = {}, .offset_s = path.nav_offset_s})
+    return odometry_of(nav->log, {.body_from_source = {}, .offset_s = offset->offset_s})
         .map([&](Odometry odometry) {
           return VehiclePath{std::move(odometry.odometry_from_body),
-                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged}};
+                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset}};
         })
         .map_error(name_files);
   }
-  return nav_trajectory(nav->log, path.nav_offset_s)
+  return nav_trajectory(nav->log, offset->offset_s)
       .map([&](NavTrajectory made) {
         return VehiclePath{std::move(made.trajectory),
-                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged}};
+                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset}};
       })
       .map_error(name_files);
 }
@@ -109,12 +111,12 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
   Result<NavTrajectory> made = has_attitude ? nav_trajectory(read->log) : nav_positions(read->log);
   if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
   return VehiclePath{std::move(made->trajectory),
-                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read)}};
+                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read), {}}};
 }
 
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
-  const auto& [attitude, position, velocity, damaged] = *path.nav;
+  const auto& [attitude, position, velocity, damaged, offset] = *path.nav;
   std::string sources = on_one_line(attitude.empty() ? position : attitude);
   if (!velocity.empty()) {
     sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "nav_clock.hpp"
 #include "open_log.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -21,12 +22,14 @@ struct VehiclePath {
     std::string attitude, position;  ///< its sources
     std::string velocity;            ///< dead reckoning: its source; there is no position then
     std::size_t damaged = 0;         ///< records that could not be read
+    NavOffset offset;                ///< that was added to its times
   };
   std::optional<Nav> nav;  ///< nullopt: it is not from a navigation log
 };
 /// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
 /// reckoning.
-Result<VehiclePath> vehicle_path(const PathArgs& path, Damage damage);
+/// @param sonar  the log whose clock its times are to be on
+Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage);
 /// What one navigation log says; one that has positions but no attitude gives poses that are not turned.
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.

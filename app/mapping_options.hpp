@@ -52,7 +52,7 @@ struct BuildArgs {
   EchoArgs echoes;
   std::string poses;
   std::vector<std::string> navs;
-  double nav_offset_s = 0.0;
+  std::optional<double> nav_offset_s;
 
   BuildOptions build_options() const {
     BuildOptions all = head.apply_to(build, nullptr);

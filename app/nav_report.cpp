@@ -10,6 +10,7 @@
 
 #include "console.hpp"
 #include "map_report.hpp"
+#include "pingvox/slam/clock_offset.hpp"
 #include "unknown_file.hpp"
 
 namespace pingvox::app {
@@ -24,6 +25,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
   assert(!names.empty());
   std::vector<NavSource> sources;
   std::optional<NavClock> clock;
+  std::vector<YawChange> first_turns;
   std::size_t damaged = 0;
   for (const std::string& name : names) {
     Result<ByteStream> stream = ByteStream::open(name);
@@ -34,12 +36,25 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
     const Result<NavFile> nav = read_nav(std::move(*stream), damage);
     if (!nav) return tl::unexpected(nav.error());
     damaged += damaged_records(*nav);
-    clock = clock.value_or(nav->log.clock()) == nav->log.clock() ? nav->log.clock() : NavClock::kUnknown;
-    for (const NavSource& source : nav->log.sources()) {
+    const NavClock own = nav->log.clock();
+    clock = clock.value_or(own);
+    double offset_s = 0.0;
+    if (own != *clock && own != NavClock::kUnknown && *clock != NavClock::kUnknown) {
+      const Result<ClockOffset> offset = clock_offset(first_turns, nav->log);
+      if (!offset) {
+        return fail(offset.error().code,
+                    fmt::format("{}: the offset between its clock and that of {} cannot be found: {}", name,
+                                names.front(), offset.error().message));
+      }
+      offset_s = offset->offset_s;
+    }
+    if (names.size() > 1 && sources.empty()) first_turns = yaw_changes(nav->log);
+    for (NavSource source : nav->log.sources()) {
+      for (NavSample& sample : source.samples) sample.time_s += offset_s;
       const auto same = std::ranges::find_if(
           sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });
       if (same == sources.end()) {
-        sources.push_back(source);
+        sources.push_back(std::move(source));
       } else {
         same->samples.insert(same->samples.end(), source.samples.begin(), source.samples.end());
       }

@@ -12,11 +12,13 @@ namespace pingvox::app {
 /// How many were skipped.
 std::size_t damaged_records(const NavFile& nav);
 
-/// Navigation logs of one vehicle on one clock, put together.
+/// Navigation logs of one vehicle, put together on the clock of the first.
 struct NavFiles {
   NavLog log;               ///< sources of the same name and quantity are one
   std::size_t damaged = 0;  ///< records that could not be read
 };
+/// A log that counts from another start is aligned with the first by how the vehicle turned in both; kUnsupported when
+/// that cannot be told.
 /// @param names  at least one; - is standard input
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage);
 

@@ -55,8 +55,8 @@ Result<Command> slam_command(const Args& args) {
   OptionTable::Group navigation{
       "Navigation",
       {std::move(nav),
-       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "0",
-        within({-1e10, 1e10}, store_number(slam.nav_offset_s))},
+       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
+        within({-1e10, 1e10}, store_optional(command.nav_offset_s))},
        {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
         "0,0,0,0,0,0", store_mount(slam.body_from_sonar)},
        std::move(nav_mount)}};

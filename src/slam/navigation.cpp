@@ -16,12 +16,6 @@ constexpr double kMadToDeviation = 1.4826;   ///< of normal noise
 constexpr double kMinDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
 
-double median(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
-
 /// Valid samples at rising times; of equal times the first counts.
 std::vector<NavSample> usable(const NavSource& source) {
   std::vector<NavSample> samples;
@@ -76,6 +70,13 @@ std::vector<double> noise_density(const std::vector<double>& times_s, std::span<
 }
 
 }  // namespace
+
+double median(std::vector<double> numbers) {
+  assert(!numbers.empty());
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
 
 TimeSeries::TimeSeries(std::vector<double> times_s, std::vector<double> values)
     : times_s_(std::move(times_s)), values_(std::move(values)) {
@@ -137,6 +138,17 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
     heading.pitch_rad.emplace(times_s, std::move(pitch));
   }
   return heading;
+}
+
+std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source) {
+  std::optional<HeadingSource> best;
+  for (const NavSource& source : log.sources()) {
+    if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
+    const auto mount = body_from_source.find(source.name);
+    auto heading = heading_source(source, mount != body_from_source.end() ? mount->second : Pose::Identity());
+    if (heading && (!best || heading->yaw_rad.size() > best->yaw_rad.size())) best = *std::move(heading);
+  }
+  return best;
 }
 
 std::optional<VelocitySource> velocity_source(const NavSource& source, const Pose& body_from_source,

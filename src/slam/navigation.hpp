@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@
 
 /// What a vehicle's navigation says, prepared for dead reckoning.
 namespace pingvox {
+
+/// REQUIRES at least one number.
+double median(std::vector<double> numbers);
 
 /// Numbers over time, linear between the samples.
 class TimeSeries {
@@ -43,6 +47,10 @@ struct HeadingSource {
 
 /// Turned into the frame of the body by the mount. nullopt: no valid sample.
 std::optional<HeadingSource> heading_source(const NavSource& source, const Pose& body_from_source);
+
+/// The heading or attitude with most samples, the first of equals.
+/// @param body_from_source  how sources are mounted, by name; the identity for others
+std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source);
 
 /// Velocity over ground in the frame of the body [m/s], without outliers.
 struct VelocitySource {

@@ -21,21 +21,10 @@ Pose mount_of(const OdometryOptions& options, const std::string& source) {
   return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
 }
 
-/// The heading with most samples, the first of equals.
-std::optional<HeadingSource> best_heading(const NavLog& log, const OdometryOptions& options) {
-  std::optional<HeadingSource> best;
-  for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
-    auto heading = heading_source(source, mount_of(options, source.name));
-    if (heading && (!best || heading->yaw_rad.size() > best->yaw_rad.size())) best = *std::move(heading);
-  }
-  return best;
-}
-
 }  // namespace
 
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
-  const std::optional<HeadingSource> heading = best_heading(log, options);
+  const std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
   std::optional<VelocitySource> velocity;
   if (const NavSource* best = log.best(NavQuantity::kVelocity))

@@ -41,12 +41,6 @@ double yaw_of(const Pose& pose) {
   return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
 }
 
-double median(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
-
 SlamCalibration calibration_of(const SlamSolver& solver) {
   const auto estimate = [&](std::size_t unknown) {
     const auto i = static_cast<Eigen::Index>(unknown);

@@ -3,8 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <numbers>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "call.hpp"
 
@@ -47,6 +55,60 @@ TEST(Bags, ATopicIsChosenByName) {
   EXPECT_EQ(here.call({"convert", kMcap, "-o", "echoes.csv", "--topic", "/echo"}).status, 0);
   EXPECT_EQ(here.call({"render", kMcap, "-o", "echoes.png", "--topic", "/echo"}).status, 0);
   expect_error(here.call({"map", kMcap, "-o", "map.bt", "--topic", "/other"}), 1, {"lz4", "/other", "/echo"});
+}
+
+/// The lines of a text, without comments, as numbers between blanks or commas; words are left out.
+std::vector<std::vector<double>> rows_of(std::string text) {
+  std::ranges::replace(text, ',', ' ');
+  std::istringstream lines(text);
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::vector<double> row;
+    for (double number = 0.0; words >> number;) row.push_back(number);
+    if (row.size() >= 2) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+// The DVL of this vehicle looks ahead: at the net of a fish farm, 1.02 m to 1.06 m away while the head looks there.
+TEST(Bags, MapsANetWhereTheDvlMeasuresIt) {
+  const std::string bag = PINGVOX_SOURCE_DIR "/../shared/data/solaqua-ping360-dvl/sintef_dataset_ros2_bag_fixed.db3";
+  if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
+  const Workplace here;
+  const Outcome mapped = here.call({"map", bag, "--nav", bag, "-o", "net.bt"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("+0.000 s: both have dates\n"));
+  for (const char* file : {"beams.csv", "path.tum"}) ASSERT_EQ(here.call({"convert", bag, "-o", file}).status, 0);
+  ASSERT_EQ(here.call({"convert", "net.bt", "-o", "net.xyz"}).status, 0);
+
+  constexpr double kAhead_rad = 0.25;
+  double from_s = std::numeric_limits<double>::infinity(), to_s = 0.0;
+  for (const auto& beam : rows_of(here.read("beams.csv"))) {
+    if (std::abs(std::remainder(beam[1], 2.0 * std::numbers::pi)) > kAhead_rad) continue;
+    from_s = std::min(from_s, beam[0]);
+    to_s = std::max(to_s, beam[0]);
+  }
+  const auto cells = rows_of(here.read("net.xyz"));
+  std::vector<double> distances_m;
+  for (const auto& pose : rows_of(here.read("path.tum"))) {
+    if (pose[0] < from_s || pose[0] > to_s) continue;
+    const Eigen::Quaterniond turn(pose[7], pose[4], pose[5], pose[6]);
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const auto& cell : cells) {
+      const Eigen::Vector3d at =
+          turn.conjugate() * Eigen::Vector3d(cell[0] - pose[1], cell[1] - pose[2], cell[2] - pose[3]);
+      const bool is_ahead = at.x() > 0.8 && std::abs(at.y()) < 0.15 * at.x() && std::abs(at.z()) < 0.1;
+      if (is_ahead) nearest_m = std::min(nearest_m, at.x());
+    }
+    distances_m.push_back(nearest_m);
+  }
+  ASSERT_GT(distances_m.size(), 5U);
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::ranges::nth_element(distances_m, middle);
+  // How far the two are apart in the vehicle is not known.
+  EXPECT_NEAR(*middle, 1.04, 0.15);
+  RecordProperty("net_m", std::to_string(*middle));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -147,6 +148,37 @@ TEST(Nav, WithoutAPositionAVelocityGivesDeadReckoning) {
               HasSubstr("ahrs and dead reckoning by dvl"));
   const Outcome render = here.call({"render", "dive.csv", "--view", "above", "--nav", "nav.csv", "-o", "map.png"});
   EXPECT_EQ(render.status, 0) << render.err;
+}
+
+TEST(Nav, FindsTheOffsetBetweenTheClocks) {
+  const Workplace here;
+  // 2026-01-01 00:00:10 UTC, at noon in local time and in the name of the log.
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "beams.csv", "--turns", "2"}).status, 0);
+  std::filesystem::copy_file(here.path("beams.csv"), here.path("20260101-120010000.csv"));
+  const auto nav_from = [](double begin_s, const std::string& clock) {
+    std::string nav = clock + "time_s,source,quantity,x,y,z\n";
+    for (int i = 0; i <= 160; ++i) {
+      nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", begin_s + i * 0.25);
+    }
+    return nav;
+  };
+  here.write("unix.csv", nav_from(1767225600.0, "# clock: unix\n"));
+  here.write("boot.csv", nav_from(0.0, "# clock: boot\n"));
+  here.write("unknown.csv", nav_from(0.0, ""));
+  const auto map = [&](const std::string& log, const std::string& nav) {
+    return here.call({"map", log, "--nav", nav, "-o", "map.bt"});
+  };
+  const Outcome by_name = map("20260101-120010000.csv", "unix.csv");
+  ASSERT_EQ(by_name.status, 0) << by_name.err;
+  EXPECT_THAT(by_name.out, HasSubstr("-1767225610.000 s: the date in the name of the sonar log, in UTC+12:00\n"));
+  EXPECT_THAT(map("beams.csv", "unknown.csv").out, HasSubstr("+0.000 s: taken as one clock\n"));
+  // The vehicle does not turn, and nothing else tells.
+  expect_error(map("beams.csv", "unix.csv"), 1, {"beams.csv", "--nav-offset"});
+  expect_error(map("beams.csv", "boot.csv"), 1, {"beams.csv", "--nav-offset"});
+  const Outcome given =
+      here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
+  ASSERT_EQ(given.status, 0) << given.err;
+  EXPECT_THAT(given.out, HasSubstr(R"("clock": {"offset_s": 0, "sd_s": null, "from": "--nav-offset"})"));
 }
 
 TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {

@@ -1,0 +1,136 @@
+#include "nav_clock.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pingvox/io/byte_stream.hpp"
+#include "pingvox/io/clock.hpp"
+#include "pingvox/slam/clock_offset.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// Times since the start of a device or of a log stay below it; 2001 since 1970.
+constexpr double kFirstDate_s = 1e9;
+
+Result<std::unique_ptr<BeamSource>> open(const SonarLog& sonar, Damage damage) {
+  return ByteStream::open(sonar.name).and_then([&](ByteStream stream) {
+    return open_beams(std::move(stream), damage, sonar.topic);
+  });
+}
+
+std::optional<TimeSpan> span_of(const NavLog& nav) {
+  std::optional<TimeSpan> span;
+  for (const NavSource& source : nav.sources()) {
+    const double from_s = source.samples.front().time_s, to_s = source.samples.back().time_s;
+    span = span ? TimeSpan{std::min(span->from_s, from_s), std::max(span->to_s, to_s)} : TimeSpan{from_s, to_s};
+  }
+  return span;
+}
+
+bool overlap(const TimeSpan& a, const TimeSpan& b) {
+  return a.from_s <= b.to_s && b.from_s <= a.to_s;
+}
+
+/// What one reading of the sonar log says.
+struct SonarTimes {
+  TimeSpan span;
+  std::vector<YawChange> changes;
+};
+
+enum class Want { kSpan, kTurns };
+
+/// nullopt: it has no beams.
+/// @param enough  the rest need not be read once the log overlaps it
+Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage, Want want,
+                                           const std::optional<TimeSpan>& enough = std::nullopt) {
+  const auto source = open(sonar, damage);
+  if (!source) return tl::unexpected(source.error());
+  std::optional<SonarTimes> times;
+  PictureTurns turns;
+  for (;;) {
+    Result<std::optional<Beam>> beam = (*source)->next();
+    if (!beam) return tl::unexpected(beam.error());
+    if (!*beam) break;
+    const double time_s = (*beam)->time_s;
+    if (!times) times = SonarTimes{{time_s, time_s}, {}};
+    times->span = {std::min(times->span.from_s, time_s), std::max(times->span.to_s, time_s)};
+    if (enough && overlap(times->span, *enough)) break;
+    if (want == Want::kTurns) turns.add(*std::move(*beam));
+  }
+  if (times) times->changes = turns.finish();
+  return times;
+}
+
+std::string zone_text(double zone_s) {
+  const auto minutes = static_cast<int>(zone_s / 60.0);
+  return fmt::format("UTC{}{}:{:02}", minutes < 0 ? '-' : '+', std::abs(minutes) / 60, std::abs(minutes) % 60);
+}
+
+Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, Damage damage) {
+  const auto times = times_of(sonar, damage, Want::kTurns);
+  if (!times) return tl::unexpected(times.error());
+  const Result<ClockOffset> found = clock_offset(*times ? (*times)->changes : std::vector<YawChange>(), nav);
+  if (!found) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: the offset between its clock and that of --nav is not known and cannot be found: {}: "
+                            "give --nav-offset, the seconds to add to the times of --nav (0: one clock)",
+                            sonar.name, found.error().message));
+  }
+  return NavOffset{found->offset_s, found->deviation_s,
+                   fmt::format("the turning of the sonar's picture, {} parts of sweeps", found->changes)};
+}
+
+}  // namespace
+
+Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& nav, const SonarLog& sonar,
+                             Damage damage) {
+  if (given) return NavOffset{*given, std::nullopt, "--nav-offset"};
+  const NavOffset one_clock{0.0, std::nullopt, "taken as one clock"};
+  const std::optional<TimeSpan> nav_span = span_of(nav);
+  if (sonar.name == "-" || !nav_span) return one_clock;  // a pipe is read once
+  const Result<std::optional<SonarTimes>> times = times_of(sonar, damage, Want::kSpan, nav_span);
+  if (!times || !*times) return one_clock;  // whoever maps the log says what is wrong with it
+  const TimeSpan& span = (*times)->span;
+
+  const bool nav_has_dates = nav.clock() == NavClock::kUnix;
+  const NavOffset by_dates{0.0, std::nullopt, "both have dates"};
+  if (nav_has_dates && overlap(span, *nav_span)) return by_dates;
+  if (nav_has_dates && span.from_s >= kFirstDate_s) {
+    // Programs without a time zone write local time.
+    const auto zone_s = local_from_utc_s(span, *nav_span);
+    return zone_s ? NavOffset{*zone_s, std::nullopt, "both have dates, the sonar log's in " + zone_text(*zone_s)}
+                  : by_dates;
+  }
+  if (nav_has_dates) {
+    if (const auto start_s = date_in_name(sonar.name)) {
+      const auto zone_s = local_from_utc_s({*start_s + span.from_s, *start_s + span.to_s}, *nav_span);
+      if (zone_s) {
+        return NavOffset{*zone_s - *start_s, std::nullopt,
+                         "the date in the name of the sonar log, in " + zone_text(*zone_s)};
+      }
+    }
+  }
+  if (nav.clock() == NavClock::kUnknown && overlap(span, *nav_span)) return one_clock;
+  return by_picture(nav, sonar, damage);
+}
+
+std::string text_of(const NavOffset& offset) {
+  std::string text = fmt::format("{:+.3f} s", offset.offset_s);
+  if (offset.deviation_s) text += fmt::format(" (sd {:.3f} s)", *offset.deviation_s);
+  return text + ": " + offset.from;
+}
+
+JsonObject json_of(const NavOffset& offset) {
+  JsonObject json;
+  json.add("offset_s", offset.offset_s);
+  offset.deviation_s ? json.add("sd_s", *offset.deviation_s) : json.add_null("sd_s");
+  return json.add("from", offset.from);
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "json.hpp"
+#include "pingvox/io/beams.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// What is added to the times of the navigation to get those of the sonar log, and how that is known.
+struct NavOffset {
+  double offset_s = 0.0;
+  std::optional<double> deviation_s;  ///< standard deviation; nullopt: it was not estimated
+  std::string from;                   ///< "--nav-offset", "both have dates"
+};
+
+/// The sonar log whose clock is wanted.
+struct SonarLog {
+  std::string name;   ///< "-" is standard input
+  std::string topic;  ///< of a bag; empty: the only one with beams
+};
+
+/// The offset between the clocks of a sonar log and of navigation: what was `given`, else by their dates, else by the
+/// turning of the sonar's picture. Times without dates that overlap are taken as those of one clock, unless the
+/// navigation counts from the start of its device.
+/// @return kUnsupported saying why when it cannot be told
+Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& nav, const SonarLog& sonar,
+                             Damage damage);
+
+/// "+12.345 s (sd 0.021 s), by ..."
+std::string text_of(const NavOffset& offset);
+/// {"offset_s": ..., "sd_s": ..., "from": ...}
+JsonObject json_of(const NavOffset& offset);
+
+}  // namespace pingvox::app

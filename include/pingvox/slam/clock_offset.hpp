@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/sweep.hpp"
+
+/// What lies between the clocks of two recordings of one vehicle, by how it turned.
+namespace pingvox {
+
+/// How much a yaw changed between two times of a clock [rad].
+struct YawChange {
+  double from_s = 0.0, to_s = 0.0;
+  double by_rad = 0.0;
+};
+
+/// How the vehicle turned, by the picture of its sonar: when the vehicle turns left, the picture turns right. Parts of
+/// 30 degrees are looked for in the next sweep, up to 60 degrees away; those that are not found clearly give nothing.
+class PictureTurns {
+ public:
+  /// Takes the next beam, which must be valid.
+  void add(Beam beam);
+  /// The changes of yaw found so far; the beams since the last whole sweep count as one.
+  std::vector<YawChange> finish();
+
+ private:
+  void compare(Sweep sweep);
+
+  SweepAssembler assembler_;
+  Sweep before_;
+  std::vector<YawChange> changes_;
+};
+
+/// How the vehicle turned, by its heading or attitude with most samples: a change for each second.
+std::vector<YawChange> yaw_changes(const NavLog& log);
+
+struct ClockOffset {
+  double offset_s = 0.0;     ///< to add to the times of the navigation
+  double deviation_s = 0.0;  ///< standard deviation
+  std::size_t changes = 0;   ///< of yaw that were compared
+};
+
+/// The offset with which the heading (or attitude) with most samples explains changes of yaw best, whatever the overlap
+/// of the two recordings.
+/// @return kUnsupported saying why when it cannot be told: no heading, too few changes, a vehicle that turns too little
+///         or evenly, or another offset that is nearly as good
+Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
+
+}  // namespace pingvox
