@@ -91,7 +91,7 @@ Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, Damage da
 Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& nav, const SonarLog& sonar,
                              Damage damage) {
   if (given) return NavOffset{*given, std::nullopt, "--nav-offset"};
-  const NavOffset one_clock{0.0, std::nullopt, "taken as one clock"};
+  NavOffset one_clock{0.0, std::nullopt, "taken as one clock"};
   const std::optional<TimeSpan> nav_span = span_of(nav);
   if (sonar.name == "-" || !nav_span) return one_clock;  // a pipe is read once
   const Result<std::optional<SonarTimes>> times = times_of(sonar, damage, Want::kSpan, nav_span);
@@ -99,7 +99,7 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
   const TimeSpan& span = (*times)->span;
 
   const bool nav_has_dates = nav.clock() == NavClock::kUnix;
-  const NavOffset by_dates{0.0, std::nullopt, "both have dates"};
+  NavOffset by_dates{0.0, std::nullopt, "both have dates"};
   if (nav_has_dates && overlap(span, *nav_span)) return by_dates;
   if (nav_has_dates && span.from_s >= kFirstDate_s) {
     // Programs without a time zone write local time.

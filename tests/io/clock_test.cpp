@@ -68,8 +68,8 @@ TEST(Clock, ALogOfPingViewerIsOnTheClockOfItsVehicle) {
       read_s = 3600 * two(0) + 60 * two(3) + two(6) + two(9) / 100.0 + (bytes[at + 27] - '0') / 1000.0;
     }
     if (!equals(at, {'B', 'R'}) || !equals(at + 4, {0x14, 0x05})) continue;
-    const int mm = bytes[at + 8] + 256 * bytes[at + 9] + 65536 * bytes[at + 10];
-    pings.push_back({read_s, mm / 10 / 100.0});
+    const int cm = (bytes[at + 8] + 256 * bytes[at + 9] + 65536 * bytes[at + 10]) / 10;
+    pings.push_back({read_s, cm / 100.0});
   }
   EXPECT_GT(pings.size(), 6400U) << "of 6428; some are cut by the end of a read";
 
