@@ -172,7 +172,7 @@ std::vector<YawChange> yaw_changes(const NavLog& log) {
   const TimeSeries& yaw = heading->yaw_rad;
   for (double from_s = yaw.from_s(); from_s + kStep_s <= yaw.to_s(); from_s += kStep_s) {
     if (yaw.gap_s(from_s, from_s + kStep_s) > 0.0) continue;
-    changes.push_back({from_s, from_s + kStep_s, yaw.at(from_s + kStep_s) - yaw.at(from_s)});
+    changes.push_back({from_s, from_s + kStep_s, yaw.at(from_s + kStep_s) - yaw.at(from_s), 0.0});
   }
   return changes;
 }
@@ -222,8 +222,12 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
     found.offset_s += std::clamp(comparison.step(found.offset_s, deviation_rad).step_s, -kCoarse_s, kCoarse_s);
   }
   found.changes = comparison.rests_rad(found.offset_s).size();
-  found.deviation_s = comparison.step(found.offset_s, deviation_rad).deviation_s;
-  constexpr double kMaxDeviation_s = 0.5;
+  // Where in a part of a sweep the vehicle turns may be the same each time: that error does not average out.
+  std::vector<double> spreads_s;
+  for (const YawChange& change : changes) spreads_s.push_back(change.spread_s);
+  found.deviation_s = std::hypot(comparison.step(found.offset_s, deviation_rad).deviation_s,
+                                 median(std::move(spreads_s)) / std::sqrt(12));
+  constexpr double kMaxDeviation_s = 1.0;
   if (!(found.deviation_s <= kMaxDeviation_s)) return cannot_tell("the vehicle turns too evenly");
   return found;
 }

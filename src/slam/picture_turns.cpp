@@ -152,7 +152,9 @@ std::optional<YawChange> change_of(const TurnPicture& before, const TurnPicture&
   const double part = bend < 0.0 ? 0.5 * (alike[best - 1] - alike[best + 1]) / bend : 0.0;
   const int shift = static_cast<int>(best) - kMaxShift;
   const double to_s = *after.window_time_s(first + shift), next_s = *after.window_time_s(first + shift + 1);
-  return YawChange{*from_s, to_s + part * (next_s - to_s), -(shift + part) * kStep_rad};
+  const double spread_s =
+      std::abs(before.time_s(TurnPicture::wrap(first + kWindow - 1)) - before.time_s(TurnPicture::wrap(first)));
+  return YawChange{*from_s, to_s + part * (next_s - to_s), -(shift + part) * kStep_rad, spread_s};
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -71,8 +70,8 @@ TEST(ClockOffset, MovesWithTheClockOfTheNavigation) {
   const auto changes = seen(wander, 0, 900);
   const auto zero = clock_offset(changes, log_of(wander, 0.0, 90.0, 0.05, 0.0));
   ASSERT_TRUE(zero) << zero.error().message;
-  EXPECT_LT(zero->deviation_s, 0.1);
-  EXPECT_NEAR(zero->offset_s, 0.0, std::max(0.05, 4.0 * zero->deviation_s));
+  EXPECT_LT(zero->deviation_s, 0.4);
+  EXPECT_NEAR(zero->offset_s, 0.0, 0.1);
   for (const double clock_s : {37.3, -1234.56, 1.7e9}) {
     const auto moved = clock_offset(changes, log_of(wander, 0.0, 90.0, 0.05, clock_s));
     ASSERT_TRUE(moved) << clock_s << ": " << moved.error().message;
@@ -146,7 +145,7 @@ TEST(ClockOffset, OfTheMarinasSonarAndCompass) {
   const auto offset = clock_offset(turns.finish(), nav->log);
   ASSERT_TRUE(offset) << offset.error().message;
   EXPECT_NEAR(offset->offset_s, -0.6, 0.4);
-  EXPECT_LT(offset->deviation_s, 0.2);
+  EXPECT_LT(offset->deviation_s, 0.5);
 }
 
 }  // namespace

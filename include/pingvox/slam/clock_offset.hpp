@@ -14,6 +14,7 @@ namespace pingvox {
 struct YawChange {
   double from_s = 0.0, to_s = 0.0;
   double by_rad = 0.0;
+  double spread_s = 0.0;  ///< how long what told it took: its times are the middle
 };
 
 /// How the vehicle turned, by the picture of its sonar: when the vehicle turns left, the picture turns right. Parts of
