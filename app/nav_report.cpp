@@ -30,10 +30,12 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
   for (const std::string& name : names) {
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
-    if (const auto unread = describe_unread_file(stream->beginning())) {
-      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", stream->name(), *unread));
-    }
+    const std::string shown = stream->name();
+    const std::optional<std::string> unread = describe_unread_file(stream->beginning());
     const Result<NavFile> nav = read_nav(std::move(*stream), damage);
+    if (!nav && unread && nav.error().code == Error::Code::kUnsupported) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
+    }
     if (!nav) return tl::unexpected(nav.error());
     damaged += damaged_records(*nav);
     const NavClock own = nav->log.clock();
