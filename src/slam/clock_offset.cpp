@@ -170,7 +170,10 @@ std::vector<YawChange> yaw_changes(const NavLog& log) {
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s) return changes;
   const TimeSeries& yaw = heading->yaw_rad;
-  for (double from_s = yaw.from_s(); from_s + kStep_s <= yaw.to_s(); from_s += kStep_s) {
+  // Counted: adding a step to a time that is damaged may leave it as it was.
+  const auto steps = static_cast<int>((yaw.to_s() - yaw.from_s()) / kStep_s);
+  for (int i = 0; i < steps; ++i) {
+    const double from_s = yaw.from_s() + i * kStep_s;
     if (yaw.gap_s(from_s, from_s + kStep_s) > 0.0) continue;
     changes.push_back({from_s, from_s + kStep_s, yaw.at(from_s + kStep_s) - yaw.at(from_s), 0.0});
   }

@@ -109,6 +109,12 @@ TEST(ClockOffset, OfTwoLogsOfOneVehicle) {
   EXPECT_LT(offset->deviation_s, 0.02);
 }
 
+TEST(ClockOffset, TimesThatStepsCannotMoveComeToAnEnd) {
+  const auto changes = yaw_changes(log_of(wander, 0.0, 90.0, 16.0, 1e17));
+  EXPECT_LE(changes.size(), 100U);
+  EXPECT_FALSE(clock_offset(changes, log_of(wander, 0.0, 90.0, 0.05, 0.0)));
+}
+
 std::filesystem::path shared(const std::string& name) {
   return std::filesystem::path(PINGVOX_SHARED_DATA) / name;
 }
