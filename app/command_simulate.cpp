@@ -49,6 +49,7 @@ class TruthRecorder final : public BeamSource {
 Result<Scene> scene_of(const SimulateCommand& command) {
   if (command.world == "tank") return tank_scene(command.tank);
   if (command.world == "harbour") return harbour_scene({});
+  if (command.world == "marina") return marina_scene({});
   if (command.world == "seabed") return seabed_scene({});
   if (command.world == "cave") return cave_scene({});
   const Result<FileBytes> file = read_file(command.world);
@@ -80,6 +81,11 @@ Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, c
   }
   const Route* route = scene.route(command.motion);
   if (!route) return Journey{Trajectory::still(Pose::Identity()), command.turns.value_or(5)};
+  if (command.motion == Motion::kByHand) {
+    Trajectory way = drive_by_hand(*route, command.travel, sonar.seed);
+    const double duration = way.poses().back().time_s;
+    return Journey{std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
+  }
   const std::size_t turns = command.turns.value_or(turns_in(length_m(*route) / command.travel.speed_m_s));
   const double duration = static_cast<double>(turns) * turn_s;
   constexpr double kMaxPoses = 1e6;
@@ -152,7 +158,7 @@ Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& e,
   });
 }
 
-Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map, const Trajectory& way,
+Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map, double cell_m, const Trajectory& way,
                          const SonarSimulator& simulator, const TruthRecorder& recorder, const SonarOptions& sonar,
                          const std::optional<SimulatedNav>& nav) {
   const std::filesystem::path folder = *command.truth;
@@ -164,7 +170,7 @@ Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map
   if (auto written = write_trajectory(in_folder("poses.tum"), way); !written) return written;
   if (auto written = write_ranges(in_folder("ranges.csv"), simulator, recorder.sent(), sonar); !written) return written;
   auto written = write_file(in_folder("world.ply"), [&](std::ostream& out) {
-    return write_mesh_ply(simulator.world().mesh(0.1 * command.truth_resolution_m), out);
+    return write_mesh_ply(simulator.world().mesh(0.1 * cell_m), out);
   });
   if (!written) return written;
   if (nav) {
@@ -181,6 +187,8 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   if (!scene) return tl::unexpected(scene.error());
   SonarOptions sonar = command.sonar;
   const double range = command.range_m.value_or(scene->sonar_range_m);
+  sonar.beams_per_s = scene->beams_per_s;
+  const double cell_m = command.truth_resolution_m.value_or(scene->cell_m);
   sonar.bin_length_m = command.bin_length_m.value_or(range / static_cast<double>(sonar.bins));
   if (sonar.bin_length_m > 1.0) {
     return fail(Error::Code::kBadOption,
@@ -195,7 +203,7 @@ Result<int> run(const SimulateCommand& command, Console& console) {
   // Steps that may fail come before the long ones.
   std::optional<OccupancyMap> map;
   if (command.truth) {
-    Result<OccupancyMap> made = true_map(*scene, journey->way, command.truth_resolution_m);
+    Result<OccupancyMap> made = true_map(*scene, journey->way, cell_m);
     if (!made) return tl::unexpected(made.error());
     map = *std::move(made);
   }
@@ -238,7 +246,7 @@ Result<int> run(const SimulateCommand& command, Console& console) {
     summary += fmt::format("{}: {} samples of navigation\n", on_one_line(*command.nav), samples);
   }
   if (map) {
-    const auto truth = write_truth(command, *map, journey->way, simulator, recorder, sonar, nav);
+    const auto truth = write_truth(command, *map, cell_m, journey->way, simulator, recorder, sonar, nav);
     if (!truth) return tl::unexpected(truth.error());
     summary += fmt::format("{}: ground truth (poses.tum, ranges.csv, world.ply, world.bt{})\n",
                            on_one_line(*command.truth), nav ? ", nav.toml" : "");

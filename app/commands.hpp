@@ -186,8 +186,8 @@ struct SimulateCommand {
   std::optional<std::size_t> turns;  ///< nullopt: for the whole route
   std::optional<std::string> nav;    ///< file for what navigation sensors say
   NavSensorOptions nav_sensors;
-  std::optional<std::string> truth;  ///< folder for the ground truth
-  double truth_resolution_m = 0.05;
+  std::optional<std::string> truth;          ///< folder for the ground truth
+  std::optional<double> truth_resolution_m;  ///< else by the world
 };
 
 struct SlamCommand {

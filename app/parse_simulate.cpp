@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array kMotions = {Choice<Motion>{"still", Motion::kStill}, Choice<Motion>{"line", Motion::kLine},
                                  Choice<Motion>{"lawn-mower", Motion::kLawnMower},
-                                 Choice<Motion>{"loop", Motion::kLoop}};
+                                 Choice<Motion>{"loop", Motion::kLoop}, Choice<Motion>{"by-hand", Motion::kByHand}};
 constexpr std::array kCsvOnly = {Choice<Format>{"csv", Format::kCsv}};
 
 }  // namespace
@@ -30,7 +30,7 @@ Result<Command> simulate_command(const Args& args) {
   SonarOptions& sonar = command.sonar;
   NavSensorOptions& sensors = command.nav_sensors;
   const Take world = [&](const std::string& text) -> Result<void> {
-    const Args known = {"tank", "harbour", "seabed", "cave"};
+    const Args known = {"tank", "harbour", "marina", "seabed", "cave"};
     std::error_code error;
     const bool is_known = std::find(known.begin(), known.end(), text) != known.end();
     if (!is_known && !std::filesystem::path(text).has_extension() && !std::filesystem::exists(text, error)) {
@@ -46,7 +46,8 @@ Result<Command> simulate_command(const Args& args) {
       "Simulates the log of a scanning sonar in a world of your choice, with ground truth if asked. The same options\n"
       "give the same bytes.",
       {{"WORLD", Positional::Count::kOne,
-        "tank (square, with a floater), harbour (quay walls, piles, a hull), seabed (a slope with boulders), cave (a "
+        "tank (square, with a floater), harbour (quay walls, piles, a hull), marina (canals and basins, 400 m long), "
+        "seabed (a slope with boulders), cave (a "
         "tunnel), or the file of a mesh in metres (OFF, PLY, STL)",
         world}},
       {{"Output",
@@ -57,14 +58,16 @@ Result<Command> simulate_command(const Args& args) {
           "none", store(truth)},
          {"--nav", 0, "FILE", "what navigation sensors of the vehicle say, as CSV: a DVL, a compass, gyros, depth",
           "none", store(nav)},
-         {"--resolution", 0, "M", "edge length of a cell of world.bt", number_text(command.truth_resolution_m),
-          store_number(command.truth_resolution_m)},
+         {"--resolution", 0, "M", "edge length of a cell of world.bt", "0.05; marina 0.2",
+          store_optional(command.truth_resolution_m)},
          quiet_option(command.output_options)}},
        {"World and vehicle",
         {{"--side", 0, "M", "side of the square tank", number_text(tank.side_m),
           within({2.0 * std::max(std::abs(tank.sensor_x_m), std::abs(tank.sensor_y_m)), 1000.0, Limits::Ends::kLowOut},
                  store_number(tank.side_m))},
-         choice("--trajectory", kMotions, "path of the vehicle; still is at 0,0,0", command.motion),
+         choice("--trajectory", kMotions,
+                "path of the vehicle; still is at 0,0,0; by-hand is the loop, once, with stops and sudden turns",
+                command.motion),
          {"--poses", 0, "FILE", "path of the vehicle as TUM lines, instead of --trajectory", "none", store(poses)},
          {"--mount", 0, "X,Y,Z,R,P,Y",
           "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
@@ -143,12 +146,13 @@ Result<Command> simulate_command(const Args& args) {
          config_option()}}},
       {"pingvox simulate tank -o tank.csv", "pingvox simulate tank -o - --seed 7 | pingvox map - -o tank.bt",
        "pingvox simulate harbour -o harbour.csv --trajectory loop --truth harbour-truth",
+       "pingvox simulate marina -o marina.csv --trajectory by-hand --nav nav.csv --truth marina-truth",
        "pingvox simulate wreck.stl -o wreck.csv --poses dive.tum --drift 0.3 --truth wreck-truth"},
       ""};
   for (auto& group : table.groups) {
     for (Option& option : group.options) {
       if (group.title == "Navigation") option.only_with = {{"--nav"}};
-      const Condition moves{"--trajectory", {"line", "lawn-mower", "loop"}}, follows{"--poses"};
+      const Condition moves{"--trajectory", {"line", "lawn-mower", "loop", "by-hand"}}, follows{"--poses"};
       if (option.name == "--side") option.only_with = {{"WORLD", {"tank"}}};
       if (option.name == "--resolution") option.only_with = {{"--truth"}};
       if (option.name == "--speed") option.only_with = {moves};
@@ -172,8 +176,9 @@ Result<Command> simulate_command(const Args& args) {
     if (command.turns && !(*command.turns >= 1 && *command.turns <= 10'000)) {
       return usage_error(fmt::format("--turns: must be 1..10000, is {}", *command.turns));
     }
-    if (const auto lattice = Lattice::make(command.truth_resolution_m); !lattice) {
-      return tl::unexpected(lattice.error());
+    if (command.truth_resolution_m) {
+      const auto lattice = Lattice::make(*command.truth_resolution_m);
+      if (!lattice) return tl::unexpected(lattice.error());
     }
     if (command.range_m) {
       const auto bins = static_cast<double>(sonar.bins);

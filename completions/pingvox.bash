@@ -69,7 +69,7 @@ _pingvox_words() {
     --hit-from) printf '%s\n' fixed intensity ;;
     --parents) printf '%s\n' max mean ;;
     --silent) printf '%s\n' nothing free ;;
-    --trajectory) printf '%s\n' still line lawn-mower loop ;;
+    --trajectory) printf '%s\n' still line lawn-mower loop by-hand ;;
     --format)
       [[ $2 != convert ]] || echo csv
       printf '%s\n' bt ot pvx ply pcd xyz
@@ -122,7 +122,7 @@ _pingvox() {
     elif [[ $command == bench && $previous != --pictures ]]; then
       words="all list $(_pingvox_benches)"
     elif [[ $command == simulate && $previous == simulate ]]; then
-      words="tank harbour seabed cave"
+      words="tank harbour marina seabed cave"
       # What begins no world's name is the file of a mesh.
       [[ -n $(compgen -W "$words" -- "$current") ]] || words=""
     fi

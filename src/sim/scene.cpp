@@ -150,6 +150,7 @@ const Route* Scene::route(Motion motion) const {
     case Motion::kLawnMower:
       return &lawn_mower;
     case Motion::kLoop:
+    case Motion::kByHand:
       return &loop;
   }
   return nullptr;
@@ -228,6 +229,81 @@ Scene harbour_scene(const HarbourOptions& o) {
   scene.lawn_mower = lanes(low, high, 3);
   scene.loop = round(low, high);
   scene.sonar_range_m = 10.0;
+  return scene;
+}
+
+Result<void> MarinaOptions::validate() const {
+  Check check;
+  check.within(water_above_m, 0.5, 50.0, "water_above_m");
+  check.within(water_below_m, 0.5, 50.0, "water_below_m");
+  return check.result("marina");
+}
+
+Scene marina_scene(const MarinaOptions& o) {
+  assert(o.validate());
+  using Eigen::Vector2d;
+  // The shore, then two islands that the loop goes around, and two more between canals.
+  static const std::array<std::vector<Vector2d>, 5> kQuays = {{
+      {{-100.0, -62.0}, {-62.0, -64.0}, {-60.0, -16.0}, {-22.0, -15.0}, {-20.0, -76.0},  {-48.0, -78.0},
+       {-50.0, -130.0}, {40.0, -132.0}, {42.0, -78.0},  {120.0, -74.0}, {121.0, -118.0}, {236.0, -122.0},
+       {240.0, -60.0},  {300.0, -58.0}, {298.0, 30.0},  {285.0, 60.0},  {288.0, 168.0},  {170.0, 165.0},
+       {166.0, 72.0},   {100.0, 70.0},  {98.0, 140.0},  {30.0, 144.0},  {28.0, 69.0},    {-24.0, 71.0},
+       {-26.0, 150.0},  {-92.0, 146.0}, {-96.0, 60.0},  {-100.0, 20.0}},
+      {{14.0, -16.0}, {62.0, -14.0}, {64.0, -20.0}, {86.0, -18.0}, {88.0, -43.0}, {40.0, -46.0}, {16.0, -44.0}},
+      {{16.0, 15.0}, {50.0, 14.0}, {76.0, 16.0}, {74.0, 40.0}, {45.0, 42.0}, {44.0, 36.0}, {18.0, 39.0}},
+      {{122.0, 18.0}, {200.0, 15.0}, {202.0, 38.0}, {124.0, 42.0}},
+      {{-62.0, 16.0}, {-24.0, 15.0}, {-26.0, 44.0}, {-58.0, 47.0}},
+  }};
+  Scene scene;
+  World& world = scene.world;
+  const double height = o.water_above_m + o.water_below_m;
+  const Vector3d half_height(0.0, 0.0, 0.5 * height);
+  for (const std::vector<Vector2d>& quay : kQuays) {
+    for (std::size_t n = 0; n < quay.size(); ++n) {
+      const Vector2d& from = quay[n];
+      const Vector2d& to = quay[(n + 1) % quay.size()];
+      const Vector2d middle = 0.5 * (from + to);
+      const Vector2d half = 0.5 * (to - from);
+      world.add(
+          Rectangle{{middle.x(), middle.y(), o.water_above_m - 0.5 * height}, {half.x(), half.y(), 0.0}, half_height},
+          kConcrete);
+    }
+  }
+  world.add(Rectangle{{100.0, 18.0, -o.water_below_m}, {200.0, 0.0, 0.0}, {0.0, 150.0, 0.0}}, kMud);
+  // Moored along the quays: middle, length and beam.
+  for (const auto& [x, y, length, beam] : {std::array{35.0, -17.5, 9.0, 2.8},
+                                           {75.0, -48.0, 12.0, 3.4},
+                                           {-8.0, 66.0, 11.0, 3.2},
+                                           {60.0, 66.5, 8.0, 2.6},
+                                           {140.0, 13.0, 14.0, 4.0},
+                                           {-45.0, 11.5, 10.0, 3.0},
+                                           {150.0, -70.0, 12.0, 3.2}}) {
+    world.add(hull({x, y, o.water_above_m}, length, beam, std::min(2.6, 0.8 * height)), kSteel);
+  }
+  for (const auto& [x, y] : {std::pair{105.0, -25.0},
+                             {107.0, -35.0},
+                             {-12.0, 30.0},
+                             {-14.0, 38.0},
+                             {98.0, 30.0},
+                             {5.0, -30.0},
+                             {180.0, 80.0},
+                             {190.0, 80.0},
+                             {200.0, 80.0},
+                             {-70.0, 90.0}}) {
+    world.add(Cylinder{{x, y, -o.water_below_m}, {0.0, 0.0, height}, 0.3}, kConcrete);
+  }
+  scene.water_m = {Vector3d(-100.0, -132.0, -o.water_below_m), Vector3d(300.0, 168.0, o.water_above_m)};
+  scene.line = {{{-40.0, 0.0, 0.0}, {120.0, 0.0, 0.0}}, Route::End::kStays};
+  scene.lawn_mower = lanes({-8.0, -6.0, 0.0}, {100.0, 6.0, 0.0}, 3);
+  // The canal between the islands is gone through twice, first ahead, then back.
+  scene.loop = {{{0.0, 0.0, 0.0},    {50.0, -1.0, 0.0},  {92.0, -1.0, 0.0}, {101.0, -12.0, 0.0}, {101.0, -50.0, 0.0},
+                 {92.0, -59.0, 0.0}, {50.0, -62.0, 0.0}, {8.0, -60.0, 0.0}, {-2.0, -50.0, 0.0},  {-3.0, -10.0, 0.0},
+                 {-4.0, 44.0, 0.0},  {6.0, 54.0, 0.0},   {45.0, 56.0, 0.0}, {80.0, 54.0, 0.0},   {88.0, 44.0, 0.0},
+                 {88.0, 12.0, 0.0},  {78.0, 3.0, 0.0},   {45.0, 3.0, 0.0},  {10.0, 6.0, 0.0},    {-8.0, 6.0, 0.0}},
+                Route::End::kStarts};
+  scene.sonar_range_m = 50.0;
+  scene.beams_per_s = 14.5;
+  scene.cell_m = 0.2;
   return scene;
 }
 

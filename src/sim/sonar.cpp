@@ -109,7 +109,7 @@ std::vector<double> sum_to_bins(const std::vector<double>& cells, std::size_t bi
 }
 
 /// Noise-free beam, bin by bin.
-std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_sensor, double bearing_rad,
+std::vector<std::uint32_t> clean_beam(const World& all_world, const Pose& map_from_sensor, double bearing_rad,
                                       const SonarOptions& o) {
   const double across_step = kAcrossEnd_widths * o.beam_width_rad / kAcross;
   const double up_step = std::min(kUpEnd_heights * o.beam_height_rad, kUpEnd_rad) / kUp;
@@ -117,6 +117,7 @@ std::vector<std::uint32_t> clean_beam(const World& world, const Pose& map_from_s
   // Echoes from behind the last bin still reach into it.
   std::vector<double> cells((o.bins + static_cast<std::size_t>(4.0 * kPulse_bins)) * kCellsPerBin);
   const double farthest_m = static_cast<double>(cells.size()) * cell_m;
+  const World world = all_world.near(map_from_sensor.translation(), farthest_m);
   double all = 0.0;
   for (int up = -kUp; up <= kUp; ++up) {
     const double elevation = up * up_step;
@@ -200,7 +201,9 @@ Result<void> SonarOptions::validate() const {
   return fail(Error::Code::kBadOption, "sonar:" + bad);
 }
 
-TrueRange true_range(const World& world, const Pose& map_from_sensor, double bearing_rad, const SonarOptions& options) {
+TrueRange true_range(const World& all_world, const Pose& map_from_sensor, double bearing_rad,
+                     const SonarOptions& options) {
+  const World world = all_world.near(map_from_sensor.translation(), options.range_m());
   const double half_width = 0.5 * options.beam_width_rad;
   const double half_height = 0.5 * options.beam_height_rad;
   double nearest = options.range_m();

@@ -313,6 +313,14 @@ std::vector<Crossing> World::all(const SoundRay& ray, double limit_m) const {
   return crossings;
 }
 
+World World::near(const Vector3d& point_m, double limit_m) const {
+  World part;
+  for (const Surface& surface : surfaces_) {
+    if (surface.bounds.exteriorDistance(point_m) <= limit_m) part.surfaces_.push_back(surface);
+  }
+  return part;
+}
+
 TriangleMesh World::mesh(double tolerance_m) const {
   assert(tolerance_m > 0.0);
   TriangleMesh mesh;

@@ -92,7 +92,7 @@ TEST(Simulate, FollowsATrajectoryOfTheCallers) {
 
 TEST(Simulate, MakesTheSameFilesAgain) {
   const Workplace here;
-  for (const std::string world : {"tank", "harbour", "seabed", "cave"}) {
+  for (const std::string world : {"tank", "harbour", "marina", "seabed", "cave"}) {
     std::vector<std::string> made;
     for (const std::string seed : {"4", "4", "5"}) {
       ASSERT_EQ(here.call({"simulate", world, "-o", "log.csv", "--trajectory", "loop", "--turns", "1", "--seed", seed,

@@ -33,6 +33,7 @@ std::vector<Named> all_scenes() {
                                {"large tank", tank_scene({.side_m = 30.0})},
                                {"harbour", harbour_scene({})},
                                {"long harbour", harbour_scene({.length_m = 60.0, .piles = 6, .hull_length_m = 20.0})},
+                               {"marina", marina_scene({})},
                                {"seabed", seabed_scene({})},
                                {"steep seabed", seabed_scene({.slope = 0.1, .ripples = 2.0, .boulders = 300})},
                                {"cave", cave_scene({})},
@@ -44,13 +45,15 @@ std::vector<Named> all_scenes() {
 TEST(Scenes, TheirWaysHitNothingAndStayInTheWater) {
   std::size_t ways = 0;
   for (const auto& [name, scene] : all_scenes()) {
-    for (const Motion motion : {Motion::kStill, Motion::kLine, Motion::kLawnMower, Motion::kLoop}) {
+    for (const Motion motion : {Motion::kStill, Motion::kLine, Motion::kLawnMower, Motion::kLoop, Motion::kByHand}) {
       SCOPED_TRACE(name + ", way " + std::to_string(static_cast<int>(motion)));
       const Route* route = scene.route(motion);
       ASSERT_EQ(route == nullptr, motion == Motion::kStill);
       if (!route && name == "mesh") continue;
-      const Trajectory way = route ? follow_route(*route, length_m(*route) / 0.5, {.speed_m_s = 0.5})
-                                   : Trajectory::still(Pose::Identity());
+      const Trajectory way = !route ? Trajectory::still(Pose::Identity())
+                             : motion == Motion::kByHand
+                                 ? drive_by_hand(*route, {.speed_m_s = 0.5}, 3)
+                                 : follow_route(*route, length_m(*route) / 0.5, {.speed_m_s = 0.5});
       for (std::size_t n = 0; n < way.poses().size(); ++n) {
         const Vector3d at = way.poses()[n].map_from_body.translation();
         ASSERT_TRUE(scene.water_m.contains(at)) << at.transpose();
@@ -70,7 +73,7 @@ TEST(Scenes, TheirWaysHitNothingAndStayInTheWater) {
       ++ways;
     }
   }
-  EXPECT_EQ(ways, 9U * 4U - 1U);
+  EXPECT_EQ(ways, 10U * 5U - 1U);
 }
 
 TEST(Scenes, HaveSomethingToHearFromTheirMiddle) {
@@ -84,6 +87,18 @@ TEST(Scenes, HaveSomethingToHearFromTheirMiddle) {
     }
     EXPECT_GT(heard, 72 / 3) << name;
     EXPECT_GE(scene.world.bounds().volume(), 10.0) << name;
+  }
+}
+
+TEST(Scenes, TheMarinaIsAsLargeAndItsLoopAsLongAsTheRecordedOne) {
+  const Scene marina = marina_scene({});
+  EXPECT_NEAR(marina.world.bounds().sizes().x(), 400.0, 1.0);
+  EXPECT_NEAR(marina.world.bounds().sizes().y(), 300.0, 1.0);
+  EXPECT_NEAR(length_m(marina.loop), 600.0, 30.0);
+  // A shore without gaps: away from all quays, sound comes to one wherever it goes.
+  for (int n = 0; n < 360; ++n) {
+    const double bearing = n * std::numbers::pi / 180.0;
+    ASSERT_TRUE(marina.world.first({Vector3d::Zero(), {std::cos(bearing), std::sin(bearing), 0.0}}, 500.0)) << n;
   }
 }
 
@@ -103,6 +118,8 @@ TEST(Scenes, RefuseWhatCannotBeBuilt) {
                   .message,
               AllOf(HasSubstr("length_m"), HasSubstr("width_m"), HasSubstr("piles"), HasSubstr("pile_radius_m"),
                     HasSubstr("hull_beam_m")));
+  EXPECT_THAT((MarinaOptions{.water_above_m = 0.0, .water_below_m = nan}).validate().error().message,
+              AllOf(HasSubstr("water_above_m"), HasSubstr("water_below_m")));
   EXPECT_THAT((SeabedOptions{.side_m = 3.0, .depth_m = 0.1, .slope = 1.0, .ripples = nan, .boulders = 2000})
                   .validate()
                   .error()

@@ -53,6 +53,45 @@ TEST(FollowRoute, GoesRoundAndRound) {
   }
 }
 
+TEST(DriveByHand, StopsTurnsAndComesToTheEndNearItsRoute) {
+  const Route route{{{0.0, 0.0, 0.0}, {60.0, 0.0, 0.0}, {60.0, 60.0, 0.0}, {0.0, 60.0, 0.0}}, Route::End::kStarts};
+  const Trajectory path = follow_route(route, length_m(route), {.speed_m_s = 1.0});
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    SCOPED_TRACE(seed);
+    const Trajectory way = drive_by_hand(route, {.speed_m_s = 0.5}, seed);
+    const auto& poses = way.poses();
+    EXPECT_NEAR((poses.back().map_from_body.translation() - route.waypoints_m[0]).norm(), 0.0, 1.0);
+    // Some tenths of the time are for stops.
+    EXPECT_GT(poses.back().time_s, 1.0 * length_m(route) / 0.5);
+    EXPECT_LT(poses.back().time_s, 2.0 * length_m(route) / 0.5);
+    double hovers_s = 0.0, fastest_rad_s = 0.0, farthest_m = 0.0;
+    for (std::size_t n = 4; n < poses.size(); n += 4) {
+      const Pose step = poses[n - 4].map_from_body.inverse() * poses[n].map_from_body;
+      if (step.translation().norm() < 0.1) hovers_s += 1.0;
+      fastest_rad_s = std::max(fastest_rad_s, std::abs(yaw_of(step)));
+      double nearest = 1e9;
+      for (const StampedPose& on : path.poses()) {
+        nearest = std::min(nearest, (on.map_from_body.translation() - poses[n].map_from_body.translation()).norm());
+      }
+      farthest_m = std::max(farthest_m, nearest);
+    }
+    EXPECT_GT(hovers_s, 15.0);
+    EXPECT_GT(fastest_rad_s, 0.4) << "sudden turns";
+    EXPECT_LT(fastest_rad_s, 1.2);
+    EXPECT_LT(farthest_m, 0.7) << "sway alone";
+  }
+}
+
+TEST(DriveByHand, SwaysByATenthOfAMetre) {
+  const Route route{{{0.0, 0.0, 0.0}, {500.0, 0.0, 0.0}}, Route::End::kStays};
+  const Trajectory way = drive_by_hand(route, {.speed_m_s = 0.25}, 7);
+  double squares = 0.0;
+  for (const StampedPose& pose : way.poses()) squares += std::pow(pose.map_from_body.translation().y(), 2.0);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(way.poses().size())), 0.1, 0.02);
+  const Trajectory again = drive_by_hand(route, {.speed_m_s = 0.25}, 7);
+  EXPECT_EQ(way.poses().back().map_from_body.matrix(), again.poses().back().map_from_body.matrix());
+}
+
 TEST(AddDrift, IsTheTruthWithoutDrift) {
   const Route route{{{0.0, 0.0, 0.0}, {4.0, 1.0, 0.0}, {4.0, 4.0, -1.0}}, Route::End::kStays};
   const Trajectory truth = follow_route(route, 40.0, {});

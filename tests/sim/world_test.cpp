@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/sim/random.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -150,6 +152,29 @@ TEST(World, CrossesAWallAtItsDistanceOverTheCosine) {
   EXPECT_FALSE(world.first({{0.0, 0.0, 0.0}, -Vector3d::UnitX()}, kFar_m)) << "behind";
   EXPECT_FALSE(world.first({{0.0, 0.0, 0.0}, Vector3d::UnitY()}, kFar_m)) << "alongside";
   EXPECT_FALSE(world.first({{3.0, 0.0, 0.0}, Vector3d::UnitX()}, kFar_m)) << "a ray that starts on it";
+}
+
+TEST(World, WhatIsNearIsAllThatRaysMayCross) {
+  World world;
+  Random random(5);
+  for (int n = 0; n < 60; ++n) {
+    const double x = 40.0 * random.uniform() - 20.0;
+    const double y = 40.0 * random.uniform() - 20.0;
+    world.add(Sphere{{x, y, 0.0}, 1.0});
+  }
+  const World part = world.near({2.0, -1.0, 0.0}, 8.0);
+  EXPECT_LT(part.size(), world.size() / 2);
+  std::size_t crossed = 0;
+  for (int n = 0; n < 360; ++n) {
+    const double bearing = n * std::numbers::pi / 180.0;
+    const SoundRay ray{{2.0, -1.0, 0.0}, {std::cos(bearing), std::sin(bearing), 0.0}};
+    const auto all = world.first(ray, 8.0), near = part.first(ray, 8.0);
+    ASSERT_EQ(all.has_value(), near.has_value());
+    if (!all) continue;
+    EXPECT_EQ(all->range_m, near->range_m);
+    ++crossed;
+  }
+  EXPECT_GT(crossed, 100U);
 }
 
 TEST(World, ItsMeshIsCrossedWhereItIs) {

@@ -19,6 +19,7 @@ enum class Motion {
   kLine,       ///< straight through the scene, once
   kLawnMower,  ///< parallel lanes, to and fro
   kLoop,       ///< closed loop, repeated
+  kByHand,     ///< the closed loop, once, driven by hand
 };
 
 /// A world, its water and collision-free routes. The origin of the map frame is in the water, and z = 0 is the depth of
@@ -28,6 +29,8 @@ struct Scene {
   Eigen::AlignedBox3d water_m;  ///< the water is the part of this box that surfaces do not cut off from the vehicle
   Route line, lawn_mower, loop;
   double sonar_range_m = 5.0;  ///< recommended range of the sonar
+  double beams_per_s = 23.0;   ///< recommended rate of the sonar
+  double cell_m = 0.05;        ///< recommended edge length of a cell of its map
 
   /// nullptr for kStill.
   const Route* route(Motion motion) const;
@@ -53,6 +56,17 @@ struct HarbourOptions {
 };
 /// REQUIRES valid options.
 Scene harbour_scene(const HarbourOptions& options);
+
+/// Canals and basins of 400 x 300 m between quays, with moored hulls and piles, as in the marina of the recording in
+/// docs/slam.md: for a sonar with a long range. Its loop of 600 m goes around two islands.
+struct MarinaOptions {
+  double water_above_m = 1.5;  ///< above the vehicle, 0.5..50
+  double water_below_m = 4.0;  ///< below the vehicle, 0.5..50
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+/// REQUIRES valid options.
+Scene marina_scene(const MarinaOptions& options);
 
 /// A bottom that rises to the left, with ripples and boulders, some of which reach up to the vehicle's depth.
 struct SeabedOptions {

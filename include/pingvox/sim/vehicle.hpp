@@ -33,6 +33,11 @@ double length_m(const Route& route);
 /// REQUIRES valid options, 0 < duration_s, at most 10 million poses.
 Trajectory follow_route(const Route& route, double duration_s, const TravelOptions& options);
 
+/// Trajectory of a vehicle that somebody drives along the route, once, from time 0: at half to one and a half times the
+/// speed, swaying, with stops, and with sudden turns where it stops. The same seed gives the same numbers.
+/// REQUIRES valid options, at most 10 million poses.
+Trajectory drive_by_hand(const Route& route, const TravelOptions& options, std::uint64_t seed);
+
 /// Drift of dead reckoning: a random walk of position and heading that starts at the ground truth. A heading error also
 /// rotates the rest of the path.
 struct DriftOptions {

@@ -80,6 +80,9 @@ class World {
   /// All crossings within `limit_m`, nearest first.
   std::vector<Crossing> all(const SoundRay& ray, double limit_m) const;
 
+  /// The surfaces with a bounding box within `limit_m` of a point: all that a ray from there may cross in that range.
+  World near(const Eigen::Vector3d& point_m, double limit_m) const;
+
   /// The surfaces as triangles: round ones are approximated to `tolerance_m` (at most 512 segments a circle). REQUIRES
   /// tolerance_m > 0.
   TriangleMesh mesh(double tolerance_m) const;
