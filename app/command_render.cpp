@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <set>
@@ -281,6 +282,16 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
   return map_of_log(std::move(file), panel, command).and_then(to_draw);
 }
 
+Result<std::vector<MapPath>> read_paths(const std::vector<std::string>& files) {
+  std::vector<MapPath> paths;
+  for (const std::string& file : files) {
+    Result<Trajectory> path = trajectory_of(file);
+    if (!path) return tl::unexpected(path.error());
+    paths.push_back({std::filesystem::path(file).filename().string(), *std::move(path)});
+  }
+  return paths;
+}
+
 /// Refuses a slice without known cells, since an empty picture would not tell why.
 Result<void> check_layer(const MapToDraw& shown, const PanelCommand& panel) {
   const auto z_m = panel.map_picture.layer_z_m;
@@ -317,13 +328,18 @@ Result<Drawn> draw(const RenderCommand& command) {
   if (const auto used = check_limited(command.limited, kinds); !used) {
     return fail(used.error().code, "render: " + used.error().message);
   }
+  std::vector<MapPictureOptions> pictures;
   for (const PanelCommand& panel : command.panels) {
     auto work = prepare_panel(files.at(panel.input), panel, command);
     if (!work) return tl::unexpected(work.error());
+    MapPictureOptions& picture = pictures.emplace_back(panel.map_picture);
     if (const auto* shown = std::get_if<MapToDraw>(&*work)) {
       if (const auto layer = check_layer(*shown, panel); !layer) return tl::unexpected(layer.error());
-      auto& part = parts[{panel.input, panel.map_picture.view}];
-      if (const auto box = shown_part(shown->map, panel.map_picture)) part = around(part, *box);
+      Result<std::vector<MapPath>> paths = read_paths(panel.drawn_paths);
+      if (!paths) return tl::unexpected(paths.error());
+      picture.paths = *std::move(paths);
+      auto& part = parts[{panel.input, picture.view}];
+      if (const auto box = shown_part(shown->map, picture)) part = around(part, *box);
     }
     works.push_back(std::move(*work));
   }
@@ -332,7 +348,7 @@ Result<Drawn> draw(const RenderCommand& command) {
   std::string what;
   for (std::size_t i = 0; i < works.size(); ++i) {
     if (const auto* shown = std::get_if<MapToDraw>(&works[i])) {
-      MapPictureOptions options = command.panels[i].map_picture;
+      MapPictureOptions& options = pictures[i];
       options.at_least = parts[{command.panels[i].input, options.view}];
       works[i] = draw_map(*shown, options);
     }

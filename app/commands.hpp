@@ -160,6 +160,7 @@ struct PanelCommand {
   HeadArgs head;
   std::optional<double> background_m;
   PathArgs path;
+  std::vector<std::string> drawn_paths;  ///< trajectories drawn over a map
 };
 
 struct RenderCommand {

@@ -83,6 +83,8 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
          within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(args.slice_z_m))},
         {"--min-z", 0, "M", "draw nothing of a map below", "none", store_optional(panel.map_picture.min_z_m)},
         {"--max-z", 0, "M", "draw nothing of a map above", "none", store_optional(panel.map_picture.max_z_m)},
+        {"--path", 0, "FILE", "draw a trajectory (TUM lines) over a map, in its frame; repeatable, at most 5", "none",
+         store_each(panel.drawn_paths), Repeats::kEachCounts},
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as by 'info'",
          "all; cartesian: the fullest one", store_optional(panel.sweep)},
         choice("--show", kShownImages,
@@ -113,7 +115,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   }
   limit("--z", {view_kind(PictureView::kSlice)});
   limit("--from", {view_kind(PictureView::kSide)});
-  for (const char* name : {"--min-z", "--max-z", "--occupied", "--free", "--cut-depth"}) {
+  for (const char* name : {"--min-z", "--max-z", "--occupied", "--free", "--cut-depth", "--path"}) {
     limit(name, {std::string(kDrawnMaps)});
   }
   for (const char* name : {"--sweep", "--show", "--echoes"}) limit(name, {polar, cartesian});
@@ -166,6 +168,9 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   if (panel.view == PictureView::kSlice) {
     if (!args.slice_z_m) return usage_error("--view slice: needs a height (--z M)");
     panel.map_picture.layer_z_m = args.slice_z_m;
+  }
+  if (panel.drawn_paths.size() > MapPictureOptions::kMaxPaths) {
+    return usage_error(fmt::format("--path: at most {} in one picture", MapPictureOptions::kMaxPaths));
   }
   if (panel.sweep == 0U) return usage_error("--sweep: sweeps are counted from 1");
   const auto& [low_m, high_m] = std::pair(panel.map_picture.min_z_m, panel.map_picture.max_z_m);
@@ -224,6 +229,7 @@ Result<Command> render_command(const Args& args) {
       {"pingvox render tank.mat -o echoes.png --sweep 3 --threshold 50",
        "pingvox render tank.mat -o sweep.png --view cartesian --show filtered", "pingvox render tank.bt -o map.png",
        "pingvox render tank.bt -o layer.png --view slice --z 0.5",
+       "pingvox render world.bt -o paths.png --path true.tum --path slam.tum",
        "pingvox render before.bt after.bt -o both.png --view side --from behind",
        "pingvox render tank.mat -o thresholds.png --view above --threshold 20 --beside '--threshold 70'"},
       "Colours differ in lightness, too, for readers who do not see colours.\n"
@@ -250,11 +256,13 @@ Result<Command> render_command(const Args& args) {
       next.panel.caption.clear();
       // What is given again replaces what the other panel has.
       std::vector<std::string> navs = std::exchange(next.build.navs, {});
+      std::vector<std::string> paths = std::exchange(next.panel.drawn_paths, {});
       const Result<Parsed> taken = parse({"render: --beside", "", {}, panel_groups(next), {}, ""}, *changed);
       if (!taken) return tl::unexpected(taken.error());
       command.limited.insert(command.limited.end(), taken->limited.begin(), taken->limited.end());
       if (taken->is_help_wanted) return usage_error("--beside: takes no --help");
       if (next.build.navs.empty()) next.build.navs = std::move(navs);
+      if (next.panel.drawn_paths.empty()) next.panel.drawn_paths = std::move(paths);
       settings.push_back(std::move(next));
     }
     if (const auto used = check_limited(command.limited, possible_kinds(settings)); !used) {
@@ -280,6 +288,7 @@ Result<Command> render_command(const Args& args) {
     for (const PanelArgs& setting : settings) {
       files.push_back(setting.build.poses);
       files.insert(files.end(), setting.build.navs.begin(), setting.build.navs.end());
+      files.insert(files.end(), setting.panel.drawn_paths.begin(), setting.panel.drawn_paths.end());
     }
     if (const auto once = check_standard_input(files); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());

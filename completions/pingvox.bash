@@ -28,7 +28,7 @@ _pingvox_options() {
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
-      options+=(--output --view --from --z --min-z --max-z --occupied --free --cut-depth --sweep --show --echoes --between --size --caption --beside)
+      options+=(--output --view --from --z --min-z --max-z --occupied --free --cut-depth --path --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --topic --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +24,17 @@ constexpr float kNothing = -std::numeric_limits<float>::infinity();
 constexpr std::ptrdiff_t kMargin = 24, kNote = 26, kFooterRow = 28, kBorder = 2;
 constexpr std::ptrdiff_t kMinWidth = 480;  ///< room for scale bar and legend
 constexpr Rgb kCross{230, 120, 0};
+
+struct PathStyle {
+  Rgb colour;
+  Marker marker;
+};
+/// Apart from the colours of maps; neighbours differ in lightness (L* 45, 70, 35, 61, 26), readable without colour.
+constexpr std::array<PathStyle, MapPictureOptions::kMaxPaths> kPathStyles = {{{{206, 24, 60}, Marker::kDisc},
+                                                                              {{40, 184, 140}, Marker::kSquare},
+                                                                              {{140, 40, 140}, Marker::kTriangle},
+                                                                              {{196, 132, 0}, Marker::kDiamond},
+                                                                              {{100, 40, 0}, Marker::kCross}}};
 
 /// Axes of the map frame (0 x, 1 y, 2 z) that are horizontal and vertical in the picture; vertical always grows
 /// upwards.
@@ -136,12 +148,25 @@ Corners expand(const Corners& corners, const Box& box, const Lattice& lattice) {
   return wide;
 }
 
+/// The shown part: cells, paths, and the box that is to be shown at least.
+std::optional<Corners> shown_corners(const OccupancyMap& map, const MapPictureOptions& options) {
+  const std::optional<Corners> corners = corners_of(map, options);
+  if (!corners) return std::nullopt;
+  Eigen::AlignedBox3d ways;
+  for (const MapPath& path : options.paths) {
+    for (const StampedPose& pose : path.map_from_body.poses()) ways.extend(pose.map_from_body.translation());
+  }
+  if (ways.isEmpty()) return corners;
+  // With the cell of the upper corner.
+  return expand(*corners, {ways.min(), ways.max().array() + 0.5 * map.lattice().resolution_m()}, map.lattice());
+}
+
 /// Columns of the shown part, at most `most` along each side.
 Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
   const ViewAxes axes = view_axes(options.view);
   const Lattice& lattice = map.lattice();
   const int levels = lattice.depth();
-  const std::optional<Corners> known = corners_of(map, options);
+  const std::optional<Corners> known = shown_corners(map, options);
   if (!known) return {};
   const auto [low, high] = options.at_least ? expand(*known, *options.at_least, lattice) : *known;
 
@@ -253,6 +278,66 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const M
   }
 }
 
+constexpr double kPathWidth = 2.5, kMarkerRadius = 6.0;
+constexpr std::ptrdiff_t kPathSwatch = 40;
+
+void draw_path_marker(Picture& picture, const PathStyle& style, Spot at) {
+  draw_marker(picture, style.marker, at, kMarkerRadius + 2.0, kPaper);
+  draw_marker(picture, style.marker, at, kMarkerRadius, style.colour);
+}
+
+/// A line with a white edge, to be seen on walls as well. `spot_of` gives the place in the picture of a point in the
+/// map.
+template <class SpotOf>
+void draw_path(Picture& picture, const Trajectory& path, const PathStyle& style, const Area& within, SpotOf spot_of) {
+  constexpr double kMarkerEvery = 160.0;  // pixels of the way
+  struct Piece {
+    Spot from, to;
+  };
+  std::vector<Piece> pieces;
+  std::vector<Spot> markers;
+  double way = 0.0;
+  const std::vector<StampedPose>& poses = path.poses();
+  const auto is_inside = [&](Spot at) {
+    return at.x >= static_cast<double>(within.x) && at.x < static_cast<double>(within.right()) &&
+           at.y >= static_cast<double>(within.y) && at.y < static_cast<double>(within.bottom());
+  };
+  Spot last = spot_of(poses.front().map_from_body.translation());
+  markers.push_back(last);
+  for (std::size_t n = 1; n < poses.size(); ++n) {
+    const Spot next = spot_of(poses[n].map_from_body.translation());
+    const bool is_gap = !path.at(0.5 * (poses[n - 1].time_s + poses[n].time_s));
+    const double length = std::hypot(next.x - last.x, next.y - last.y);
+    if (!is_gap && length < 1.0 && n + 1 < poses.size()) continue;
+    if (!is_gap) {
+      pieces.push_back({last, next});
+      way += length;
+    }
+    if (is_gap || way >= kMarkerEvery) {
+      markers.push_back(next);
+      way = 0.0;
+    }
+    last = next;
+  }
+  for (const auto& [width, colour] : {std::pair(kPathWidth + 2.0, kPaper), {kPathWidth, style.colour}}) {
+    for (const Piece& piece : pieces) draw_line(picture, piece.from, piece.to, width, colour, within);
+  }
+  for (const Spot& marker : markers) {
+    if (is_inside(marker)) draw_path_marker(picture, style, marker);
+  }
+}
+
+void draw_path_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const std::vector<MapPath>& paths) {
+  for (std::size_t n = 0; n < paths.size(); ++n, top += kFooterRow) {
+    const double middle = static_cast<double>(top) + 9.0;
+    const Area row{x, top, kPathSwatch, kFooterRow};
+    draw_line(picture, {static_cast<double>(x) + 2.0, middle}, {static_cast<double>(x + kPathSwatch) - 2.0, middle},
+              kPathWidth, kPathStyles[n].colour, row);
+    draw_path_marker(picture, kPathStyles[n], {static_cast<double>(x) + 0.5 * kPathSwatch, middle});
+    draw_label(picture, x + kPathSwatch + 8, top + 2, paths[n].name, kTextScale, kInk);
+  }
+}
+
 /// Caption: which part of the map is shown.
 std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, const ViewAxes& axes) {
   if (!options.layer_z_m) return std::string(axes.note);
@@ -274,6 +359,7 @@ Result<void> MapPictureOptions::validate() const {
   }
   if (layer_z_m && !std::isfinite(*layer_z_m)) bad += " layer_z_m must be finite;";
   if (layer_z_m && (min_z_m || max_z_m)) bad += " a layer has no min_z_m and max_z_m of its own;";
+  if (paths.size() > kMaxPaths) bad += fmt::format(" paths: at most {}, are {};", kMaxPaths, paths.size());
   if (bad.empty()) return {};
   bad.pop_back();
   return fail(Error::Code::kBadOption, "map picture:" + bad);
@@ -281,7 +367,7 @@ Result<void> MapPictureOptions::validate() const {
 
 std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
-  const std::optional<Corners> corners = corners_of(map, options);
+  const std::optional<Corners> corners = shown_corners(map, options);
   if (!corners) return std::nullopt;
   const Lattice& lattice = map.lattice();
   const Eigen::Vector3d low_m = lattice.lowest_corner_of(corners->low, lattice.depth());
@@ -318,9 +404,11 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   const std::vector<Tick> across_ticks = ticks_of(across_scale, ticks_on(width));
   const std::vector<Tick> up_ticks = ticks_of(up_scale, ticks_on(height));
 
+  const auto path_rows = static_cast<std::ptrdiff_t>(options.paths.size());
   const Area area{kMargin + left_axis_width(up_ticks), kMargin + kNote, width, height};
   Picture picture(static_cast<std::size_t>(area.right() + kMargin),
-                  static_cast<std::size_t>(area.bottom() + kBottomAxis + 2 * kFooterRow + kMargin / 2), kPaper);
+                  static_cast<std::size_t>(area.bottom() + kBottomAxis + (2 + path_rows) * kFooterRow + kMargin / 2),
+                  kPaper);
   picture.fill(area.x, area.y, area.width, area.height, options.colours.unknown);
   for (std::ptrdiff_t a = 0; a < across; ++a) {
     const std::ptrdiff_t x = area.x + known_left + (is_mirrored ? across - 1 - a : a) * zoom;
@@ -344,6 +432,15 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
   draw_scale_bar(picture, area.x, footer, metres_per_pixel);
   draw_legend(picture, area.x, footer + kFooterRow, map.options(), options.colours);
+  draw_path_legend(picture, area.x, footer + 2 * kFooterRow, options.paths);
+  for (std::size_t n = 0; n < options.paths.size(); ++n) {
+    draw_path(picture, options.paths[n].map_from_body, kPathStyles[n], area, [&](const Eigen::Vector3d& at) -> Spot {
+      const double across_share = across_scale.share_of(at[static_cast<Eigen::Index>(axes.across)]);
+      const double up_share = up_scale.share_of(at[static_cast<Eigen::Index>(axes.up)]);
+      return {static_cast<double>(area.x) + across_share * static_cast<double>(width),
+              static_cast<double>(area.bottom()) - up_share * static_cast<double>(height)};
+    });
+  }
   const double origin_across = across_scale.share_of(0.0), origin_up = up_scale.share_of(0.0);
   const auto is_inside = [](double share) { return share >= 0.0 && share < 1.0; };
   if (is_inside(origin_across) && is_inside(origin_up)) {

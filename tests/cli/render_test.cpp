@@ -64,6 +64,24 @@ TEST(Render, ALogIsDrawnAsTheMapThatItMakes) {
             rendered(here, {"tank.pvx"}));
 }
 
+TEST(Render, DrawsTrajectoriesOverAMap) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2", "--drift", "1",
+                       "--truth", "truth"})
+                .status,
+            0);
+  const std::string map = "truth/world.bt";
+  const std::string none = rendered(here, {map});
+  const std::string one = rendered(here, {map, "--path", "truth/poses.tum"});
+  const std::string two = rendered(here, {map, "--path", "truth/poses.tum", "--path", "dive.tum"});
+  EXPECT_GT(size_of(one).height, size_of(none).height) << "with a legend";
+  EXPECT_GT(size_of(two).height, size_of(one).height);
+  EXPECT_NE(rendered(here, {map, "--path", "dive.tum", "--beside", "--path truth/poses.tum"}), one);
+  expect_error(here.call({"render", map, "-o", "a.png", "--path", "none.tum"}), 1, {"none.tum"});
+  expect_error(here.call({"render", map, "-o", "a.png", "--path", "dive.csv"}), 1, {"dive.csv", "not a trajectory"});
+  expect_error(here.call({"render", "dive.csv", "-o", "a.png", "--path", "dive.tum"}), 2, {"--path"});
+}
+
 TEST(Render, SettingsStandSideBySide) {
   const Workplace here;
   here.simulate_tank();

@@ -47,7 +47,7 @@ offers "" pingvox map --resolution ""
 offers "tank.csv" pingvox map tank
 offers "tank.csv" pingvox map tank.csv -o tank
 offers "two words.csv" pingvox info two
-offers "tank|harbour|seabed|cave" pingvox simulate ""
+offers "tank|harbour|marina|seabed|cave" pingvox simulate ""
 offers "tank.csv" pingvox simulate tank.
 offers "lawn-mower" pingvox simulate harbour --trajectory la
 offers "--json" pingvox compare a b --j

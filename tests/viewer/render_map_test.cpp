@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <random>
@@ -123,6 +124,49 @@ TEST(RenderMap, PutsZUpFromEachSide) {
             "  #\n"
             "# #\n"
             "  .\n");
+}
+
+TEST(RenderMap, DrawsPathsWhereTheyWentAndNotAcrossGaps) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    for (int x = 100; x < 120; ++x) {
+      for (int y = 100; y < 120; ++y) editor.set(cell(x, y, 0), 16, Clamp{}.lowest);
+    }
+  }
+  std::vector<StampedPose> poses;
+  for (const auto& [time, x, y] :
+       {std::array{0.0, 102.5, 102.5}, {1.0, 117.5, 102.5}, {20.0, 117.5, 117.5}, {21.0, 102.5, 117.5}}) {
+    poses.push_back({time, Pose(Eigen::Translation3d(x, y, 0.5))});
+  }
+  MapPictureOptions options{.target_px = 400};
+  const Picture plain = render_map(map, options);
+  options.paths = {{"dive.tum", *Trajectory::make(poses, 5.0)}};
+  const Picture drawn = render_map(map, options);
+  EXPECT_EQ(drawn.width(), plain.width());
+  EXPECT_GT(drawn.height(), plain.height()) << "a row of the legend";
+  const auto [left, top] = corner_of_known(plain);
+  const std::size_t px = edge_px(400, 20);
+  // x is up, y is left.
+  const auto at = [&](double x, double y) {
+    const auto from_left = static_cast<std::size_t>((120.0 - y) * static_cast<double>(px));
+    const auto from_top = static_cast<std::size_t>((120.0 - x) * static_cast<double>(px));
+    return drawn.at(left + from_left, top + from_top);
+  };
+  const Rgb line = at(110.0, 102.5);
+  EXPECT_NE(line, kColours.surely_free);
+  EXPECT_EQ(at(106.0, 117.5), line);
+  EXPECT_EQ(at(117.5, 110.0), kColours.surely_free) << "a gap";
+  EXPECT_EQ(at(110.0, 110.0), kColours.surely_free);
+
+  // One that leads out of the map makes the picture wider.
+  poses.back().map_from_body.translation().x() = 160.0;
+  options.paths.front().map_from_body = *Trajectory::make(poses);
+  const auto part = shown_part(map, options);
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->max.x(), 161.0);
+  options.paths.assign(6, options.paths.front());
+  EXPECT_FALSE(options.validate());
 }
 
 TEST(RenderMap, ShowsOneLayerOfCells) {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/viewer/picture.hpp"
@@ -25,7 +28,16 @@ enum class MapView {
   kBehind,  ///< from behind, y to the left
 };
 
+/// A trajectory in the frame of a map, and its name in the legend (ASCII).
+struct MapPath {
+  std::string name;
+  Trajectory map_from_body;
+};
+
 struct MapPictureOptions {
+  /// Paths that can be told apart.
+  static constexpr std::size_t kMaxPaths = 5;
+
   MapView view = MapView::kAbove;
   std::size_t target_px = 1000;                  ///< approximate length of the longer side of the known part, 16..3072
   std::optional<double> min_z_m = std::nullopt;  ///< only cells above, map frame
@@ -33,18 +45,19 @@ struct MapPictureOptions {
   /// Only the layer of finest cells at this height; replaces the two above.
   std::optional<double> layer_z_m = std::nullopt;
   std::optional<Box> at_least = std::nullopt;  ///< always shown, so that pictures can be compared
+  std::vector<MapPath> paths{};                ///< drawn over the map; at most kMaxPaths
   MapColours colours{};
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Bounding box of the cells that a picture shows; nullopt when there are none.
+/// Bounding box of the cells and paths that a picture shows; nullopt when there are no cells.
 std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& options);
 
 /// A map projected along one axis: each column of cells has the colour of its highest occupancy. A cell is a whole
 /// number of pixels; if the map is too large for that, a pixel is 2, 4, 8 ... cells wide and shows their maximum, so
-/// that no wall is lost. With axes in metres (map frame), a scale bar, a legend, and a cross at the origin of the map
-/// frame. REQUIRES valid options
+/// that no wall is lost. Paths have markers at their start and along them. With axes in metres (map frame), a scale
+/// bar, a legend, and a cross at the origin of the map frame. REQUIRES valid options
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options = {});
 
 }  // namespace pingvox
