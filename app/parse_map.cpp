@@ -69,7 +69,8 @@ Result<Command> map_command(const Args& args) {
       "Builds a 3D occupancy map from sonar logs, in the order given: detects the echo of each beam, marks the cells\n"
       "before it free and those at it occupied.",
       {{"LOG", Positional::Count::kMany,
-        "beams (Ping Viewer's .bin, SonarView's .svlog, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's .graph and .log) or "
+        "beams (Ping Viewer's .bin, SonarView's .svlog, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's "
+        ".graph and .log) or "
         "clouds of points (PLY, PCD, XYZ), recognised by content; - is standard input",
         store_each(command.logs)}},
       {{"Output",
