@@ -70,7 +70,7 @@ Result<Command> map_command(const Args& args) {
       "before it free and those at it occupied.",
       {{"LOG", Positional::Count::kMany,
         "beams (Ping Viewer's .bin, SonarView's .svlog, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's "
-        ".graph and .log) or "
+        ".graph and .log, .xtf of a multibeam) or "
         "clouds of points (PLY, PCD, XYZ), recognised by content; - is standard input",
         store_each(command.logs)}},
       {{"Output",

@@ -39,6 +39,8 @@ std::string_view description_of(Format format) {
       return "an OctoMap scan graph";
     case Format::kScanLog:
       return "an OctoMap scan log";
+    case Format::kXtf:
+      return "a line of a multibeam";
     case Format::kBt:
       return "an OctoMap binary tree";
     case Format::kOt:
@@ -109,6 +111,7 @@ Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
   const std::optional<Format> format = format_of(file.view());
   if (format == Format::kScanGraph) return open_scan_graph(std::move(file), damage);
   if (format == Format::kScanLog) return open_scan_log(std::move(file), damage);
+  if (format == Format::kXtf) return open_xtf(std::move(file), damage);
   if (format == Format::kPly) return open_ply_cloud(std::move(file), damage, cloud_origin_m);
   if (format == Format::kPcd) return open_pcd(std::move(file), damage, cloud_origin_m);
   if (format == Format::kXyz) return open_xyz(std::move(file), damage, cloud_origin_m);

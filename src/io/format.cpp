@@ -49,6 +49,7 @@ FormatKind kind_of(Format format) {
       return FormatKind::kBeams;
     case Format::kScanGraph:
     case Format::kScanLog:
+    case Format::kXtf:
       return FormatKind::kScans;
     case Format::kBt:
     case Format::kOt:
@@ -116,6 +117,8 @@ std::string_view name_of(Format format) {
       return "graph";
     case Format::kScanLog:
       return "log";
+    case Format::kXtf:
+      return "xtf";
     case Format::kBt:
       return "bt";
     case Format::kOt:
@@ -173,6 +176,7 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {
   if (looks_like_nav_csv(bytes)) return Format::kNavCsv;
   if (looks_like_ply(bytes)) return is_ply_with_faces(bytes) ? Format::kPlyMesh : Format::kPly;
   if (looks_like_pcd(bytes)) return Format::kPcd;
+  if (looks_like_xtf(bytes)) return Format::kXtf;
   if (looks_like_mat(bytes)) return Format::kMat;
   if (looks_like_oldest_bt(bytes)) return Format::kBt;
   if (looks_like_scan_graph(bytes)) return Format::kScanGraph;

@@ -54,6 +54,9 @@ Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damag
 bool looks_like_scan_log(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<ScanSource>> open_scan_log(FileBytes file, Damage damage);
 
+bool looks_like_xtf(std::span<const std::uint8_t> bytes);
+Result<std::unique_ptr<ScanSource>> open_xtf(FileBytes file, Damage damage);
+
 bool looks_like_tum(std::span<const std::uint8_t> bytes);
 
 /// Clouds are one scan. Origin of the rays (map frame); nullopt: that of the file, else 0, 0, 0.

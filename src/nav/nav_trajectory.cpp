@@ -53,19 +53,11 @@ Pose translation(const Eigen::Vector3d& position_m) {
   return Pose(Eigen::Translation3d(position_m));
 }
 
-/// Turns fixes into positions: metres east and north of the first, on the ellipsoid of WGS 84.
+/// Turns fixes into positions relative to the first.
 void make_positions(NavSource& fixes) {
-  constexpr double kEquator_m = 6'378'137.0, kEccentricity2 = 6.694379990141e-3;
   const Eigen::Vector3d origin = fixes.samples.front().value;
-  const double sine = std::sin(origin.x()), curved = 1.0 - kEccentricity2 * sine * sine;
-  const double north_radius_m = kEquator_m * (1.0 - kEccentricity2) / (curved * std::sqrt(curved));
-  const double east_radius_m = kEquator_m / std::sqrt(curved) * std::cos(origin.x());
   fixes.quantity = NavQuantity::kPosition;
-  for (NavSample& sample : fixes.samples) {
-    const Eigen::Vector3d moved = sample.value - origin;
-    sample.value = {std::remainder(moved.y(), 2.0 * std::numbers::pi) * east_radius_m, moved.x() * north_radius_m,
-                    moved.z()};
-  }
+  for (NavSample& sample : fixes.samples) sample.value = position_of_fix(sample.value, origin);
 }
 
 /// Puts positions at the depth of their time; those of which it is not known are left out.
@@ -93,6 +85,15 @@ Result<std::optional<NavSource>> position_source(const NavLog& log) {
 }
 
 }  // namespace
+
+Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3d& origin) {
+  constexpr double kEquator_m = 6'378'137.0, kEccentricity2 = 6.694379990141e-3;
+  const double sine = std::sin(origin.x()), curved = 1.0 - kEccentricity2 * sine * sine;
+  const double north_radius_m = kEquator_m * (1.0 - kEccentricity2) / (curved * std::sqrt(curved));
+  const double east_radius_m = kEquator_m / std::sqrt(curved) * std::cos(origin.x());
+  const Eigen::Vector3d moved = fix - origin;
+  return {std::remainder(moved.y(), 2.0 * std::numbers::pi) * east_radius_m, moved.x() * north_radius_m, moved.z()};
+}
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
   const Result<std::optional<NavSource>> position = position_source(log);

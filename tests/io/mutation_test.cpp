@@ -64,10 +64,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Reader{"v4log", fuzz::beams}, Reader{"dumplog", fuzz::beams}, Reader{"bag", fuzz::bag},
                     Reader{"db3", fuzz::bag}, Reader{"mcap", fuzz::bag}, Reader{"graph", fuzz::scans},
                     Reader{"log", fuzz::scans}, Reader{"ply", fuzz::scans}, Reader{"pcd", fuzz::scans},
-                    Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh}, Reader{"tum", fuzz::tum},
-                    Reader{"tlog", fuzz::nav}, Reader{"dataflash", fuzz::nav}, Reader{"navcsv", fuzz::nav},
-                    Reader{"a50", fuzz::nav}, Reader{"nmea", fuzz::nav}, Reader{"bt", fuzz::maps},
-                    Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
+                    Reader{"xtf", fuzz::scans}, Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},
+                    Reader{"tum", fuzz::tum}, Reader{"tlog", fuzz::nav}, Reader{"dataflash", fuzz::nav},
+                    Reader{"navcsv", fuzz::nav}, Reader{"a50", fuzz::nav}, Reader{"nmea", fuzz::nav},
+                    Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

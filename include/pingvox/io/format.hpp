@@ -25,6 +25,7 @@ enum class Format {
   kBeamHits,       ///< bins that were hit, as text, and the times of the beams in a file beside it: beams
   kScanGraph,      ///< OctoMap's binary scan graph: point scans
   kScanLog,        ///< OctoMap's scan graph as text, NODE x y z roll pitch yaw: point scans
+  kXtf,            ///< line of a multibeam in Triton's eXtended Format: point scans
   kBt,             ///< OctoMap's binary tree: occupied or free
   kOt,             ///< OctoMap's tree with log-odds
   kPvx,            ///< pingvox map: any depth, log-odds, options (docs/formats.md)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "pingvox/geometry/trajectory.hpp"
@@ -7,6 +8,10 @@
 #include "pingvox/result.hpp"
 
 namespace pingvox {
+
+/// A fix (NavQuantity::kFix) in metres east, north and above another one, on the ellipsoid of WGS 84: for places within
+/// some kilometres.
+Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3d& origin);
 
 /// Where a vehicle was, as its log says.
 struct NavTrajectory {
