@@ -39,6 +39,8 @@ constexpr std::array kCommands = {
     CommandName{"simulate", "the log of a sonar in a world of your choice", &simulate_command},
     CommandName{"slam", "where the vehicle was, from beams and navigation, and the map", &slam_command},
     CommandName{"locate", "where the vehicle was, in a map that is known", &locate_command},
+    CommandName{"live", "a device, recorded and mapped while it runs", &live_command},
+    CommandName{"emulate", "a device that is not there, driven by the simulator", &emulate_command},
     CommandName{"bench", "measurements, when pingvox-bench is installed", &bench_command},
     CommandName{"view", "", &view_command},
 };

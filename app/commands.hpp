@@ -9,6 +9,8 @@
 
 #include "console.hpp"
 #include "option_table.hpp"
+#include "pingvox/device/ping360_driver.hpp"
+#include "pingvox/device/ping360_emulator.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
@@ -225,6 +227,38 @@ struct LocateCommand {
   LocalizerOptions localizer;
 };
 
+/// What `live` listens to.
+struct LiveDevice {
+  enum class Kind { kPing360, kReplay };
+  Kind kind = Kind::kReplay;
+  std::string address;  ///< of the line, or the file
+  double speed = 1.0;   ///< of a replay; infinity: as fast as it can be mapped
+  std::string text;     ///< as typed
+};
+
+struct LiveCommand {
+  OutputOptions output_options;
+  LiveDevice device;
+  std::string output;
+  Format format = Format::kBt;
+  std::optional<std::string> record;  ///< a file that does not exist, or a folder
+  Ping360Settings ping360;
+  std::size_t max_beams = 0;  ///< stop after them; 0: never
+  double write_every_s = 10.0;
+  MapOptions map;
+  BuildOptions build;
+  HeadArgs head;
+  std::string made_by;  ///< the command line, written into the file
+};
+
+struct EmulateCommand {
+  OutputOptions output_options;
+  std::string listen = "udp://127.0.0.1:9092";
+  std::string world = "tank";
+  Ping360EmulatorOptions head;
+  std::size_t max_pings = 0;  ///< end after them; 0: never
+};
+
 /// Runs the program `pingvox-bench` with these arguments.
 struct BenchCommand {
   OutputOptions output_options;
@@ -232,7 +266,7 @@ struct BenchCommand {
 };
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
-                             SimulateCommand, SlamCommand, LocateCommand, BenchCommand>;
+                             SimulateCommand, SlamCommand, LocateCommand, LiveCommand, EmulateCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -242,6 +276,8 @@ Result<int> run(const RenderCommand& command, Console& console);
 Result<int> run(const SimulateCommand& command, Console& console);
 Result<int> run(const SlamCommand& command, Console& console);
 Result<int> run(const LocateCommand& command, Console& console);
+Result<int> run(const LiveCommand& command, Console& console);
+Result<int> run(const EmulateCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);
 
 }  // namespace pingvox::app

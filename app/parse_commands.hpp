@@ -16,6 +16,8 @@ Result<Command> convert_command(const std::vector<std::string>& args);
 Result<Command> render_command(const std::vector<std::string>& args);
 Result<Command> locate_command(const std::vector<std::string>& args);
 Result<Command> slam_command(const std::vector<std::string>& args);
+Result<Command> live_command(const std::vector<std::string>& args);
+Result<Command> emulate_command(const std::vector<std::string>& args);
 Result<Command> simulate_command(const std::vector<std::string>& args);
 
 }  // namespace pingvox::app

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/descriptor.hpp"
+#include "pingvox/io/descriptor.hpp"
 
 namespace pingvox {
 

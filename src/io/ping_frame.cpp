@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cassert>
 #include <cstring>
 #include <limits>
 #include <numbers>
@@ -18,16 +19,14 @@ constexpr std::size_t kHeader = 8, kChecksum = 2;
 /// More than any message of a Ping360 needs; limits how many frames a damaged length delays.
 constexpr std::size_t kMaxPing360Payload = 4096;
 
-constexpr std::uint16_t kDeviceData = 2300, kAutoDeviceData = 2301;
-
 std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
   return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
 }
 
 /// Size of a payload before its samples, including their count; 0: another message.
 std::size_t fixed_part(std::uint16_t id) {
-  if (id == kDeviceData) return 14;
-  return id == kAutoDeviceData ? 20 : 0;
+  if (id == static_cast<std::uint16_t>(PingMessage::kDeviceData)) return 14;
+  return id == static_cast<std::uint16_t>(PingMessage::kAutoDeviceData) ? 20 : 0;
 }
 
 std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
@@ -65,6 +64,31 @@ FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
 
 FrameCheck check_sonarview_frame(std::span<const std::uint8_t> bytes) {
   return check_frame(bytes, std::numeric_limits<std::uint16_t>::max());
+}
+
+PingMessage ping_message(std::span<const std::uint8_t> frame) {
+  return static_cast<PingMessage>(u16_at(frame, 4));
+}
+
+std::span<const std::uint8_t> ping_payload(std::span<const std::uint8_t> frame) {
+  return frame.subspan(kHeader, frame.size() - kHeader - kChecksum);
+}
+
+std::vector<std::uint8_t> make_ping_frame(PingMessage message, std::uint8_t source, std::uint8_t destination,
+                                          std::span<const std::uint8_t> payload) {
+  assert(payload.size() <= kMaxPing360Payload);
+  std::vector<std::uint8_t> frame = {'B', 'R'};
+  const auto put = [&frame](std::size_t value) {
+    frame.push_back(static_cast<std::uint8_t>(value & 0xffU));
+    frame.push_back(static_cast<std::uint8_t>(value >> 8U));
+  };
+  put(payload.size());
+  put(static_cast<std::size_t>(message));
+  frame.push_back(source);
+  frame.push_back(destination);
+  frame.insert(frame.end(), payload.begin(), payload.end());
+  put(sum_of(frame));
+  return frame;
 }
 
 std::optional<Ping360Ping> ping360_ping(std::span<const std::uint8_t> frame) {

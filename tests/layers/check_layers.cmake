@@ -11,10 +11,11 @@ set(allowed_map base geometry)
 set(allowed_cloud base geometry map)
 set(allowed_mapping base geometry sonar map cloud)
 set(allowed_io base geometry sonar nav map)
+set(allowed_device base geometry sonar nav io)
 set(allowed_sim base geometry sonar nav)
 set(allowed_viewer base geometry sonar map mapping io)
 set(allowed_slam base geometry sonar nav map mapping)
-set(layers base geometry sonar nav map cloud mapping io sim viewer slam)
+set(layers base geometry sonar nav map cloud mapping io device sim viewer slam)
 
 # Libraries that one layer keeps to itself, in its sources: first part of the include -> layer.
 set(private_opencv2 sonar)

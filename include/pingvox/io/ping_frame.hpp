@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/sonar/beam.hpp"
@@ -17,6 +18,28 @@ namespace pingvox {
 FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes);
 /// The same for logs of SonarView, where payloads of other messages have up to 65,535 bytes.
 FrameCheck check_sonarview_frame(std::span<const std::uint8_t> bytes);
+
+/// Messages that a Ping360 and its host send each other.
+enum class PingMessage : std::uint16_t {
+  kAck = 1,
+  kNack = 2,
+  kDeviceInformation = 4,
+  kGeneralRequest = 6,
+  kDeviceData = 2300,
+  kAutoDeviceData = 2301,
+  kTransducer = 2601,
+  kMotorOff = 2903,
+};
+
+/// The message of a frame. REQUIRES a valid frame.
+PingMessage ping_message(std::span<const std::uint8_t> frame);
+/// Its bytes, without header and checksum. REQUIRES a valid frame.
+std::span<const std::uint8_t> ping_payload(std::span<const std::uint8_t> frame);
+/// A frame with this message.
+/// @param source, destination  ids of devices: 0 the host, 2 a Ping360
+/// REQUIRES a payload of at most 4096 bytes
+std::vector<std::uint8_t> make_ping_frame(PingMessage message, std::uint8_t source, std::uint8_t destination,
+                                          std::span<const std::uint8_t> payload);
 
 /// One ping of a Ping360 (device_data, auto_device_data), in raw units.
 struct Ping360Ping {

@@ -1,0 +1,273 @@
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <deque>
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "json.hpp"
+#include "map_report.hpp"
+#include "pingvox/device/live_source.hpp"
+#include "pingvox/io/beams.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/mapping/beam_mapper.hpp"
+#include "progress.hpp"
+#include "stop_signals.hpp"
+#include "stopwatch.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// Ping Viewer's name for a log that begins now, "20261123-175346123.bin", in local time.
+std::string name_by_time() {
+  const auto now = std::chrono::system_clock::now();
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
+  std::tm local = {};
+  ::localtime_r(&seconds, &local);
+  return fmt::format("{:%Y%m%d-%H%M%S}{:03}.bin", local, ms);
+}
+
+Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command, double now_s) {
+  const LiveDevice& device = command.device;
+  if (device.kind == LiveDevice::Kind::kReplay) {
+    return ByteStream::open(device.address)
+        .and_then([](ByteStream stream) { return open_beams(std::move(stream)); })
+        .map([&](std::unique_ptr<BeamSource> log) { return replay_source(std::move(log), device.speed); });
+  }
+  std::optional<PingViewerRecorder> recorder;
+  if (command.record) {
+    std::filesystem::path path = *command.record;
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) path /= name_by_time();
+    Result<PingViewerRecorder> created = PingViewerRecorder::create(path.string());
+    if (!created) return tl::unexpected(created.error());
+    recorder = std::move(*created);
+  }
+  return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
+}
+
+/// Writes maps in a thread of its own: a disk may take seconds, in which the lines' buffers would overflow.
+class MapWriter {
+ public:
+  explicit MapWriter(const LiveCommand& command) : command_(command) {}
+
+  /// Writes a copy of the map, unless the last one is still being written.
+  /// @return error of the last one
+  Result<void> write(const OccupancyMap& map) {
+    Result<void> last;
+    if (written_.valid()) {
+      if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+      last = written_.get();
+    }
+    written_ = std::async(std::launch::async, [this, copy = map] {
+      return write_map(copy, command_.format, command_.made_by, command_.output);
+    });
+    return last;
+  }
+
+  /// Writes the last map. @return its error
+  Result<void> finish(const OccupancyMap& map) {
+    if (written_.valid()) written_.wait();
+    return write_map(map, command_.format, command_.made_by, command_.output);
+  }
+
+ private:
+  const LiveCommand& command_;
+  std::future<Result<void>> written_;
+};
+
+/// One run: beams come in, wait, and are mapped.
+class LiveRun {
+ public:
+  LiveRun(const LiveCommand& command, Console& console, std::unique_ptr<LiveSource> source, BeamMapper mapper,
+          OccupancyMap& map)
+      : command_(command),
+        console_(console),
+        source_(std::move(source)),
+        mapper_(std::move(mapper)),
+        map_(map),
+        writer_(command),
+        bar_(command.output_options) {}
+
+  Result<int> run(StopSignals& signals, const Stopwatch& watch) {
+    double tell_at_s = watch.seconds() + kTell_s, write_at_s = watch.seconds() + command_.write_every_s;
+    bool has_ended = false;
+    while (!has_ended && !signals.arrived() && (command_.max_beams == 0 || beams_ < command_.max_beams)) {
+      const double next_s = std::min({tell_at_s, write_at_s, source_->due_s()});
+      wait(signals, waiting_.empty() ? next_s - watch.seconds() : 0.0);
+      const Result<bool> goes_on = source_->step(watch.seconds(), arrived_);
+      if (!goes_on) return tl::unexpected(goes_on.error());
+      has_ended = !*goes_on;
+      queue_arrived();
+      map_one();
+      tell_changes();
+      const double now_s = watch.seconds();
+      if (now_s >= tell_at_s) {
+        tell(now_s);
+        tell_at_s = now_s + kTell_s;
+      }
+      if (now_s >= write_at_s) {
+        if (const auto written = writer_.write(map_); !written) note(written.error());
+        write_at_s = now_s + command_.write_every_s;
+      }
+    }
+    return finish(watch);
+  }
+
+ private:
+  static constexpr double kTell_s = 1.0;
+
+  void wait(const StopSignals& signals, double seconds) const {
+    std::array<pollfd, 2> files = {pollfd{signals.descriptor(), POLLIN, 0}, pollfd{source_->descriptor(), POLLIN, 0}};
+    ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kTell_s) * 1000.0)));
+  }
+
+  /// The oldest beams are dropped when too many wait: the record has them.
+  void queue_arrived() {
+    constexpr std::size_t kMaxWaiting = 2000;  // at most 2.4 MB of a Ping360
+    for (Beam& beam : arrived_) {
+      ++beams_;
+      waiting_.push_back(std::move(beam));
+    }
+    arrived_.clear();
+    for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++unmapped_;
+  }
+
+  void map_one() {
+    if (waiting_.empty()) return;
+    Beam beam = std::move(waiting_.front());
+    waiting_.pop_front();
+    if (cannot_map_) {
+      ++unmapped_;
+      return;
+    }
+    if (const auto added = mapper_.add(std::move(beam), Pose::Identity()); !added) {
+      cannot_map_ = true;
+      note(added.error());
+    }
+  }
+
+  Result<int> finish(const Stopwatch& watch) {
+    source_->finish(arrived_);
+    queue_arrived();
+    while (!waiting_.empty()) map_one();
+    if (!cannot_map_) {
+      if (const auto finished = mapper_.finish(); !finished) note(finished.error());
+    }
+    tell_changes();
+    if (const auto written = writer_.finish(map_); !written) return tl::unexpected(written.error());
+    bar_.clear();
+    const LiveStatus status = source_->status();
+    const auto printed = command_.output_options.report == Report::kJson
+                             ? console_.print(json_of(watch.seconds(), true).text() + "\n")
+                             : console_.summarise(text_of(status), command_.output);
+    if (!printed) return tl::unexpected(printed.error());
+    return has_failed_ ? 1 : 0;
+  }
+
+  void note(const Error& error) {
+    bar_.clear();
+    print_error(error.message);
+    has_failed_ = true;
+  }
+
+  void tell_changes() {
+    const LiveStatus status = source_->status();
+    if (status.recording_error && !was_recording_error_told_) {
+      was_recording_error_told_ = true;
+      note({status.recording_error->code,
+            fmt::format("{}: the recording ended; mapping goes on", status.recording_error->message)});
+    }
+    if (status.is_connected == was_connected_ && status.problem == last_problem_) return;
+    bar_.clear();
+    const std::string& name = command_.device.text;
+    const bool is_replay = command_.device.kind == LiveDevice::Kind::kReplay;
+    if (status.is_connected && !is_replay) console_.say(fmt::format("{}: connected", name));
+    if (!status.is_connected && !status.problem.empty()) {
+      console_.say(fmt::format("{}: not connected ({}); trying again", name, status.problem));
+    }
+    was_connected_ = status.is_connected;
+    last_problem_ = status.problem;
+  }
+
+  void tell(double now_s) {
+    if (command_.output_options.report == Report::kJson) {
+      // A reader that has gone ends nothing.
+      static_cast<void>(console_.print(json_of(now_s, false).text() + "\n"));
+    }
+    const LiveStatus status = source_->status();
+    bar_.draw(std::nullopt,
+              fmt::format("{}{} beams, {} echoes, {} lost, {} not mapped, {:.0f} s, map {}",
+                          status.is_connected ? "" : "not connected, ", beams_, mapper_.report().echoes,
+                          status.unanswered + status.damaged, unmapped_, now_s, bytes_text(map_.memory_bytes())));
+  }
+
+  JsonObject json_of(double now_s, bool is_last) const {
+    const LiveStatus status = source_->status();
+    JsonObject json;
+    json.add_truth("done", is_last)
+        .add("time_s", round_to_us(now_s))
+        .add_truth("connected", status.is_connected)
+        .add("connections", status.connections)
+        .add("beams", beams_)
+        .add("mapped", mapper_.report().beams)
+        .add("echoes", mapper_.report().echoes)
+        .add("not_mapped", unmapped_)
+        .add("unanswered", status.unanswered)
+        .add("damaged", status.damaged)
+        .add("memory_bytes", map_.memory_bytes());
+    return json;
+  }
+
+  std::string text_of(const LiveStatus& status) const {
+    const BuildReport& report = mapper_.report();
+    return on_one_line(command_.output) + "\n" +
+           report_line("heard", fmt::format("{} beams, {} complete sweeps, {} echoes; {} not mapped", beams_,
+                                            report.sweeps, report.echoes, unmapped_ + report.skipped)) +
+           report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered,
+                                           status.damaged, status.connections)) +
+           map_text(map_, map_.counts());
+  }
+
+  const LiveCommand& command_;
+  Console& console_;
+  std::unique_ptr<LiveSource> source_;
+  BeamMapper mapper_;
+  OccupancyMap& map_;
+  MapWriter writer_;
+  ProgressBar bar_;
+  std::vector<Beam> arrived_;
+  std::deque<Beam> waiting_;
+  std::size_t beams_ = 0, unmapped_ = 0;
+  bool cannot_map_ = false, has_failed_ = false;
+  bool was_connected_ = false, was_recording_error_told_ = false;
+  std::string last_problem_;
+};
+
+}  // namespace
+
+Result<int> run(const LiveCommand& command, Console& console) {
+  Result<StopSignals> signals = StopSignals::make();
+  if (!signals) return tl::unexpected(signals.error());
+  const Stopwatch watch;
+  Result<OccupancyMap> map = OccupancyMap::make(command.map);
+  if (!map) return tl::unexpected(map.error());
+  Result<std::unique_ptr<LiveSource>> source = source_of(command, watch.seconds());
+  if (!source) return tl::unexpected(source.error());
+  const BuildOptions options = command.head.apply_to(command.build, (*source)->device());
+  Result<BeamMapper> mapper = BeamMapper::make(options, *map);
+  if (!mapper) return tl::unexpected(mapper.error());
+  return LiveRun(command, console, std::move(*source), std::move(*mapper), *map).run(*signals, watch);
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "map_log.hpp"
+#include "mapping_options.hpp"
+#include "option_table.hpp"
+#include "option_values.hpp"
+#include "parse_commands.hpp"
+#include "shared_options.hpp"
+#include "shell_words.hpp"
+
+namespace pingvox::app {
+namespace {
+
+using Gain = Ping360Settings::Gain;
+
+constexpr std::array kGains = {Choice<Gain>{"low", Gain::kLow}, Choice<Gain>{"normal", Gain::kNormal},
+                               Choice<Gain>{"high", Gain::kHigh}};
+constexpr std::array kProgress = {Choice<ShowProgress>{"auto", ShowProgress::kAuto},
+                                  Choice<ShowProgress>{"always", ShowProgress::kAlways},
+                                  Choice<ShowProgress>{"never", ShowProgress::kNever}};
+constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt}, Choice<Format>{"ot", Format::kOt},
+                                    Choice<Format>{"pvx", Format::kPvx}};
+constexpr double kGradian_deg = 0.9;
+
+Result<LiveDevice> device_from(const std::string& text) {
+  constexpr std::string_view kPing360 = "ping360:", kReplay = "replay:";
+  LiveDevice device;
+  device.text = text;
+  if (text.starts_with(kPing360)) {
+    device.kind = LiveDevice::Kind::kPing360;
+    device.address = text.substr(kPing360.size());
+    if (device.address.starts_with("udp://") || device.address.starts_with('/')) return device;
+  }
+  if (text.starts_with(kReplay) && text.size() > kReplay.size()) {
+    device.address = text.substr(kReplay.size());
+    const std::size_t at = device.address.rfind('@');
+    if (at == std::string::npos) return device;
+    const std::string speed = device.address.substr(at + 1);
+    device.address.resize(at);
+    if (speed == "max") {
+      device.speed = std::numeric_limits<double>::infinity();
+      return device;
+    }
+    const Result<double> number = number_from<double>(speed);
+    if (!number) return usage_error(fmt::format("'{}': the speed after @ {}", text, number.error().message));
+    if (!(*number > 0.0)) return usage_error(fmt::format("'{}': the speed after @ must be above 0, or max", text));
+    device.speed = *number;
+    return device;
+  }
+  return usage_error(
+      fmt::format("no such device '{}': must be ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD] or "
+                  "replay:FILE[@SPEED]",
+                  text));
+}
+
+/// Bearings in degrees, counter-clockwise from the first to the last, as a sector of the head.
+Take store_sector(std::optional<Ping360Settings::Sector>& sector) {
+  return [&sector](const std::string& text) -> Result<void> {
+    const auto bearings = numbers_from<2>(text);
+    if (!bearings) return tl::unexpected(bearings.error());
+    const auto& [from_deg, to_deg] = *bearings;
+    if (!(from_deg >= -360.0 && to_deg <= 360.0 && to_deg - from_deg >= kGradian_deg && to_deg - from_deg < 360.0)) {
+      return usage_error(
+          fmt::format("'{}': must be two bearings in degrees, the smaller one first, less than a turn apart", text));
+    }
+    const int width_grad = static_cast<int>(std::lround((to_deg - from_deg) / kGradian_deg));
+    const int left_grad = 200 - static_cast<int>(std::lround(to_deg / kGradian_deg));
+    sector = {.first_grad = (left_grad + 800) % 400, .width_grad = std::clamp(width_grad, 1, 399)};
+    return {};
+  };
+}
+
+Take store_step(int& step_grad) {
+  return [&step_grad](const std::string& text) -> Result<void> {
+    const Result<double> degrees = number_from<double>(text);
+    if (!degrees) return tl::unexpected(degrees.error());
+    const double steps = *degrees / kGradian_deg;
+    if (!(steps > 0.5 && steps < 20.5 && std::abs(steps - std::round(steps)) < 1e-6)) {
+      return usage_error(fmt::format("must be a multiple of 0.9 up to 18, is {}", text));
+    }
+    step_grad = static_cast<int>(std::lround(steps));
+    return {};
+  };
+}
+
+/// Without the options of logs, which are not there while a device runs.
+OptionTable::Group without(OptionTable::Group group, std::initializer_list<std::string_view> names) {
+  std::erase_if(group.options,
+                [&](const Option& option) { return std::ranges::find(names, option.name) != names.end(); });
+  return group;
+}
+
+}  // namespace
+
+Result<Command> live_command(const Args& args) {
+  LiveCommand command;
+  BuildArgs build;
+  std::optional<Format> asked_format;
+  std::string output, record;
+  Ping360Settings& head = command.ping360;
+  const Take device = [&](const std::string& text) -> Result<void> {
+    const Result<LiveDevice> taken = device_from(text);
+    if (!taken) return tl::unexpected(taken.error());
+    command.device = *taken;
+    return {};
+  };
+  const Take format = [&](const std::string& text) -> Result<void> {
+    const Result<Format> value = choice_value(kMapFormats, text);
+    if (!value) return tl::unexpected(value.error());
+    asked_format = *value;
+    return {};
+  };
+  OptionTable table{
+      "live",
+      "Maps what a scanning sonar hears while it runs: drives the head, records its bytes, and writes the map again "
+      "and\n"
+      "again. SIGINT or SIGTERM (Ctrl-C) finish recording and map; a second one ends at once.",
+      {{"DEVICE", Positional::Count::kOne,
+        "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], or replay:FILE[@SPEED], a log in the rhythm of its "
+        "times "
+        "(SPEED max: as fast as it can be mapped)",
+        device}},
+      {{"Output",
+        {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
+         {"--format", 0, choices_text(kMapFormats), "format of the map, if its name has no such suffix",
+          "by suffix, else bt", format},
+         {"--record", 0, "FILE",
+          "record the bytes of the device as a log of Ping Viewer; in a folder named by the time", "none",
+          store(record)},
+         {"--write-every", 0, "S", "seconds between two maps", number_text(command.write_every_s),
+          within({0.1, 86'400.0}, store_number(command.write_every_s))},
+         {"--beams", 0, "N", "stop after N beams", "never", store_number(command.max_beams)},
+         json_option(command.output_options),
+         quiet_option(command.output_options),
+         choice("--progress", kProgress, "show the status on standard error; auto: on a terminal",
+                command.output_options.progress)}},
+       {"Head",
+        {{"--range", 0, "M", "range that the head listens to", number_text(head.range_m),
+          within({0.5, 100.0}, store_number(head.range_m))},
+         {"--sector", 0, "FROM,TO", "bearings in degrees to turn to and fro between, 0 ahead, counter-clockwise",
+          "full turns", store_sector(head.sector)},
+         {"--step", 0, "DEG", "angle from beam to beam, a multiple of 0.9", number_text(kGradian_deg),
+          store_step(head.step_grad)},
+         choice("--gain", kGains, "gain of the receiver", head.gain),
+         {"--timeout", 0, "S", "seconds to wait for an answer; the head may have to turn", number_text(head.timeout_s),
+          within({0.01, 60.0}, store_number(head.timeout_s))}}},
+       map_group(build),
+       without(sensor_group(build), {"--poses", "--nav", "--nav-offset"}),
+       without(echo_group(build.echoes), {"--background"}),
+       {"Input", {config_option()}}},
+      {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",
+       "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",
+       "pingvox live replay:dive.bin@10 -o dive.bt"},
+      "The vehicle is taken to stand still. The map of a recording, by 'pingvox map' with the same options, is the "
+      "same.\n"
+      "With --json each line of standard output is one object, one a second and one at the end.\n"
+      "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
+  for (OptionTable::Group& group : table.groups) {
+    for (Option& option : group.options) option.only_for.clear();  // there are no others than beams
+  }
+  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+    const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
+    if (!output_as) return tl::unexpected(output_as.error());
+    command.format = *output_as;
+    command.map = build.map;
+    command.output = output;
+    if (const auto valid = build.echoes.validate(); !valid) return tl::unexpected(valid.error());
+    command.build = build.build_options();
+    command.head = build.head;
+    if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
+    if (const auto ranges = check_ranges(command.build); !ranges) return tl::unexpected(ranges.error());
+    if (const auto valid = head.validate(); !valid) return tl::unexpected(valid.error());
+    if (output == "-") return usage_error("-o -: the map is written again and again: name a file");
+    if (command.map.depth != Lattice::kDefaultDepth && *output_as != Format::kPvx) {
+      return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", output,
+                                     name_of(*output_as), Lattice::kDefaultDepth, command.map.depth));
+    }
+    if (!record.empty()) {
+      if (command.device.kind == LiveDevice::Kind::kReplay) {
+        return usage_error("--record: a replay is a recording already");
+      }
+      command.record = record;
+    }
+    if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
+    command.made_by = "pingvox " PINGVOX_VERSION " live";
+    for (const std::string& word : args) {
+      command.made_by += ' ';
+      command.made_by += quote_for_shell(word);
+    }
+    return command;
+  });
+}
+
+Result<Command> emulate_command(const Args& args) {
+  EmulateCommand command;
+  Ping360EmulatorOptions& head = command.head;
+  const Take device = [](const std::string& text) -> Result<void> {
+    if (text == "ping360") return {};
+    return usage_error(fmt::format("no such device '{}': must be ping360", text));
+  };
+  const Take world = [&](const std::string& text) -> Result<void> {
+    constexpr std::array<std::string_view, 4> kWorlds = {"tank", "harbour", "seabed", "cave"};
+    if (std::ranges::find(kWorlds, text) == kWorlds.end()) {
+      return usage_error(fmt::format("must be {}, not '{}'", fmt::join(kWorlds, " or "), text));
+    }
+    command.world = text;
+    return {};
+  };
+  const Limits fault{0.0, 0.5};
+  const OptionTable table{
+      "emulate",
+      "Answers like a device that stands still in a simulated world, to try 'pingvox live' without one. Prints the\n"
+      "address to connect to.",
+      {{"DEVICE", Positional::Count::kOne, "ping360", device}},
+      {{"Line",
+        {{"--listen", 0, "ADDRESS", "udp://HOST:PORT (port 0: any that is free), or pty for a new pseudo terminal",
+          command.listen, store(command.listen)},
+         {"--lost", 0, "S", "fraction of bytes that are lost", "0", within(fault, store_number(head.lost))},
+         {"--doubled", 0, "S", "fraction of bytes that come twice", "0", within(fault, store_number(head.doubled))},
+         {"--damaged", 0, "S", "fraction of bytes with a wrong bit", "0", within(fault, store_number(head.damaged))}}},
+       {"Head",
+        {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},
+         {"--rate", 0, "HZ", "pings a second", number_text(head.pings_per_s),
+          within({0.1, 100'000.0}, store_number(head.pings_per_s))},
+         {"--pings", 0, "N", "end after N pings", "never", store_number(command.max_pings)},
+         {"--stall-every", 0, "N", "be silent after each N pings, as a head that restarts", "never",
+          store_number(head.stall_every)},
+         {"--stall", 0, "S", "how long, in seconds", number_text(head.stall_s),
+          within({0.0, 3600.0}, store_number(head.stall_s))},
+         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(head.seed)}}}},
+      {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001"},
+      "Exit status: 0 done, 1 failed, 2 invalid usage."};
+  return parse_command(table, args, [&](const Parsed&) -> Result<Command> { return command; });
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,27 @@
+#include "stop_signals.hpp"
+
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace pingvox::app {
+
+Result<StopSignals> StopSignals::make() {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::sigaddset(&signals, SIGINT);
+  ::sigaddset(&signals, SIGTERM);
+  Descriptor file(::signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC));
+  if (!file.valid() || ::pthread_sigmask(SIG_BLOCK, &signals, nullptr) != 0) return os_error("signals", errno);
+  return StopSignals(signals, std::move(file));
+}
+
+bool StopSignals::arrived() {
+  signalfd_siginfo signal = {};
+  if (::read(file_.get(), &signal, sizeof signal) != sizeof signal) return false;
+  ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+  return true;
+}
+
+}  // namespace pingvox::app

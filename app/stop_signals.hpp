@@ -1,0 +1,28 @@
+#pragma once
+
+#include <csignal>
+
+#include "pingvox/io/descriptor.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// SIGINT and SIGTERM as something to wait for, so that a command ends in good order. Threads are started after it.
+class StopSignals {
+ public:
+  /// Blocks the signals.
+  static Result<StopSignals> make();
+
+  /// For poll().
+  int descriptor() const { return file_.get(); }
+  /// Whether one came. After that, another one ends the process at once.
+  bool arrived();
+
+ private:
+  StopSignals(const sigset_t& signals, Descriptor file) : signals_(signals), file_(std::move(file)) {}
+
+  sigset_t signals_;
+  Descriptor file_;
+};
+
+}  // namespace pingvox::app

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pingvox/device/ping360_driver.hpp"
+#include "pingvox/io/ping_viewer_recorder.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+namespace pingvox {
+
+/// State of a live source.
+struct LiveStatus {
+  bool is_connected = false;
+  std::size_t connections = 0;           ///< how often it was connected
+  std::string problem;                   ///< why it is not connected, or not any more
+  std::size_t unanswered = 0;            ///< requests without an answer
+  std::size_t damaged = 0;               ///< damaged frames, and runs of bytes between frames
+  std::optional<Error> recording_error;  ///< why the recording ended; the beams go on
+};
+
+/// A source of beams that does not wait: the caller polls it. It has no clock of its own.
+class LiveSource {
+ public:
+  virtual ~LiveSource() = default;
+  /// To wait for with poll(), along with `due_s`; -1: none.
+  virtual int descriptor() const { return -1; }
+  /// When `step` has to be called again, if the descriptor is not ready before.
+  virtual double due_s() const = 0;
+  /// Reads, records and sends what is due, without waiting, and appends the beams that came.
+  /// @param now_s  seconds of a clock that never goes back
+  /// @return false at the end (a device has none); an error when nothing more can be read
+  virtual Result<bool> step(double now_s, std::vector<Beam>& beams) = 0;
+  /// Ends the work: stops the head, and appends the beams that waited for more bytes.
+  virtual void finish(std::vector<Beam>& beams) = 0;
+
+  virtual LiveStatus status() const = 0;
+  /// The sonar head, if known.
+  virtual const DeviceProfile* device() const = 0;
+};
+
+/// A Ping360 at a line that `Link::open` opens. A line that fails or falls silent is opened again after half a second,
+/// then ever later up to ten seconds, without end. What comes is recorded before anything else is done with it; reading
+/// the recording gives the same beams.
+/// REQUIRES valid settings.
+std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
+                                           std::optional<PingViewerRecorder> recorder, double now_s);
+
+/// A log, in the rhythm of its times.
+/// @param speed  > 0; 1: as it was; infinity: as fast as the caller asks
+std::unique_ptr<LiveSource> replay_source(std::unique_ptr<BeamSource> log, double speed);
+
+}  // namespace pingvox

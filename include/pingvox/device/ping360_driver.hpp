@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Sampling of one ping.
+struct Ping360Sampling {
+  std::uint16_t samples = 0;
+  std::uint16_t period_25ns = 0;  ///< from sample to sample
+  std::uint16_t transmit_us = 0;  ///< length of the pulse
+};
+
+/// Sampling that Ping Viewer chooses for a range: up to 1200 samples, in steps of at least 2 us. REQUIRES a range of
+/// 0.5 m to 100 m.
+Ping360Sampling ping360_sampling(double range_m);
+
+/// How a head is driven. Its angles are of 400 a turn, clockwise; 200 is ahead.
+struct Ping360Settings {
+  enum class Gain : std::uint8_t { kLow, kNormal, kHigh };
+  /// Turned to and fro, from the first angle clockwise.
+  struct Sector {
+    int first_grad = 0;  ///< 0..399
+    int width_grad = 0;  ///< 1..399
+  };
+
+  double range_m = 10.0;         ///< 0.5..100
+  Gain gain = Gain::kNormal;     ///< of the receiver
+  int step_grad = 1;             ///< from ping to ping, 1..20
+  std::optional<Sector> sector;  ///< nullopt: full turns
+  double timeout_s = 4.0;        ///< for an answer, 0.01..60; a head that turns far takes seconds
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// The host's side of the dialogue with a Ping360: asks who is there, then for one ping after the other, and repeats
+/// what is not answered. It has no line and no clock of its own: the caller carries the messages.
+class Ping360Driver {
+ public:
+  /// REQUIRES valid settings.
+  explicit Ping360Driver(const Ping360Settings& settings);
+
+  /// Begins the dialogue on a new line; the head goes on turning from where it was.
+  void connect();
+  /// Takes a valid frame of the Ping protocol from the line.
+  void take(std::span<const std::uint8_t> frame);
+  /// The message to send now; nullopt while an answer may still come.
+  std::optional<std::vector<std::uint8_t>> message(double now_s);
+  /// When `message` has to be called again, unless a frame comes before.
+  double due_s() const { return is_waiting_ ? deadline_s_ : -std::numeric_limits<double>::infinity(); }
+
+  /// Whether a Ping360 answered since `connect`.
+  bool is_connected() const { return is_known_; }
+  /// Several messages in a row were not answered: the line has to be opened again.
+  bool is_lost() const;
+  /// Messages that were not answered in time.
+  std::size_t unanswered() const { return unanswered_; }
+
+  /// The last message, which stops the motor.
+  static std::vector<std::uint8_t> motor_off();
+
+ private:
+  void turn();
+  std::vector<std::uint8_t> ping() const;
+
+  Ping360Settings settings_;
+  Ping360Sampling sampling_;
+  int angle_grad_;
+  int place_grad_ = 0;  ///< in the sector
+  int sense_ = 1;       ///< of turning in the sector: 1 clockwise, -1 counter-clockwise
+  bool is_known_ = false, is_waiting_ = false;
+  double deadline_s_ = 0.0;
+  int unanswered_in_a_row_ = 0;
+  std::size_t unanswered_ = 0;
+};
+
+}  // namespace pingvox

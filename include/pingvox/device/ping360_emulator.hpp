@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "pingvox/geometry/random.hpp"
+#include "pingvox/io/frame_finder.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+struct Ping360EmulatorOptions {
+  double pings_per_s = 20.0;  ///< 0.1..100,000
+  // Faults of the line, as fractions of the bytes that the head sends.
+  double lost = 0.0, doubled = 0.0, damaged = 0.0;  ///< 0..0.5 each
+  // Faults of the head: after this many pings it hears and says nothing for a while, as one that restarts.
+  std::size_t stall_every = 0;  ///< pings; 0: never
+  double stall_s = 5.0;         ///< 0..3600
+  std::uint64_t seed = 1;       ///< of the faults
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// A Ping360 at the other end of a line: answers requests for its information, pings and motor_off. It has no line and
+/// no clock of its own: the caller carries the bytes.
+class Ping360Emulator {
+ public:
+  /// What the head hears at an angle (of 400 a turn, clockwise, 200 ahead): the intensities of some bins of a length.
+  using Hear = std::function<std::vector<std::uint8_t>(int angle_grad, std::size_t bins, double bin_length_m)>;
+
+  /// REQUIRES valid options.
+  Ping360Emulator(const Ping360EmulatorOptions& options, Hear hear);
+
+  /// Takes bytes from the line.
+  void take(std::span<const std::uint8_t> bytes, double now_s);
+  /// The bytes to send now: one frame, with the faults of the line; empty: none.
+  std::vector<std::uint8_t> send(double now_s);
+  /// When the next frame is to be sent; infinity: when the host asks for one.
+  double due_s() const { return answers_.empty() ? std::numeric_limits<double>::infinity() : answers_.front().due_s; }
+
+  /// Pings that were sent.
+  std::size_t pings() const { return pings_; }
+
+ private:
+  struct Answer {
+    double due_s;
+    std::vector<std::uint8_t> frame;
+    bool is_ping;
+  };
+  void answer(std::span<const std::uint8_t> frame, double now_s);
+  std::vector<std::uint8_t> ping(std::span<const std::uint8_t> transducer);
+  std::vector<std::uint8_t> with_faults(const std::vector<std::uint8_t>& frame);
+
+  Ping360EmulatorOptions options_;
+  Hear hear_;
+  FrameFinder finder_;
+  std::deque<Answer> answers_;
+  std::size_t pings_ = 0;
+  double silent_until_s_ = -std::numeric_limits<double>::infinity();
+  Random random_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "pingvox/io/descriptor.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Records what a Ping360 sends as a log of Ping Viewer (docs/formats.md), which `open_beams` reads.
+class PingViewerRecorder {
+ public:
+  /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
+  static Result<PingViewerRecorder> create(const std::string& path);
+
+  const std::string& path() const { return path_; }
+
+  /// Appends the bytes of one read. They are with the operating system when it returns and outlive this process.
+  /// @param time_ms  since the start of the log
+  /// @return kIo: the file ends with the last whole record
+  Result<void> append(std::uint64_t time_ms, std::span<const std::uint8_t> bytes);
+
+  /// Starts to write to the disk what is not there yet, without waiting for it.
+  void start_sync();
+
+  /// Time of a record as readers see it.
+  static double time_s(std::uint64_t time_ms);
+
+ private:
+  PingViewerRecorder(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
+  Result<void> write(std::span<const std::uint8_t> bytes);
+
+  std::string path_;
+  Descriptor file_;
+  std::uint64_t size_ = 0;  ///< of whole records [bytes]
+};
+
+}  // namespace pingvox

@@ -1,0 +1,198 @@
+#include "pingvox/device/link.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <netdb.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace pingvox {
+namespace {
+
+constexpr std::string_view kUdp = "udp://";
+
+struct HostAndPort {
+  std::string host, port;
+};
+
+/// Of "HOST:PORT" or "[HOST]:PORT".
+std::optional<HostAndPort> host_and_port(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return std::nullopt;
+  std::string_view host = text.substr(0, colon);
+  const std::string_view port = text.substr(colon + 1);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  std::uint16_t number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc{} || end != port.data() + port.size()) return std::nullopt;
+  return HostAndPort{std::string(host), std::string(port)};
+}
+
+std::optional<speed_t> speed_of(int baud) {
+  switch (baud) {
+    case 9600:
+      return B9600;
+    case 19'200:
+      return B19200;
+    case 38'400:
+      return B38400;
+    case 57'600:
+      return B57600;
+    case 115'200:
+      return B115200;
+    case 230'400:
+      return B230400;
+    case 460'800:
+      return B460800;
+    case 921'600:
+      return B921600;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Bytes as they are, 8N1, without flow control. 0 or errno.
+int make_raw(int terminal, speed_t speed) {
+  termios settings = {};
+  if (::tcgetattr(terminal, &settings) != 0) return errno;
+  ::cfmakeraw(&settings);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+  settings.c_cc[VMIN] = 1;
+  settings.c_cc[VTIME] = 0;
+  ::cfsetispeed(&settings, speed);
+  ::cfsetospeed(&settings, speed);
+  return ::tcsetattr(terminal, TCSANOW, &settings) == 0 ? 0 : errno;
+}
+
+/// "udp://HOST:PORT" of a socket.
+std::string address_of(int socket) {
+  sockaddr_storage own = {};
+  socklen_t size = sizeof own;
+  std::array<char, NI_MAXHOST> host = {};
+  std::array<char, NI_MAXSERV> port = {};
+  auto* address = reinterpret_cast<sockaddr*>(&own);
+  if (::getsockname(socket, address, &size) != 0 || ::getnameinfo(address, size, host.data(), host.size(), port.data(),
+                                                                  port.size(), NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return {};
+  }
+  const bool is_v6 = own.ss_family == AF_INET6;
+  return fmt::format("{}{}{}{}:{}", kUdp, is_v6 ? "[" : "", host.data(), is_v6 ? "]" : "", port.data());
+}
+
+}  // namespace
+
+Result<Link> Link::open(const std::string& address) {
+  if (address.starts_with(kUdp)) return open_socket(address, Kind::kSocket);
+  if (address.starts_with('/')) return open_serial_port(address);
+  return fail(Error::Code::kBadOption,
+              fmt::format("'{}': must be udp://HOST:PORT, or the path of a serial port", address));
+}
+
+Result<Link> Link::listen(const std::string& address) {
+  if (address.starts_with(kUdp)) return open_socket(address, Kind::kListeningSocket);
+  if (address == "pty") return open_pseudo_terminal();
+  return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT or pty", address));
+}
+
+Result<Link> Link::open_socket(const std::string& address, Kind kind) {
+  const std::optional<HostAndPort> parts = host_and_port(std::string_view(address).substr(kUdp.size()));
+  if (!parts) return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT", address));
+  addrinfo wanted = {};
+  wanted.ai_family = AF_UNSPEC;
+  wanted.ai_socktype = SOCK_DGRAM;
+  wanted.ai_flags = AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  if (const int error = ::getaddrinfo(parts->host.c_str(), parts->port.c_str(), &wanted, &found)) {
+    return fail(Error::Code::kIo, fmt::format("{}: {}", address, ::gai_strerror(error)));
+  }
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+
+  Descriptor socket(::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!socket.valid()) return os_error(address, errno);
+  // Room for what comes while a sweep is mapped; the system may allow less.
+  constexpr int kBuffer_bytes = 4 << 20;
+  static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &kBuffer_bytes, sizeof kBuffer_bytes));
+  const bool listens = kind == Kind::kListeningSocket;
+  const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
+                             : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
+  if (status != 0) return os_error(address, errno);
+  return Link(kind, listens ? address_of(socket.get()) : address, std::move(socket));
+}
+
+Result<Link> Link::open_serial_port(const std::string& address) {
+  constexpr int kDefaultBaud = 115'200;
+  const std::size_t at = address.rfind('@');
+  int baud = kDefaultBaud;
+  if (at != std::string::npos) {
+    const char* end = address.data() + address.size();
+    if (std::from_chars(address.data() + at + 1, end, baud).ptr != end) baud = 0;
+  }
+  const std::optional<speed_t> speed = speed_of(baud);
+  if (!speed) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("'{}': the baud rate must be 9600, 19200, 38400, 57600, 115200, 230400, 460800 or 921600",
+                            address));
+  }
+  const std::string path = address.substr(0, at);
+  Descriptor port(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!port.valid()) return os_error(path, errno);
+  if (const int error = make_raw(port.get(), *speed)) return os_error(path, error);
+  return Link(Kind::kTerminal, address, std::move(port));
+}
+
+Result<Link> Link::open_pseudo_terminal() {
+  constexpr std::string_view kName = "pseudo terminal";
+  Descriptor device(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  std::array<char, 128> path = {};
+  if (!device.valid() || ::grantpt(device.get()) != 0 || ::unlockpt(device.get()) != 0 ||
+      ::ptsname_r(device.get(), path.data(), path.size()) != 0) {
+    return os_error(kName, errno);
+  }
+  Descriptor host(::open(path.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  if (!host.valid()) return os_error(kName, errno);
+  if (const int error = make_raw(host.get(), B115200)) return os_error(kName, error);
+  Link link(Kind::kTerminal, path.data(), std::move(device));
+  link.other_end_ = std::move(host);
+  return link;
+}
+
+Result<std::size_t> Link::read(std::span<std::uint8_t> to) {
+  sockaddr_storage sender = {};
+  socklen_t size = sizeof sender;
+  const ssize_t got = kind_ == Kind::kTerminal ? ::read(file_.get(), to.data(), to.size())
+                                               : ::recvfrom(file_.get(), to.data(), to.size(), 0,
+                                                            reinterpret_cast<sockaddr*>(&sender), &size);
+  if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) return std::size_t{0};
+  if (got < 0) return os_error(address_, errno);
+  if (got == 0 && kind_ == Kind::kTerminal) return fail(Error::Code::kIo, fmt::format("{}: hung up", address_));
+  if (kind_ == Kind::kListeningSocket) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&sender);
+    host_.assign(bytes, bytes + size);
+  }
+  return static_cast<std::size_t>(got);
+}
+
+Result<void> Link::write(std::span<const std::uint8_t> bytes) {
+  if (kind_ == Kind::kListeningSocket && host_.empty()) return {};
+  const auto* host = reinterpret_cast<const sockaddr*>(host_.data());
+  const ssize_t sent = kind_ == Kind::kTerminal ? ::write(file_.get(), bytes.data(), bytes.size())
+                       : kind_ == Kind::kSocket ? ::send(file_.get(), bytes.data(), bytes.size(), 0)
+                                                : ::sendto(file_.get(), bytes.data(), bytes.size(), 0, host,
+                                                           static_cast<socklen_t>(host_.size()));
+  const bool is_full = errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
+  if (sent < 0 && !is_full) return os_error(address_, errno);
+  return {};
+}
+
+}  // namespace pingvox

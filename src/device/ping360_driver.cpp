@@ -1,0 +1,134 @@
+#include "pingvox/device/ping360_driver.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "device/ping_fields.hpp"
+#include "pingvox/io/ping_frame.hpp"
+#include "pingvox/sonar/device_profile.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::uint8_t kHost = 0, kHead = 2;
+constexpr int kTurn_grad = 400;
+
+}  // namespace
+
+Ping360Sampling ping360_sampling(double range_m) {
+  constexpr double kTick_s = 25e-9, kMaxSamples = 1200.0, kMinPeriod = 80.0;
+  const double ticks = 2.0 * range_m / (kAssumedSoundSpeed_m_s * kTick_s);  // to the range and back
+  const double samples = std::min(kMaxSamples, std::floor(ticks / kMinPeriod));
+  const double period = std::floor(ticks / samples);
+  const double period_s = period * kTick_s;
+  const double max_us = std::min(500.0, std::floor(64e6 * period_s));
+  const double pulse_us = std::max(std::round(8000.0 * range_m / kAssumedSoundSpeed_m_s), 2.5e6 * period_s);
+  return {static_cast<std::uint16_t>(samples), static_cast<std::uint16_t>(period),
+          static_cast<std::uint16_t>(std::clamp(pulse_us, 5.0, max_us))};
+}
+
+Result<void> Ping360Settings::validate() const {
+  std::string bad;
+  if (!(range_m >= 0.5 && range_m <= 100.0)) bad += fmt::format(" range_m must be in 0.5..100, is {};", range_m);
+  if (step_grad < 1 || step_grad > 20) bad += fmt::format(" step_grad must be in 1..20, is {};", step_grad);
+  if (sector && (sector->first_grad < 0 || sector->first_grad >= kTurn_grad)) {
+    bad += fmt::format(" first_grad must be in 0..399, is {};", sector->first_grad);
+  }
+  if (sector && (sector->width_grad < 1 || sector->width_grad >= kTurn_grad)) {
+    bad += fmt::format(" width_grad must be in 1..399, is {};", sector->width_grad);
+  }
+  if (!(timeout_s >= 0.01 && timeout_s <= 60.0))
+    bad += fmt::format(" timeout_s must be in 0.01..60, is {};", timeout_s);
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "ping360:" + bad);
+}
+
+Ping360Driver::Ping360Driver(const Ping360Settings& settings)
+    : settings_(settings),
+      sampling_(ping360_sampling(settings.range_m)),
+      angle_grad_(settings.sector ? settings.sector->first_grad : 0) {
+  assert(settings.validate());
+}
+
+void Ping360Driver::connect() {
+  is_known_ = is_waiting_ = false;
+  unanswered_in_a_row_ = 0;
+}
+
+bool Ping360Driver::is_lost() const {
+  constexpr int kMaxUnanswered = 3;
+  return unanswered_in_a_row_ >= kMaxUnanswered;
+}
+
+void Ping360Driver::take(std::span<const std::uint8_t> frame) {
+  constexpr std::uint8_t kPing360 = 2;
+  const PingMessage message = ping_message(frame);
+  if (message == PingMessage::kDeviceInformation && !is_known_) {
+    const std::span<const std::uint8_t> payload = ping_payload(frame);
+    if (payload.empty() || payload[0] != kPing360) return;
+    is_known_ = true;
+    is_waiting_ = false;
+    unanswered_in_a_row_ = 0;
+  }
+  if (message == PingMessage::kDeviceData && is_known_) {
+    const std::optional<Ping360Ping> ping = ping360_ping(frame);
+    // A doubled or late answer is of another angle.
+    if (!ping || ping->angle_grad != angle_grad_) return;
+    is_waiting_ = false;
+    unanswered_in_a_row_ = 0;
+    turn();
+  }
+}
+
+std::optional<std::vector<std::uint8_t>> Ping360Driver::message(double now_s) {
+  if (is_waiting_ && now_s < deadline_s_) return std::nullopt;
+  if (is_waiting_) {
+    ++unanswered_;
+    ++unanswered_in_a_row_;
+  }
+  is_waiting_ = true;
+  deadline_s_ = now_s + settings_.timeout_s;
+  if (is_known_) return ping();
+  std::vector<std::uint8_t> wanted;
+  put_u16(wanted, static_cast<std::uint16_t>(PingMessage::kDeviceInformation));
+  return make_ping_frame(PingMessage::kGeneralRequest, kHost, kHead, wanted);
+}
+
+std::vector<std::uint8_t> Ping360Driver::motor_off() {
+  return make_ping_frame(PingMessage::kMotorOff, kHost, kHead, {});
+}
+
+void Ping360Driver::turn() {
+  if (!settings_.sector) {
+    angle_grad_ = (angle_grad_ + settings_.step_grad) % kTurn_grad;
+    return;
+  }
+  const auto& [first_grad, width_grad] = *settings_.sector;
+  const int next = place_grad_ + sense_ * settings_.step_grad;
+  if (next < 0 || next > width_grad) sense_ = -sense_;
+  // A sector narrower than a step is one angle.
+  place_grad_ = std::clamp(place_grad_ + sense_ * settings_.step_grad, 0, width_grad);
+  angle_grad_ = (first_grad + place_grad_) % kTurn_grad;
+}
+
+std::vector<std::uint8_t> Ping360Driver::ping() const {
+  constexpr std::uint8_t kMode = 1;
+  constexpr std::uint16_t kFrequency_khz = 750;
+  std::vector<std::uint8_t> payload = {kMode, static_cast<std::uint8_t>(settings_.gain)};
+  put_u16(payload, static_cast<std::uint16_t>(angle_grad_));
+  put_u16(payload, sampling_.transmit_us);
+  put_u16(payload, sampling_.period_25ns);
+  put_u16(payload, kFrequency_khz);
+  put_u16(payload, sampling_.samples);
+  payload.push_back(1);  // transmit
+  payload.push_back(0);
+  return make_ping_frame(PingMessage::kTransducer, kHost, kHead, payload);
+}
+
+}  // namespace pingvox

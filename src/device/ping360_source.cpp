@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <span>
+#include <utility>
+
+#include "pingvox/device/link.hpp"
+#include "pingvox/device/live_source.hpp"
+#include "pingvox/io/frame_finder.hpp"
+#include "pingvox/io/ping_frame.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kSync_s = 1.0;
+
+class Ping360Source final : public LiveSource {
+ public:
+  Ping360Source(std::string address, const Ping360Settings& settings, std::optional<PingViewerRecorder> recorder,
+                double now_s)
+      : address_(std::move(address)),
+        driver_(settings),
+        recorder_(std::move(recorder)),
+        finder_(check_ping_frame),
+        start_s_(now_s),
+        open_at_s_(now_s),
+        sync_at_s_(now_s + kSync_s) {}
+
+  int descriptor() const override { return link_ ? link_->descriptor() : -1; }
+
+  double due_s() const override {
+    const double due_s = link_ ? driver_.due_s() : open_at_s_;
+    return recorder_ ? std::min(due_s, sync_at_s_) : due_s;
+  }
+
+  Result<bool> step(double now_s, std::vector<Beam>& beams) override {
+    if (!link_ && now_s >= open_at_s_) open(now_s);
+    if (link_) read(now_s, beams);
+    if (link_) send(now_s);
+    if (recorder_ && now_s >= sync_at_s_) {
+      recorder_->start_sync();
+      sync_at_s_ = now_s + kSync_s;
+    }
+    return true;
+  }
+
+  void finish(std::vector<Beam>& beams) override {
+    if (link_) static_cast<void>(link_->write(Ping360Driver::motor_off()));  // the head may be gone
+    finder_.end();
+    take_frames(beams);
+  }
+
+  LiveStatus status() const override {
+    LiveStatus status = status_;
+    status.is_connected = link_ && driver_.is_connected();
+    status.unanswered = driver_.unanswered();
+    for (const DamageKind& kind : finder_.damage()) status.damaged += kind.count;
+    status.damaged += unusable_;
+    return status;
+  }
+
+  const DeviceProfile* device() const override { return device_named("ping360"); }
+
+ private:
+  void open(double now_s) {
+    Result<Link> link = Link::open(address_);
+    if (!link) return close(link.error().message, now_s);
+    link_ = std::move(*link);
+    driver_.connect();
+  }
+
+  void close(std::string problem, double now_s) {
+    status_.problem = std::move(problem);
+    link_.reset();
+    open_at_s_ = now_s + delay_s_;
+    delay_s_ = std::min(2.0 * delay_s_, kMaxDelay_s);
+  }
+
+  void read(double now_s, std::vector<Beam>& beams) {
+    // Bounded, so that a line that never falls silent leaves time for the rest.
+    constexpr int kMaxReads = 64;
+    std::array<std::uint8_t, 65536> bytes;
+    for (int i = 0; i < kMaxReads; ++i) {
+      const Result<std::size_t> got = link_->read(bytes);
+      if (!got) return close(got.error().message, now_s);
+      if (*got == 0) return;
+      take(std::span(bytes).first(*got), now_s, beams);
+    }
+  }
+
+  void send(double now_s) {
+    const std::optional<std::vector<std::uint8_t>> message = driver_.message(now_s);
+    if (driver_.is_lost()) return close(address_ + ": no answer", now_s);
+    if (!message) return;
+    if (const auto sent = link_->write(*message); !sent) close(sent.error().message, now_s);
+  }
+
+  void take(std::span<const std::uint8_t> bytes, double now_s, std::vector<Beam>& beams) {
+    const auto time_ms = static_cast<std::uint64_t>((now_s - start_s_) * 1000.0);
+    if (recorder_) {
+      if (const auto recorded = recorder_->append(time_ms, bytes); !recorded) {
+        status_.recording_error = recorded.error();
+        recorder_.reset();
+      }
+    }
+    received_ += bytes.size();
+    pieces_.push_back({received_, PingViewerRecorder::time_s(time_ms)});
+    finder_.push(bytes);
+    take_frames(beams);
+  }
+
+  void take_frames(std::vector<Beam>& beams) {
+    while (const std::optional<FrameFinder::Frame> frame = finder_.next()) {
+      const bool was_connected = driver_.is_connected();
+      driver_.take(frame->bytes);
+      if (driver_.is_connected() && !was_connected) ++status_.connections;
+      const std::optional<Ping360Ping> ping = ping360_ping(frame->bytes);
+      if (!ping) continue;
+      delay_s_ = kFirstDelay_s;
+      tl::expected<Beam, std::string> beam = beam_of(*ping, time_of(*frame));
+      beam ? beams.push_back(std::move(*beam)) : void(++unusable_);
+    }
+    while (pieces_.size() > 1 && pieces_.front().end <= finder_.position()) pieces_.pop_front();
+  }
+
+  /// Time of the read that brought the frame's last byte, as readers of the recording have it.
+  double time_of(const FrameFinder::Frame& frame) const {
+    const auto piece = std::ranges::find_if(pieces_, [&](const Piece& p) { return p.end >= frame.end(); });
+    return piece != pieces_.end() ? piece->time_s : pieces_.back().time_s;
+  }
+
+  struct Piece {
+    std::uint64_t end;  ///< in the stream of bytes
+    double time_s;
+  };
+
+  std::string address_;
+  Ping360Driver driver_;
+  std::optional<PingViewerRecorder> recorder_;
+  std::optional<Link> link_;
+  FrameFinder finder_;
+  std::deque<Piece> pieces_;  ///< that unprocessed bytes came with
+  std::uint64_t received_ = 0;
+  std::size_t unusable_ = 0;
+  LiveStatus status_;
+  double start_s_, open_at_s_, sync_at_s_, delay_s_ = kFirstDelay_s;
+};
+
+}  // namespace
+
+std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
+                                           std::optional<PingViewerRecorder> recorder, double now_s) {
+  return std::make_unique<Ping360Source>(address, settings, std::move(recorder), now_s);
+}
+
+}  // namespace pingvox
