@@ -1,6 +1,6 @@
 # bash completion for pingvox. Needs nothing of the bash-completion package, and uses nothing of it.
 
-_pingvox_commands() { printf '%s\n' map info compare convert render simulate slam locate bench; }
+_pingvox_commands() { printf '%s\n' map info compare convert render simulate slam locate live emulate bench; }
 
 # What `pingvox bench list` lists.
 _pingvox_benches() {
@@ -50,6 +50,14 @@ _pingvox_options() {
       options+=(--seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
+    live)
+      options+=(--output --format --record --write-every --beams --json --quiet --progress --config)
+      options+=(--range --sector --step --gain --timeout)
+      options+=(--resolution --depth --hit --miss --clamp --vote --memory-limit)
+      options+=(--mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar)
+      ;;
+    emulate) options+=(--listen --lost --doubled --damaged --world --rate --pings --stall-every --stall --seed) ;;
     bench) options+=(--json --markdown --pictures --quiet) ;;
   esac
   printf '%s\n' "${options[@]}"
@@ -72,9 +80,12 @@ _pingvox_words() {
     --trajectory) printf '%s\n' still line lawn-mower loop by-hand ;;
     --format)
       [[ $2 != convert ]] || echo csv
-      printf '%s\n' bt ot pvx ply pcd xyz
+      printf '%s\n' bt ot pvx
+      [[ $2 == live ]] || printf '%s\n' ply pcd xyz
       [[ $2 != convert ]] || printf '%s\n' pgm yaml asc tum
       ;;
+    --gain) [[ $2 != live ]] || printf '%s\n' low normal high ;;
+    --world) printf '%s\n' tank harbour seabed cave ;;
     --view) printf '%s\n' polar cartesian above side slice ;;
     --from) printf '%s\n' right left front behind ;;
     --show) printf '%s\n' raw filtered background ;;
@@ -111,7 +122,7 @@ _pingvox() {
         --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
-        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --caption | --title | --beside)
+        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside)
         return # a number or a text: nothing to offer
         ;;
     esac
@@ -125,6 +136,8 @@ _pingvox() {
       words="tank harbour marina seabed cave"
       # What begins no world's name is the file of a mesh.
       [[ -n $(compgen -W "$words" -- "$current") ]] || words=""
+    elif [[ $command == emulate && $previous == emulate ]]; then
+      words="ping360"
     fi
   fi
 

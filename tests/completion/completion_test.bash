@@ -32,7 +32,7 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|simulate|slam|locate|bench" pingvox ""
+offers "map|info|compare|convert|render|simulate|slam|locate|live|emulate|bench" pingvox ""
 offers "map" pingvox m
 offers "compare|convert" pingvox co
 offers "--help|--version" pingvox -
@@ -41,6 +41,7 @@ offers "ray|fan|cone" pingvox map --beam ""
 offers "cone" pingvox map tank.csv --beam c
 offers "ray|fan|cone" pingvox map --beam =
 offers "csv|bt|ot|pvx|ply|pcd|xyz|pgm|yaml|asc|tum" pingvox convert --format ""
+offers "low|normal|high" pingvox live --gain ""
 offers "ply" pingvox map --format pl
 offers "cone" pingvox map --beam = c
 offers "" pingvox map --resolution ""
@@ -68,7 +69,7 @@ same() {
 }
 
 if [[ -n $program ]]; then
-  for command in map info compare convert render simulate slam locate; do
+  for command in map info compare convert render simulate slam locate live emulate; do
     help=$("$program" "$command" --help)
     # Lines as in `  -o, --output FILE     what it is`.
     in_help=$(sed -nE 's/^ {2,}(-[a-zA-Z], )?(--[a-z-]+)( .*)?$/\2/p' <<<"$help")

@@ -1,0 +1,323 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pingvox/device/link.hpp"
+#include "pingvox/device/live_source.hpp"
+#include "pingvox/device/ping360_driver.hpp"
+#include "pingvox/device/ping360_emulator.hpp"
+#include "pingvox/io/beams.hpp"
+#include "pingvox/io/ping_frame.hpp"
+#include "pingvox/io/ping_viewer_recorder.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A folder of its own, gone with the test.
+class Folder {
+ public:
+  Folder() {
+    std::string path = (std::filesystem::temp_directory_path() / "pingvox-device-XXXXXX").string();
+    if (!::mkdtemp(path.data())) ADD_FAILURE() << "no folder for the test";
+    path_ = path;
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Intensities that tell the angle.
+std::vector<std::uint8_t> hear_angle(int angle_grad, std::size_t bins, double) {
+  std::vector<std::uint8_t> heard(bins, 7);
+  heard[0] = static_cast<std::uint8_t>(angle_grad & 255);
+  heard[1] = 'B';
+  heard[2] = 'R';
+  return heard;
+}
+
+std::vector<Beam> beams_in(const std::string& path) {
+  Result<ByteStream> stream = ByteStream::open(path);
+  if (!stream) return {};
+  Result<std::unique_ptr<BeamSource>> log = open_beams(std::move(*stream));
+  if (!log) {
+    ADD_FAILURE() << log.error().message;
+    return {};
+  }
+  return read_all(**log).value_or(std::vector<Beam>{});
+}
+
+void expect_equal(const std::vector<Beam>& a, const std::vector<Beam>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].time_s, b[i].time_s) << i;
+    EXPECT_EQ(a[i].bearing_rad, b[i].bearing_rad) << i;
+    EXPECT_EQ(a[i].bin_length_m, b[i].bin_length_m) << i;
+    EXPECT_EQ(a[i].intensities, b[i].intensities) << i;
+  }
+}
+
+/// The angle that a request is for; nullopt: it is for something else.
+std::optional<int> asked_angle(const std::optional<std::vector<std::uint8_t>>& message) {
+  if (!message || ping_message(*message) != PingMessage::kTransducer) return std::nullopt;
+  const auto payload = ping_payload(*message);
+  return payload[2] | (payload[3] << 8);
+}
+
+std::vector<std::uint8_t> information() {
+  constexpr std::array<std::uint8_t, 6> kInformation = {2, 0x43, 3, 1, 1, 0};
+  return make_ping_frame(PingMessage::kDeviceInformation, 2, 0, kInformation);
+}
+
+std::vector<std::uint8_t> answer_of(int angle_grad) {
+  std::vector<std::uint8_t> payload(14, 0);
+  payload[2] = static_cast<std::uint8_t>(angle_grad & 255);
+  payload[3] = static_cast<std::uint8_t>(angle_grad >> 8);
+  return make_ping_frame(PingMessage::kDeviceData, 2, 0, payload);
+}
+
+// The settings of Ping Viewer in its logs.
+TEST(Ping360Sampling, IsThatOfPingViewer) {
+  struct Case {
+    double range_m;
+    int samples, period, transmit_us;
+  };
+  for (const Case& c : {Case{1, 666, 80, 5}, Case{2, 1200, 88, 11}, Case{15, 1200, 666, 80}, Case{30, 1200, 1333, 160},
+                        Case{50, 1200, 2222, 267}, Case{60, 1200, 2666, 320}}) {
+    const Ping360Sampling sampling = ping360_sampling(c.range_m);
+    EXPECT_EQ(sampling.samples, c.samples) << c.range_m;
+    EXPECT_EQ(sampling.period_25ns, c.period) << c.range_m;
+    EXPECT_EQ(sampling.transmit_us, c.transmit_us) << c.range_m;
+  }
+}
+
+TEST(Ping360Driver, RepeatsWhatIsNotAnsweredAndGivesUpAfterThree) {
+  Ping360Driver driver({.timeout_s = 1.0});
+  ASSERT_TRUE(driver.message(0.0));
+  driver.take(information());
+  ASSERT_EQ(asked_angle(driver.message(0.1)), 0);
+  EXPECT_FALSE(driver.message(1.0));
+  EXPECT_EQ(asked_angle(driver.message(1.1)), 0) << "the same angle again";
+  EXPECT_EQ(driver.unanswered(), 1U);
+  driver.take(answer_of(0));
+  ASSERT_EQ(asked_angle(driver.message(1.2)), 1);
+  for (const double now_s : {2.2, 3.2, 4.2}) {
+    EXPECT_FALSE(driver.is_lost());
+    driver.message(now_s);
+  }
+  EXPECT_TRUE(driver.is_lost());
+}
+
+// A line that doubles an answer must not make the head skip an angle.
+TEST(Ping360Driver, TakesOnlyTheAnswerThatItWaitsFor) {
+  Ping360Driver driver({});
+  driver.message(0.0);
+  driver.take(answer_of(0));
+  EXPECT_FALSE(driver.is_connected()) << "not yet known to be a Ping360";
+  driver.take(information());
+  ASSERT_EQ(asked_angle(driver.message(0.0)), 0);
+  driver.take(answer_of(0));
+  ASSERT_EQ(asked_angle(driver.message(0.0)), 1);
+  driver.take(answer_of(0));
+  driver.take(information());
+  EXPECT_FALSE(driver.message(0.0));
+}
+
+std::vector<int> angles_of(const Ping360Settings& settings, int count) {
+  Ping360Driver driver(settings);
+  driver.message(0.0);
+  driver.take(information());
+  std::vector<int> angles;
+  for (int i = 0; i < count; ++i) {
+    angles.push_back(asked_angle(driver.message(0.0)).value_or(-1));
+    driver.take(answer_of(angles.back()));
+  }
+  return angles;
+}
+
+TEST(Ping360Driver, TurnsAroundAtTheEndsOfASectorAndWrapsInFullTurns) {
+  EXPECT_THAT(angles_of({.step_grad = 10, .sector = {{.first_grad = 390, .width_grad = 25}}}, 7),
+              ElementsAre(390, 0, 10, 0, 390, 0, 10));
+  EXPECT_THAT(angles_of({.step_grad = 9, .sector = {{.first_grad = 5, .width_grad = 3}}}, 3), ElementsAre(5, 5, 5));
+  const std::vector<int> turn = angles_of({.step_grad = 20}, 22);
+  EXPECT_EQ(turn[19], 380);
+  EXPECT_EQ(turn[20], 0);
+}
+
+// Virtual time and no line: 300 pings in order, whatever the line does to single bytes.
+TEST(Ping360Driver, GetsEachPingOverALineThatLosesDoublesAndDamagesBytes) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    Ping360Driver driver({.range_m = 1.0, .timeout_s = 1.0});
+    Ping360Emulator head({.lost = 2e-4, .doubled = 2e-4, .damaged = 2e-4, .seed = seed}, hear_angle);
+    FrameFinder finder(check_ping_frame);
+    std::vector<int> angles;
+    double now_s = 0.0;
+    for (int i = 0; i < 10'000 && angles.size() < 300; ++i) {
+      if (const auto message = driver.message(now_s)) head.take(*message, now_s);
+      now_s = std::min(driver.due_s(), std::max(now_s, head.due_s()));
+      finder.push(head.send(now_s));
+      while (const auto frame = finder.next()) {
+        const std::optional<Ping360Ping> ping = ping360_ping(frame->bytes);
+        if (ping) EXPECT_EQ(ping->data[0], ping->angle_grad & 255) << "a damaged ping was taken";
+        if (ping && (angles.empty() || angles.back() != ping->angle_grad)) angles.push_back(ping->angle_grad);
+        driver.take(frame->bytes);
+      }
+      if (driver.is_lost()) driver.connect();
+    }
+    ASSERT_EQ(angles.size(), 300U);
+    for (std::size_t i = 0; i < angles.size(); ++i) EXPECT_EQ(angles[i], static_cast<int>(i));
+    EXPECT_GT(driver.unanswered(), 0U);
+  }
+}
+
+TEST(PingViewerRecorder, WritesWhatReadersReadAndOverwritesNothing) {
+  const Folder folder;
+  const std::string path = folder.path("dive.bin");
+  constexpr std::uint64_t kDay_ms = 86'400'000;
+  const auto payload = [](int angle) {
+    std::vector<std::uint8_t> bytes(14, 0);
+    bytes[2] = static_cast<std::uint8_t>(angle);
+    bytes[6] = 88;
+    bytes[12] = 1;
+    bytes.push_back(200);
+    return make_ping_frame(PingMessage::kDeviceData, 2, 0, bytes);
+  };
+  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(path);
+  ASSERT_TRUE(recorder);
+  for (const std::uint64_t time_ms : {std::uint64_t{2140}, kDay_ms / 2 + 1, kDay_ms + 59'999}) {
+    ASSERT_TRUE(recorder->append(time_ms, payload(3)));
+  }
+  const std::vector<Beam> beams = beams_in(path);
+  ASSERT_EQ(beams.size(), 3U);
+  EXPECT_EQ(beams[0].time_s, PingViewerRecorder::time_s(2140));
+  EXPECT_EQ(beams[0].time_s, 2.14);
+  EXPECT_EQ(beams[1].time_s, PingViewerRecorder::time_s(kDay_ms / 2 + 1));
+  EXPECT_EQ(beams[2].time_s, PingViewerRecorder::time_s(kDay_ms + 59'999));
+
+  const Result<PingViewerRecorder> again = PingViewerRecorder::create(path);
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().message, HasSubstr(path));
+}
+
+/// Lets a source and an emulator talk over a real line, in virtual time, until `beams` has this many beams.
+void run(LiveSource& source, Link& line, Ping360Emulator& head, double& now_s, std::vector<Beam>& beams,
+         std::size_t count) {
+  std::array<std::uint8_t, 65536> bytes;
+  for (int i = 0; i < 20'000 && beams.size() < count; ++i) {
+    ASSERT_TRUE(source.step(now_s, beams));
+    // What a line delivers now or a moment later is the same: the clock goes on only when nothing comes.
+    const Result<std::size_t> got = line.read(bytes);
+    ASSERT_TRUE(got);
+    head.take(std::span(bytes).first(*got), now_s);
+    const std::vector<std::uint8_t> sent = head.send(now_s);
+    ASSERT_TRUE(line.write(sent));
+    if (*got == 0 && sent.empty()) {
+      const double due_s = std::min(head.due_s(), source.due_s());
+      now_s = std::clamp(due_s, now_s + 1e-3, now_s + 0.1);
+    }
+  }
+}
+
+class OverALine : public testing::TestWithParam<const char*> {};
+
+// The bytes decide: beams and their times are those of the recording, however they were cut into reads.
+TEST_P(OverALine, TheRecordingHasTheBeamsOfTheLiveSource) {
+  const Folder folder;
+  Result<Link> line = Link::listen(GetParam());
+  ASSERT_TRUE(line) << line.error().message;
+  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
+  ASSERT_TRUE(recorder);
+  Ping360Emulator head({.lost = 1e-4, .doubled = 1e-4, .damaged = 1e-4}, hear_angle);
+  double now_s = 5.0;
+  const auto source = ping360_source(line->address(), {.range_m = 1.0, .timeout_s = 1.0}, std::move(*recorder), now_s);
+  std::vector<Beam> beams;
+  run(*source, *line, head, now_s, beams, 100);
+  ASSERT_GE(beams.size(), 100U);
+  source->finish(beams);
+  EXPECT_GT(source->status().damaged, 0U);
+  EXPECT_EQ(source->status().connections, 1U);
+  expect_equal(beams, beams_in(folder.path("dive.bin")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Device, OverALine, testing::Values("udp://127.0.0.1:0", "pty"),
+                         [](const auto& line) { return line.index == 0 ? "Udp" : "Pty"; });
+
+// Each time another socket, as a head that is switched off and on.
+TEST(Ping360Source, FindsTheHeadAgainAHundredTimes) {
+  const Folder folder;
+  Result<Link> line = Link::listen("udp://127.0.0.1:0");
+  ASSERT_TRUE(line);
+  const std::string address = line->address();
+  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
+  ASSERT_TRUE(recorder);
+  double now_s = 0.0;
+  const auto source = ping360_source(address, {.range_m = 0.5, .timeout_s = 1.0}, std::move(*recorder), now_s);
+  std::vector<Beam> beams;
+  for (std::size_t round = 1; round <= 100; ++round) {
+    Ping360Emulator head({}, hear_angle);
+    run(*source, *line, head, now_s, beams, 3 * round);
+    ASSERT_EQ(beams.size(), 3 * round);
+    EXPECT_EQ(source->status().connections, round);
+    line = Link::listen("udp://127.0.0.1:0");  // the head is gone
+    ASSERT_TRUE(line);
+    for (int i = 0; i < 100 && source->status().is_connected; ++i) ASSERT_TRUE(source->step(now_s += 0.5, beams));
+    EXPECT_FALSE(source->status().is_connected);
+    EXPECT_THAT(source->status().problem, HasSubstr(address));
+    line = Link::listen(address);
+    ASSERT_TRUE(line) << line.error().message;
+  }
+  source->finish(beams);
+  expect_equal(beams, beams_in(folder.path("dive.bin")));
+}
+
+TEST(ReplaySource, KeepsTheRhythmOfTheLogAtItsSpeed) {
+  std::vector<Beam> log;
+  for (const double time_s : {100.0, 100.5, 102.0, 90.0, 90.5, 5000.0}) log.push_back({time_s, 0.0, 0.1, {1, 2}});
+  const auto source = replay_source(std::make_unique<BeamsInMemory>(log), 2.0);
+  std::vector<Beam> beams;
+  std::vector<double> heard_s;
+  double now_s = 10.0;
+  for (int i = 0; i < 100; ++i) {
+    const Result<bool> goes_on = source->step(now_s, beams);
+    ASSERT_TRUE(goes_on);
+    if (!*goes_on) break;
+    while (heard_s.size() < beams.size()) heard_s.push_back(now_s);
+    if (std::isfinite(source->due_s())) now_s = std::max(now_s, source->due_s());
+  }
+  EXPECT_THAT(heard_s, ElementsAre(10.0, 10.25, 11.0, 11.0, 11.25, 11.25));
+}
+
+TEST(Link, RefusesAddressesThatItDoesNotKnow) {
+  for (const char* address : {"", "tcp://a:1", "udp://", "udp://127.0.0.1", "udp://127.0.0.1:x",
+                              "udp://127.0.0.1:70000", "/dev/null@1", "/dev/null@115200x"}) {
+    const Result<Link> link = Link::open(address);
+    ASSERT_FALSE(link) << address;
+    EXPECT_EQ(link.error().code, Error::Code::kBadOption) << address;
+  }
+  const Result<Link> no_terminal = Link::open("/dev/null");
+  ASSERT_FALSE(no_terminal);
+  EXPECT_EQ(no_terminal.error().code, Error::Code::kIo);
+}
+
+}  // namespace
+}  // namespace pingvox
