@@ -127,7 +127,8 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
                              : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
   if (status != 0) return os_error(address, errno);
-  return Link(kind, listens ? address_of(socket.get()) : address, std::move(socket));
+  const std::string own = listens ? address_of(socket.get()) : address;
+  return Link(kind, own, std::move(socket));
 }
 
 Result<Link> Link::open_serial_port(const std::string& address) {
@@ -184,7 +185,8 @@ Result<std::size_t> Link::read(std::span<std::uint8_t> to) {
 }
 
 Result<void> Link::write(std::span<const std::uint8_t> bytes) {
-  if (kind_ == Kind::kListeningSocket && host_.empty()) return {};
+  // No bytes would be an empty datagram.
+  if (bytes.empty() || (kind_ == Kind::kListeningSocket && host_.empty())) return {};
   const auto* host = reinterpret_cast<const sockaddr*>(host_.data());
   const ssize_t sent = kind_ == Kind::kTerminal ? ::write(file_.get(), bytes.data(), bytes.size())
                        : kind_ == Kind::kSocket ? ::send(file_.get(), bytes.data(), bytes.size(), 0)

@@ -110,10 +110,10 @@ void Ping360Driver::turn() {
     return;
   }
   const auto& [first_grad, width_grad] = *settings_.sector;
-  const int next = place_grad_ + sense_ * settings_.step_grad;
-  if (next < 0 || next > width_grad) sense_ = -sense_;
+  const auto is_inside = [width = width_grad](int place) { return place >= 0 && place <= width; };
+  if (!is_inside(place_grad_ + sense_ * settings_.step_grad)) sense_ = -sense_;
   // A sector narrower than a step is one angle.
-  place_grad_ = std::clamp(place_grad_ + sense_ * settings_.step_grad, 0, width_grad);
+  if (const int next = place_grad_ + sense_ * settings_.step_grad; is_inside(next)) place_grad_ = next;
   angle_grad_ = (first_grad + place_grad_) % kTurn_grad;
 }
 

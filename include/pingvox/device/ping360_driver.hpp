@@ -31,11 +31,11 @@ struct Ping360Settings {
     int width_grad = 0;  ///< 1..399
   };
 
-  double range_m = 10.0;         ///< 0.5..100
-  Gain gain = Gain::kNormal;     ///< of the receiver
-  int step_grad = 1;             ///< from ping to ping, 1..20
-  std::optional<Sector> sector;  ///< nullopt: full turns
-  double timeout_s = 4.0;        ///< for an answer, 0.01..60; a head that turns far takes seconds
+  double range_m = 10.0;                        ///< 0.5..100
+  Gain gain = Gain::kNormal;                    ///< of the receiver
+  int step_grad = 1;                            ///< from ping to ping, 1..20
+  std::optional<Sector> sector = std::nullopt;  ///< nullopt: full turns
+  double timeout_s = 4.0;                       ///< for an answer, 0.01..60; a head that turns far takes seconds
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
