@@ -75,10 +75,11 @@ void PingViewerRecorder::start_sync() {
 }
 
 double PingViewerRecorder::time_s(std::uint64_t time_ms) {
+  // Added as readers do, to the last bit.
   constexpr double kDay_s = 86'400.0;
-  const std::uint64_t of_day = time_ms % kDay_ms;
-  const double of_day_s = static_cast<double>(of_day / 1000) + static_cast<double>(of_day % 1000) / 1000.0;
-  return of_day_s + static_cast<double>(time_ms / kDay_ms) * kDay_s;
+  const std::uint64_t days = time_ms / kDay_ms, of_day = time_ms % kDay_ms, seconds = of_day / 1000;
+  const double of_day_s = static_cast<double>(seconds) + static_cast<double>(of_day % 1000) / 1000.0;
+  return of_day_s + static_cast<double>(days) * kDay_s;
 }
 
 Result<void> PingViewerRecorder::write(std::span<const std::uint8_t> bytes) {
