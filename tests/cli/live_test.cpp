@@ -56,7 +56,7 @@ class Head {
 /// A `live` with a small and quick picture: 20 beams a turn.
 std::vector<std::string> live(const std::string& device, std::vector<std::string> options) {
   options.insert(options.begin(), {"live", device, "-o", "live.bt", "--record", "dive.bin", "--range", "4", "--step",
-                                   "18", "--timeout", "0.5", "--resolution", "0.1"});
+                                   "18", "--timeout", "0.2", "--resolution", "0.1"});
   return options;
 }
 
@@ -101,7 +101,7 @@ TEST(Live, ALiveRunThatIsKilledLeavesARecordAndAWholeMap) {
   EXPECT_EQ(status_of(child), 128 + SIGKILL);
   const Outcome record = here.call({"info", "dive.bin", "--json"});
   EXPECT_EQ(record.status, 0) << record.err;
-  EXPECT_THAT(record.out, HasSubstr(R"("format": "ping-viewer")"));
+  EXPECT_THAT(record.out, HasSubstr(R"("format": "pingviewer")"));
   EXPECT_EQ(here.call({"info", "live.bt"}).status, 0);
 }
 
@@ -119,7 +119,7 @@ TEST(Live, GoesOnMappingWhenTheRecordMeetsAFullDisk) {
 TEST(Live, ComesBackToAHeadThatWasSilent) {
   const Head head({"--stall-every", "10", "--stall", "1"});
   const Workplace here;
-  const Outcome outcome = here.call(live(head.address(), {"--beams", "25", "--timeout", "0.2", "--json"}));
+  const Outcome outcome = here.call(live(head.address(), {"--beams", "25", "--json"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("no answer"));
   expect_map_of_record(here);
