@@ -333,10 +333,12 @@ TEST(Usage, TheManPageHasTheEntriesOfTheHelpAndNoOther) {
   std::erase(page, '\\');  // \- is how roff spells a dash
   std::map<std::string, std::set<std::string>> described = man_page_entries(page);
   std::size_t checked = 0;
-  for (const std::string command : {"map", "info", "compare", "convert", "render", "simulate", "slam", "locate", "live", "emulate"}) {
+  for (const std::string command :
+       {"map", "info", "compare", "convert", "render", "simulate", "slam", "locate", "live", "emulate"}) {
     std::set<std::string> of_help = help_entries(here.call({command, "--help"}).out);
     checked += of_help.size();
-    if (command == "render" || command == "slam" || command == "locate" || command == "live") {  // the page sends the reader to those of map
+    if (command == "render" || command == "slam" || command == "locate" ||
+        command == "live") {  // the page sends the reader to those of map
       for (const std::string& option : described["map"]) {
         if (!described[command].contains(option)) of_help.erase(option);
       }
