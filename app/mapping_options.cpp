@@ -118,8 +118,7 @@ Take store_clamp(Clamp& target) {
   };
 }
 
-}  // namespace
-
+/// "x,y,z,roll,pitch,yaw", metres and degrees.
 Take store_mount(Pose& target) {
   return [&target](const std::string& text) -> Result<void> {
     const auto n = numbers_from<6>(text);
@@ -131,6 +130,28 @@ Take store_mount(Pose& target) {
     target = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
     return {};
   };
+}
+
+/// As in "ping360 2 x 25, micron 3 x 35": width and height of the beam of each device [degrees].
+std::string beam_sizes() {
+  std::string sizes;
+  for (const DeviceProfile& device : device_profiles()) {
+    sizes += fmt::format("{}{} {:.3g} x {:.3g}", sizes.empty() ? "" : ", ", device.name,
+                         device.beam_width_rad / kDegree_rad, device.beam_height_rad / kDegree_rad);
+  }
+  return sizes;
+}
+
+}  // namespace
+
+Option mount_option(Pose& target) {
+  return {"--mount",
+          0,
+          "X,Y,Z,R,P,Y",
+          "pose of the sonar head on the vehicle: metres ahead, to port and up, then roll, pitch and yaw in degrees, "
+          "yaw to port",
+          "0,0,0,0,0,0",
+          store_mount(target)};
 }
 
 Take store_nav_mounts(std::map<std::string, Pose>& target) {
@@ -175,9 +196,8 @@ OptionTable::Group echo_group(EchoArgs& args) {
        {"--min-bin", 0, "N", "ignore bins before bin N (the first is 0)", fmt::format("{}", echo.min_bin),
         store_number(echo.min_bin)},
        {"--max-range", 0, "M",
-        "ignore echoes and cells farther than M; a beam whose only echo is farther marks cells "
-        "up to M free",
-        "none", within({0.0, kAnyHigh, Limits::Ends::kLowOut}, store_number(echo.max_range_m))},
+        "ignore echoes and cells farther than M; a beam with farther echoes only marks cells up to M free", "none",
+        within({0.0, kAnyHigh, Limits::Ends::kLowOut}, store_number(echo.max_range_m))},
        {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
         number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
@@ -185,19 +205,23 @@ OptionTable::Group echo_group(EchoArgs& args) {
        {"--water", 0, "T,S[,D]",
         "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m", "none",
         store_water(args.water)},
-       choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; none leaves more beams silent",
+       choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; without it more beams are silent",
               args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",
         store_kernel(args.kernel)},
        {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
         within({0.0, 1000.0, Limits::Ends::kLowOut}, store_optional(args.sigma))},
-       choice("--detect", kDetectors, "echo detector", echo.detector),
-       {"--threshold", 0, "T|auto", "rise, level or gradient (canny) from which on a bin is an echo",
+       choice("--detect", kDetectors,
+              "what an echo is: the first rise, the first bin above a level, the strongest bin, the first edge of the "
+              "picture (canny), or the first bin above the noise around it (cfar)",
+              echo.detector),
+       {"--threshold", 0, "T|auto", "rise, level or gradient (canny) of the intensity from which on a bin is an echo",
         "automatic, from the contrast of nearby beams", store_or_auto(echo.threshold)},
        choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
               echo.cfar.noise),
        {"--background", 0, "M",
-        "subtract what is always heard at each bearing nearer than M, such as the vehicle itself; reads the log twice",
+        "subtract what is heard at the same bearing and range in all sweeps, up to M: the vehicle itself, and all that "
+        "stands still if the vehicle does; reads the log twice",
         "off",
         within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, store_optional(args.background_m))}}};
   for (Option& option : group.options) {
@@ -263,7 +287,8 @@ OptionTable::Group map_group(BuildArgs& args) {
       {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m), store_number(map.resolution_m)},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
         store_number(map.depth)},
-       {"--hit", 0, "P", "probability that a cell is occupied after one echo in it",
+       {"--hit", 0, "P",
+        "probability that a cell is occupied after one echo in it, the strongest one with --hit-from intensity",
         number_text(model.hit.probability()), within({0.5, 1.0, Limits::Ends::kBothOut}, store_probability(model.hit))},
        {"--miss", 0, "P", "probability that a cell is occupied after one beam passed through it",
         number_text(args.build.miss.probability()),
@@ -291,8 +316,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
         "", store_each(args.navs), Repeats::kEachCounts},
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
         within({-1e10, 1e10}, store_optional(args.nav_offset_s))},
-       {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
-        "0,0,0,0,0,0", store_mount(args.build.body_from_sensor)},
+       mount_option(args.build.body_from_sensor),
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
               model.shape),
        {"--beam-width", 0, "DEG", "horizontal beam width, full angle", of_device(model.width_rad),
@@ -300,11 +324,13 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        {"--beam-height", 0, "DEG", "vertical beam width, full angle", of_device(model.height_rad),
         within({0.0, 180.0, Limits::Ends::kBothOut}, store_degrees(args.head.beam_height_rad))},
        {"--device", 0, fmt::format("{}", fmt::join(device_names(), "|")),
-        "sonar head, which gives the width and height of its beam", "as the log says", store_device(args.head.device)},
-       {"--free-share", 0, "S", "central fraction of the beam (0..1) that marks cells free",
+        "sonar head, which gives the width and height of its beam in degrees: " + beam_sizes(), "as the log says",
+        store_device(args.head.device)},
+       {"--free-share", 0, "S", "central fraction of the beam's width and height (0..1) that marks cells free",
         number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, store_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),
-       choice("--hit-from", kHitsFrom, "evidence of an echo: the same for all, or by its intensity", model.hit_from),
+       choice("--hit-from", kHitsFrom, "evidence of an echo: --hit for all, or half to all of it by its intensity",
+              model.hit_from),
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};
   for (Option& option : group.options) {
     if (option.name != "--ray") option.only_for = {std::string(kBeamLogs)};

@@ -68,8 +68,8 @@ struct BuildArgs {
 /// Validates options, except the minimum range, which scans of points do not have: see `check_ranges`.
 Result<void> check_options(BuildOptions options);
 
-/// "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
-Take store_mount(Pose& target);
+/// --mount: "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
+Option mount_option(Pose& target);
 /// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
 Take store_nav_mounts(std::map<std::string, Pose>& target);
 

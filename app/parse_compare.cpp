@@ -52,18 +52,16 @@ Result<Command> compare_command(const Args& args) {
        {"What could be seen",
         {for_maps(
              {"--visible-from", 0, "POSES",
-              "judge A as `pingvox bench accuracy` does: only what could be seen of B from these poses (TUM) is to be "
-              "found, and what lies beyond a side of B without a wall is left out",
+              "compare only what could be seen of B from these poses (TUM), and leave out what lies beyond a side of B "
+              "without a wall",
               "all of B", store(visible_from)}),
          seen({"--min-range", 0, "M", "nearest range at which a cell is seen", number_text(view.min_range_m),
                within({0.0, kAnyHigh, Limits::Ends::kHighOut}, store_number(view.min_range_m))}),
-         seen({"--max-range", 0, "M", "farthest range at which a cell is seen: that of the log", "no limit",
+         seen({"--max-range", 0, "M", "farthest range at which a cell is seen, as the range of the log", "no limit",
                within({0.0, kAnyHigh, Limits::Ends::kBothOut}, store_number(view.max_range_m))}),
          seen({"--beam-height", 0, "DEG", "vertical beam width, full angle", number_text(view.height_rad / kDegree_rad),
                within({0.0, 180.0, Limits::Ends::kLowOut}, store_number(view.height_rad, kDegree_rad))}),
-         seen({"--mount", 0, "X,Y,Z,R,P,Y",
-               "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
-               store_mount(command.body_from_sensor)})}}},
+         seen(mount_option(command.body_from_sensor))}}},
       {"pingvox compare ours.bt theirs.bt", "pingvox compare before.ot after.ot --json",
        "pingvox compare harbour.ot truth/world.bt --layer 0 --occupied 0.7",
        "pingvox compare harbour.ot truth/world.bt --visible-from truth/poses.tum --max-range 10",

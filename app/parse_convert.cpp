@@ -72,8 +72,8 @@ Result<Command> convert_command(const Args& args) {
                        "mesh, .ply .pcd .xyz (occupied cells as points), .yaml with its .pgm (map_server), .asc (ESRI "
                        "grid of heights); - is standard "
                        "output"),
-         {"--format", 0, choices_text(kLogAndMapFormats), "format of the output, if its name has no such suffix",
-          "by suffix, else csv", format},
+         {"--format", 0, choices_text(kLogAndMapFormats),
+          "format of the output where its name has none of these suffixes", "by suffix, else csv", format},
          strict_option(command.damage),
          topic_option(command.topic),
          quiet_option(command.output_options)}},

@@ -130,7 +130,7 @@ Result<Command> live_command(const Args& args) {
         device}},
       {{"Output",
         {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
-         {"--format", 0, choices_text(kMapFormats), "format of the map, if its name has no such suffix",
+         {"--format", 0, choices_text(kMapFormats), "format of the map where its name has none of these suffixes",
           "by suffix, else bt", format},
          {"--record", 0, "FILE",
           "record the bytes of the device as a log of Ping Viewer; in a folder named by the time", "none",

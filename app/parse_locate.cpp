@@ -64,9 +64,10 @@ Result<Command> locate_command(const Args& args) {
                     "0",
                     within({-1e10, 1e10}, store_number(command.nav.offset_s))};
   nav_offset.only_with = {{"--nav"}};
-  Option nav_mount{"--nav-mount",        0,
-                   "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation on the vehicle, as --mount",
-                   "0,0,0,0,0,0",        store_nav_mounts(command.nav.body_from_source)};
+  Option nav_mount{
+      "--nav-mount",        0,
+      "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation (named as 'pingvox info' does) on the vehicle, as --mount",
+      "0,0,0,0,0,0",        store_nav_mounts(command.nav.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
   nav_mount.only_with = {{"--nav"}};
   OptionTable::Group echo_options = echo_group(echoes);
@@ -95,9 +96,7 @@ Result<Command> locate_command(const Args& args) {
          std::move(nav_mount),
          {"--odometry", 0, "FILE", "poses in a frame that may drift, as TUM lines, instead of --nav", "",
           store(odometry)},
-         {"--mount", 0, "X,Y,Z,R,P,Y",
-          "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees", "0,0,0,0,0,0",
-          store_mount(localizer.body_from_sonar)}}},
+         mount_option(localizer.body_from_sonar)}},
        {"Estimation",
         {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
           "where the vehicle was at first, in metres and degrees, with standard deviations (0.5,10); or anywhere",

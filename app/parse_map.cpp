@@ -77,7 +77,7 @@ Result<Command> map_command(const Args& args) {
         {output_option(output,
                        "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply .pcd .xyz (occupied cells as "
                        "points); - is standard output"),
-         {"--format", 0, choices_text(kMapFormats), "format of the map, if its name has no such suffix",
+         {"--format", 0, choices_text(kMapFormats), "format of the map where its name has none of these suffixes",
           "by suffix, else bt", format},
          json_option(command.output_options),
          quiet_option(command.output_options),
@@ -87,12 +87,13 @@ Result<Command> map_command(const Args& args) {
        sensor_options,
        echo_group(build.echoes),
        {"Input", {strict_option(command.damage), topic_option(command.topic), config_option()}}},
-      {"pingvox map tank.mat -o tank.bt",
+      {"pingvox map tank.csv -o tank.bt",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
        "pingvox map dive.csv -o reef.ot --nav dive.tlog --nav-offset -1712333808.974",
        "pingvox map dive.db3 -o net.bt --nav dive.db3", "pingvox map scans.graph -o scans.bt --resolution 0.1",
        "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
-      "Point scans and clouds have no beam: only the options of the map (except --vote), --ray and --max-range apply.\n"
+      "Point scans and clouds have no beam: only the options of the map (except --vote), --ray, --max-range and, for\n"
+      "clouds, --origin apply.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);

@@ -39,12 +39,14 @@ Result<Command> slam_command(const Args& args) {
              "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)",
              "",      store_each(command.navs)};
   nav.repeats = Repeats::kEachCounts;
-  Option nav_mount{"--nav-mount",        0,
-                   "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation on the vehicle, as --mount",
-                   "0,0,0,0,0,0",        store_nav_mounts(slam.body_from_source)};
+  Option nav_mount{
+      "--nav-mount",        0,
+      "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation (named as 'pingvox info' does) on the vehicle, as --mount",
+      "0,0,0,0,0,0",        store_nav_mounts(slam.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
-  Option seed{
-      "--seed", 0, "N", "seed of the random choice among the sweeps near a sweep", "1", store_number(slam.seed)};
+  Option seed{"--seed", 0,
+              "N",      "seed of the random choice of sweeps that a sweep is matched with",
+              "1",      store_number(slam.seed)};
   seed.only_with = {{"--matching", {"pairs"}}};
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
@@ -57,8 +59,7 @@ Result<Command> slam_command(const Args& args) {
       {std::move(nav),
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
         within({-1e10, 1e10}, store_optional(command.nav_offset_s))},
-       {"--mount", 0, "X,Y,Z,R,P,Y", "pose of the sonar head on the vehicle: metres, then roll, pitch, yaw in degrees",
-        "0,0,0,0,0,0", store_mount(slam.body_from_sonar)},
+       mount_option(slam.body_from_sonar),
        std::move(nav_mount)}};
   OptionTable::Group estimation{
       "Estimation",

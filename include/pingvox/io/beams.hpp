@@ -32,8 +32,7 @@ Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = D
 
 /// Opens a log of point scans, or a point cloud (PLY, PCD, XYZ) as one scan; its content tells the format.
 /// @param cloud_origin_m  origin of a cloud's rays (map frame); nullopt: a PCD's VIEWPOINT, else 0, 0, 0. Ignored for
-/// logs,
-///                        which hold the origins of their scans
+///                        logs, which hold the origins of their scans
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip,
                                                const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);
 

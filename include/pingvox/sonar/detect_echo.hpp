@@ -30,10 +30,8 @@ struct Echo {
 /// - The contrast is the threshold of kRise, given or default; at most a given threshold of kLevel, kMax or kCfar.
 enum class Detector {
   /// The first bin where the differences of successive bins (paper, section 8.2), summed since the last valley, reach
-  /// the
-  /// threshold. They are summed because a real wall rises over some ten bins (pulse, slanting beam, smoothing): no beam
-  /// of
-  /// the smoothed tank recording has a single difference of 70. A rise continues across dips of up to half the
+  /// the threshold. They are summed because a real wall rises over some ten bins (pulse, slanting beam, smoothing): no
+  /// beam of the smoothed tank recording has a single difference of 70. A rise continues across dips of up to half the
   /// threshold below its top, so speckle does not split an echo, and a falling edge starts none.
   kRise,
   /// The first bin that reaches the threshold. Ringing beyond the blanking range counts too.
