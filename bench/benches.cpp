@@ -31,7 +31,8 @@ namespace pingvox::bench {
 std::span<const Bench> benches() {
   static constexpr std::array kBenches = {
       Bench{"cube-each", "the paper's cube, parents right and pruned after each update", Family::kSpeed, &cube_each},
-      Bench{"cube-lazy", "the paper's cube as one batch, settled and pruned at its end", Family::kSpeed, &cube_lazy},
+      Bench{"cube-lazy", "the paper's cube as one batch, parents updated and pruned at its end", Family::kSpeed,
+            &cube_lazy},
       Bench{"points-5000", "a million points far apart, one update each", Family::kSpeed, &points_5000},
       Bench{"points-50", "the same a hundred times as near to each other", Family::kSpeed, &points_50},
       Bench{"points-5", "the same in so few cells that most updates change nothing", Family::kSpeed, &points_5},

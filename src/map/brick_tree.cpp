@@ -39,7 +39,7 @@ int highest_bit(WideWord word) {
 
 Entry prune(BrickTree& tree, Entry entry, int depth, Parents parents) {
   if (!entry.is_inner()) return entry;
-  if (depth == tree.brick_depth()) return settle_brick(tree, entry.link, parents, Pruning::kLazy);
+  if (depth == tree.brick_depth()) return synchronize_brick(tree, entry.link, parents, Pruning::kLazy);
   for (std::size_t o = 0; o < 8; ++o) {
     const Entry child = prune(tree, tree.groups[entry.link].child[o], depth + 1, parents);
     tree.groups[entry.link].child[o] = child;
@@ -50,7 +50,7 @@ Entry prune(BrickTree& tree, Entry entry, int depth, Parents parents) {
     tree.groups.release(entry.link);
     return {};
   }
-  return settle_group(tree, entry.link, parents, Pruning::kLazy);
+  return synchronize_group(tree, entry.link, parents, Pruning::kLazy);
 }
 
 /// Copies what hangs below an entry of another tree into this one, clamped.
@@ -62,14 +62,14 @@ Entry copy_from(BrickTree& tree, const BrickTree& other, Entry entry, int depth,
     for (std::size_t i = 0; i < 64; ++i) {
       if ((brick.known >> i) & 1) brick.value[i] = clamp_to(brick.value[i], clamp);
     }
-    return settle_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kLazy);
+    return synchronize_brick(tree, tree.bricks.allocate(brick), parents, Pruning::kLazy);
   }
   const std::uint32_t index = tree.groups.allocate({});
   for (std::size_t o = 0; o < 8; ++o) {
     const Entry child = copy_from(tree, other, other.groups[entry.link].child[o], depth + 1, parents, clamp);
     tree.groups[index].child[o] = child;
   }
-  return settle_group(tree, index, parents, Pruning::kLazy);
+  return synchronize_group(tree, index, parents, Pruning::kLazy);
 }
 
 Entry merge_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Parents parents, const Clamp& clamp) {
@@ -82,7 +82,7 @@ Entry merge_brick(BrickTree& tree, Entry a, const BrickTree& other, Entry b, Par
     into.value[i] = known ? clamp_to(into.value[i] + from.value[i], clamp) : clamp_to(from.value[i], clamp);
   }
   into.known |= from.known;
-  return settle_brick(tree, index, parents, Pruning::kLazy);
+  return synchronize_brick(tree, index, parents, Pruning::kLazy);
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ Group group_of(Entry entry) {
   return group;
 }
 
-Entry settle_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+Entry synchronize_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
   const BrickView brick = tree.bricks[index];
   if (pruning != Pruning::kNever && is_uniform(brick)) {
     const Entry leaf = Entry::leaf(brick.value[0]);
@@ -129,7 +129,7 @@ Entry settle_brick(BrickTree& tree, std::uint32_t index, Parents parents, Prunin
   return {index, summary_of(brick, parents)};
 }
 
-Entry settle_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
+Entry synchronize_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning) {
   const Group& group = tree.groups[index];
   if (pruning != Pruning::kNever && is_uniform(group)) {
     const Entry leaf = group.child[0];
@@ -274,7 +274,7 @@ Entry merge(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth
     const Entry child = merge(tree, tree.groups[index].child[o], other, from, depth + 1, parents, clamp);
     tree.groups[index].child[o] = child;
   }
-  return settle_group(tree, index, parents, Pruning::kLazy);
+  return synchronize_group(tree, index, parents, Pruning::kLazy);
 }
 
 Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry) {
@@ -311,7 +311,7 @@ void Cursor<W>::move_to(const BasicKey<W>& key, int depth) {
     const int common = tree_.common_depth(key_, key);
     if (common < reach_) {
       // The group below the shared node stays on the path, and with it the knowledge whether it is stale.
-      settle_down_to(common + 1);
+      synchronize_up_to(common + 1);
       reach_ = common + 1;
     }
   }
@@ -355,7 +355,7 @@ BrickRef Cursor<W>::make_brick() {
 }
 
 template <KeyWord W>
-void Cursor<W>::settle_brick() {
+void Cursor<W>::synchronize_brick() {
   if (!brick_stale_) return;
   brick_stale_ = false;
   Entry& entry = entry_at(tree_.brick_depth());
@@ -374,12 +374,12 @@ void Cursor<W>::settle_brick() {
 }
 
 template <KeyWord W>
-void Cursor<W>::settle_group(int depth) {
+void Cursor<W>::synchronize_group(int depth) {
   const auto at = static_cast<std::size_t>(depth);
   if (!stale_[at]) return;
   stale_[at] = false;
   Entry& entry = entry_at(depth);
-  const Entry now = detail::settle_group(tree_, entry.link, rules_.parents, rules_.pruning);
+  const Entry now = detail::synchronize_group(tree_, entry.link, rules_.parents, rules_.pruning);
   if (now.is_leaf()) {
     reach_ = depth;
     drop_shortcut_at(depth);
@@ -391,12 +391,12 @@ void Cursor<W>::settle_group(int depth) {
 
 // Makes right all entries of the path from its end up to `depth`; the path stays, as far as it is still there.
 template <KeyWord W>
-void Cursor<W>::settle_down_to(int depth) {
-  if (reach_ == tree_.brick_depth()) settle_brick();
+void Cursor<W>::synchronize_up_to(int depth) {
+  if (reach_ == tree_.brick_depth()) synchronize_brick();
   for (int d = reach_ - 1; d >= std::max(depth, 0); --d) {
     // With all parents right after each update, nothing is stale above what is not.
     if (rules_.pruning == Pruning::kEachUpdate && !stale_[static_cast<std::size_t>(d)]) break;
-    settle_group(d);
+    synchronize_group(d);
   }
 }
 
@@ -414,7 +414,7 @@ void Cursor<W>::drop_shortcut_at(int depth) {
 template <KeyWord W>
 void Cursor<W>::finish_change(int depth) {
   mark_stale_above(depth);
-  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+  if (rules_.pruning == Pruning::kEachUpdate) synchronize_up_to(0);
 }
 
 template <KeyWord W>
@@ -428,7 +428,7 @@ template <KeyWord W>
 void Cursor<W>::mark_brick_stale() {
   brick_stale_ = true;
   brick_summary_ = Summary::kStale;
-  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+  if (rules_.pruning == Pruning::kEachUpdate) synchronize_up_to(0);
 }
 
 // For a cell of the brick that is now as large. Also where the brick is stale: see Entry::value.
@@ -442,7 +442,7 @@ void Cursor<W>::raise_maximum(float value) {
 
 template <KeyWord W>
 void Cursor<W>::flush() {
-  settle_down_to(0);
+  synchronize_up_to(0);
   reach_ = 0;
   is_placed_ = false;
   if (!tree_.shortcut) tree_.shortcut = shortcut_of(tree_);
@@ -471,7 +471,7 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
                              (!known || after >= before || before < entry_at(tree_.brick_depth()).value);
   if (!keeps_maximum) brick_summary_ = Summary::kStale;
   raise_maximum(after);
-  if (rules_.pruning == Pruning::kEachUpdate) settle_down_to(0);
+  if (rules_.pruning == Pruning::kEachUpdate) synchronize_up_to(0);
 }
 
 template <KeyWord W>
@@ -497,7 +497,7 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
   move_to(key);
   const int at = std::min(depth, tree_.brick_depth());
   if (reach_ > at) {
-    // What lies below is thrown away, so there is nothing to settle there.
+    // What lies below is thrown away, so there is nothing to synchronize.
     reach_ = at;
     leave_brick();
   }

@@ -132,9 +132,9 @@ Entry store(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parent
 std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
 /// What a brick that changed became: itself, or less when it is uniform.
-Entry settle_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
+Entry synchronize_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
 /// The same for a group whose children are right.
-Entry settle_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
+Entry synchronize_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
 
 /// Frees all that hangs below an entry of `depth`.
 void release_below(BrickTree& tree, Entry entry, int depth);
@@ -156,7 +156,7 @@ struct CursorRules {
 Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry);
 
 /// A place in a tree and the path to it: what changes trees (below pages so does `update_page`, map/page_updates.hpp).
-/// Moving on settles what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every
+/// Moving on synchronizes what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every
 /// parent is recomputed once. Two widths are compiled: 64 bits, and wide for lattices that are deeper.
 template <KeyWord W>
 class Cursor {
@@ -198,9 +198,9 @@ class Cursor {
   BrickRef make_brick();
   void mark_stale_above(int depth);
   void drop_shortcut_at(int depth);
-  void settle_brick();
-  void settle_group(int depth);
-  void settle_down_to(int depth);
+  void synchronize_brick();
+  void synchronize_group(int depth);
+  void synchronize_up_to(int depth);
   void finish_change(int depth);
   void mark_brick_stale();
   void raise_maximum(float value);

@@ -51,14 +51,14 @@ class PageUpdater {
       tree_.groups[entry.link].child[o] = now;
       changed = true;
     });
-    return changed ? settle_group(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
+    return changed ? synchronize_group(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }
 
   Entry brick(Entry entry, std::size_t number) {
     const CellUpdates updates = updates_of_brick(scan_, page_, number);
     if (!entry.is_inner()) return update_without_brick(tree_, rules_, updates, entry);
     const bool changed = add(updates, rules_.clamp, tree_.bricks[entry.link]) || rules_.early_drop == EarlyDrop::kOff;
-    return changed ? settle_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
+    return changed ? synchronize_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }
 
   /// Whether an octant stays as it is because there are misses only, and all that is known there is as free as can be.

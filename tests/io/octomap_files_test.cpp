@@ -135,15 +135,15 @@ TEST(Bt, WritesTheBytesOfLiboctomapAfterScans) {
 }
 
 // Kills a brick that is taken for free by the maximum that its node had before an editor raised a cell of it.
-TEST(Bt, WritesWhatAnEditorHasNotSettledYet) {
+TEST(Bt, WritesWhatAnEditorHasNotSynchronizedYet) {
   std::size_t different = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const MapOptions options{.parents = seed % 4 == 0 ? Parents::kMean : Parents::kMax};
-    OccupancyMap changed(options), settled(options);
-    Editor unsettling = changed.edit(seed % 3 == 0 ? Pruning::kNever : Pruning::kLazy);
-    Editor settling = settled.edit(Pruning::kEachUpdate);
+    OccupancyMap changed(options), synchronized(options);
+    Editor lazy = changed.edit(seed % 3 == 0 ? Pruning::kNever : Pruning::kLazy);
+    Editor eager = synchronized.edit(Pruning::kEachUpdate);
     Bytes last;
     for (int step = 0; step < 200; ++step) {
       const auto word = [&] { return WideWord{32768 + random() % 6}; };
@@ -151,11 +151,11 @@ TEST(Bt, WritesWhatAnEditorHasNotSettledYet) {
       const LogOdds evidence(random() % 3 == 0 ? 4.0F : -4.0F);
       const int depth = 13 + static_cast<int>(random() % 4);
       const bool is_set = random() % 8 == 0;
-      for (Editor* editor : {&unsettling, &settling}) {
+      for (Editor* editor : {&lazy, &eager}) {
         is_set ? editor->set(key, depth, evidence) : editor->update(key, evidence);
       }
       const Bytes ours = to_bytes(changed, Format::kBt);
-      ASSERT_EQ(ours, to_bytes(settled, Format::kBt)) << step;
+      ASSERT_EQ(ours, to_bytes(synchronized, Format::kBt)) << step;
       different += ours != last ? 1 : 0;
       last = ours;
     }

@@ -61,12 +61,12 @@ TEST(Octomap, SingleUpdatesGiveTheSameTree) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     octomap::OcTree eager(kResolution), lazy(kResolution);
-    OccupancyMap at_once({.resolution_m = kResolution}), settled({.resolution_m = kResolution});
+    OccupancyMap at_once({.resolution_m = kResolution}), lazily({.resolution_m = kResolution});
     constexpr std::array kEvidence{0.85F, -0.4F, 3.0F, -3.0F, 0.1F};
     for (int round = 0; round < 4; ++round) {
       {
         Editor at_once_editor = at_once.edit(Pruning::kEachUpdate);
-        Editor settled_editor = settled.edit(Pruning::kLazy);
+        Editor lazily_editor = lazily.edit(Pruning::kLazy);
         const bool fills = random() % 2 == 0;
         for (int i = 0; i < 4'000; ++i) {
           // In a filling round each cell of a cube of 16 gets the same.
@@ -79,7 +79,7 @@ TEST(Octomap, SingleUpdatesGiveTheSameTree) {
           eager.updateNode(key, evidence);
           lazy.updateNode(key, evidence, true);
           at_once_editor.update(narrow(key), LogOdds(evidence));
-          settled_editor.update(narrow(key), LogOdds(evidence));
+          lazily_editor.update(narrow(key), LogOdds(evidence));
         }
       }
       lazy.updateInnerOccupancy();
@@ -87,7 +87,7 @@ TEST(Octomap, SingleUpdatesGiveTheSameTree) {
       const std::vector<Node> expected = octomap_nodes(eager);
       ASSERT_EQ(first_difference(octomap_nodes(lazy), expected), "") << "OctoMap's two ways differ";
       ASSERT_EQ(first_difference(nodes_of(at_once), expected), "");
-      ASSERT_EQ(first_difference(nodes_of(settled), expected), "");
+      ASSERT_EQ(first_difference(nodes_of(lazily), expected), "");
       compared += expected.size();
       for (int i = 0; i < 2'000; ++i) {
         const octomap::OcTreeKey key(static_cast<std::uint16_t>(32750 + random() % 40),

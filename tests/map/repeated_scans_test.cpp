@@ -122,10 +122,10 @@ TEST(RepeatedScans, GiveWhatEachCellByItselfGives) {
       scans.run();
       if (HasFailure()) return;
       const Clamp clamp = scans.map().options().clamp;
-      std::size_t settled = 0;
+      std::size_t clamped = 0;
       for (const WideKey& key : scans.usual())
-        settled += scans.map().at(key) == (seed % 5 == 0 ? clamp.highest : clamp.lowest);
-      EXPECT_GE(settled + 4, scans.usual().size());
+        clamped += scans.map().at(key) == (seed % 5 == 0 ? clamp.highest : clamp.lowest);
+      EXPECT_GE(clamped + 4, scans.usual().size());
     }
   }
 }

@@ -150,9 +150,9 @@ void expect_between(const OccupancyMap& map, const OccupancyMap& before, const O
     neither += leaf.belief != before.at(leaf.key) && leaf.belief != after.at(leaf.key) ? 1 : 0;
   });
   EXPECT_EQ(neither, 0U);
-  OccupancyMap settled = map;
-  ASSERT_TRUE(settled.apply(ScanUpdate(map.lattice())));
-  EXPECT_TRUE(are_equal(settled, map));
+  OccupancyMap synchronized = map;
+  ASSERT_TRUE(synchronized.apply(ScanUpdate(map.lattice())));
+  EXPECT_TRUE(are_equal(synchronized, map));
 }
 
 class NoMemory : public testing::TestWithParam<Shortage> {};
