@@ -100,14 +100,15 @@ TEST(Clouds, OfAMapAreReadAgain) {
 
 TEST(Meshes, BecomeTheMapOfTheirSurface) {
   const Workplace here;
-  expect_done(here, {"simulate", "tank", "-o", "tank.csv", "--truth", "truth", "--quiet", "--turns", "1"});
+  expect_done(here, {"simulate", "tank", "-o", "tank.csv", "--truth", "truth", "--resolution", "0.1", "--quiet",
+                     "--turns", "1"});
   const FlatJson mesh = info(here, "truth/world.ply");
   EXPECT_EQ(mesh.at("kind"), "\"mesh\"");
   EXPECT_EQ(mesh.at("format"), "\"ply\"");
   EXPECT_EQ(mesh.count("vertices") + mesh.count("triangles") + mesh.count("bounds.min") + mesh.count("bounds.max"), 4U);
   EXPECT_EQ(mesh.size(), 6U);
 
-  expect_done(here, {"convert", "truth/world.ply", "-o", "walls.ot"});
+  expect_done(here, {"convert", "truth/world.ply", "-o", "walls.ot", "--resolution", "0.1"});
   const FlatJson walls = info(here, "walls.ot"), truth = info(here, "truth/world.bt");
   EXPECT_EQ(walls.at("occupied_cells"), truth.at("occupied_cells")) << "the simulator's own map of the same triangles";
   EXPECT_EQ(walls.at("free_cells"), "0");

@@ -101,8 +101,11 @@ TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
 
 TEST(Files, OutputFormatsAreNamedAsSuch) {
   const Workplace here;
-  ASSERT_EQ(here.call({"simulate", "tank", "-o", "tank.csv", "--turns", "1", "--truth", "truth", "--quiet"}).status, 0);
-  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt", "--quiet"}).status, 0);
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "tank.csv", "--turns", "1", "--truth", "truth", "--resolution", "0.2",
+                       "--quiet"})
+                .status,
+            0);
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt", "--resolution", "0.2", "--quiet"}).status, 0);
   ASSERT_EQ(here.call({"convert", "tank.bt", "-o", "grid.yaml", "--quiet"}).status, 0);
   ASSERT_EQ(here.call({"convert", "tank.bt", "-o", "tank.asc", "--quiet"}).status, 0);
   const std::vector<std::pair<std::string, std::string>> written = {{"grid.yaml", "grid for map_server"},

@@ -67,7 +67,7 @@ TEST(Render, ALogIsDrawnAsTheMapThatItMakes) {
 TEST(Render, DrawsTrajectoriesOverAMap) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2", "--drift", "1",
-                       "--truth", "truth"})
+                       "--truth", "truth", "--resolution", "0.1"})
                 .status,
             0);
   const std::string map = "truth/world.bt";

@@ -16,6 +16,7 @@
 #include "fuzz/bodies/tum.hpp"
 #include "pingvox/io/file.hpp"
 #include "support/mutants.hpp"
+#include "support/rounds.hpp"
 
 // Each fuzz body on its corpus and on some thousand damaged copies of it.
 namespace pingvox {
@@ -46,7 +47,7 @@ TEST_P(Mutation, KeepsItsPromises) {
   ASSERT_FALSE(seeds.empty());
 
   std::size_t readable = 0;
-  constexpr std::size_t kMutants = 10'000;
+  constexpr std::size_t kMutants = test::rounds(10'000);
   for (std::size_t i = 0; i < kMutants; ++i) {
     std::mt19937_64 random(i);
     const auto& seed = seeds[i % seeds.size()];

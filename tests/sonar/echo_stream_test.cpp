@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "support/rounds.hpp"
 #include "support/tank_recording.hpp"
 
 namespace pingvox {
@@ -153,6 +154,7 @@ TEST(EchoStream, GivesTheEchoesOfWholeSweepsWithEachFilterAndDetector) {
 }
 
 TEST(EchoStream, GivesTheEchoesOfWholeSweepsOfTheTankRecording) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
   std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
   if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
   beams.erase(beams.begin() + 450, beams.end() - 50);  // two turns, a part of one, and the short beam at the end
