@@ -22,6 +22,7 @@
 #include "speed/rays.hpp"
 #include "speed/scans.hpp"
 #include "vehicle/growth.hpp"
+#include "vehicle/log_reading.hpp"
 #include "vehicle/realtime.hpp"
 #include "vehicle/startup.hpp"
 #include "vehicle/threads.hpp"
@@ -55,6 +56,7 @@ std::span<const Bench> benches() {
       Bench{"realtime", "the tank recording beam by beam: time until each is in the map", Family::kVehicle, &realtime},
       Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
       Bench{"threads", "the bundles of tank-fine by two threads against one", Family::kVehicle, &threads},
+      Bench{"log-reading", "sonar logs from memory to beams, megabytes a second", Family::kVehicle, &log_reading},
       Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
       Bench{"accuracy", "echoes and maps of simulated recordings, compared with ground truth", Family::kAccuracy,
             &accuracy},
