@@ -26,6 +26,10 @@ void put(Bytes& bytes, std::uint64_t value, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
+void put_bytes(Bytes& bytes, std::initializer_list<std::uint8_t> more) {
+  bytes.insert(bytes.end(), more);
+}
+
 Bytes samples(std::size_t beam) {
   Bytes bins(kBins);
   for (std::size_t i = 0; i < kBins; ++i) bins[i] = static_cast<std::uint8_t>(beam + i * i / 64);
@@ -50,13 +54,13 @@ Bytes seanet_frame(std::size_t beam) {
   Bytes frame = {'@'};
   for (const char digit : fmt::format("{:04X}", length)) frame.push_back(static_cast<std::uint8_t>(digit));
   put(frame, length, 2);
-  for (const std::uint8_t byte : {2, 255, 0, 2, 0x80, 2}) frame.push_back(byte);
+  put_bytes(frame, {2, 255, 0, 2, 0x80, 2});
   put(frame, length - 7, 2);
-  for (const std::uint8_t byte : {0x11, 0x10, 0}) frame.push_back(byte);
+  put_bytes(frame, {0x11, 0x10, 0});
   put(frame, 0x2307, 2);
   put(frame, 60, 2);
   put(frame, 0, 4);
-  for (const std::uint8_t byte : {84, 0, 0, 81, 8, 0, 0}) frame.push_back(byte);
+  put_bytes(frame, {84, 0, 0, 81, 8, 0, 0});
   for (const std::size_t value : {std::size_t{50}, std::size_t{2400}, std::size_t{4000}}) put(frame, value, 2);
   frame.push_back(16);
   put(frame, beam * 16 % 6400, 2);
