@@ -11,6 +11,7 @@
 #include "json.hpp"
 #include "map_log.hpp"
 #include "map_report.hpp"
+#include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
@@ -33,6 +34,7 @@ struct Motion {
   std::optional<Trajectory> odometry;
   std::string text = "none: the vehicle is assumed to move little";
   bool turns_only = false;  ///< x and y are not known
+  std::optional<NavOffset> clock;
   std::size_t skipped = 0;
 };
 
@@ -70,7 +72,12 @@ Result<Motion> motion_of(const LocateCommand& command) {
   const Result<NavFiles> nav = read_navs(command.navs, command.damage);
   if (!nav) return tl::unexpected(nav.error());
   motion.skipped = nav->damaged;
-  Result<Odometry> odometry = odometry_of(nav->log, command.nav);
+  Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), ""}, command.damage);
+  if (!offset) return tl::unexpected(offset.error());
+  OdometryOptions options = command.nav;
+  options.offset_s = offset->offset_s;
+  motion.clock = *std::move(offset);
+  Result<Odometry> odometry = odometry_of(nav->log, options);
   if (!odometry)
     return fail(odometry.error().code, fmt::format("{}: {}", command.navs.front(), odometry.error().message));
   motion.text = odometry->velocity.empty()
@@ -183,10 +190,9 @@ std::string json_of(const Found& found, const Motion& motion, std::size_t field_
   json.add("poses", found.poses.size())
       .add("beams", found.beams)
       .add("skipped", found.skipped + motion.skipped)
-      .add("motion", motion.text)
-      .add_truth("sure", found.is_sure)
-      .add("hypotheses", hypotheses)
-      .add("sure_spans", spans);
+      .add("motion", motion.text);
+  motion.clock ? json.add("nav_clock", json_of(*motion.clock)) : json.add_null("nav_clock");
+  json.add_truth("sure", found.is_sure).add("hypotheses", hypotheses).add("sure_spans", spans);
   if (found.sure.empty()) {
     json.add_null("converged_at_s");
   } else {
@@ -202,6 +208,7 @@ std::string json_of(const Found& found, const Motion& motion, std::size_t field_
 std::string text_of(const Found& found, const Motion& motion, const LocateCommand& command, const Seconds& seconds) {
   std::string text = command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
+  if (motion.clock) text += report_line("nav clock", text_of(*motion.clock));
   text += report_line("trajectory",
                       fmt::format("{} poses of {} beams, {:.0f} particles on average, {} at most", found.poses.size(),
                                   found.beams, found.mean_particles, found.most_particles));

@@ -220,6 +220,7 @@ struct LocateCommand {
   std::string output;             ///< TUM lines; "-" is standard output
   std::vector<std::string> navs;  ///< navigation logs
   OdometryOptions nav;
+  std::optional<double> nav_offset_s;      ///< added to the times of `navs`; nullopt: to be found
   std::optional<std::string> odometry;     ///< TUM lines in a frame that may drift; not with `navs`
   std::optional<StartPose> start;          ///< nullopt: anywhere
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's

@@ -61,8 +61,8 @@ Result<Command> locate_command(const Args& args) {
                     0,
                     "S",
                     "seconds to add to the times of --nav to get those of the sonar log",
-                    "0",
-                    within({-1e10, 1e10}, store_number(command.nav.offset_s))};
+                    "found",
+                    within({-1e10, 1e10}, store_optional(command.nav_offset_s))};
   nav_offset.only_with = {{"--nav"}};
   Option nav_mount{
       "--nav-mount",        0,

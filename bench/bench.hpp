@@ -15,7 +15,7 @@ namespace pingvox::bench {
 enum class Family {
   kSpeed,     ///< compared with liboctomap; part of `pingvox bench all`
   kVehicle,   ///< real time, growth, start-up; part of `all`
-  kAccuracy,  ///< compared with simulated ground truth; not in `all`
+  kAccuracy,  ///< compared with ground truth; not in `all`
   kPaper,     ///< the paper's tables and figures; not in `all`
 };
 

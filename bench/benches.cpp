@@ -2,6 +2,8 @@
 
 #include "accuracy/accuracy.hpp"
 #include "bench.hpp"
+#include "drives/locate.hpp"
+#include "drives/slam.hpp"
 #include "paper/bits.hpp"
 #include "paper/bytes.hpp"
 #include "paper/early_drop.hpp"
@@ -60,6 +62,8 @@ std::span<const Bench> benches() {
       Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
       Bench{"accuracy", "echoes and maps of simulated recordings, compared with ground truth", Family::kAccuracy,
             &accuracy},
+      Bench{"slam", "trajectories of slam, compared with where the vehicle was", Family::kAccuracy, &slam},
+      Bench{"locate", "where locate finds a vehicle in a map, compared with where it was", Family::kAccuracy, &locate},
       Bench{"paper", "what the paper says and what we get, all of it; with --pictures its figures", Family::kPaper,
             &paper},
       Bench{"paper-keys", "section 5.1: keys of 8 to 128 bits", Family::kPaper, &paper_key_width},

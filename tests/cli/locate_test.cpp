@@ -1,11 +1,13 @@
 // A vehicle in a map that is known.
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "call.hpp"
 
@@ -68,6 +70,26 @@ TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
   expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--nav", "depth.csv"}), 1,
                {"depth.csv", "no valid heading or attitude"});
   EXPECT_FALSE(here.has("o.tum"));
+}
+
+// Kills a clock of the navigation that is taken for the sonar's without a word.
+TEST(Locate, NavigationOnAnotherClockIsMovedOrRefused) {
+  const Workplace here;
+  ASSERT_EQ(
+      here.call({"simulate", "tank", "-o", "a.csv", "--turns", "2", "--truth", "t", "--resolution", "0.1"}).status, 0);
+  std::string nav = "# clock: unix\ntime_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 80; ++i) {
+    nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,velocity,0,0,0\n", 1767225600.0 + i * 0.25);
+  }
+  here.write("nav.csv", nav);
+  const std::vector<std::string> call = {"locate",  "a.csv", "--map", "t/world.bt", "--nav",
+                                         "nav.csv", "-o",    "o.tum", "--json"};
+  expect_error(here.call(call), 1, {"a.csv", "--nav-offset"});
+  std::vector<std::string> given = call;
+  given.insert(given.end(), {"--nav-offset", "-1767225600"});
+  const Outcome found = here.call(given);
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr(R"("nav_clock": {"offset_s": -1767225600, "sd_s": null, "from": "--nav-offset"})"));
 }
 
 }  // namespace

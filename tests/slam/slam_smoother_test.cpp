@@ -159,11 +159,12 @@ TEST(SlamSmoother, NavigationOnALateClockIsMovedByTheOffset) {
 TEST(SlamSmoother, CausalPosesAreThoseOfALogThatEndsSooner) {
   SlamOptions causal;
   causal.estimation = Estimation::kCausal;
-  const auto whole = solve({.duration_s = 200.0}, causal), part = solve({.duration_s = 120.0}, causal);
+  // 100 s are solved after ten sweeps, with navigation for another second alone.
+  const auto whole = solve({.duration_s = 200.0}, causal), part = solve({.duration_s = 101.0}, causal);
   ASSERT_TRUE(whole && part);
   const auto &poses = whole->trajectory.poses(), &sooner = part->trajectory.poses();
   EXPECT_EQ(poses.size(), 2000U);
-  ASSERT_GT(sooner.size(), 1100U);
+  ASSERT_GT(sooner.size(), 1000U);
   for (std::size_t i = 0; i < 990; ++i) {
     ASSERT_EQ(poses[i].map_from_body.matrix(), sooner[i].map_from_body.matrix()) << i;
   }

@@ -1,0 +1,142 @@
+#include "drives/slam.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "drives/draw_drive.hpp"
+#include "drives/drive.hpp"
+#include "paired_timing.hpp"
+#include "pingvox/nav/trajectory_score.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+
+namespace pingvox::bench {
+namespace {
+
+struct Method {
+  std::string_view name;
+  Matching matching = Matching::kPairs;
+  Estimation estimation = Estimation::kBatch;
+};
+
+constexpr Method kReckoning = {"dead reckoning", Matching::kNone, Estimation::kBatch};
+constexpr Method kBatch = {"batch", Matching::kPairs, Estimation::kBatch};
+constexpr Method kCausal = {"causal", Matching::kPairs, Estimation::kCausal};
+
+struct Solved {
+  SlamSolution solution;
+  double seconds;
+};
+
+Result<Solved> solve(const Drive& drive, const Method& method, std::uint64_t seed) {
+  SlamOptions options;
+  options.matching = method.matching;
+  options.estimation = method.estimation;
+  options.seed = seed;
+  options.body_from_sonar = drive.body_from_sonar;
+  std::vector<Beam> beams = drive.beams;
+  const double before_s = cpu_time_s();
+  SlamSmoother smoother(std::move(options));
+  if (const auto added = smoother.add(drive.nav); !added) return tl::unexpected(added.error());
+  for (Beam& beam : beams) smoother.add(std::move(beam));
+  Result<SlamSolution> solution = smoother.solve();
+  if (!solution) return tl::unexpected(solution.error());
+  return Solved{*std::move(solution), cpu_time_s() - before_s};
+}
+
+double length_m(const Trajectory& way) {
+  double sum_m = 0.0;
+  const std::vector<StampedPose>& poses = way.poses();
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    sum_m += (poses[i].map_from_body.translation() - poses[i - 1].map_from_body.translation()).head<2>().norm();
+  }
+  return sum_m;
+}
+
+/// The errors of a trajectory, in metres; `of_way` is the root of the mean square over the length of the way.
+Result<Row> row_of(std::string_view drive, const Method& method, std::uint64_t seed, const Solved& solved,
+                   const Trajectory& reference) {
+  const Trajectory& found = solved.solution.trajectory;
+  const Result<TrajectoryScore> score = score_trajectory(found, reference);
+  if (!score) return tl::unexpected(score.error());
+  const double way_m = length_m(found), recorded_s = found.poses().back().time_s - found.poses().front().time_s;
+  Row row;
+  row.add("name", "slam")
+      .add("drive", drive)
+      .add("method", method.name)
+      .add("seed", seed)
+      .add("way_m", way_m)
+      .add("first_fix_m", score->first_fix.mean_m)
+      .add("translation_m", score->translation.mean_m)
+      .add("se2_m", score->se2.mean_m)
+      .add("se2_rmse_m", score->se2.rmse_m)
+      .add("se2_max_m", score->se2.max_m)
+      .add("of_way", score->se2.rmse_m / way_m)
+      .add("loops_kept", std::uint64_t{solved.solution.report.loops_kept})
+      .add("seconds", solved.seconds)
+      .add("times_real_time", recorded_s / solved.seconds);
+  return row;
+}
+
+/// One drive by some methods; the first two of them are drawn.
+class Measurement {
+ public:
+  Measurement(const BenchOptions& options, std::vector<Row>& rows) : options_(options), rows_(rows) {}
+
+  Result<void> measure(std::string_view name, const Drive& drive, const Method& method, std::uint64_t seed) {
+    if (options_.say != nullptr) options_.say(fmt::format("  {}: {}, seed {}", name, method.name, seed));
+    const Result<Solved> solved = solve(drive, method, seed);
+    if (!solved) return tl::unexpected(solved.error());
+    Result<Row> row = row_of(name, method, seed, *solved, drive.reference);
+    if (!row) return tl::unexpected(row.error());
+    rows_.push_back(*std::move(row));
+    if (!options_.pictures || drawn_.size() == 2) return {};
+    drawn_.push_back({std::string(method.name), solved->solution.trajectory});
+    if (drawn_.size() < 2) return {};
+    return draw_drive(drive, drawn_, *options_.pictures, fmt::format("slam-{}.png", name));
+  }
+  void next_drive() { drawn_.clear(); }
+
+ private:
+  const BenchOptions& options_;
+  std::vector<Row>& rows_;
+  std::vector<MapPath> drawn_;
+};
+
+}  // namespace
+
+Result<std::vector<Row>> slam(const BenchOptions& options) {
+  constexpr std::uint64_t kRecordedSeeds = 5, kSimulatedSeeds = 10;
+  std::vector<Row> rows;
+  Measurement measurement(options, rows);
+  const Result<std::optional<Drive>> recorded = recorded_marina();
+  if (!recorded) return tl::unexpected(recorded.error());
+  if (*recorded) {
+    const auto measure = [&](const Method& method, std::uint64_t seed) {
+      return measurement.measure("recorded", **recorded, method, seed);
+    };
+    if (const auto done = measure(kReckoning, 1); !done) return tl::unexpected(done.error());
+    for (std::uint64_t seed = 1; seed <= kRecordedSeeds; ++seed) {
+      if (const auto done = measure(kBatch, seed); !done) return tl::unexpected(done.error());
+    }
+    if (const auto done = measure(kCausal, 1); !done) return tl::unexpected(done.error());
+  }
+  const Scene marina = marina_scene({});
+  for (std::uint64_t seed = 1; seed <= kSimulatedSeeds; ++seed) {
+    if (seed == 1) measurement.next_drive();
+    const Result<Drive> drive = simulate_drive(marina, Motion::kByHand, std::nullopt, seed);
+    if (!drive) return tl::unexpected(drive.error());
+    for (const Method& method : {kReckoning, kBatch}) {
+      if (const auto done = measurement.measure("simulated", *drive, method, seed); !done) {
+        return tl::unexpected(done.error());
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace pingvox::bench
