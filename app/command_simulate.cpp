@@ -131,10 +131,10 @@ Result<SimulatedNav> navigation_of(const Journey& journey, const SonarOptions& s
   const double from_s = poses.front().time_s;
   const double sonar_s = static_cast<double>(journey.turns * sonar.beams_per_turn) / sonar.beams_per_s;
   const double duration_s = poses.size() > 1 ? std::min(sonar_s, poses.back().time_s - from_s) : sonar_s;
-  constexpr double kLongest_s = 1e5;
-  if (duration_s > kLongest_s) {
-    return fail(Error::Code::kBadOption,
-                fmt::format("simulate: --nav: {:.0f} s are longer than the longest, {:.0f} s", duration_s, kLongest_s));
+  constexpr double kMaxDuration_s = 1e5;
+  if (duration_s > kMaxDuration_s) {
+    return fail(Error::Code::kBadOption, fmt::format("simulate: --nav: {:.0f} s are longer than the longest, {:.0f} s",
+                                                     duration_s, kMaxDuration_s));
   }
   return simulate_nav(journey.way, from_s, from_s + duration_s, sensors);
 }

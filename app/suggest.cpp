@@ -9,7 +9,7 @@ namespace pingvox::app {
 namespace {
 
 /// Longer words are ignored, as the time is quadratic.
-constexpr std::size_t kLongestWord = 64;
+constexpr std::size_t kMaxWordLength = 64;
 
 /// Optimal string alignment: insert, delete, replace, swap two neighbours.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -32,7 +32,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::optional<std::string> nearest_word(std::string_view word, std::span<const std::string> known) {
-  if (word.empty() || word.size() > kLongestWord) return std::nullopt;
+  if (word.empty() || word.size() > kMaxWordLength) return std::nullopt;
   const auto letters = [](std::string_view text) {
     return text.size() - std::min(text.find_first_not_of('-'), text.size());
   };

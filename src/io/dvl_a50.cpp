@@ -193,8 +193,8 @@ A50Reading a50_serial_report(std::string_view line) {
   std::string_view rest = line.substr(0, star);
   if (hex_byte_in(line.substr(star + 1)) != crc8(rest)) return tl::unexpected(kChecksum);
   std::vector<std::string_view> fields;
-  constexpr std::size_t kMostFields = 32;
-  while (fields.size() < kMostFields) {
+  constexpr std::size_t kMaxFields = 32;
+  while (fields.size() < kMaxFields) {
     const auto field = cut_field(rest, ',');
     if (!field) break;
     fields.push_back(*field);

@@ -34,9 +34,9 @@ std::optional<Line> next_line(std::string_view text, std::size_t& from) {
 /// The names of a table's columns; nullopt: the line is none of ours.
 std::optional<std::vector<std::string_view>> columns_in(std::string_view line) {
   std::vector<std::string_view> columns;
-  constexpr std::size_t kMostColumns = 256;
+  constexpr std::size_t kMaxColumns = 256;
   while (const auto name = cut_field(line, ',')) {
-    if (columns.size() == kMostColumns) return std::nullopt;
+    if (columns.size() == kMaxColumns) return std::nullopt;
     columns.push_back(*name);
   }
   const auto has = [&](std::string_view name) { return std::ranges::count(columns, name) == 1; };

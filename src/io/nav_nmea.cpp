@@ -22,8 +22,8 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0, kMetresPerSecondOfKnot =
 class Sentence {
  public:
   explicit Sentence(std::string_view body) {
-    constexpr std::size_t kMostFields = 64;
-    while (fields_.size() < kMostFields) {
+    constexpr std::size_t kMaxFields = 64;
+    while (fields_.size() < kMaxFields) {
       const auto field = cut_field(body, ',');
       if (!field) break;
       fields_.push_back(*field);
@@ -50,8 +50,8 @@ std::size_t for_each_sentence(std::string_view text, std::vector<DamageKind>& da
     const std::string_view rest = text.substr(at + 1);
     const std::size_t address = std::min(rest.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"), rest.size());
     // Other text has dollars, too.
-    constexpr std::size_t kShortest = 3, kLongest = 10;
-    const bool is_sentence = address >= kShortest && address <= kLongest && rest.substr(address).starts_with(',');
+    constexpr std::size_t kMinLength = 3, kMaxLength = 10;
+    const bool is_sentence = address >= kMinLength && address <= kMaxLength && rest.substr(address).starts_with(',');
     if (!is_sentence) continue;
     const std::size_t end = std::min(rest.find_first_of("*$\r\n"), rest.size());
     const std::optional<unsigned> sum =

@@ -128,10 +128,10 @@ bool is_chunk(Bytes bytes) {
 /// Where the next chunk may begin, behind the first byte; nullopt: not in these bytes.
 std::optional<std::size_t> next_chunk(Bytes bytes) {
   constexpr std::string_view kOp = "op=\x05";
-  constexpr std::size_t kFarthest = 64;  // of this field from the beginning of the record
+  constexpr std::size_t kMaxOffset = 64;  // of this field from the beginning of the record
   const std::string_view text = text_of(bytes);
   for (std::size_t op = text.find(kOp); op != std::string_view::npos; op = text.find(kOp, op + 1)) {
-    for (std::size_t back = 8; back <= std::min(op - 1, kFarthest) && op > 8; ++back) {
+    for (std::size_t back = 8; back <= std::min(op - 1, kMaxOffset) && op > 8; ++back) {
       if (is_chunk(bytes.subspan(op - back))) return op - back;
     }
   }

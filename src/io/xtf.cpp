@@ -77,8 +77,8 @@ std::optional<HeadPose> head_pose(Bytes packet, bool has_degrees) {
   head.heading_rad = little<float>(packet, 212) * kDegree;
   const bool is_finite = head.place.allFinite() && std::isfinite(head.pitch_rad) && std::isfinite(head.roll_rad) &&
                          std::isfinite(head.heading_rad);
-  constexpr double kFarthest_m = 1e8;
-  const double most = has_degrees ? std::numbers::pi : kFarthest_m;
+  constexpr double kMaxPosition_m = 1e8;
+  const double most = has_degrees ? std::numbers::pi : kMaxPosition_m;
   if (!is_finite || head.place.cwiseAbs().head<2>().maxCoeff() > most || std::fabs(head.place.z()) > kMaxBeamRange_m) {
     return std::nullopt;
   }

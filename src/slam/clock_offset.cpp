@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kGrid_s = 0.05;    ///< of the yaw
 constexpr double kCoarse_s = 0.25;  ///< of the offsets that are tried
-constexpr std::size_t kMostChanges = 2'000, kFewestChanges = 8;
+constexpr std::size_t kMaxChanges = 2'000, kMinChanges = 8;
 constexpr double kMaxLength_s = 2.0 * 86'400.0;
 constexpr double kMadToDeviation = 1.4826;  ///< of normal noise
 
@@ -154,9 +154,9 @@ struct Scan {
   }
 };
 
-/// At most kMostChanges, evenly chosen.
+/// At most kMaxChanges, evenly chosen.
 std::vector<YawChange> thinned(const std::vector<YawChange>& changes) {
-  const std::size_t step = (changes.size() + kMostChanges - 1) / kMostChanges;
+  const std::size_t step = (changes.size() + kMaxChanges - 1) / kMaxChanges;
   std::vector<YawChange> kept;
   for (std::size_t i = 0; i < changes.size(); i += step) kept.push_back(changes[i]);
   return kept;
@@ -183,7 +183,7 @@ std::vector<YawChange> yaw_changes(const NavLog& log) {
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog& log) {
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading) return cannot_tell("the navigation has no valid heading or attitude");
-  if (all.size() < kFewestChanges) return cannot_tell("too few sweeps show the same surroundings clearly");
+  if (all.size() < kMinChanges) return cannot_tell("too few sweeps show the same surroundings clearly");
   const std::vector<YawChange> changes = thinned(all);
   const auto [first, last] = std::ranges::minmax(changes, {}, &YawChange::from_s);
   const double from_s = first.from_s, to_s = last.to_s;
@@ -200,15 +200,15 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
     sizes.push_back(std::abs(change.by_rad));
     squares += change.by_rad * change.by_rad;
   }
-  constexpr double kLeast_rad = 1e-6;
+  constexpr double kMin_rad = 1e-6;
   const double usual_rad = kMadToDeviation * median(std::move(sizes));
-  double deviation_rad = usual_rad > kLeast_rad ? usual_rad : std::sqrt(squares / static_cast<double>(changes.size()));
-  if (!(deviation_rad > kLeast_rad)) return cannot_tell("the vehicle does not turn");
+  double deviation_rad = usual_rad > kMin_rad ? usual_rad : std::sqrt(squares / static_cast<double>(changes.size()));
+  if (!(deviation_rad > kMin_rad)) return cannot_tell("the vehicle does not turn");
   const double lowest_s = from_s - yaw.to_s(), highest_s = to_s - yaw.from_s();
   Scan scan(comparison, lowest_s, highest_s, kCoarse_s, deviation_rad);
   const std::vector<double> rests = comparison.rests_rad(scan.offset_s(scan.best()));
-  if (rests.size() < kFewestChanges) return cannot_tell("too little of the turning is in both recordings");
-  deviation_rad = std::max(kLeast_rad, kMadToDeviation * median(rests));
+  if (rests.size() < kMinChanges) return cannot_tell("too little of the turning is in both recordings");
+  deviation_rad = std::max(kMin_rad, kMadToDeviation * median(rests));
   scan = Scan(comparison, lowest_s, highest_s, kCoarse_s, deviation_rad);
   const std::size_t top = scan.best();
 

@@ -39,7 +39,7 @@ constexpr double kConsistent = 11.3;
 constexpr double kPossible2 = 100.0;
 
 /// What is farther from a key frame than this, in reaches, is left out of its submap.
-constexpr double kFarthest = 2.0;
+constexpr double kMaxDistance = 2.0;
 constexpr std::size_t kMaxLoops = 4000;
 
 /// The points of key frames `k - 4` to `k + 4` in the frame of k, one in each cell.
@@ -54,7 +54,7 @@ std::vector<Eigen::Vector2d> submap(std::span<const KeyFrame> frames, std::span<
     const Pose2 k_from_i = k_from_map * poses[i];
     for (const Eigen::Vector2d& point : frames[i].points_m) {
       const Eigen::Vector2d at = k_from_i * point;
-      if (!(at.cwiseAbs().maxCoeff() < kFarthest * reach_m)) continue;
+      if (!(at.cwiseAbs().maxCoeff() < kMaxDistance * reach_m)) continue;
       const Eigen::Vector2i cell = (at / cell_m).array().floor().cast<int>();
       const auto key =
           (std::uint64_t{static_cast<std::uint32_t>(cell.x())} << 32) | static_cast<std::uint32_t>(cell.y());

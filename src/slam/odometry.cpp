@@ -14,7 +14,7 @@ namespace pingvox {
 namespace {
 
 /// Sources that are silent for longer say nothing of the way in between.
-constexpr double kLongestStep_s = 5.0;
+constexpr double kMaxStep_s = 5.0;
 
 Pose mount_of(const OdometryOptions& options, const std::string& source) {
   const auto mount = options.body_from_source.find(source);
@@ -70,7 +70,7 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   }
   const Eigen::Vector2d origin = poses.front().map_from_body.translation().head<2>();
   for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
-  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), kLongestStep_s);
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), kMaxStep_s);
   if (!trajectory) return tl::unexpected(trajectory.error());
   return Odometry{*std::move(trajectory), heading->name, velocity ? velocity->name : std::string()};
 }

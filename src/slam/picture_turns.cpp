@@ -75,10 +75,10 @@ class TurnPicture {
 
   /// Between the beams of a head with large steps: what is between their neighbours.
   void fill_behind(std::size_t n) {
-    constexpr std::size_t kMostEmpty = 3;
+    constexpr std::size_t kMaxEmpty = 3;
     std::size_t empty = 0;
-    while (empty <= kMostEmpty && !has((n + 1 + empty) % kDirections)) ++empty;
-    if (!has(n) || empty == 0 || empty > kMostEmpty) return;
+    while (empty <= kMaxEmpty && !has((n + 1 + empty) % kDirections)) ++empty;
+    if (!has(n) || empty == 0 || empty > kMaxEmpty) return;
     const std::size_t end = (n + 1 + empty) % kDirections;
     for (std::size_t i = 1; i <= empty; ++i) {
       const std::size_t at = (n + i) % kDirections;

@@ -244,10 +244,10 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
 }
 
 void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, double metres_per_pixel) {
-  constexpr double kLongest = 200.0;  // pixels
+  constexpr double kMaxLength_px = 200.0;
   // The extent of a deep lattice may overflow a double.
-  if (!std::isfinite(metres_per_pixel * kLongest)) return;
-  const double length_m = round_length(metres_per_pixel * kLongest);
+  if (!std::isfinite(metres_per_pixel * kMaxLength_px)) return;
+  const double length_m = round_length(metres_per_pixel * kMaxLength_px);
   const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
   picture.fill(x, top + 8, bar, 3, kInk);
   picture.fill(x, top + 2, 3, 15, kInk);
