@@ -88,7 +88,7 @@ Args device_names() {
 
 Take store_device(const DeviceProfile*& target) {
   return [&target](const std::string& text) -> Result<void> {
-    target = device_named(text);
+    target = find_device(text);
     if (target != nullptr) return {};
     const Args known = device_names();
     return usage_error(

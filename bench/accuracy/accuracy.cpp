@@ -33,7 +33,7 @@ struct Finder {
   RangeFrom range = RangeFrom::kCrest;
 };
 
-Echoes found(const Recording& recording, const Finder& finder) {
+Echoes find_echoes(const Recording& recording, const Finder& finder) {
   Echoes echoes = detect(recording, finder.filter, finder.echo);
   if (finder.range == RangeFrom::kCrest) return echoes;
   return at_first_bins(std::move(echoes), recording.sonar.bin_length_m);
@@ -190,7 +190,7 @@ class Measurement {
   void echoes(std::vector<Row>& rows) const {
     const EchoJudge judge{recording_.sonar.bin_length_m, kBlanking_m, recording_.sonar.range_m()};
     for (const Finder& finder : finders()) {
-      rows.push_back(echo_row(recording_, finder, score_echoes(found(recording_, finder), truths_, judge)));
+      rows.push_back(echo_row(recording_, finder, score_echoes(find_echoes(recording_, finder), truths_, judge)));
     }
   }
 
@@ -215,8 +215,8 @@ class Measurement {
     const Result<GroundTruth> world = GroundTruth::make(recording_, extent, resolution_m, kBlanking_m);
     if (!world) return tl::unexpected(world.error());
     const std::array<std::pair<std::string_view, Echoes>, 3> sources = {
-        {{"default", found(recording_, usual())},
-         {"paper", found(recording_, paper())},
+        {{"default", find_echoes(recording_, usual())},
+         {"paper", find_echoes(recording_, paper())},
          {"true ranges", true_echoes(recording_, truths_, kBlanking_m)}}};
     for (const auto& [name, echoes] : sources) {
       for (const auto& [beam, shape] :

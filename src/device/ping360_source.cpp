@@ -59,7 +59,7 @@ class Ping360Source final : public LiveSource {
     return status;
   }
 
-  const DeviceProfile* device() const override { return device_named("ping360"); }
+  const DeviceProfile* device() const override { return find_device("ping360"); }
 
  private:
   void open(double now_s) {

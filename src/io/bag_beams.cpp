@@ -217,7 +217,7 @@ class BagBeams final : public DeviceLog {
     }
     if (chosen_.empty()) chosen_ = name;
     if (name != chosen_) return several_topics();
-    device_ = device_named(type.device);
+    device_ = find_device(type.device);
     beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
     return {};
   }

@@ -121,7 +121,7 @@ class HitSource : public BeamSource {
 
   std::size_t skipped() const override { return skipped_.count; }
   std::string first_damage() const override { return skipped_.first; }
-  const DeviceProfile* device() const override { return device_named("miniking"); }
+  const DeviceProfile* device() const override { return find_device("miniking"); }
   std::optional<double> share_read() const override { return read_share(end_ - next_, end_ - begin_); }
 
  private:

@@ -26,7 +26,7 @@ tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const st
 }
 
 const DeviceProfile* ping_device_of(std::span<const std::uint8_t>) {
-  return device_named("ping360");
+  return find_device("ping360");
 }
 
 const DeviceProfile* seanet_device_of(std::span<const std::uint8_t> frame) {

@@ -93,7 +93,7 @@ class DumpLog : public BeamSource {
     }
   }
   std::vector<DamageKind> damage() const override { return kinds_; }
-  const DeviceProfile* device() const override { return device_named("micron"); }
+  const DeviceProfile* device() const override { return find_device("micron"); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
  private:

@@ -129,8 +129,8 @@ const DeviceProfile* device_of(const SeanetLine& line) {
   constexpr std::uint8_t kDst = 0x11;
   constexpr double kHz = 32e6 / 4294967296.0;
   // A DST head chirps, so its frequency does not identify it; assume the most common one.
-  if (line.head_type == kDst) return device_named("micron");
-  return device_named(line.transmit * kHz < 500e3 && line.transmit != 0 ? "seaking-325" : "miniking");
+  if (line.head_type == kDst) return find_device("micron");
+  return find_device(line.transmit * kHz < 500e3 && line.transmit != 0 ? "seaking-325" : "miniking");
 }
 
 }  // namespace pingvox

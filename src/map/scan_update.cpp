@@ -20,12 +20,12 @@ constexpr std::uint32_t kFree = 0;
 
 std::size_t hash_of(const WideKey& key) {
   // Neighbouring pages must spread: multiply each component by a different odd constant, and take the high bits.
-  const auto mixed = [](WideWord word, std::uint64_t factor) {
+  const auto mix = [](WideWord word, std::uint64_t factor) {
     word >>= ScanUpdate::kPageBits;
     return (static_cast<std::uint64_t>(word) ^ static_cast<std::uint64_t>(word >> 64)) * factor;
   };
   const std::uint64_t sum =
-      mixed(key.x, 0x9E3779B97F4A7C15U) + mixed(key.y, 0xC2B2AE3D27D4EB4FU) + mixed(key.z, 0x165667B19E3779F9U);
+      mix(key.x, 0x9E3779B97F4A7C15U) + mix(key.y, 0xC2B2AE3D27D4EB4FU) + mix(key.z, 0x165667B19E3779F9U);
   return static_cast<std::size_t>(sum ^ (sum >> 29));
 }
 

@@ -28,12 +28,12 @@ constexpr double kStep_s = 0.1;
 
 /// To a multiple of 1 / `steps`: what a device resolves. The last bit of cos(), which differs between machines, does
 /// not change it.
-double rounded(double value, double steps) {
+double round_to(double value, double steps) {
   return std::round(value * steps) / steps;
 }
 
-Vector3d rounded(const Vector3d& value, double steps) {
-  return value.unaryExpr([steps](double number) { return rounded(number, steps); });
+Vector3d round_to(const Vector3d& value, double steps) {
+  return value.unaryExpr([steps](double number) { return round_to(number, steps); });
 }
 
 constexpr double kTimeSteps = 1e4, kVelocitySteps = 1e3, kAngleSteps = 1e5, kDepthSteps = 1e3;
@@ -83,7 +83,7 @@ void sample(const Trajectory& trajectory, double from_s, double to_s, double per
 }
 
 NavSample sample_at(double time_s, const Vector3d& value, const Vector3d& deviation) {
-  return {.time_s = rounded(time_s, kTimeSteps), .value = value, .deviation = deviation};
+  return {.time_s = round_to(time_s, kTimeSteps), .value = value, .deviation = deviation};
 }
 
 NavSource simulate_dvl(const Trajectory& trajectory, double from_s, double to_s, const NavSensorOptions& o,
@@ -102,7 +102,7 @@ NavSource simulate_dvl(const Trajectory& trajectory, double from_s, double to_s,
     if (is_outlier) velocity += wrong;
     if (is_lost) velocity.setZero();
     dvl.samples.push_back(
-        sample_at(time_s + o.delay_s, rounded(velocity, kVelocitySteps), Vector3d::Constant(o.dvl_noise_m_s)));
+        sample_at(time_s + o.delay_s, round_to(velocity, kVelocitySteps), Vector3d::Constant(o.dvl_noise_m_s)));
     dvl.samples.back().valid = !is_lost;
   });
   return dvl;
@@ -121,7 +121,7 @@ NavSource simulate_attitude(const Trajectory& trajectory, double from_s, double 
                  yaw + compass);
     rpy += normal(random, o.attitude_noise_rad);
     rpy.z() = std::remainder(rpy.z(), 2.0 * std::numbers::pi);
-    attitude.samples.push_back(sample_at(time_s + o.delay_s, rounded(rpy, kAngleSteps), deviation));
+    attitude.samples.push_back(sample_at(time_s + o.delay_s, round_to(rpy, kAngleSteps), deviation));
   });
   return attitude;
 }
@@ -136,7 +136,7 @@ NavSource simulate_gyros(const Trajectory& trajectory, double from_s, double to_
     errors.gyro_bias_end_rad_s = bias.z();
     const Vector3d noise = normal(random, o.gyro_noise_rad_s);
     gyros.samples.push_back(sample_at(time_s + o.delay_s,
-                                      rounded(Vector3d(moving.turn_rate_rad_s + bias + noise), kAngleSteps),
+                                      round_to(Vector3d(moving.turn_rate_rad_s + bias + noise), kAngleSteps),
                                       Vector3d::Constant(o.gyro_noise_rad_s)));
     bias += normal(random, walk);
   });
@@ -149,7 +149,7 @@ NavSource simulate_depth(const Trajectory& trajectory, double from_s, double to_
   sample(trajectory, from_s, to_s, o.depth_per_s, [&](double time_s, const Moving& moving) {
     const double depth_m = -moving.map_from_body.translation().z() + o.depth_noise_m * random.normal();
     depth.samples.push_back(sample_at(
-        time_s + o.delay_s, {rounded(depth_m, kDepthSteps), 0.0, 0.0},
+        time_s + o.delay_s, {round_to(depth_m, kDepthSteps), 0.0, 0.0},
         {o.depth_noise_m, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()}));
   });
   return depth;

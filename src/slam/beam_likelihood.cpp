@@ -13,7 +13,7 @@ double deviation_m(const HeardBeam& beam, const DistanceField& field, const Beam
 
 }  // namespace
 
-HeardBeam moved_by(const PlaneFrame& to_from, const HeardBeam& beam) {
+HeardBeam transform(const PlaneFrame& to_from, const HeardBeam& beam) {
   return {beam.time_s, to_from * beam.sonar_m, to_from.turn(beam.direction), beam.range_m, beam.has_echo};
 }
 

@@ -55,7 +55,7 @@ struct HeardBeam {
   Eigen::Vector2d end_m() const { return sonar_m + range_m * direction; }
 };
 
-HeardBeam moved_by(const PlaneFrame& to_from, const HeardBeam& beam);
+HeardBeam transform(const PlaneFrame& to_from, const HeardBeam& beam);
 
 /// Log-likelihood of a beam by the value that the distance field has at its end; `more_deviation_m` is added (as
 /// variances) to that of the echo, for poses that are known no better.

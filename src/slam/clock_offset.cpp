@@ -155,7 +155,7 @@ struct Scan {
 };
 
 /// At most kMaxChanges, evenly chosen.
-std::vector<YawChange> thinned(const std::vector<YawChange>& changes) {
+std::vector<YawChange> thin(const std::vector<YawChange>& changes) {
   const std::size_t step = (changes.size() + kMaxChanges - 1) / kMaxChanges;
   std::vector<YawChange> kept;
   for (std::size_t i = 0; i < changes.size(); i += step) kept.push_back(changes[i]);
@@ -184,7 +184,7 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading) return cannot_tell("the navigation has no valid heading or attitude");
   if (all.size() < kMinChanges) return cannot_tell("too few sweeps show the same surroundings clearly");
-  const std::vector<YawChange> changes = thinned(all);
+  const std::vector<YawChange> changes = thin(all);
   const auto [first, last] = std::ranges::minmax(changes, {}, &YawChange::from_s);
   const double from_s = first.from_s, to_s = last.to_s;
   if (heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s || to_s - from_s > kMaxLength_s) {

@@ -92,7 +92,7 @@ struct Particles {
 };
 
 /// Systematic resampling: indices of `count` particles.
-std::vector<std::size_t> resampled(const std::vector<double>& weights, std::size_t count, double offset) {
+std::vector<std::size_t> draw_particles(const std::vector<double>& weights, std::size_t count, double offset) {
   std::vector<std::size_t> chosen;
   chosen.reserve(count);
   double sum = weights.front();
@@ -347,12 +347,12 @@ void Localizer::State::take(const EchoStream::BeamWithEcho& heard) {
   const double range_m = heard.echo ? heard.echo->range_m : std::min(end_m, options.echo.max_range_m);
   const HeardBeam beam{heard.beam.time_s, sonar.head<2>(), direction.head<2>() / level,
                        range_m * level * options.sound_speed_ratio, heard.echo.has_value()};
-  const HeardBeam in_odometry = moved_by(PlaneFrame(placed.odometry), beam);
+  const HeardBeam in_odometry = transform(PlaneFrame(placed.odometry), beam);
   turn.push_back({in_odometry, placed.turned_rad});
   while (!turn.empty() && (turn.size() > kMaxTurnBeams || turn.front().turned_rad < turned_rad - 2.0 * kPi)) {
     turn.pop_front();
   }
-  if (!particles.poses.empty()) weigh(moved_by(odometry.inverse(), in_odometry));
+  if (!particles.poses.empty()) weigh(transform(odometry.inverse(), in_odometry));
 }
 
 void Localizer::State::weigh(const HeardBeam& beam) {
@@ -376,11 +376,11 @@ void Localizer::State::weigh(const HeardBeam& beam) {
 
 void Localizer::State::resample(const std::vector<double>& weights) {
   const double offset = random.uniform();
-  const std::size_t bins = bins_of(particles.poses, resampled(weights, weights.size(), offset));
+  const std::size_t bins = bins_of(particles.poses, draw_particles(weights, weights.size(), offset));
   const double count = std::clamp(kld_particles(bins), static_cast<double>(options.min_particles),
                                   static_cast<double>(options.max_particles));
   Particles chosen;
-  for (const std::size_t i : resampled(weights, static_cast<std::size_t>(count), offset)) {
+  for (const std::size_t i : draw_particles(weights, static_cast<std::size_t>(count), offset)) {
     chosen.poses.push_back(particles.poses[i]);
   }
   chosen.log_weights.assign(chosen.poses.size(), 0.0);
@@ -410,7 +410,7 @@ std::vector<HeardBeam> Localizer::State::turn_beams() const {
   const PlaneFrame now_from_odometry = odometry.inverse();
   const std::size_t count = std::min(turn.size(), kMaxSearchBeams);
   for (std::size_t i = 0; i < count; ++i) {
-    beams_now.push_back(moved_by(now_from_odometry, turn[i * turn.size() / count].beam));
+    beams_now.push_back(transform(now_from_odometry, turn[i * turn.size() / count].beam));
   }
   return beams_now;
 }
@@ -455,7 +455,7 @@ void Localizer::State::seed(const std::vector<ScoredPose>& found) {
   }
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (double& weight : weights) weight /= sum;
-  for (const std::size_t i : resampled(weights, count, random.uniform())) {
+  for (const std::size_t i : draw_particles(weights, count, random.uniform())) {
     const PlanePose& pose = found[i].pose;
     all.poses.push_back({pose.x + kSeed_m * random.normal(), pose.y + kSeed_m * random.normal(),
                          pose.yaw + kSeed_rad * random.normal()});

@@ -32,7 +32,7 @@ std::span<const DeviceProfile> device_profiles() {
   return kProfiles;
 }
 
-const DeviceProfile* device_named(std::string_view name) {
+const DeviceProfile* find_device(std::string_view name) {
   const auto found = std::ranges::find(kProfiles, name, &DeviceProfile::name);
   return found == kProfiles.end() ? nullptr : &*found;
 }

@@ -81,7 +81,7 @@ Layout layout_of(std::span<const Panel> panels, std::string_view title, std::siz
   return layout;
 }
 
-Picture drawn(std::span<const Panel> panels, const Layout& layout) {
+Picture draw_panels(std::span<const Panel> panels, const Layout& layout) {
   Picture picture(layout.width, layout.height, kPaper);
   const auto write = [&](const std::vector<std::string>& lines, std::size_t x, std::size_t top) {
     for (const std::string& line : lines) {
@@ -119,7 +119,7 @@ Result<Picture> side_by_side(std::span<const Panel> panels, std::string_view tit
     if (!chosen || is_readable) chosen = std::move(layout);
     if (is_readable) break;
   }
-  if (chosen) return drawn(panels, *chosen);
+  if (chosen) return draw_panels(panels, *chosen);
   return fail(Error::Code::kLimit,
               fmt::format("{} pictures side by side need more than {} pixels: make them smaller, or draw fewer",
                           panels.size(), Picture::kMaxSide));

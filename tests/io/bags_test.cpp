@@ -85,7 +85,7 @@ TEST(RosBag, GivesTheLinesOfAMicronInOurFrame) {
   EXPECT_THAT(read.items[0].intensities, ElementsAre(0, 10, 64, 255));
   const auto source = open_beams(FileBytes{"dive.bag", micron_bag("none", 1)});
   ASSERT_TRUE(source);
-  EXPECT_EQ((*source)->device(), device_named("micron"));
+  EXPECT_EQ((*source)->device(), find_device("micron"));
 }
 
 TEST(RosBag, UnpacksItsChunks) {

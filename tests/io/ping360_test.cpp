@@ -354,7 +354,7 @@ TEST(PingViewer, RealLogsGiveEachFrameThatAnIndependentDecoderFound) {
     ASSERT_TRUE(stream);
     const auto source = open_beams(std::move(*stream));
     ASSERT_TRUE(source);
-    EXPECT_EQ((*source)->device(), device_named("ping360"));
+    EXPECT_EQ((*source)->device(), find_device("ping360"));
     const auto all = read_all(**source);
     ASSERT_TRUE(all);
     ASSERT_EQ(all->size(), frames.size());

@@ -110,7 +110,7 @@ TEST(PingText, ARealPrintOfAHalfTurnIsReadWhole) {
   if (!stream) GTEST_SKIP() << "ping360-mit-sample is missing: skipped";
   const auto source = open_beams(std::move(*stream));
   ASSERT_TRUE(source) << source.error().message;
-  EXPECT_EQ((*source)->device(), device_named("ping360"));
+  EXPECT_EQ((*source)->device(), find_device("ping360"));
   const auto beams = read_all(**source);
   ASSERT_TRUE(beams);
   ASSERT_EQ(beams->size(), 101U);

@@ -144,7 +144,7 @@ TEST(Seanet, ASerialCaptureThatBeginsWithinAFrameIsKnown) {
   EXPECT_EQ(format_of(capture), Format::kSeanetCapture);
   const auto source = open_beams({"serial.bin", capture});
   ASSERT_TRUE(source);
-  EXPECT_EQ((*source)->device(), device_named("micron"));
+  EXPECT_EQ((*source)->device(), find_device("micron"));
   const auto all = read_all(**source);
   ASSERT_TRUE(all);
   ASSERT_EQ(all->size(), 2U);
@@ -294,7 +294,7 @@ TEST(Seanet, TheRealV4logGivesEachOfIts468Records) {
   if (!stream) GTEST_SKIP() << kRaw << " is missing: skipped";
   const auto source = open_beams(std::move(*stream), Damage::kFail);
   ASSERT_TRUE(source);
-  EXPECT_EQ((*source)->device(), device_named("seaking-325"));
+  EXPECT_EQ((*source)->device(), find_device("seaking-325"));
   const auto all = read_all(**source);
   ASSERT_TRUE(all) << all.error().message;
   ASSERT_EQ(all->size(), 468U);

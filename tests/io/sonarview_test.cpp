@@ -56,7 +56,7 @@ TEST(SonarView, PingsBetweenMessagesOfAnyLengthAreRead) {
   EXPECT_EQ(format_of(log), Format::kSonarView);
   const auto source = open_beams({"dive.svlog", log});
   ASSERT_TRUE(source) << source.error().message;
-  EXPECT_EQ((*source)->device(), device_named("ping360"));
+  EXPECT_EQ((*source)->device(), find_device("ping360"));
   const auto beams = read_all(**source);
   ASSERT_TRUE(beams);
   ASSERT_EQ(beams->size(), 2U);

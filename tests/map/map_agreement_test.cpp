@@ -13,7 +13,7 @@ namespace {
 
 using Drawing = std::vector<std::string>;
 
-OccupancyMap drawn(const Drawing& rows) {
+OccupancyMap draw(const Drawing& rows) {
   OccupancyMap map(MapOptions{.resolution_m = 1.0});
   Editor editor = map.edit();
   for (std::size_t y = 0; y < rows.size(); ++y) {
@@ -33,7 +33,7 @@ const Drawing kWall = {"......",  //
                        "######"};
 
 MapAgreement judged(const Drawing& map) {
-  return agreement_of(drawn(map), drawn(kWall));
+  return agreement_of(draw(map), draw(kWall));
 }
 
 TEST(MapAgreement, OfTheTruthItselfIsPerfect) {
@@ -82,9 +82,9 @@ TEST(MapAgreement, HalfAWallLowersRecallOnly) {
 }
 
 TEST(MapAgreement, WhatCouldNotBeSeenIsNotMissed) {
-  const OccupancyMap visible = drawn({"      ", "      ", "      ", "###   "});
+  const OccupancyMap visible = draw({"      ", "      ", "      ", "###   "});
   const MapAgreement score =
-      agreement_of(drawn({"......", "......", "......", "###   "}), drawn(kWall), {.box = {}, .visible = &visible});
+      agreement_of(draw({"......", "......", "......", "###   "}), draw(kWall), {.box = {}, .visible = &visible});
   EXPECT_EQ(score.recall(), 1.0);
   EXPECT_EQ(score.to_find, 3U);
   EXPECT_EQ(score.precision(), 1.0);
@@ -110,9 +110,9 @@ TEST(MapAgreement, CountsOnlyCellsWithTheirMiddleInTheBox) {
 }
 
 TEST(JudgedBox, EndsWhereTheTruthHasNoWallAndGoesOnBehindOne) {
-  const auto box = judged_box(drawn({"......#",  //
-                                     "......#",  //
-                                     "#######"}),
+  const auto box = judged_box(draw({"......#",  //
+                                    "......#",  //
+                                    "#######"}),
                               3.0);
   ASSERT_TRUE(box);
   EXPECT_EQ(box->min, Eigen::Vector3d(0.0, 0.0, 0.0));
@@ -120,7 +120,7 @@ TEST(JudgedBox, EndsWhereTheTruthHasNoWallAndGoesOnBehindOne) {
 }
 
 TEST(JudgedBox, IsNotOpenedByAWallThatRisesAboveTheWater) {
-  OccupancyMap truth = drawn({"......#", "......#", "#######"});
+  OccupancyMap truth = draw({"......#", "......#", "#######"});
   truth.edit().set(*truth.lattice().key_of({6.5, 0.5, 1.5}), truth.lattice().depth(), LogOdds(2.0F));
   EXPECT_EQ(judged_box(truth)->max.z(), 1.0);
 }

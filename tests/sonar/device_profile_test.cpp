@@ -11,19 +11,19 @@ namespace {
 TEST(DeviceProfile, EachIsFoundByItsOwnNameAndNoneByAnother) {
   std::set<std::string_view> names;
   for (const DeviceProfile& profile : device_profiles()) {
-    EXPECT_EQ(device_named(profile.name), &profile);
+    EXPECT_EQ(find_device(profile.name), &profile);
     EXPECT_GT(profile.beam_width_rad, 0.0);
     EXPECT_GT(profile.beam_height_rad, profile.beam_width_rad);
     EXPECT_FALSE(profile.source.empty());
     names.insert(profile.name);
   }
   EXPECT_EQ(names.size(), device_profiles().size());
-  EXPECT_EQ(device_named("Ping360"), nullptr);
+  EXPECT_EQ(find_device("Ping360"), nullptr);
 }
 
 TEST(DeviceProfile, AnglesAreInRadians) {
-  EXPECT_NEAR(device_named("ping360")->beam_width_rad, 2.0 * std::numbers::pi / 180.0, 1e-15);
-  EXPECT_NEAR(device_named("micron")->beam_height_rad, 35.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_NEAR(find_device("ping360")->beam_width_rad, 2.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_NEAR(find_device("micron")->beam_height_rad, 35.0 * std::numbers::pi / 180.0, 1e-15);
 }
 
 }  // namespace

@@ -24,6 +24,6 @@ struct DeviceProfile {
 std::span<const DeviceProfile> device_profiles();
 
 /// The head of this name, with static lifetime; nullptr if there is none.
-const DeviceProfile* device_named(std::string_view name);
+const DeviceProfile* find_device(std::string_view name);
 
 }  // namespace pingvox
