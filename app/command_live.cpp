@@ -17,9 +17,11 @@
 #include "json.hpp"
 #include "map_report.hpp"
 #include "pingvox/device/live_source.hpp"
+#include "pingvox/device/mavlink_receiver.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
+#include "pingvox/nav/live_poses.hpp"
 #include "progress.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"
@@ -37,7 +39,18 @@ std::string name_by_time() {
   return fmt::format("{:%Y%m%d-%H%M%S}{:03}.bin", local, ms);
 }
 
-Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command, double now_s) {
+/// The file to record the sonar to; nullopt: none.
+std::optional<std::filesystem::path> record_path(const LiveCommand& command) {
+  if (!command.record) return std::nullopt;
+  std::filesystem::path path = *command.record;
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) path /= name_by_time();
+  return path;
+}
+
+/// @param record  empty: none
+Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
+                                              const std::optional<std::filesystem::path>& record, double now_s) {
   const LiveDevice& device = command.device;
   if (device.kind == LiveDevice::Kind::kReplay) {
     return ByteStream::open(device.address)
@@ -45,16 +58,61 @@ Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command, double
         .map([&](std::unique_ptr<BeamSource> log) { return replay_source(std::move(log), device.speed); });
   }
   std::optional<PingViewerRecorder> recorder;
-  if (command.record) {
-    std::filesystem::path path = *command.record;
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) path /= name_by_time();
-    Result<PingViewerRecorder> created = PingViewerRecorder::create(path.string());
+  if (record) {
+    Result<PingViewerRecorder> created = PingViewerRecorder::create(record->string());
     if (!created) return tl::unexpected(created.error());
     recorder = std::move(*created);
   }
   return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
 }
+
+/// Where the vehicle is, by what it sends.
+class Navigation {
+ public:
+  /// @param start_s  when the beams' clock was 0
+  static Result<Navigation> listen(const std::string& address, const std::optional<std::filesystem::path>& record,
+                                   double start_s) {
+    std::optional<TlogRecorder> recorder;
+    if (record) {
+      Result<TlogRecorder> created =
+          TlogRecorder::create(std::filesystem::path(*record).replace_extension(".tlog").string());
+      if (!created) return tl::unexpected(created.error());
+      recorder = std::move(*created);
+    }
+    const double since_1970_s =
+        std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    return MavlinkReceiver::listen(address, std::move(recorder), since_1970_s).map([&](MavlinkReceiver receiver) {
+      return Navigation(std::move(receiver), start_s);
+    });
+  }
+
+  const std::string& address() const { return receiver_.address(); }
+  int descriptor() const { return receiver_.descriptor(); }
+  const MavlinkReceiver::Status& status() const { return receiver_.status(); }
+  const LivePoses& poses() const { return poses_; }
+
+  Result<void> step(double now_s) {
+    now_s_ = now_s - start_s_;
+    const auto reports = receiver_.read(now_s_);
+    if (!reports) return tl::unexpected(reports.error());
+    for (const MavlinkNav::Report& report : *reports) poses_.add(report.source, report.quantity, report.sample);
+    return {};
+  }
+
+  /// Whether the pose of a beam may still become known.
+  bool may_come(double beam_s) const {
+    constexpr double kPatience_s = 1.0;
+    const std::optional<double> until_s = poses_.known_until_s();
+    return now_s_ < beam_s + kPatience_s && !(until_s && *until_s >= beam_s);
+  }
+
+ private:
+  Navigation(MavlinkReceiver receiver, double start_s) : receiver_(std::move(receiver)), start_s_(start_s) {}
+
+  MavlinkReceiver receiver_;
+  LivePoses poses_;
+  double start_s_, now_s_ = 0.0;
+};
 
 /// Writes maps in a thread of its own: a disk may take seconds, in which the lines' buffers would overflow.
 class MapWriter {
@@ -89,11 +147,12 @@ class MapWriter {
 /// One run: beams come in, wait, and are mapped.
 class LiveRun {
  public:
-  LiveRun(const LiveCommand& command, Console& console, std::unique_ptr<LiveSource> source, BeamMapper mapper,
-          OccupancyMap& map)
+  LiveRun(const LiveCommand& command, Console& console, std::unique_ptr<LiveSource> source,
+          std::optional<Navigation> nav, BeamMapper mapper, OccupancyMap& map)
       : command_(command),
         console_(console),
         source_(std::move(source)),
+        nav_(std::move(nav)),
         mapper_(std::move(mapper)),
         map_(map),
         writer_(command),
@@ -104,12 +163,15 @@ class LiveRun {
     bool has_ended = false;
     while (!has_ended && !signals.arrived() && (command_.max_beams == 0 || beams_ < command_.max_beams)) {
       const double next_s = std::min({tell_at_s, write_at_s, source_->due_s()});
-      wait(signals, waiting_.empty() ? next_s - watch.seconds() : 0.0);
+      wait(signals, can_map_one() ? 0.0 : next_s - watch.seconds());
       const Result<bool> goes_on = source_->step(watch.seconds(), arrived_);
       if (!goes_on) return tl::unexpected(goes_on.error());
       has_ended = !*goes_on;
+      if (nav_) {
+        if (const auto read = nav_->step(watch.seconds()); !read) return tl::unexpected(read.error());
+      }
       queue_arrived();
-      map_one();
+      if (can_map_one()) map_one();
       tell_changes();
       const double now_s = watch.seconds();
       if (now_s >= tell_at_s) {
@@ -128,8 +190,14 @@ class LiveRun {
   static constexpr double kTell_s = 1.0;
 
   void wait(const StopSignals& signals, double seconds) const {
-    std::array<pollfd, 2> files = {pollfd{signals.descriptor(), POLLIN, 0}, pollfd{source_->descriptor(), POLLIN, 0}};
+    // poll() passes over -1.
+    std::array<pollfd, 3> files = {pollfd{signals.descriptor(), POLLIN, 0}, pollfd{source_->descriptor(), POLLIN, 0},
+                                   pollfd{nav_ ? nav_->descriptor() : -1, POLLIN, 0}};
     ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kTell_s) * 1000.0)));
+  }
+
+  bool can_map_one() const {
+    return !waiting_.empty() && !(nav_ && !cannot_map_ && nav_->may_come(waiting_.front().time_s));
   }
 
   /// The oldest beams are dropped when too many wait: the record has them.
@@ -144,14 +212,14 @@ class LiveRun {
   }
 
   void map_one() {
-    if (waiting_.empty()) return;
     Beam beam = std::move(waiting_.front());
     waiting_.pop_front();
     if (cannot_map_) {
       ++unmapped_;
       return;
     }
-    if (const auto added = mapper_.add(std::move(beam), Pose::Identity()); !added) {
+    const std::optional<Pose> pose = nav_ ? nav_->poses().at(beam.time_s) : Pose::Identity();
+    if (const auto added = mapper_.add(std::move(beam), pose); !added) {
       cannot_map_ = true;
       note(added.error());
     }
@@ -183,10 +251,10 @@ class LiveRun {
 
   void tell_changes() {
     const LiveStatus status = source_->status();
-    if (status.recording_error && !was_recording_error_told_) {
-      was_recording_error_told_ = true;
-      note({status.recording_error->code,
-            fmt::format("{}: the recording ended; mapping goes on", status.recording_error->message)});
+    tell_recording_error(status.recording_error, was_recording_error_told_);
+    if (nav_) {
+      tell_recording_error(nav_->status().recording_error, was_nav_recording_error_told_);
+      tell_sources();
     }
     if (status.is_connected == was_connected_ && status.problem == last_problem_) return;
     bar_.clear();
@@ -198,6 +266,22 @@ class LiveRun {
     }
     was_connected_ = status.is_connected;
     last_problem_ = status.problem;
+  }
+
+  void tell_recording_error(const std::optional<Error>& error, bool& was_told) {
+    if (!error || was_told) return;
+    was_told = true;
+    note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
+  }
+
+  /// When it is decided what the poses are made of.
+  void tell_sources() {
+    const LivePoses& poses = nav_->poses();
+    if (were_sources_told_ || poses.position().empty()) return;
+    were_sources_told_ = true;
+    bar_.clear();
+    console_.say(fmt::format("mavlink:{}: attitude of {}, position of {}", nav_->address(),
+                             on_one_line(poses.attitude()), on_one_line(poses.position())));
   }
 
   void tell(double now_s) {
@@ -226,22 +310,39 @@ class LiveRun {
         .add("unanswered", status.unanswered)
         .add("damaged", status.damaged)
         .add("memory_bytes", map_.memory_bytes());
+    if (nav_) {
+      JsonObject nav;
+      nav.add("messages", nav_->status().frames)
+          .add("damaged", nav_->status().damaged)
+          .add("attitude", nav_->poses().attitude())
+          .add("position", nav_->poses().position())
+          .add("without_pose", mapper_.report().no_pose.count);
+      json.add("nav", nav);
+    } else {
+      json.add_null("nav");
+    }
     return json;
   }
 
   std::string text_of(const LiveStatus& status) const {
     const BuildReport& report = mapper_.report();
-    return on_one_line(command_.output) + "\n" +
-           report_line("heard", fmt::format("{} beams, {} complete sweeps, {} echoes; {} not mapped", beams_,
-                                            report.sweeps, report.echoes, unmapped_ + report.skipped)) +
-           report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered,
-                                           status.damaged, status.connections)) +
-           map_text(map_, map_.counts());
+    std::string text =
+        on_one_line(command_.output) + "\n" +
+        report_line("heard", fmt::format("{} beams, {} complete sweeps, {} echoes; {} not mapped", beams_,
+                                         report.sweeps, report.echoes, unmapped_ + report.skipped)) +
+        report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered, status.damaged,
+                                        status.connections));
+    if (nav_) {
+      text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->status().frames,
+                                             nav_->status().damaged, report.no_pose.count));
+    }
+    return text + map_text(map_, map_.counts());
   }
 
   const LiveCommand& command_;
   Console& console_;
   std::unique_ptr<LiveSource> source_;
+  std::optional<Navigation> nav_;  ///< nullopt: the vehicle stands still
   BeamMapper mapper_;
   OccupancyMap& map_;
   MapWriter writer_;
@@ -250,7 +351,8 @@ class LiveRun {
   std::deque<Beam> waiting_;
   std::size_t beams_ = 0, unmapped_ = 0;
   bool cannot_map_ = false, has_failed_ = false;
-  bool was_connected_ = false, was_recording_error_told_ = false;
+  bool was_connected_ = false, was_recording_error_told_ = false, was_nav_recording_error_told_ = false;
+  bool were_sources_told_ = false;
   std::string last_problem_;
 };
 
@@ -262,12 +364,21 @@ Result<int> run(const LiveCommand& command, Console& console) {
   const Stopwatch watch;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  Result<std::unique_ptr<LiveSource>> source = source_of(command, watch.seconds());
+  const std::optional<std::filesystem::path> record = record_path(command);
+  const double start_s = watch.seconds();
+  Result<std::unique_ptr<LiveSource>> source = source_of(command, record, start_s);
   if (!source) return tl::unexpected(source.error());
+  std::optional<Navigation> nav;
+  if (command.nav) {
+    Result<Navigation> listening = Navigation::listen(*command.nav, record, start_s);
+    if (!listening) return tl::unexpected(listening.error());
+    nav = *std::move(listening);
+    console.say(fmt::format("mavlink:{}: listening", nav->address()));
+  }
   const BuildOptions options = command.head.apply_to(command.build, (*source)->device());
   Result<BeamMapper> mapper = BeamMapper::make(options, *map);
   if (!mapper) return tl::unexpected(mapper.error());
-  return LiveRun(command, console, std::move(*source), std::move(*mapper), *map).run(*signals, watch);
+  return LiveRun(command, console, std::move(*source), std::move(nav), std::move(*mapper), *map).run(*signals, watch);
 }
 
 }  // namespace pingvox::app

@@ -243,6 +243,7 @@ struct LiveCommand {
   std::string output;
   Format format = Format::kBt;
   std::optional<std::string> record;  ///< a file that does not exist, or a folder
+  std::optional<std::string> nav;     ///< address that a vehicle sends MAVLink to; nullopt: it stands still
   Ping360Settings ping360;
   std::size_t max_beams = 0;  ///< stop after them; 0: never
   double write_every_s = 10.0;

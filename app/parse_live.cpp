@@ -118,6 +118,17 @@ Result<Command> live_command(const Args& args) {
     asked_format = *value;
     return {};
   };
+  const Take nav = [&](const std::string& text) -> Result<void> {
+    constexpr std::string_view kMavlink = "mavlink:";
+    if (!text.starts_with("mavlink:udp://")) {
+      return usage_error(
+          fmt::format("no such source of navigation '{}': must be mavlink:udp://:PORT or "
+                      "mavlink:udp://ADDRESS:PORT",
+                      text));
+    }
+    command.nav = text.substr(kMavlink.size());
+    return {};
+  };
   OptionTable table{
       "live",
       "Maps what a scanning sonar hears while it runs: drives the head, records its bytes, and writes the map again "
@@ -152,15 +163,21 @@ Result<Command> live_command(const Args& args) {
          choice("--gain", kGains, "gain of the receiver", head.gain),
          {"--timeout", 0, "S", "seconds to wait for an answer; the head may have to turn", number_text(head.timeout_s),
           within({0.01, 60.0}, store_number(head.timeout_s))}}},
+       {"Navigation",
+        {{"--nav", 0, "mavlink:udp://:PORT",
+          "where the vehicle is, by what its autopilot sends to this port by MAVLink; recorded beside --record as "
+          ".tlog",
+          "the vehicle stands still", nav}}},
        map_group(build),
        without(sensor_group(build), {"--poses", "--nav", "--nav-offset"}),
        without(echo_group(build.echoes), {"--background"}),
        {"Input", {config_option()}}},
       {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",
        "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",
+       "pingvox live ping360:udp://192.168.2.2:9092 --nav mavlink:udp://:14550 -o dive.ot --record recordings",
        "pingvox live replay:dive.bin@10 -o dive.bt"},
-      "The vehicle is taken to stand still. The map of a recording, by 'pingvox map' with the same options, is the "
-      "same.\n"
+      "Without --nav the vehicle is taken to stand still; then the map of a recording, by 'pingvox map' with the same "
+      "options,\nis the same.\n"
       "With --json each line of standard output is one object, one a second and one at the end.\n"
       "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
   for (OptionTable::Group& group : table.groups) {
@@ -189,6 +206,9 @@ Result<Command> live_command(const Args& args) {
         return usage_error("--record: a replay is a recording already");
       }
       command.record = record;
+    }
+    if (command.nav && command.device.kind == LiveDevice::Kind::kReplay) {
+      return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
     }
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.made_by = "pingvox " PINGVOX_VERSION " live";

@@ -53,7 +53,7 @@ _pingvox_options() {
       ;;
     live)
       options+=(--output --format --record --write-every --beams --json --quiet --progress --config)
-      options+=(--range --sector --step --gain --timeout)
+      options+=(--range --sector --step --gain --timeout --nav)
       options+=(--resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar)

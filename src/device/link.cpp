@@ -25,10 +25,10 @@ struct HostAndPort {
   std::string host, port;
 };
 
-/// Of "HOST:PORT" or "[HOST]:PORT".
+/// Of "HOST:PORT", "[HOST]:PORT" or ":PORT".
 std::optional<HostAndPort> host_and_port(std::string_view text) {
   const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos || colon == 0) return std::nullopt;
+  if (colon == std::string_view::npos) return std::nullopt;
   std::string_view host = text.substr(0, colon);
   const std::string_view port = text.substr(colon + 1);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
@@ -107,13 +107,17 @@ Result<Link> Link::listen(const std::string& address) {
 
 Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   const std::optional<HostAndPort> parts = host_and_port(std::string_view(address).substr(kUdp.size()));
-  if (!parts) return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT", address));
+  const bool listens = kind == Kind::kListeningSocket;
+  if (!parts || (parts->host.empty() && !listens)) {
+    return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT", address));
+  }
   addrinfo wanted = {};
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_DGRAM;
-  wanted.ai_flags = AI_NUMERICSERV;
+  wanted.ai_flags = AI_NUMERICSERV | AI_PASSIVE;
   addrinfo* found = nullptr;
-  if (const int error = ::getaddrinfo(parts->host.c_str(), parts->port.c_str(), &wanted, &found)) {
+  if (const int error =
+          ::getaddrinfo(parts->host.empty() ? nullptr : parts->host.c_str(), parts->port.c_str(), &wanted, &found)) {
     return fail(Error::Code::kIo, fmt::format("{}: {}", address, ::gai_strerror(error)));
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
@@ -123,7 +127,6 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   // Room for what comes while a sweep is mapped; the system may allow less.
   constexpr int kBuffer_bytes = 4 << 20;
   static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &kBuffer_bytes, sizeof kBuffer_bytes));
-  const bool listens = kind == Kind::kListeningSocket;
   const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
                              : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
   if (status != 0) return os_error(address, errno);

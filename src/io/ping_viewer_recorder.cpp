@@ -1,12 +1,8 @@
 #include "pingvox/io/ping_viewer_recorder.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <array>
-#include <cassert>
-#include <cerrno>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -45,9 +41,9 @@ class QtBytes {
 }  // namespace
 
 Result<PingViewerRecorder> PingViewerRecorder::create(const std::string& path) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!file.valid()) return os_error(path, errno);
-  PingViewerRecorder recorder(path, std::move(file));
+  Result<RecordFile> file = RecordFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  PingViewerRecorder recorder(*std::move(file));
   constexpr std::uint32_t kVersion = 1, kPingFamily = 1, kPing360 = 2;
   QtBytes header;
   header.put(std::string_view("PingViewer sensor log file"));
@@ -55,7 +51,7 @@ Result<PingViewerRecorder> PingViewerRecorder::create(const std::string& path) {
   for (const std::string_view about : {"", "", "pingvox", "", ""}) header.put(about);
   header.put(kPingFamily);
   header.put(kPing360);
-  if (const auto written = recorder.write(header.bytes()); !written) return tl::unexpected(written.error());
+  if (const auto written = recorder.file_.append(header.bytes()); !written) return tl::unexpected(written.error());
   return recorder;
 }
 
@@ -66,12 +62,7 @@ Result<void> PingViewerRecorder::append(std::uint64_t time_ms, std::span<const s
   record.put(fmt::format("{:02}:{:02}:{:02}.{:03}", of_day / kHour_ms, of_day % kHour_ms / kMinute_ms,
                          of_day % kMinute_ms / kSecond_ms, of_day % kSecond_ms));
   record.put(bytes);
-  return write(record.bytes());
-}
-
-void PingViewerRecorder::start_sync() {
-  // It may fail where the file is not on a disk; the operating system writes everything in time anyway.
-  static_cast<void>(::sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE));
+  return file_.append(record.bytes());
 }
 
 double PingViewerRecorder::time_s(std::uint64_t time_ms) {
@@ -80,22 +71,6 @@ double PingViewerRecorder::time_s(std::uint64_t time_ms) {
   const std::uint64_t days = time_ms / kDay_ms, of_day = time_ms % kDay_ms, seconds = of_day / 1000;
   const double of_day_s = static_cast<double>(seconds) + static_cast<double>(of_day % 1000) / 1000.0;
   return of_day_s + static_cast<double>(days) * kDay_s;
-}
-
-Result<void> PingViewerRecorder::write(std::span<const std::uint8_t> bytes) {
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t written = ::write(file_.get(), bytes.data() + done, bytes.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const int error = written < 0 ? errno : EIO;
-      // On a full disk a part of the record may be written.
-      static_cast<void>(::ftruncate(file_.get(), static_cast<off_t>(size_)));
-      return os_error(path_, error);
-    }
-    done += static_cast<std::size_t>(written);
-  }
-  size_ += bytes.size();
-  return {};
 }
 
 }  // namespace pingvox

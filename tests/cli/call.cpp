@@ -57,7 +57,8 @@ pid_t Workplace::start(const std::vector<std::string>& words, const Streams& str
   std::vector<char*> argv;
   for (std::string& text : texts) argv.push_back(text.data());
   argv.push_back(nullptr);
-  const std::string in = streams_ / "in", out = streams.out_path.value_or(streams_ / "out"), err = streams_ / "err";
+  const std::string in = streams_ / "in", out = streams.out_path.value_or(streams_ / "out"),
+                    err = streams.err_path.value_or(streams_ / "err");
 
   const pid_t child = ::fork();
   if (child != 0) return child;
@@ -84,7 +85,7 @@ Outcome Workplace::call(const std::vector<std::string>& words, const Streams& st
   Outcome outcome;
   outcome.status = status_of(start(words, streams));
   if (!streams.out_path) outcome.out = content_of(streams_ / "out");
-  outcome.err = content_of(streams_ / "err");
+  if (!streams.err_path) outcome.err = content_of(streams_ / "err");
   return outcome;
 }
 

@@ -19,6 +19,7 @@ struct Outcome {
 struct Streams {
   std::string in = {};                                   ///< what standard input says
   std::optional<std::string> out_path = std::nullopt;    ///< a file for standard output instead of Outcome::out
+  std::optional<std::string> err_path = std::nullopt;    ///< the same for standard error
   bool out_is_broken_pipe = false;                       ///< standard output is a pipe that nobody reads
   bool out_is_closed = false;                            ///< there is no standard output
   std::optional<std::size_t> file_bytes = std::nullopt;  ///< no file may grow beyond

@@ -1,15 +1,24 @@
 // `pingvox live` against `pingvox emulate`, over sockets on the loopback address.
 
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <bit>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "call.hpp"
+#include "json_reader.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -30,8 +39,8 @@ bool wait_until(const Holds& holds) {
 /// An emulated head, which runs as long as it is in scope.
 class Head {
  public:
-  explicit Head(std::vector<std::string> options = {}) {
-    options.insert(options.begin(), {"emulate", "ping360", "--listen", "udp://127.0.0.1:0", "--rate", "1000"});
+  explicit Head(std::vector<std::string> options = {}, const char* pings_per_s = "1000") {
+    options.insert(options.begin(), {"emulate", "ping360", "--listen", "udp://127.0.0.1:0", "--rate", pings_per_s});
     child_ = place_.start(options, {.out_path = place_.path("address")});
     const bool listens =
         wait_until([&] { return place_.has("address") && place_.read("address").find('\n') != std::string::npos; });
@@ -125,6 +134,112 @@ TEST(Live, ComesBackToAHeadThatWasSilent) {
   expect_map_of_record(here);
 }
 
+/// MAVLink 2, by the bits of its checksum.
+std::vector<std::uint8_t> mavlink_frame(std::uint8_t message, std::uint8_t extra, std::uint32_t boot_ms,
+                                        const std::array<float, 6>& numbers) {
+  std::vector<std::uint8_t> frame = {0xfd, 28, 0, 0, 0, 1, 1, message, 0, 0};
+  const auto put = [&](std::uint32_t word) {
+    for (int shift = 0; shift < 32; shift += 8) frame.push_back(static_cast<std::uint8_t>(word >> shift));
+  };
+  put(boot_ms);
+  for (const float number : numbers) put(std::bit_cast<std::uint32_t>(number));
+  unsigned crc = 0xffff;
+  for (std::size_t i = 1; i <= frame.size(); ++i) {
+    crc ^= i < frame.size() ? frame[i] : extra;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? (crc >> 1U) ^ 0x8408U : crc >> 1U;
+  }
+  frame.push_back(static_cast<std::uint8_t>(crc & 0xffU));
+  frame.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  return frame;
+}
+
+/// A vehicle that heads north 3 m north, 2 m east and 1 m below its origin, and says so 20 times a second.
+class Vehicle {
+ public:
+  explicit Vehicle(std::uint16_t port) : sender_([this, port] { send(port); }) {}
+  Vehicle(const Vehicle&) = delete;
+  Vehicle& operator=(const Vehicle&) = delete;
+  ~Vehicle() {
+    stops_ = true;
+    sender_.join();
+  }
+
+ private:
+  void send(std::uint16_t port) const {
+    const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+    sockaddr_in to = {};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    for (std::uint32_t boot_ms = 5000; !stops_; boot_ms += 50) {
+      std::vector<std::uint8_t> datagram = mavlink_frame(30, 39, boot_ms, {});
+      const std::vector<std::uint8_t> position = mavlink_frame(32, 185, boot_ms, {3.0F, 2.0F, 1.0F});
+      datagram.insert(datagram.end(), position.begin(), position.end());
+      ::sendto(socket, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    ::close(socket);
+  }
+
+  std::atomic<bool> stops_ = false;
+  std::thread sender_;
+};
+
+// Kills frames that are not converted, clocks that differ, and a recording of the navigation that `map` cannot use.
+TEST(Live, MapsAroundAVehicleThatSaysWhereItIs) {
+  const Head head({}, "40");
+  const Workplace here;
+  std::filesystem::create_directory(here.path("dives"));
+  const pid_t child =
+      here.start({"live", head.address(), "--nav", "mavlink:udp://127.0.0.1:0", "-o", "live.bt", "--record", "dives",
+                  "--range", "4", "--step", "18", "--resolution", "0.1", "--beams", "160", "--json"},
+                 {.out_path = here.path("said"), .err_path = here.path("notes")});
+  const std::string name = "mavlink:udp://127.0.0.1:";
+  EXPECT_TRUE(
+      wait_until([&] { return here.has("notes") && here.read("notes").find(": listening\n") != std::string::npos; }));
+  const std::string notes = here.read("notes");
+  const std::size_t at = notes.find(name);
+  ASSERT_NE(at, std::string::npos) << notes;
+  {
+    const Vehicle vehicle(static_cast<std::uint16_t>(std::stoi(notes.substr(at + name.size()))));
+    EXPECT_EQ(status_of(child), 0) << here.read("notes");
+  }
+  EXPECT_THAT(here.read("notes"), HasSubstr("attitude of ATTITUDE, position of LOCAL_POSITION_NED"));
+  EXPECT_THAT(here.read("said"), HasSubstr(R"("attitude": "ATTITUDE", "position": "LOCAL_POSITION_NED")"));
+
+  std::string sonar, nav;
+  for (const auto& entry : std::filesystem::directory_iterator(here.path("dives"))) {
+    (entry.path().extension() == ".tlog" ? nav : sonar) = entry.path().string();
+  }
+  const Outcome mapped = here.call({"map", sonar, "--nav", nav, "-o", "map.bt", "--resolution", "0.1"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("from ATTITUDE and LOCAL_POSITION_NED"));
+  here.write("still.tum",
+             "-1e6 2 3 -1 0 0 0.70710678118654752 0.70710678118654752\n"
+             "1e6 2 3 -1 0 0 0.70710678118654752 0.70710678118654752\n");
+  ASSERT_EQ(here.call({"map", sonar, "--poses", "still.tum", "-o", "still.bt", "--resolution", "0.1"}).status, 0);
+  // Beams of the first second have no pose yet.
+  for (const char* map : {"live.bt", "map.bt"}) {
+    const Outcome compared = here.call({"compare", map, "still.bt", "--json"});
+    auto json = flat_json(compared.out);
+    ASSERT_TRUE(json) << compared.out;
+    const double cells = std::stod((*json)["cells"]);
+    EXPECT_LT(std::stod((*json)["different"]), 0.05 * cells) << map << compared.out;
+    EXPECT_LT(std::stod((*json)["only_a"]), 0.01 * cells) << map << compared.out;
+    EXPECT_GT(std::stod((*json)["same"]), 0.3 * cells) << map << compared.out;
+  }
+}
+
+TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
+  const Head head;
+  const Workplace here;
+  const Outcome outcome =
+      here.call(live(head.address(), {"--nav", "mavlink:udp://127.0.0.1:0", "--beams", "50", "--json"}));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(R"("mapped": 0)"));
+  EXPECT_EQ(here.files(), (std::vector<std::string>{"dive.bin", "dive.tlog", "live.bt"}));
+}
+
 TEST(Live, AReplayMapsAsMapDoes) {
   const Workplace here;
   here.simulate_tank();
@@ -142,6 +257,11 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "-"}), 2, {"-o -"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--sector", "60,-60"}), 2, {"--sector"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--step", "1"}), 2, {"multiple of 0.9"});
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--nav", "udp://:14550"}), 2,
+               {"--nav", "mavlink:udp://:PORT"});
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--nav", "mavlink:udp://nowhere"}), 2,
+               {"udp://HOST:PORT"});
+  expect_error(here.call({"live", "replay:a.bin", "-o", "a.bt", "--nav", "mavlink:udp://:14550"}), 2, {"--nav"});
   here.write("dive.bin", "here already");
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--record", "dive.bin"}), 1,
                {"dive.bin", "exists"});

@@ -19,8 +19,9 @@ class Link {
   /// @param address  "udp://HOST:PORT", or a serial port, "/dev/ttyUSB0" or "/dev/ttyUSB0@57600" (115200 baud, 8N1)
   /// @return kBadOption when it is none of these, kIo when it cannot be opened
   static Result<Link> open(const std::string& address);
-  /// Opens the device's end, for emulators.
-  /// @param address  "udp://HOST:PORT" (port 0: one that is free), or "pty" for a new pseudo terminal
+  /// Opens the end that waits for the other one: an emulator's, or that of a host to which a vehicle sends.
+  /// @param address  "udp://HOST:PORT" (no host: all addresses of this one; port 0: one that is free), or "pty" for a
+  ///                 new pseudo terminal
   static Result<Link> listen(const std::string& address);
 
   /// Address to open the other end: with the port that was chosen, or the path of the terminal.

@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 
-#include "pingvox/io/descriptor.hpp"
+#include "pingvox/io/record_file.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -15,7 +16,7 @@ class PingViewerRecorder {
   /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
   static Result<PingViewerRecorder> create(const std::string& path);
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return file_.path(); }
 
   /// Appends the bytes of one read. They are with the operating system when it returns and outlive this process.
   /// @param time_ms  since the start of the log
@@ -23,18 +24,15 @@ class PingViewerRecorder {
   Result<void> append(std::uint64_t time_ms, std::span<const std::uint8_t> bytes);
 
   /// Starts to write to the disk what is not there yet, without waiting for it.
-  void start_sync();
+  void start_sync() { file_.start_sync(); }
 
   /// Time of a record as readers see it.
   static double time_s(std::uint64_t time_ms);
 
  private:
-  PingViewerRecorder(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
-  Result<void> write(std::span<const std::uint8_t> bytes);
+  explicit PingViewerRecorder(RecordFile file) : file_(std::move(file)) {}
 
-  std::string path_;
-  Descriptor file_;
-  std::uint64_t size_ = 0;  ///< of whole records [bytes]
+  RecordFile file_;
 };
 
 }  // namespace pingvox

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "pingvox/io/descriptor.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// A file that a recording is appended to, record by record.
+class RecordFile {
+ public:
+  /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
+  static Result<RecordFile> create(const std::string& path);
+
+  const std::string& path() const { return path_; }
+  /// Appends a record. It is with the operating system when this returns and outlives this process.
+  /// @return kIo: the file ends with the last whole record
+  Result<void> append(std::span<const std::uint8_t> record);
+  /// Starts to write to the disk what is not there yet, without waiting for it.
+  void start_sync();
+
+ private:
+  RecordFile(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
+
+  std::string path_;
+  Descriptor file_;
+  std::uint64_t size_ = 0;  ///< of whole records [bytes]
+};
+
+}  // namespace pingvox

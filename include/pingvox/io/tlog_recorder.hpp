@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "pingvox/io/record_file.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Records frames of MAVLink as ground stations do, as a .tlog (docs/formats.md), which `read_nav` reads.
+class TlogRecorder {
+ public:
+  /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
+  static Result<TlogRecorder> create(const std::string& path);
+
+  const std::string& path() const { return file_.path(); }
+
+  /// Appends a frame. It is with the operating system when this returns and outlives this process.
+  /// @param time_us  when it was received, since 1970
+  /// @return kIo: the file ends with the last whole record
+  Result<void> append(std::uint64_t time_us, std::span<const std::uint8_t> frame);
+
+  /// Starts to write to the disk what is not there yet, without waiting for it.
+  void start_sync() { file_.start_sync(); }
+
+ private:
+  explicit TlogRecorder(RecordFile file) : file_(std::move(file)) {}
+
+  RecordFile file_;
+};
+
+}  // namespace pingvox
