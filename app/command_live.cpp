@@ -99,6 +99,8 @@ class Navigation {
     return {};
   }
 
+  /// On the beams' clock.
+  double now_s() const { return now_s_; }
   /// Whether the pose of a beam may still become known.
   bool may_come(double beam_s) const {
     constexpr double kPatience_s = 1.0;
@@ -187,7 +189,7 @@ class LiveRun {
   }
 
  private:
-  static constexpr double kTell_s = 1.0;
+  static constexpr double kTell_s = 1.0, kLong_s = 5.0;
 
   void wait(const StopSignals& signals, double seconds) const {
     // poll() passes over -1.
@@ -274,9 +276,15 @@ class LiveRun {
     note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
   }
 
-  /// When it is decided what the poses are made of.
+  /// When it is decided what the poses are made of, and when that takes long.
   void tell_sources() {
     const LivePoses& poses = nav_->poses();
+    if (poses.position().empty() && nav_->now_s() > kLong_s && !was_silence_told_) {
+      was_silence_told_ = true;
+      bar_.clear();
+      console_.say(fmt::format("mavlink:{}: no attitude and position yet, {} messages so far: beams are not mapped",
+                               nav_->address(), nav_->status().frames));
+    }
     if (were_sources_told_ || poses.position().empty()) return;
     were_sources_told_ = true;
     bar_.clear();
@@ -352,7 +360,7 @@ class LiveRun {
   std::size_t beams_ = 0, unmapped_ = 0;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_told_ = false, was_nav_recording_error_told_ = false;
-  bool were_sources_told_ = false;
+  bool were_sources_told_ = false, was_silence_told_ = false;
   std::string last_problem_;
 };
 

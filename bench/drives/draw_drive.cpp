@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <ostream>
 #include <system_error>
@@ -15,6 +16,12 @@
 
 namespace pingvox::bench {
 namespace {
+
+Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& places) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& place : places) sum += place;
+  return sum / static_cast<double>(places.size());
+}
 
 /// The reference turned and shifted so that its distances from a trajectory have the least sum of squares.
 Result<Trajectory> align(const Trajectory& reference, const Trajectory& to) {
@@ -29,13 +36,16 @@ Result<Trajectory> align(const Trajectory& reference, const Trajectory& to) {
   }
   if (from.size() < 2)
     return fail(Error::Code::kUnsupported, "the reference has no pose at the time of the trajectory");
-  const auto count = static_cast<Eigen::Index>(from.size());
-  const Eigen::Matrix3d plane =
-      Eigen::umeyama(Eigen::Map<const Eigen::Matrix2Xd>(from.front().data(), 2, count),
-                     Eigen::Map<const Eigen::Matrix2Xd>(onto.front().data(), 2, count), false);
-  Pose moved = Pose::Identity();
-  moved.linear().topLeftCorner<2, 2>() = plane.topLeftCorner<2, 2>();
-  moved.translation().head<2>() = plane.topRightCorner<2, 1>();
+  const Eigen::Vector2d from_middle = middle_of(from), onto_middle = middle_of(onto);
+  double sine = 0.0, cosine = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Eigen::Vector2d a = from[i] - from_middle, b = onto[i] - onto_middle;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const Eigen::Rotation2Dd turn(std::atan2(sine, cosine));
+  const Eigen::Vector2d shift = onto_middle - turn * from_middle;
+  const Pose moved = pose_from_rpy({shift.x(), shift.y(), 0.0}, 0.0, 0.0, turn.angle());
   for (StampedPose& pose : poses) pose.map_from_body = moved * pose.map_from_body;
   return Trajectory::make(std::move(poses));
 }
