@@ -1,14 +1,18 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "json.hpp"
 #include "map_log.hpp"
@@ -113,36 +117,6 @@ JsonObject calibration_json(const SlamCalibration& calibration) {
       .add("headings", headings);
 }
 
-std::string toml_line(std::string_view name, const Estimate& estimate, double unit = 1.0) {
-  return fmt::format("{} = {:.6g}\n{}-sd = {:.2g}\n", name, estimate.value / unit, name, estimate.deviation / unit);
-}
-
-/// A basic string of TOML.
-std::string toml_string(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : on_one_line(text)) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
-std::string calibration_toml(const SlamCalibration& calibration) {
-  std::string toml = "# Estimated by pingvox slam; -sd is the standard deviation of the line above.\n" +
-                     toml_line("velocity-yaw-deg", calibration.velocity_yaw_rad, kDegree_rad) +
-                     toml_line("velocity-scale", calibration.velocity_scale) +
-                     toml_line("wall-in-echo", calibration.wall_in_echo) + toml_line("sonar-x", calibration.sonar_x_m) +
-                     toml_line("sonar-y", calibration.sonar_y_m);
-  for (const HeadingCalibration& heading : calibration.headings) {
-    toml += fmt::format("\n[[heading]]\nsource = {}\n", toml_string(heading.source)) +
-            toml_line("constant-deg", heading.constant_rad, kDegree_rad) +
-            toml_line("sin1-deg", heading.sin1_rad, kDegree_rad) +
-            toml_line("cos1-deg", heading.cos1_rad, kDegree_rad) +
-            toml_line("sin2-deg", heading.sin2_rad, kDegree_rad) + toml_line("cos2-deg", heading.cos2_rad, kDegree_rad);
-  }
-  return toml;
-}
-
 double recorded_s(const SlamSolution& solution) {
   const auto& poses = solution.trajectory.poses();
   return poses.back().time_s - poses.front().time_s;
@@ -240,6 +214,19 @@ Result<void> write_results(const Trajectory& trajectory, const OccupancyMap& map
   return write_map(map, command.map_format, command.made_by, *command.map);
 }
 
+/// What is known of the sensors; mounts of the command line win.
+Result<void> use_calibration(const std::string& path, const NavLog& log, SlamOptions& options) {
+  Result<CalibrationFile> file = read_calibration(path);
+  if (!file) return tl::unexpected(file.error());
+  for (const auto& [source, pose] : file->body_from_source) {
+    if (std::ranges::find(log.sources(), source, &NavSource::name) != log.sources().end()) {
+      options.body_from_source.emplace(source, pose);
+    }
+  }
+  options.calibration = std::move(file->calibration);
+  return {};
+}
+
 Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> first, Console& console) {
   if (command.navs.empty()) {
     return fail(Error::Code::kBadOption, "slam: --nav is missing: a navigation log with velocity and heading");
@@ -256,6 +243,12 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!offset) return tl::unexpected(offset.error());
   SlamOptions options = command.slam;
   options.nav_offset_s = offset->offset_s;
+  if (command.known_calibration) {
+    if (const auto known = use_calibration(*command.known_calibration, nav->log, options); !known) {
+      return tl::unexpected(known.error());
+    }
+  }
+  const std::map<std::string, Pose> mounts = options.body_from_source;
   SlamSmoother smoother(std::move(options));
   const Result<std::size_t> skipped = read_all(smoother, *nav, command, std::move(first));
   if (!skipped) return tl::unexpected(skipped.error());
@@ -283,7 +276,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!written) return tl::unexpected(written.error());
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
-      out << calibration_toml(solution->calibration);
+      out << calibration_toml({solution->calibration, mounts});
       return {};
     });
     if (!calibrated) return tl::unexpected(calibrated.error());

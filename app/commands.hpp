@@ -75,9 +75,10 @@ struct OccupancyArgs {
 
 /// Where the vehicle was: at most one of the two.
 struct PathArgs {
-  std::optional<std::string> poses;    ///< TUM lines
-  std::vector<std::string> navs;       ///< navigation logs
-  std::optional<double> nav_offset_s;  ///< added to their times; nullopt: to be found
+  std::optional<std::string> poses;        ///< TUM lines
+  std::vector<std::string> navs;           ///< navigation logs
+  std::optional<double> nav_offset_s;      ///< added to their times; nullopt: to be found
+  std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
 };
 
 struct MapCommand {
@@ -199,6 +200,7 @@ struct SlamCommand {
   std::vector<std::string> navs;  ///< navigation logs
   std::string output;             ///< TUM lines; "-" is standard output
   std::optional<std::string> map, calibration;
+  std::optional<std::string> known_calibration;  ///< output of an earlier 'slam --calibration'
   Format map_format = Format::kBt;
   double map_resolution_m = MapOptions{}.resolution_m;
   Damage damage = Damage::kSkip;

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "calibration_file.hpp"
 #include "console.hpp"
 #include "nav_report.hpp"
 #include "pingvox/io/file.hpp"
@@ -88,12 +89,27 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Da
     return error;
   };
   if (!has(NavQuantity::kPosition) && !has(NavQuantity::kFix) && has(NavQuantity::kVelocity)) {
-    return odometry_of(nav->log, {.body_from_source = {}, .offset_s = offset->offset_s})
+    OdometryOptions options{.body_from_source = {}, .offset_s = offset->offset_s};
+    Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();
+    if (path.calibration) {
+      const Result<CalibrationFile> file = read_calibration(*path.calibration);
+      if (!file) return tl::unexpected(file.error());
+      options.body_from_source = file->body_from_source;
+      options.calibration = file->calibration;
+      sonar_moved_m << file->calibration.sonar_x_m.value, file->calibration.sonar_y_m.value, 0.0;
+    }
+    return odometry_of(nav->log, options)
         .map([&](Odometry odometry) {
           return VehiclePath{std::move(odometry.odometry_from_body),
-                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset}};
+                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset},
+                             sonar_moved_m};
         })
         .map_error(name_files);
+  }
+  if (path.calibration) {
+    return fail(Error::Code::kBadOption,
+                "--use-calibration: has no effect where the navigation has positions, only on "
+                "dead reckoning by velocity and heading");
   }
   return nav_trajectory(nav->log, offset->offset_s)
       .map([&](NavTrajectory made) {
@@ -145,7 +161,8 @@ Result<void> check_ranges(const BuildOptions& options) {
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress) {
   const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
-  const BuildOptions of_head = head.apply_to(options, beams != nullptr ? (*beams)->device() : nullptr);
+  BuildOptions of_head = head.apply_to(options, beams != nullptr ? (*beams)->device() : nullptr);
+  of_head.body_from_sensor.pretranslate(path.sonar_moved_m);
   Result<BuildReport> report = build(log, path.trajectory, of_head, map, progress);
   if (!report) {
     // Adds the file name to errors of the map.

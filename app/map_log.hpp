@@ -24,7 +24,8 @@ struct VehiclePath {
     std::size_t damaged = 0;         ///< records that could not be read
     NavOffset offset;                ///< that was added to its times
   };
-  std::optional<Nav> nav;  ///< nullopt: it is not from a navigation log
+  std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
+  Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
 };
 /// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
 /// reckoning.

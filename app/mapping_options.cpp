@@ -119,6 +119,18 @@ Take store_clamp(Clamp& target) {
 }
 
 /// "x,y,z,roll,pitch,yaw", metres and degrees.
+/// As in "ping360 2 x 25, micron 3 x 35": width and height of the beam of each device [degrees].
+std::string beam_sizes() {
+  std::string sizes;
+  for (const DeviceProfile& device : device_profiles()) {
+    sizes += fmt::format("{}{} {:.3g} x {:.3g}", sizes.empty() ? "" : ", ", device.name,
+                         device.beam_width_rad / kDegree_rad, device.beam_height_rad / kDegree_rad);
+  }
+  return sizes;
+}
+
+}  // namespace
+
 Take store_mount(Pose& target) {
   return [&target](const std::string& text) -> Result<void> {
     const auto n = numbers_from<6>(text);
@@ -131,18 +143,6 @@ Take store_mount(Pose& target) {
     return {};
   };
 }
-
-/// As in "ping360 2 x 25, micron 3 x 35": width and height of the beam of each device [degrees].
-std::string beam_sizes() {
-  std::string sizes;
-  for (const DeviceProfile& device : device_profiles()) {
-    sizes += fmt::format("{}{} {:.3g} x {:.3g}", sizes.empty() ? "" : ", ", device.name,
-                         device.beam_width_rad / kDegree_rad, device.beam_height_rad / kDegree_rad);
-  }
-  return sizes;
-}
-
-}  // namespace
 
 Option mount_option(Pose& target) {
   return {"--mount",
@@ -167,6 +167,10 @@ Take store_nav_mounts(std::map<std::string, Pose>& target) {
     }
     return {};
   };
+}
+
+Option use_calibration_option(std::string& target, std::string help) {
+  return {"--use-calibration", 0, "FILE", std::move(help), "", store(target)};
 }
 
 Result<void> check_options(BuildOptions options) {
@@ -276,6 +280,7 @@ Result<PathArgs> BuildArgs::path() const {
   if (!poses.empty()) path.poses = poses;
   path.navs = navs;
   path.nav_offset_s = nav_offset_s;
+  if (!calibration.empty()) path.calibration = calibration;
   return path;
 }
 
@@ -316,6 +321,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
         "", store_each(args.navs), Repeats::kEachCounts},
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
         within({-1e10, 1e10}, store_optional(args.nav_offset_s))},
+       use_calibration_option(args.calibration, "correct dead reckoning by --nav by what 'slam --calibration' wrote"),
        mount_option(args.build.body_from_sensor),
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
               model.shape),
@@ -337,7 +343,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
     if (option.name == "--beam-width" || option.name == "--free-share" || option.name == "--device")
       option.only_with = {{"--beam", {"fan", "cone"}}};
     if (option.name == "--beam-height") option.only_with = {{"--beam", {"cone"}}};
-    if (option.name == "--nav-offset") option.only_with = {{"--nav"}};
+    if (option.name == "--nav-offset" || option.name == "--use-calibration") option.only_with = {{"--nav"}};
   }
   return group;
 }

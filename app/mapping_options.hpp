@@ -53,6 +53,7 @@ struct BuildArgs {
   std::string poses;
   std::vector<std::string> navs;
   std::optional<double> nav_offset_s;
+  std::string calibration;
 
   BuildOptions build_options() const {
     BuildOptions all = head.apply_to(build, nullptr);
@@ -70,6 +71,10 @@ Result<void> check_options(BuildOptions options);
 
 /// --mount: "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
 Option mount_option(Pose& target);
+/// "x,y,z,roll,pitch,yaw", metres and degrees.
+Take store_mount(Pose& target);
+/// --use-calibration: the output of 'slam --calibration'.
+Option use_calibration_option(std::string& target, std::string help);
 /// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
 Take store_nav_mounts(std::map<std::string, Pose>& target);
 

@@ -169,7 +169,7 @@ Result<Command> live_command(const Args& args) {
           ".tlog",
           "the vehicle stands still", nav}}},
        map_group(build),
-       without(sensor_group(build), {"--poses", "--nav", "--nav-offset"}),
+       without(sensor_group(build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
        without(echo_group(build.echoes), {"--background"}),
        {"Input", {config_option()}}},
       {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",

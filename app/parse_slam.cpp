@@ -25,7 +25,7 @@ constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<
 
 Result<Command> slam_command(const Args& args) {
   SlamCommand command;
-  std::string output, map, calibration;
+  std::string output, map, calibration, known_calibration;
   EchoArgs echoes;
   SlamOptions& slam = command.slam;
   Option resolution{"--resolution",
@@ -54,13 +54,16 @@ Result<Command> slam_command(const Args& args) {
   Option calibration_option{"--calibration",   0, "FILE", "what was estimated of the sensors, as TOML", "",
                             store(calibration)};
   calibration_option.only_for = beams;
+  calibration_option.only_with = {{"--matching", {"pairs"}}};
   OptionTable::Group navigation{
       "Navigation",
       {std::move(nav),
        {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
         within({-1e10, 1e10}, store_optional(command.nav_offset_s))},
        mount_option(slam.body_from_sonar),
-       std::move(nav_mount)}};
+       std::move(nav_mount),
+       use_calibration_option(known_calibration,
+                              "what an earlier --calibration found of the same sensors: the start of this one")}};
   OptionTable::Group estimation{
       "Estimation",
       {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none is dead reckoning",
@@ -110,6 +113,7 @@ Result<Command> slam_command(const Args& args) {
     }
     Args inputs = command.logs;
     inputs.insert(inputs.end(), command.navs.begin(), command.navs.end());
+    if (!known_calibration.empty()) inputs.push_back(known_calibration);
     if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
     Args outputs = {output};
     if (!map.empty()) {
@@ -122,6 +126,7 @@ Result<Command> slam_command(const Args& args) {
         return usage_error("--map reads each log twice, which standard input cannot be");
       }
     }
+    if (!known_calibration.empty()) command.known_calibration = known_calibration;
     if (!calibration.empty()) {
       command.calibration = calibration;
       outputs.push_back(calibration);

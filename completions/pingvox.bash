@@ -18,7 +18,7 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --topic --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads --occupied --free --cut-depth)
-      options+=(--poses --nav --nav-offset --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--poses --nav --nav-offset --use-calibration --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     info) options+=(--json --strict --topic) ;;
@@ -31,7 +31,7 @@ _pingvox_options() {
     render)
       options+=(--output --view --from --z --min-z --max-z --occupied --free --cut-depth --path --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --topic --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
-      options+=(--poses --nav --nav-offset --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--poses --nav --nav-offset --use-calibration --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     simulate)
@@ -42,7 +42,7 @@ _pingvox_options() {
       options+=(--gyro-noise --gyro-drift --depth-noise --nav-delay)
       ;;
     slam)
-      options+=(--output --map --resolution --calibration --json --quiet --nav --nav-offset --mount --nav-mount --matching)
+      options+=(--output --map --resolution --calibration --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --matching)
       options+=(--causal --seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "slam/heading_deviation.hpp"
 #include "slam/navigation.hpp"
+#include "slam/pose2.hpp"
 
 namespace pingvox {
 namespace {
@@ -21,14 +23,46 @@ Pose mount_of(const OdometryOptions& options, const std::string& source) {
   return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
 }
 
+Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
+                     std::optional<VelocitySource>& velocity) {
+  const HeadingCalibration* deviation = calibration.heading(heading.name);
+  if (deviation == nullptr) {
+    return fail(Error::Code::kBadOption, fmt::format("the calibration has no heading of {}", heading.name));
+  }
+  // A device that is turned against its mount turns its heading, too.
+  const double turned_rad = heading.name == calibration.velocity ? calibration.velocity_yaw_rad.value : 0.0;
+  std::vector<double> yaw_rad = heading.yaw_rad.values();
+  for (double& yaw : yaw_rad) yaw = yaw_of_heading(*deviation, yaw - turned_rad);
+  heading.yaw_rad = TimeSeries(heading.yaw_rad.times_s(), std::move(yaw_rad));
+  if (!velocity) return {};
+  if (velocity->name != calibration.velocity) {
+    return fail(Error::Code::kBadOption, fmt::format("the calibration is of the velocity of {}, not of {}",
+                                                     calibration.velocity, velocity->name));
+  }
+  const Eigen::Matrix2d body_from_measured =
+      (1.0 + calibration.velocity_scale.value) * rotation2(calibration.velocity_yaw_rad.value);
+  std::vector<double> ahead = velocity->ahead.values(), left = velocity->left.values();
+  for (std::size_t i = 0; i < ahead.size(); ++i) {
+    const Eigen::Vector2d corrected = body_from_measured * Eigen::Vector2d(ahead[i], left[i]);
+    ahead[i] = corrected.x();
+    left[i] = corrected.y();
+  }
+  velocity->ahead = TimeSeries(velocity->ahead.times_s(), std::move(ahead));
+  velocity->left = TimeSeries(velocity->left.times_s(), std::move(left));
+  return {};
+}
+
 }  // namespace
 
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
-  const std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
+  std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
   std::optional<VelocitySource> velocity;
   if (const NavSource* best = log.best(NavQuantity::kVelocity))
     velocity = velocity_source(*best, mount_of(options, best->name));
+  if (options.calibration) {
+    if (const auto done = correct(*options.calibration, *heading, velocity); !done) return tl::unexpected(done.error());
+  }
   std::optional<TimeSeries> depth;
   if (const auto source = depth_source(log)) depth = number_source(*source);
 

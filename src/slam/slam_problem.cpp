@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "slam/heading_deviation.hpp"
 #include "slam/pose2.hpp"
 
 namespace pingvox {
@@ -27,6 +28,26 @@ constexpr double kVelocityInGap_m_s = 0.3;
 constexpr double kStep_s = 0.25;
 constexpr double kMaxSteps = 64.0;
 
+/// What is believed of sensors that nobody calibrated.
+SlamCalibration usual_calibration() {
+  SlamCalibration usual;
+  usual.velocity_yaw_rad.deviation = kVelocityYaw_rad;
+  usual.velocity_scale.deviation = kVelocityScale;
+  usual.wall_in_echo.deviation = kWall;
+  usual.sonar_x_m.deviation = kLever_m;
+  usual.sonar_y_m.deviation = kLever_m;
+  return usual;
+}
+
+HeadingCalibration usual_heading() {
+  HeadingCalibration usual;
+  usual.constant_rad.deviation = kConstant_rad;
+  for (Estimate* harmonic : {&usual.sin1_rad, &usual.cos1_rad, &usual.sin2_rad, &usual.cos2_rad}) {
+    harmonic->deviation = kHarmonic_rad;
+  }
+  return usual;
+}
+
 /// The mean of angles on the circle.
 double mean_angle(const HeadingSource& source, const HeadingSource& main) {
   double sine = 0.0, cosine = 0.0;
@@ -42,16 +63,21 @@ double mean_angle(const HeadingSource& source, const HeadingSource& main) {
 
 }  // namespace
 
-SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource velocity, std::vector<HeadingSource> headings)
-    : knot_times_s_(std::move(knot_times_s)), velocity_(std::move(velocity)), headings_(std::move(headings)) {
+SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource velocity, std::vector<HeadingSource> headings,
+                         const std::optional<SlamCalibration>& calibration)
+    : knot_times_s_(std::move(knot_times_s)),
+      velocity_(std::move(velocity)),
+      headings_(std::move(headings)),
+      calibration_(calibration.value_or(usual_calibration())) {
   assert(knot_times_s_.size() >= 2 && !headings_.empty());
   for (const HeadingSource& source : headings_) {
-    HeadingPrior prior{0.0, kConstant_rad, source.name == velocity_.name};
-    if (const double mean_rad = mean_angle(source, headings_.front()); std::abs(mean_rad) > kRelative_rad) {
-      prior.constant_rad = mean_rad;
-      prior.deviation_rad = std::numbers::pi;
+    HeadingPrior prior{usual_heading(), source.name == velocity_.name};
+    if (const HeadingCalibration* known = calibration_.heading(source.name)) {
+      prior.deviation = *known;
+    } else if (const double mean_rad = mean_angle(source, headings_.front()); std::abs(mean_rad) > kRelative_rad) {
+      prior.deviation.constant_rad = {mean_rad, std::numbers::pi};
     }
-    heading_priors_.push_back(prior);
+    heading_priors_.push_back(std::move(prior));
   }
   const std::vector<double>& measured_s = velocity_.ahead.times_s();
   for (std::size_t k = 0; k + 1 < knots(); ++k) {
@@ -85,11 +111,28 @@ std::optional<std::pair<std::size_t, double>> SlamProblem::between_knots(double 
   return std::pair{next - 1, (time_s - knot_times_s_[next - 1]) / (knot_times_s_[next] - knot_times_s_[next - 1])};
 }
 
+std::vector<Estimate> SlamProblem::global_priors() const {
+  const SlamCalibration& c = calibration_;
+  std::vector<Estimate> priors = {c.velocity_yaw_rad, c.velocity_scale, c.wall_in_echo, c.sonar_x_m, c.sonar_y_m};
+  for (const HeadingPrior& prior : heading_priors_) {
+    const HeadingCalibration& h = prior.deviation;
+    priors.insert(priors.end(), {h.constant_rad, h.sin1_rad, h.cos1_rad, h.sin2_rad, h.cos2_rad});
+  }
+  return priors;
+}
+
 Unknowns SlamProblem::dead_reckoning() const {
   Unknowns unknowns{std::vector<Eigen::Vector3d>(knots(), Eigen::Vector3d::Zero()),
                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(globals()))};
-  for (std::size_t s = 0; s < headings_.size(); ++s) {
-    unknowns.globals[static_cast<Eigen::Index>(global::heading(s))] = heading_priors_[s].constant_rad;
+  const std::vector<Estimate> priors = global_priors();
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    unknowns.globals[static_cast<Eigen::Index>(i)] = priors[i].value;
+  }
+  const HeadingPrior& main = heading_priors_.front();
+  const double turned_rad = main.turns_with_velocity ? unknowns.globals[global::kVelocityYaw] : 0.0;
+  for (std::size_t k = 0; k < knots(); ++k) {
+    const double measured_rad = main_yaw_rad(knot_times_s_[k]);
+    unknowns.knots[k].z() = yaw_of_heading(main.deviation, measured_rad - turned_rad) - measured_rad;
   }
   const std::vector<Way> moved = ways(unknowns);
   for (std::size_t k = 0; k < moved.size(); ++k) {
@@ -244,20 +287,12 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
     r.by_knot[axis] = 1.0 / kFirstPosition_m;
     rows.push_back(std::move(r));
   }
-  const auto believe = [&](std::size_t unknown, double value, double deviation) {
-    const auto i = static_cast<Eigen::Index>(unknown);
-    Row r = row(0, (unknowns.globals[i] - value) / deviation);
-    r.by_globals[i] = 1.0 / deviation;
+  const std::vector<Estimate> priors = global_priors();
+  for (std::size_t g = 0; g < priors.size(); ++g) {
+    const auto i = static_cast<Eigen::Index>(g);
+    Row r = row(0, (unknowns.globals[i] - priors[g].value) / priors[g].deviation);
+    r.by_globals[i] = 1.0 / priors[g].deviation;
     rows.push_back(std::move(r));
-  };
-  believe(global::kVelocityYaw, 0.0, kVelocityYaw_rad);
-  believe(global::kVelocityScale, 0.0, kVelocityScale);
-  believe(global::kWall, 0.0, kWall);
-  believe(global::kSonarX, 0.0, kLever_m);
-  believe(global::kSonarY, 0.0, kLever_m);
-  for (std::size_t s = 0; s < headings_.size(); ++s) {
-    believe(global::heading(s), heading_priors_[s].constant_rad, heading_priors_[s].deviation_rad);
-    for (std::size_t i = 1; i < global::kOfHeading; ++i) believe(global::heading(s) + i, 0.0, kHarmonic_rad);
   }
   return rows;
 }

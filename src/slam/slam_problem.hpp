@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/slam/slam_calibration.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/navigation.hpp"
 
@@ -33,8 +34,7 @@ struct Unknowns {
 
 /// How a heading source is believed.
 struct HeadingPrior {
-  double constant_rad = 0.0;
-  double deviation_rad = 0.0;        ///< of the constant
+  HeadingCalibration deviation;
   bool turns_with_velocity = false;  ///< same device as the velocity: turned against its mount by the same angle
 };
 
@@ -52,7 +52,9 @@ class SlamProblem {
  public:
   /// @param knot_times_s  at least two, rising, within all headings and the velocity
   /// @param headings  the main one first
-  SlamProblem(std::vector<double> knot_times_s, VelocitySource velocity, std::vector<HeadingSource> headings);
+  /// @param calibration  what is known of the sensors; nullopt: no more than is usual
+  SlamProblem(std::vector<double> knot_times_s, VelocitySource velocity, std::vector<HeadingSource> headings,
+              const std::optional<SlamCalibration>& calibration = std::nullopt);
 
   std::size_t knots() const { return knot_times_s_.size(); }
   std::size_t globals() const { return global::heading(headings_.size()); }
@@ -64,7 +66,10 @@ class SlamProblem {
   /// The knot before a time, and the share of the way to the next. nullopt: outside of the knots.
   std::optional<std::pair<std::size_t, double>> between_knots(double time_s) const;
 
-  /// Dead reckoning from the origin, with the headings and the velocity as they are.
+  /// What is believed of the globals beforehand.
+  std::vector<Estimate> global_priors() const;
+
+  /// Dead reckoning from the origin, with the headings and the velocity corrected by what is believed beforehand.
   Unknowns dead_reckoning() const;
 
   /// The velocity integrated over the time between two knots.
@@ -104,6 +109,7 @@ class SlamProblem {
   std::vector<double> knot_times_s_;
   VelocitySource velocity_;
   std::vector<HeadingSource> headings_;
+  SlamCalibration calibration_;  ///< but for its headings
   std::vector<HeadingPrior> heading_priors_;
   std::vector<std::vector<Node>> nodes_;  ///< of each interval, both ends included
 };

@@ -46,8 +46,13 @@ SlamCalibration calibration_of(const SlamSolver& solver) {
     const auto i = static_cast<Eigen::Index>(unknown);
     return Estimate{solver.unknowns().globals[i], std::sqrt(solver.global_covariance()(i, i))};
   };
-  SlamCalibration calibration{estimate(global::kVelocityYaw), estimate(global::kVelocityScale), estimate(global::kWall),
-                              estimate(global::kSonarX),      estimate(global::kSonarY),        {}};
+  SlamCalibration calibration{solver.problem().velocity().name,
+                              estimate(global::kVelocityYaw),
+                              estimate(global::kVelocityScale),
+                              estimate(global::kWall),
+                              estimate(global::kSonarX),
+                              estimate(global::kSonarY),
+                              {}};
   for (std::size_t s = 0; s < solver.problem().headings().size(); ++s) {
     const std::size_t first = global::heading(s);
     calibration.headings.push_back({solver.problem().headings()[s].name, estimate(first), estimate(first + 1),
@@ -62,6 +67,11 @@ Result<void> SlamOptions::validate() const {
   if (!std::isfinite(nav_offset_s)) return fail(Error::Code::kBadOption, "nav_offset_s: must be finite");
   if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
     return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
+  }
+  if (calibration) {
+    if (const auto valid = calibration->validate(); !valid) {
+      return fail(valid.error().code, "calibration: " + valid.error().message);
+    }
   }
   if (const auto valid = filter.validate(); !valid) return valid;
   return echo.validate();
@@ -164,6 +174,10 @@ Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) 
                                                               : !velocity                   ? "velocity over ground"
                                                                                             : "heading or attitude"));
   }
+  if (options.calibration && options.calibration->velocity != velocity->name) {
+    return fail(Error::Code::kBadOption, fmt::format("the calibration is of the velocity of {}, not of {}",
+                                                     options.calibration->velocity, velocity->name));
+  }
   Navigation navigation{*std::move(velocity), std::move(headings), std::nullopt};
   if (const auto depth = depth_source(log)) navigation.depth = number_source(*depth);
   return navigation;
@@ -238,12 +252,13 @@ Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<c
   return Recording{beam_times_s, sweeps, *std::move(navigation), *span};
 }
 
-Result<SlamProblem> problem_of(const Recording& recording) {
+Result<SlamProblem> problem_of(const Recording& recording, const SlamOptions& options) {
   const double step_s = sweep_duration_s(recording.sweeps) / kKnotsOfSweep;
   if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
   Result<std::vector<double>> knots = knot_times(recording.span, step_s, recording.beam_times_s.size());
   if (!knots) return tl::unexpected(knots.error());
-  return SlamProblem(*std::move(knots), recording.navigation.velocity, recording.navigation.headings);
+  return SlamProblem(*std::move(knots), recording.navigation.velocity, recording.navigation.headings,
+                     options.calibration);
 }
 
 SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start) {
@@ -348,7 +363,7 @@ Result<SlamSolution> solution_of(const SlamSolver& solver, const Recording& reco
 }
 
 Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& options) {
-  Result<SlamProblem> problem = problem_of(recording);
+  Result<SlamProblem> problem = problem_of(recording, options);
   if (!problem) return tl::unexpected(problem.error());
   Unknowns start = problem->dead_reckoning();
   SlamSolver solver = solver_of(*std::move(problem), recording, options, std::move(start));
@@ -405,7 +420,7 @@ Result<SlamSolution> solve_causal(const Recording& whole, const std::vector<NavS
     const Result<Recording> recording =
         recording_of(whole.beam_times_s.first(static_cast<std::size_t>(beams)), whole.sweeps.first(end),
                      sources_until(sources, is_whole ? kInfinity : until_s), options);
-    Result<SlamProblem> problem = recording.and_then(problem_of);
+    Result<SlamProblem> problem = recording.and_then([&](const Recording& part) { return problem_of(part, options); });
     // Too early for velocity and heading: these beams have no pose.
     if (!problem && !is_whole) continue;
     if (!problem) return tl::unexpected(problem.error());

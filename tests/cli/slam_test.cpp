@@ -57,6 +57,69 @@ TEST(Slam, WritesTrajectoryMapAndCalibration) {
   EXPECT_THAT(here.read("out.toml"), HasSubstr("[[heading]]\nsource = \"compass\"\nconstant-deg = "));
 }
 
+// The DVL of the basin is turned and its compass deviates: kills a calibration that is read and not used.
+TEST(Slam, CalibrationIsReadBackByMapRenderAndSlam) {
+  const Workplace here;
+  write_basin(here);
+  const std::vector<std::string> dive = {"beams.csv", "--nav", "nav.csv", "--mount", "0,0,0,0,0,40.1"};
+  const auto call = [&](std::vector<std::string> args, const std::vector<std::string>& more) {
+    args.insert(args.end(), dive.begin(), dive.end());
+    args.insert(args.end(), more.begin(), more.end());
+    return here.call(args);
+  };
+  ASSERT_EQ(call({"slam"}, {"-o", "out.tum", "--calibration", "a.toml", "--nav-mount", "dvl=0.5,0,0,10,20,30"}).status,
+            0);
+  EXPECT_THAT(here.read("a.toml"), HasSubstr("[[mount]]\nsource = \"dvl\"\npose = \"0.5,0,0,10,20,30\"\n"));
+  ASSERT_EQ(call({"slam"}, {"-o", "out.tum", "--calibration", "b.toml"}).status, 0);
+  for (const char* known : {"a.toml", "b.toml"}) {
+    const Outcome again = call({"slam"}, {"-o", "known.tum", "--use-calibration", known, "--calibration", "again.toml"});
+    ASSERT_EQ(again.status, 0) << again.err;
+    const auto has_mount = [&](const char* name) { return here.read(name).find("[[mount]]") != std::string::npos; };
+    EXPECT_EQ(has_mount("again.toml"), has_mount(known));
+  }
+  ASSERT_EQ(call({"map"}, {"-o", "raw.bt", "--resolution", "0.5", "--beam", "ray"}).status, 0);
+  ASSERT_EQ(
+      call({"map"}, {"-o", "better.bt", "--resolution", "0.5", "--beam", "ray", "--use-calibration", "b.toml"}).status,
+      0);
+  EXPECT_NE(here.read("raw.bt"), here.read("better.bt"));
+  EXPECT_EQ(call({"render"}, {"-o", "better.png", "--view", "above", "--use-calibration", "b.toml"}).status, 0);
+
+  expect_error(call({"slam"}, {"-o", "o.tum", "--matching", "none", "--calibration", "o.toml"}), 2, {"--calibration"});
+  expect_error(here.call({"map", "beams.csv", "-o", "o.bt", "--use-calibration", "b.toml"}), 2,
+               {"--use-calibration", "--nav"});
+}
+
+TEST(Slam, SaysWhatIsWrongWithACalibration) {
+  const Workplace here;
+  write_basin(here);
+  ASSERT_EQ(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--calibration", "good.toml"}).status,
+            0);
+  const std::string good = here.read("good.toml");
+  const auto map = [&](const std::string& toml) {
+    here.write("c.toml", toml);
+    return here.call({"map", "beams.csv", "--nav", "nav.csv", "-o", "o.bt", "--use-calibration", "c.toml"});
+  };
+  const auto replaced = [&](const std::string& what, const std::string& by) {
+    std::string toml = good;
+    return toml.replace(toml.find(what), what.size(), by);
+  };
+  expect_error(map(replaced("velocity-scale =", "velocity-size =")), 1,
+               {"c.toml: line 1", "velocity-scale", "missing"});
+  expect_error(map(good + "sin3-deg = 1\n"), 1, {"c.toml: line ", "sin3-deg: is unknown"});
+  expect_error(map(replaced("velocity-scale = ", "velocity-scale = x")), 1, {"c.toml: line 5", "not a finite number"});
+  expect_error(map(replaced("velocity-scale = ", "velocity-scale = inf #")), 1, {"line 5", "not a finite number"});
+  expect_error(map(replaced("velocity-scale-sd = ", "velocity-scale-sd = -")), 1, {"line 6", "above 0"});
+  expect_error(map(replaced("sonar-x = ", "wall-in-echo = ")), 1, {"line 9", "wall-in-echo: is there twice"});
+  expect_error(map(replaced("\"dvl\"", "dvl")), 1, {"line 2", "quotation marks"});
+  expect_error(map(replaced("\"dvl\"", "\"dvl")), 1, {"line 2"});
+  expect_error(map(replaced("[[heading]]", "[[heeding]]")), 1, {"[[heeding]]: is unknown"});
+  expect_error(map(replaced("\"compass\"", "\"gyro\"")), 2, {"no heading of compass"});
+  expect_error(map(replaced("\"dvl\"", "\"A50\"")), 2, {"A50, not of dvl"});
+  expect_error(map(good + "\n[[mount]]\nsource = \"dvl\"\npose = \"1,2\"\n"), 1, {"pose", "1,2"});
+  expect_error(map(replaced("cos2-deg = ", "cos2-deg = 90 #")), 1, {"c.toml", "too large"});
+  EXPECT_EQ(map(good + "# a comment\n\n").status, 0);
+}
+
 TEST(Slam, DeadReckoningNeedsNoEchoes) {
   const Workplace here;
   write_basin(here);

@@ -1,7 +1,10 @@
 #include "pingvox/slam/odometry.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -46,6 +49,61 @@ TEST(Odometry, StaysWithoutVelocityAndNeedsAHeading) {
   EXPECT_FALSE(odometry_of(log_of({source("dvl", NavQuantity::kVelocity, 0.0, {0.5, 0.0, 0.0}),
                                    source("imu", NavQuantity::kHeading, 100.0, {0.0, 0.0, 0.0})}),
                            {}));
+}
+
+/// A round way with errors of the sensors, or without them.
+NavLog round_way(const SlamCalibration& errors) {
+  NavSource velocity{"dvl", NavQuantity::kVelocity, {}}, attitude{"dvl", NavQuantity::kAttitude, {}};
+  const HeadingCalibration& h = errors.headings.front();
+  const Eigen::Vector2d measured = Eigen::Rotation2Dd(-errors.velocity_yaw_rad.value) * Eigen::Vector2d(0.5, 0.1) /
+                                   (1.0 + errors.velocity_scale.value);
+  for (int i = 0; i <= 400; ++i) {
+    NavSample sample;
+    sample.time_s = 0.25 * i;
+    const double yaw = 0.1 * sample.time_s;
+    sample.value << measured, 0.0;
+    velocity.samples.push_back(sample);
+    sample.value << 0.0, 0.0,
+        yaw + errors.velocity_yaw_rad.value + h.constant_rad.value + h.sin1_rad.value * std::sin(yaw) +
+            h.cos1_rad.value * std::cos(yaw) + h.sin2_rad.value * std::sin(2.0 * yaw) +
+            h.cos2_rad.value * std::cos(2.0 * yaw);
+    attitude.samples.push_back(sample);
+  }
+  return log_of({velocity, attitude});
+}
+
+TEST(Odometry, CalibrationTakesTheErrorsOfTheSensorsOff) {
+  SlamCalibration none, errors;
+  none.headings = {{"dvl", {}, {}, {}, {}, {}}};
+  errors.velocity = "dvl";
+  errors.velocity_yaw_rad = {0.2, 0.01};
+  errors.velocity_scale = {0.03, 0.001};
+  errors.headings = {{"dvl", {0.1, 0.01}, {0.08, 0.01}, {-0.05, 0.01}, {0.03, 0.01}, {0.02, 0.01}}};
+  OdometryOptions calibrated;
+  calibrated.calibration = errors;
+  const auto truth = odometry_of(round_way(none), {}), raw = odometry_of(round_way(errors), {}),
+             corrected = odometry_of(round_way(errors), calibrated);
+  ASSERT_TRUE(truth && raw && corrected);
+  const auto end = [](const Result<Odometry>& odometry) { return *odometry->odometry_from_body.at(70.0); };
+  EXPECT_GT((end(raw).translation() - end(truth).translation()).norm(), 0.5);
+  EXPECT_TRUE(end(corrected).isApprox(end(truth), 1e-9));
+}
+
+TEST(Odometry, RefusesACalibrationOfOtherSensors) {
+  SlamCalibration other;
+  other.velocity = "dvl";
+  other.headings = {{"compass", {}, {}, {}, {}, {}}};
+  OdometryOptions options;
+  options.calibration = other;
+  const auto refused = [&](const std::vector<NavSource>& sources) {
+    return odometry_of(log_of(sources), options).error().message;
+  };
+  const NavSource compass = source("compass", NavQuantity::kHeading, 0.0, {0.0, 0.0, 0.0});
+  EXPECT_THAT(refused({source("dvl", NavQuantity::kVelocity, 0.0, {0.5, 0.0, 0.0}),
+                       source("imu", NavQuantity::kHeading, 0.0, {0.0, 0.0, 0.0})}),
+              testing::HasSubstr("imu"));
+  EXPECT_THAT(refused({source("A50", NavQuantity::kVelocity, 0.0, {0.5, 0.0, 0.0}), compass}),
+              testing::HasSubstr("dvl, not of A50"));
 }
 
 }  // namespace

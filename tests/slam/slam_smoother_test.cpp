@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "pingvox/slam/odometry.hpp"
 #include "slam/basin.hpp"
 #include "support/rounds.hpp"
 
@@ -179,6 +180,39 @@ TEST(SlamSmoother, CausalPosesAreBetterThanDeadReckoning) {
   ASSERT_TRUE(reckoned && solved);
   EXPECT_LT(error_m(solved->trajectory), 0.7 * error_m(reckoned->trajectory));
   EXPECT_GT(solved->report.loops_kept, 0U);
+}
+
+// Kills a calibration that is not used, or used with the wrong sign: another drive of the same sensors, without pairs.
+TEST(SlamSmoother, CalibrationOfOneDriveMakesDeadReckoningOfAnotherBetter) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
+  const Basin basin{.duration_s = 400.0};
+  const auto solved = solve(basin, {});
+  ASSERT_TRUE(solved) << solved.error().message;
+  SlamOptions alone;
+  alone.matching = Matching::kNone;
+  const auto reckoned = solve(basin, alone, 2);
+  alone.calibration = solved->calibration;
+  const auto calibrated = solve(basin, alone, 2);
+  const auto odometry = odometry_of(*NavLog::make(basin.sources(2), NavClock::kUnknown),
+                                    {.body_from_source = {}, .offset_s = 0.0, .calibration = solved->calibration});
+  ASSERT_TRUE(reckoned && calibrated && odometry);
+  EXPECT_LT(error_m(calibrated->trajectory), 0.5 * error_m(reckoned->trajectory));
+  EXPECT_LT(error_m(odometry->odometry_from_body), 0.5 * error_m(reckoned->trajectory));
+}
+
+TEST(SlamSmoother, BelievesACalibrationAsFarAsItsDeviations) {
+  const Basin basin{.duration_s = 60.0};
+  SlamOptions options;
+  options.calibration = SlamCalibration{"dvl", {0.3, 1e-6}, {0.01, 1e-6}, {0.0, 0.5}, {0.0, 0.3}, {0.0, 0.3}, {}};
+  const auto solved = solve(basin, options);
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_NEAR(solved->calibration.velocity_yaw_rad.value, 0.3, 1e-4);
+  EXPECT_NEAR(solved->calibration.velocity_scale.value, 0.01, 1e-4);
+  EXPECT_EQ(solved->calibration.velocity, "dvl");
+  options.calibration->velocity = "A50";
+  const auto refused = solve(basin, options);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("A50, not of dvl"));
 }
 
 // What it cannot use.

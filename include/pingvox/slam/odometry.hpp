@@ -1,12 +1,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/slam_calibration.hpp"
 
 namespace pingvox {
 
@@ -14,6 +16,8 @@ struct OdometryOptions {
   /// How a source is mounted: body_from_source by its name; the identity for others.
   std::map<std::string, Pose> body_from_source;
   double offset_s = 0.0;  ///< added to the times of the navigation
+  /// By which velocity and heading are corrected; must be valid. nullopt: they are taken as they are.
+  std::optional<SlamCalibration> calibration = std::nullopt;
 };
 
 /// How a vehicle moved, as its navigation says: dead reckoning, whose errors add up.
@@ -24,7 +28,8 @@ struct Odometry {
 };
 
 /// Integrates the velocity with most samples along the heading with most samples.
-/// @return kUnsupported without a valid heading or attitude, or when velocity and heading do not overlap in time
+/// @return kUnsupported without a valid heading or attitude, or when velocity and heading do not overlap in time;
+///         kBadOption when the calibration is of another velocity, or lacks the heading
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options);
 
 }  // namespace pingvox

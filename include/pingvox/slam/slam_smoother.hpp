@@ -13,6 +13,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/slam_calibration.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -42,6 +43,10 @@ struct SlamOptions {
   std::map<std::string, Pose> body_from_source;
   double nav_offset_s = 0.0;  ///< added to the times of navigation samples to get those of the beams
 
+  /// What an earlier solution says of the same sensors: each number is believed beforehand with its standard deviation,
+  /// instead of the usual one (docs/slam.md). Headings that it does not have are believed as usual.
+  std::optional<SlamCalibration> calibration = std::nullopt;
+
   /// How echoes are found in logs with intensities. Where a sweep has but one intensity besides 0, somebody else has
   /// found them: each run of bins is one.
   FilterOptions filter;
@@ -49,28 +54,6 @@ struct SlamOptions {
   EchoOptions echo;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
-};
-
-/// A number that was estimated.
-struct Estimate {
-  double value = 0.0;
-  double deviation = 0.0;  ///< its standard deviation
-};
-
-/// What a heading source says beyond the body's yaw: constant + sin1 sin(yaw) + cos1 cos(yaw) + the same of 2 yaw
-/// [rad].
-struct HeadingCalibration {
-  std::string source;
-  Estimate constant_rad, sin1_rad, cos1_rad, sin2_rad, cos2_rad;
-};
-
-/// What is estimated besides the trajectory.
-struct SlamCalibration {
-  Estimate velocity_yaw_rad;      ///< by which the velocity's source is turned against its mount, counter-clockwise
-  Estimate velocity_scale;        ///< true over measured velocity, less 1
-  Estimate wall_in_echo;          ///< where the wall is in a run of bins: -1 its first bin, 0 its middle, 1 its last
-  Estimate sonar_x_m, sonar_y_m;  ///< added to the place of the sonar
-  std::vector<HeadingCalibration> headings;
 };
 
 struct SlamReport {
@@ -114,7 +97,8 @@ class SlamSmoother {
 
   /// Solves for all that was added so far. May be called again after more was added.
   /// @return kUnsupported saying what is missing: beams, velocity or heading, or a time at which all were recorded;
-  ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke
+  ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke, or the
+  ///         calibration is of another velocity
   Result<SlamSolution> solve() const;
 
  private:

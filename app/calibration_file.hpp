@@ -1,0 +1,25 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/slam_calibration.hpp"
+
+namespace pingvox::app {
+
+/// What 'slam --calibration' writes and --use-calibration reads, as TOML.
+struct CalibrationFile {
+  SlamCalibration calibration;
+  /// How the sources of navigation were said to be mounted (--nav-mount): what the calibration is relative to.
+  std::map<std::string, Pose> body_from_source;
+};
+
+std::string calibration_toml(const CalibrationFile& file);
+
+/// @return kIo when it cannot be read; kCorrupt naming the line of what is unknown, missing, there twice or no number;
+///         a calibration that cannot be used is named without a line
+Result<CalibrationFile> read_calibration(const std::string& path);
+
+}  // namespace pingvox::app
