@@ -72,7 +72,8 @@ TEST(Slam, CalibrationIsReadBackByMapRenderAndSlam) {
   EXPECT_THAT(here.read("a.toml"), HasSubstr("[[mount]]\nsource = \"dvl\"\npose = \"0.5,0,0,10,20,30\"\n"));
   ASSERT_EQ(call({"slam"}, {"-o", "out.tum", "--calibration", "b.toml"}).status, 0);
   for (const char* known : {"a.toml", "b.toml"}) {
-    const Outcome again = call({"slam"}, {"-o", "known.tum", "--use-calibration", known, "--calibration", "again.toml"});
+    const Outcome again =
+        call({"slam"}, {"-o", "known.tum", "--use-calibration", known, "--calibration", "again.toml"});
     ASSERT_EQ(again.status, 0) << again.err;
     const auto has_mount = [&](const char* name) { return here.read(name).find("[[mount]]") != std::string::npos; };
     EXPECT_EQ(has_mount("again.toml"), has_mount(known));
@@ -82,7 +83,10 @@ TEST(Slam, CalibrationIsReadBackByMapRenderAndSlam) {
       call({"map"}, {"-o", "better.bt", "--resolution", "0.5", "--beam", "ray", "--use-calibration", "b.toml"}).status,
       0);
   EXPECT_NE(here.read("raw.bt"), here.read("better.bt"));
-  EXPECT_EQ(call({"render"}, {"-o", "better.png", "--view", "above", "--use-calibration", "b.toml"}).status, 0);
+  EXPECT_EQ(call({"render"}, {"-o", "better.png", "--view", "above", "--resolution", "1", "--beam", "ray",
+                              "--use-calibration", "b.toml"})
+                .status,
+            0);
 
   expect_error(call({"slam"}, {"-o", "o.tum", "--matching", "none", "--calibration", "o.toml"}), 2, {"--calibration"});
   expect_error(here.call({"map", "beams.csv", "-o", "o.bt", "--use-calibration", "b.toml"}), 2,
@@ -97,7 +101,8 @@ TEST(Slam, SaysWhatIsWrongWithACalibration) {
   const std::string good = here.read("good.toml");
   const auto map = [&](const std::string& toml) {
     here.write("c.toml", toml);
-    return here.call({"map", "beams.csv", "--nav", "nav.csv", "-o", "o.bt", "--use-calibration", "c.toml"});
+    return here.call({"map", "beams.csv", "--nav", "nav.csv", "-o", "o.bt", "--use-calibration", "c.toml",
+                      "--resolution", "1", "--beam", "ray"});
   };
   const auto replaced = [&](const std::string& what, const std::string& by) {
     std::string toml = good;
