@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -122,6 +122,50 @@ double recorded_s(const SlamSolution& solution) {
   return poses.back().time_s - poses.front().time_s;
 }
 
+/// How well the poses are known.
+struct Uncertainty {
+  double mean_m = 0.0;    ///< mean of the standard deviations along the direction that is known least
+  PlaceEllipse greatest;  ///< and at which time
+  double greatest_at_s = 0.0, greatest_yaw_rad = 0.0;
+};
+
+/// nullopt: it was not estimated.
+std::optional<Uncertainty> uncertainty_of(const SlamSolution& solution) {
+  if (solution.covariances.empty()) return std::nullopt;
+  Uncertainty all;
+  for (const PoseCovariance& pose : solution.covariances) {
+    const PlaceEllipse place = place_ellipse(pose.covariance);
+    all.mean_m += place.along_m / static_cast<double>(solution.covariances.size());
+    all.greatest_yaw_rad = std::max(all.greatest_yaw_rad, std::sqrt(pose.covariance(2, 2)));
+    if (place.along_m <= all.greatest.along_m) continue;
+    all.greatest = place;
+    all.greatest_at_s = pose.time_s;
+  }
+  return all;
+}
+
+JsonObject json_of(const Uncertainty& all) {
+  JsonObject greatest, json;
+  greatest.add("at_s", all.greatest_at_s)
+      .add("along_m", all.greatest.along_m)
+      .add("across_m", all.greatest.across_m)
+      .add("direction_deg", to_degrees(all.greatest.direction_rad));
+  return json.add("mean_sd_m", all.mean_m)
+      .add("greatest_sd", greatest)
+      .add("greatest_yaw_sd_deg", to_degrees(all.greatest_yaw_rad));
+}
+
+Result<void> write_covariances(const SlamSolution& solution, const std::string& path) {
+  return write_file(path, [&](std::ostream& out) -> Result<void> {
+    out << "time_s,x_x,x_y,y_y,x_yaw,y_yaw,yaw_yaw\n";
+    for (const auto& [time_s, c] : solution.covariances) {
+      out << fmt::format("{:.9f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", time_s, c(0, 0), c(0, 1), c(1, 1),
+                         c(0, 2), c(1, 2), c(2, 2));
+    }
+    return {};
+  });
+}
+
 JsonObject json_of(const Seconds& seconds) {
   JsonObject json;
   return json.add("read", round_to_us(seconds.read))
@@ -152,6 +196,11 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
       .add("velocity", velocity)
       .add("heading", report.heading)
       .add("nav_clock", json_of(offset));
+  std::vector<JsonObject> not_observable;
+  for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
+  json.add("not_observable", not_observable);
+  const std::optional<Uncertainty> uncertainty = uncertainty_of(solution);
+  uncertainty ? json.add("uncertainty", json_of(*uncertainty)) : json.add_null("uncertainty");
   if (command.slam.matching == Matching::kPairs) {
     json.add("calibration", calibration_json(solution.calibration));
   } else {
@@ -203,6 +252,19 @@ std::string text_of(const SlamSolution& solution, const SlamCommand& command, co
                                              to_degrees(std::hypot(heading.sin1_rad.value, heading.cos1_rad.value)),
                                              to_degrees(std::hypot(heading.sin2_rad.value, heading.cos2_rad.value))));
     }
+  }
+  if (const auto all = uncertainty_of(solution)) {
+    text += report_line(
+        "uncertain",
+        fmt::format("{:.2f} m in the mean; at {:.1f} s {:.2f} m along {:.0f} degrees from east and "
+                    "{:.2f} m across; yaw {:.2f} degrees",
+                    all->mean_m, all->greatest_at_s, all->greatest.along_m, to_degrees(all->greatest.direction_rad),
+                    all->greatest.across_m, to_degrees(all->greatest_yaw_rad)));
+  }
+  if (!report.not_observable.empty()) {
+    text +=
+        report_line("not known",
+                    on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(report.not_observable, ", "))));
   }
   return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
                                                    recorded_s(solution) / seconds.total));
@@ -280,6 +342,9 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
       return {};
     });
     if (!calibrated) return tl::unexpected(calibrated.error());
+  }
+  if (command.covariance) {
+    if (const auto done = write_covariances(*solution, *command.covariance); !done) return tl::unexpected(done.error());
   }
   seconds.write = write.seconds();
   seconds.total = total.seconds();

@@ -25,7 +25,7 @@ constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<
 
 Result<Command> slam_command(const Args& args) {
   SlamCommand command;
-  std::string output, map, calibration, known_calibration;
+  std::string output, map, calibration, known_calibration, covariance;
   EchoArgs echoes;
   SlamOptions& slam = command.slam;
   Option resolution{"--resolution",
@@ -55,6 +55,15 @@ Result<Command> slam_command(const Args& args) {
                             store(calibration)};
   calibration_option.only_for = beams;
   calibration_option.only_with = {{"--matching", {"pairs"}}};
+  Option covariance_option{
+      "--covariance",
+      0,
+      "FILE",
+      "covariances of the poses, some four a sweep, as CSV: time, x x, x y, y y, x yaw, y yaw, yaw yaw [m, "
+      "rad]",
+      "",
+      store(covariance)};
+  covariance_option.only_for = beams;
   OptionTable::Group navigation{
       "Navigation",
       {std::move(nav),
@@ -89,6 +98,7 @@ Result<Command> slam_command(const Args& args) {
          {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", store(map)},
          std::move(resolution),
          std::move(calibration_option),
+         std::move(covariance_option),
          json_option(command.output_options),
          quiet_option(command.output_options)}},
        std::move(navigation),
@@ -130,6 +140,13 @@ Result<Command> slam_command(const Args& args) {
     if (!calibration.empty()) {
       command.calibration = calibration;
       outputs.push_back(calibration);
+    }
+    if (!covariance.empty()) {
+      if (slam.estimation == Estimation::kCausal) {
+        return usage_error("--covariance and --causal: covariances are those of all that was recorded");
+      }
+      command.covariance = covariance;
+      outputs.push_back(covariance);
     }
     for (const std::string& file : outputs) {
       if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());

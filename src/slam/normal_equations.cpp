@@ -6,13 +6,65 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cassert>
+#include <memory>
 
 namespace pingvox {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
+/// Entries of the inverse of L D L' where the unit lower triangular L, whose diagonal is not stored, is not zero.
+struct SparseInverse {
+  Eigen::VectorXd diagonal;
+  std::vector<double> below;  ///< in the order of L's
+
+  SparseInverse(const Sparse& l, const Eigen::VectorXd& d)
+      : diagonal(d.cwiseInverse()), below(static_cast<std::size_t>(l.nonZeros())) {
+    const int* rows = l.innerIndexPtr();
+    std::vector<double> sums;
+    for (Eigen::Index j = l.cols() - 1; j >= 0; --j) {
+      const int begin = l.outerIndexPtr()[j], end = l.outerIndexPtr()[j + 1];
+      // Of each row i of the column: the sum over its rows k of Z(i, k) L(k, j). Column k has all of the rows after k.
+      sums.assign(static_cast<std::size_t>(end - begin), 0.0);
+      for (int at = begin; at < end; ++at) {
+        const int k = rows[at];
+        const double of_k = l.valuePtr()[at];
+        double& sum_of_k = sums[static_cast<std::size_t>(at - begin)];
+        sum_of_k += of_k * diagonal[k];
+        int in_k = l.outerIndexPtr()[k];
+        for (int i = at + 1; i < end; ++i) {
+          while (rows[in_k] < rows[i]) ++in_k;
+          const double entry = below[static_cast<std::size_t>(in_k)];
+          sums[static_cast<std::size_t>(i - begin)] += entry * of_k;
+          sum_of_k += entry * l.valuePtr()[i];
+        }
+      }
+      for (int at = begin; at < end; ++at) {
+        const double sum = sums[static_cast<std::size_t>(at - begin)];
+        below[static_cast<std::size_t>(at)] = -sum;
+        diagonal[j] += l.valuePtr()[at] * sum;
+      }
+    }
+  }
+
+  /// Entry of a row and column of a block on the diagonal. REQUIRES that L has it: row >= column.
+  double at(const Sparse& l, Eigen::Index row, Eigen::Index column) const {
+    if (row == column) return diagonal[row];
+    const int* first = l.innerIndexPtr() + l.outerIndexPtr()[column];
+    const int* end = l.innerIndexPtr() + l.outerIndexPtr()[column + 1];
+    const int* found = std::lower_bound(first, end, static_cast<int>(row));
+    assert(found != end && *found == row);
+    return below[static_cast<std::size_t>(found - l.innerIndexPtr())];
+  }
+};
+
 }  // namespace
+
+/// Of the blocks of knots, in an order that fills in little.
+struct NormalEquations::Factor {
+  Eigen::VectorXi places;  ///< of each knot in the order
+  Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> ldlt;
+};
 
 NormalEquations::NormalEquations(std::size_t knots, std::size_t globals,
                                  std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs)
@@ -55,7 +107,7 @@ void NormalEquations::add_block(std::size_t a, std::size_t b, const Eigen::Matri
   }
 }
 
-std::optional<NormalEquations::Step> NormalEquations::solve() const {
+std::unique_ptr<NormalEquations::Factor> NormalEquations::factor() const {
   const auto size = static_cast<Eigen::Index>(3 * knots_);
   // Ordering the knots instead of their unknowns is nine times less work.
   Eigen::SparseMatrix<double> pattern(static_cast<Eigen::Index>(knots_), static_cast<Eigen::Index>(knots_));
@@ -98,19 +150,34 @@ std::optional<NormalEquations::Step> NormalEquations::solve() const {
     }
   }
   lower.finalize();
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(lower);
-  if (factor.info() != Eigen::Success || (factor.vectorD().array() <= 0.0).any()) return std::nullopt;
+  auto factor = std::make_unique<Factor>();
+  factor->places = places;
+  factor->ldlt.compute(lower);
+  if (factor->ldlt.info() != Eigen::Success || (factor->ldlt.vectorD().array() <= 0.0).any()) return nullptr;
+  return factor;
+}
 
-  // The border and the gradient in the order of the factor; the globals by the Schur complement.
-  const Eigen::Index globals = corner.cols();
-  Eigen::MatrixXd right(size, globals + 1);
-  for (std::size_t k = 0; k < knots_; ++k) {
-    const auto from = static_cast<Eigen::Index>(3 * k),
-               to = static_cast<Eigen::Index>(3) * places[static_cast<Eigen::Index>(k)];
-    if (globals > 0) right.block(to, 0, 3, globals) = border.middleRows(from, 3);
-    right.block(to, globals, 3, 1) = -gradient.segment(from, 3);
+Eigen::MatrixXd NormalEquations::ordered_border(const Factor& factor) const {
+  Eigen::MatrixXd ordered(border.rows(), border.cols());
+  for (std::size_t k = 0; k < knots_ && border.cols() > 0; ++k) {
+    ordered.middleRows<3>(3 * factor.places[static_cast<Eigen::Index>(k)]) =
+        border.middleRows<3>(static_cast<Eigen::Index>(3 * k));
   }
-  const Eigen::MatrixXd solved = factor.solve(right);
+  return ordered;
+}
+
+std::optional<NormalEquations::Step> NormalEquations::solve() const {
+  const std::unique_ptr<Factor> factor = this->factor();
+  if (!factor) return std::nullopt;
+  // The border and the gradient in the order of the factor; the globals by the Schur complement.
+  const auto size = static_cast<Eigen::Index>(3 * knots_), globals = corner.cols();
+  Eigen::MatrixXd right(size, globals + 1);
+  if (globals > 0) right.leftCols(globals) = ordered_border(*factor);
+  for (std::size_t k = 0; k < knots_; ++k) {
+    right.block<3, 1>(3 * factor->places[static_cast<Eigen::Index>(k)], globals) =
+        -gradient.segment<3>(static_cast<Eigen::Index>(3 * k));
+  }
+  const Eigen::MatrixXd solved = factor->ldlt.solve(right);
   const Eigen::MatrixXd schur = corner - right.leftCols(globals).transpose() * solved.leftCols(globals);
   const Eigen::LDLT<Eigen::MatrixXd> schur_factor(schur);
   if (schur_factor.info() != Eigen::Success || !schur_factor.isPositive()) return std::nullopt;
@@ -121,12 +188,43 @@ std::optional<NormalEquations::Step> NormalEquations::solve() const {
   step.knots.resize(size);
   for (std::size_t k = 0; k < knots_; ++k) {
     step.knots.segment(static_cast<Eigen::Index>(3 * k), 3) =
-        ordered.segment(static_cast<Eigen::Index>(3) * places[static_cast<Eigen::Index>(k)], 3);
+        ordered.segment(static_cast<Eigen::Index>(3) * factor->places[static_cast<Eigen::Index>(k)], 3);
   }
   step.global_covariance = schur_factor.solve(Eigen::MatrixXd::Identity(globals, globals));
-  step.factor_entries = static_cast<std::size_t>(factor.matrixL().nestedExpression().nonZeros());
+  step.factor_entries = static_cast<std::size_t>(factor->ldlt.matrixL().nestedExpression().nonZeros());
   if (!step.knots.allFinite() || !step.globals.allFinite()) return std::nullopt;
   return step;
+}
+
+std::optional<std::vector<Eigen::Matrix3d>> NormalEquations::knot_covariances() const {
+  const std::unique_ptr<Factor> factor = this->factor();
+  if (!factor) return std::nullopt;
+  const Sparse& l = factor->ldlt.matrixL().nestedExpression();
+  const SparseInverse inverse(l, factor->ldlt.vectorD());
+  // What the globals add: A^-1 B S^-1 B' A^-1, S the Schur complement.
+  Eigen::MatrixXd by_globals, schur_by_globals;
+  if (const Eigen::Index globals = corner.cols(); globals > 0) {
+    const Eigen::MatrixXd ordered = ordered_border(*factor);
+    by_globals = factor->ldlt.solve(ordered);
+    const Eigen::LDLT<Eigen::MatrixXd> schur(corner - ordered.transpose() * by_globals);
+    if (schur.info() != Eigen::Success || !schur.isPositive()) return std::nullopt;
+    schur_by_globals = schur.solve(by_globals.transpose());
+  }
+  std::vector<Eigen::Matrix3d> covariances;
+  covariances.reserve(knots_);
+  for (std::size_t k = 0; k < knots_; ++k) {
+    const Eigen::Index from = Eigen::Index{3} * factor->places[static_cast<Eigen::Index>(k)];
+    Eigen::Matrix3d covariance;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        covariance(i, j) = covariance(j, i) = inverse.at(l, from + i, from + j);
+      }
+    }
+    if (by_globals.size() > 0) covariance += by_globals.middleRows<3>(from) * schur_by_globals.middleCols<3>(from);
+    if (!covariance.allFinite()) return std::nullopt;
+    covariances.push_back(covariance);
+  }
+  return covariances;
 }
 
 }  // namespace pingvox

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -35,9 +36,18 @@ class NormalEquations {
   /// The Gauss-Newton step. nullopt: the problem does not determine its unknowns.
   std::optional<Step> solve() const;
 
+  /// Covariance of each knot's unknowns: the diagonal blocks of the inverse, from those entries of it alone that the
+  /// triangular factor has (Takahashi et al. 1973). nullopt as above.
+  std::optional<std::vector<Eigen::Matrix3d>> knot_covariances() const;
+
   std::size_t blocks() const { return rows_.size(); }
 
  private:
+  struct Factor;
+  /// nullptr: not positive definite.
+  std::unique_ptr<Factor> factor() const;
+  /// The border in the order of the factor.
+  Eigen::MatrixXd ordered_border(const Factor& factor) const;
   std::size_t slot(std::size_t row, std::size_t column) const;
 
   std::size_t knots_;

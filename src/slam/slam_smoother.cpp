@@ -61,7 +61,38 @@ SlamCalibration calibration_of(const SlamSolver& solver) {
   return calibration;
 }
 
+/// In the order of the globals.
+std::vector<std::string> global_names(const SlamProblem& problem) {
+  std::vector<std::string> names = {"angle of the velocity", "scale of the velocity", "place of the wall in an echo",
+                                    "place of the sonar, ahead", "place of the sonar, to port"};
+  for (const HeadingSource& heading : problem.headings()) {
+    for (const char* part : {"constant", "sin1", "cos1", "sin2", "cos2"}) {
+      names.push_back(fmt::format("{} of heading {}", part, heading.name));
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> not_observable(const SlamSolver& solver) {
+  constexpr double kMostOfVariance = 0.5;
+  std::vector<std::string> unknown;
+  const std::vector<std::string> names = global_names(solver.problem());
+  const std::vector<Estimate> priors = solver.problem().global_priors();
+  for (std::size_t g = 0; g < priors.size(); ++g) {
+    const auto i = static_cast<Eigen::Index>(g);
+    const double before = priors[g].deviation * priors[g].deviation;
+    if (solver.global_covariance()(i, i) > kMostOfVariance * before) unknown.push_back(names[g]);
+  }
+  return unknown;
+}
+
 }  // namespace
+
+PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance) {
+  const double xx = covariance(0, 0), xy = covariance(0, 1), yy = covariance(1, 1);
+  const double mean = 0.5 * (xx + yy), radius = std::hypot(0.5 * (xx - yy), xy);
+  return {std::sqrt(mean + radius), std::sqrt(std::max(0.0, mean - radius)), 0.5 * std::atan2(2.0 * xy, xx - yy)};
+}
 
 Result<void> SlamOptions::validate() const {
   if (!std::isfinite(nav_offset_s)) return fail(Error::Code::kBadOption, "nav_offset_s: must be finite");
@@ -357,9 +388,27 @@ Result<SlamSolution> solution_of(const SlamSolver& solver, const Recording& reco
   for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
   Result<Trajectory> trajectory = Trajectory::make(std::move(poses));
   if (!trajectory) return tl::unexpected(trajectory.error());
-  SlamSolution solution{*std::move(trajectory), {}, report_of(solver, recording)};
-  if (options.matching == Matching::kPairs) solution.calibration = calibration_of(solver);
+  SlamSolution solution{*std::move(trajectory), {}, {}, report_of(solver, recording)};
+  if (options.matching == Matching::kPairs) {
+    solution.calibration = calibration_of(solver);
+    solution.report.not_observable = not_observable(solver);
+  }
   return solution;
+}
+
+/// Of the body, whose origin is carried by the place of the velocity's source.
+std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::vector<Eigen::Matrix3d>& of_knots,
+                                           const Recording& recording, const SlamOptions& options) {
+  const Eigen::Vector2d velocity_place = mount_of(options, recording.navigation.velocity.name).translation().head<2>();
+  std::vector<PoseCovariance> covariances;
+  for (std::size_t k = 0; k < of_knots.size(); ++k) {
+    const double time_s = solver.problem().knot_times_s()[k];
+    const double yaw_rad = solver.problem().main_yaw_rad(time_s) + solver.unknowns().knots[k].z();
+    Eigen::Matrix3d body_by_knot = Eigen::Matrix3d::Identity();
+    body_by_knot.block<2, 1>(0, 2) = -quarter_turn(rotation2(yaw_rad) * velocity_place);
+    covariances.push_back({time_s, body_by_knot * of_knots[k] * body_by_knot.transpose()});
+  }
+  return covariances;
 }
 
 Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& options) {
@@ -372,10 +421,15 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
     for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
   }
-  if (!determined) {
+  std::optional<std::vector<Eigen::Matrix3d>> of_knots;
+  if (determined) of_knots = solver.knot_covariances();
+  if (!of_knots) {
     return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
   }
-  return solution_of(solver, recording, options, poses_of(solver, recording, options, -kInfinity));
+  Result<SlamSolution> solution =
+      solution_of(solver, recording, options, poses_of(solver, recording, options, -kInfinity));
+  if (solution) solution->covariances = covariances_of(solver, *of_knots, recording, options);
+  return solution;
 }
 
 std::vector<NavSource> sources_until(const std::vector<NavSource>& sources, double time_s) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "slam/normal_equations.hpp"
-
 namespace pingvox {
 namespace {
 
@@ -54,10 +52,25 @@ bool SlamSolver::step(std::optional<double> gate_m) {
       return std::array<std::size_t, 4>{echoes_[pair.a].knot, echoes_[pair.b].knot, pair.a, pair.b};
     });
   }
-  return solve(ways, ground);
+  const std::optional<NormalEquations::Step> step = equations(ways, ground).solve();
+  if (!step) return false;
+  for (std::size_t k = 0; k < problem_.knots(); ++k) {
+    unknowns_.knots[k] += step->knots.segment<3>(static_cast<Eigen::Index>(3 * k));
+  }
+  unknowns_.globals += step->globals;
+  global_covariance_ = step->global_covariance;
+  return true;
 }
 
-bool SlamSolver::solve(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) {
+std::optional<std::vector<Eigen::Matrix3d>> SlamSolver::knot_covariances() const {
+  const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
+  std::vector<EchoOnGround> ground;
+  if (!pairs_.pairs.empty()) ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
+  return equations(ways, ground).knot_covariances();
+}
+
+NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
+                                      const std::vector<EchoOnGround>& ground) const {
   const auto joined = [&](const EchoPair& pair) {
     return std::pair{static_cast<std::uint32_t>(echoes_[pair.a].knot),
                      static_cast<std::uint32_t>(echoes_[pair.b].knot)};
@@ -74,14 +87,7 @@ bool SlamSolver::solve(const std::vector<SlamProblem::Way>& ways, const std::vec
   NormalEquations equations(problem_.knots(), problem_.globals(), shared);
   for (const SlamProblem::Row& row : problem_.rows(unknowns_, ways)) add_row(row, equations);
   add_pairs(ground, equations);
-  const std::optional<NormalEquations::Step> step = equations.solve();
-  if (!step) return false;
-  for (std::size_t k = 0; k < problem_.knots(); ++k) {
-    unknowns_.knots[k] += step->knots.segment<3>(static_cast<Eigen::Index>(3 * k));
-  }
-  unknowns_.globals += step->globals;
-  global_covariance_ = step->global_covariance;
-  return true;
+  return equations;
 }
 
 /// Sums up the pairs that join the same knots before they are added.

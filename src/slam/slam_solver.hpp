@@ -11,11 +11,10 @@
 #include "pingvox/sonar/sweep.hpp"
 #include "slam/echo_pairs.hpp"
 #include "slam/echo_runs.hpp"
+#include "slam/normal_equations.hpp"
 #include "slam/slam_problem.hpp"
 
 namespace pingvox {
-
-class NormalEquations;
 
 /// A sweep that ended.
 struct HeardSweep {
@@ -37,6 +36,8 @@ class SlamSolver {
   const SlamProblem& problem() const { return problem_; }
   const Unknowns& unknowns() const { return unknowns_; }
   const Eigen::MatrixXd& global_covariance() const { return global_covariance_; }
+  /// Of x, y [m] and yaw [rad] at each knot, with the pairs of the last step. nullopt: not determined.
+  std::optional<std::vector<Eigen::Matrix3d>> knot_covariances() const;
   const EchoPairs& pairs() const { return pairs_; }
   std::size_t echoes() const { return echoes_.size(); }
 
@@ -46,7 +47,7 @@ class SlamSolver {
   }
 
  private:
-  bool solve(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground);
+  NormalEquations equations(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) const;
   void add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
 
   SlamProblem problem_;

@@ -45,15 +45,19 @@ TEST(Slam, WritesTrajectoryMapAndCalibration) {
   write_basin(here);
   const Outcome outcome =
       here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "out.tum", "--map", "out.bt", "--resolution", "0.5",
-                 "--calibration", "out.toml", "--mount", "0,0,0,0,0,40.1", "--json"});
+                 "--calibration", "out.toml", "--covariance", "out.csv", "--mount", "0,0,0,0,0,40.1", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* part : {R"("poses": 1001)", R"("sweeps": 10)", R"("pairs": )", R"("loops": {"found": )",
-                           R"("calibration": {"velocity_yaw_deg": {"value": )", R"("seconds": {"read": )",
-                           R"("real_time_factor": )", R"("source": "compass")"}) {
+  for (const char* part :
+       {R"("poses": 1001)", R"("sweeps": 10)", R"("pairs": )", R"("loops": {"found": )",
+        R"("calibration": {"velocity_yaw_deg": {"value": )", R"("seconds": {"read": )", R"("real_time_factor": )",
+        R"("source": "compass")", R"("name": "constant of heading compass")", R"("uncertainty": {"mean_sd_m": )"}) {
     EXPECT_THAT(outcome.out, HasSubstr(part));
   }
   EXPECT_THAT(here.call({"info", "out.tum"}).out, HasSubstr("1001"));
   EXPECT_EQ(here.call({"info", "out.bt"}).status, 0);
+  EXPECT_THAT(here.read("out.csv"), HasSubstr("time_s,x_x,x_y,y_y,x_yaw,y_yaw,yaw_yaw\n0.000000000,"));
+  expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--covariance", "c.csv", "--causal"}),
+               2, {"--covariance", "--causal"});
   EXPECT_THAT(here.read("out.toml"), HasSubstr("[[heading]]\nsource = \"compass\"\nconstant-deg = "));
 }
 

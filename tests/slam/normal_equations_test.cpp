@@ -58,6 +58,12 @@ TEST(NormalEquations, SolveLoopsAndBorderAsDenseOnes) {
   EXPECT_TRUE(step->globals.isApprox(expected.tail(kGlobals), 1e-9));
   const Eigen::MatrixXd covariance = dense.inverse();
   EXPECT_TRUE(step->global_covariance.isApprox(covariance.bottomRightCorner<kGlobals, kGlobals>(), 1e-8));
+  const auto of_knots = equations.knot_covariances();
+  ASSERT_TRUE(of_knots);
+  ASSERT_EQ(of_knots->size(), std::size_t{kKnots});
+  for (Eigen::Index k = 0; k < kKnots; ++k) {
+    EXPECT_TRUE((*of_knots)[static_cast<std::size_t>(k)].isApprox(covariance.block<3, 3>(3 * k, 3 * k), 1e-8)) << k;
+  }
 }
 
 TEST(NormalEquations, SayWhenAnUnknownIsFree) {
@@ -65,6 +71,7 @@ TEST(NormalEquations, SayWhenAnUnknownIsFree) {
   equations.add_block(0, 0, Eigen::Matrix3d::Identity());
   equations.corner.setIdentity();
   EXPECT_FALSE(equations.solve());
+  EXPECT_FALSE(equations.knot_covariances());
 }
 
 }  // namespace

@@ -182,6 +182,87 @@ TEST(SlamSmoother, CausalPosesAreBetterThanDeadReckoning) {
   EXPECT_GT(solved->report.loops_kept, 0U);
 }
 
+// Kills covariances of other unknowns, in another order, or without the pairs: they are what noise does.
+TEST(SlamSmoother, CovariancesAreThoseOfTheScatterOverSeeds) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
+  const Basin basin{.duration_s = 150.0};
+  constexpr Estimate kNone{0.0, 1e-4};
+  SlamOptions options;
+  options.calibration = SlamCalibration{"dvl",
+                                        {basin.velocity_yaw_rad, 1e-4},
+                                        kNone,
+                                        kNone,
+                                        kNone,
+                                        kNone,
+                                        {{"compass", kNone, kNone, {basin.compass_cos, 1e-4}, kNone, kNone}}};
+  Eigen::Vector2d last = Eigen::Vector2d::Zero();
+  for (const Matching matching : {Matching::kPairs, Matching::kNone}) {
+    options.matching = matching;
+    constexpr std::size_t kSeeds = 12;
+    std::vector<Eigen::Vector2d> places;
+    Eigen::Vector2d believed;
+    for (std::size_t seed = 1; seed <= kSeeds; ++seed) {
+      const auto solved = solve(basin, options, seed);
+      ASSERT_TRUE(solved) << solved.error().message;
+      const auto at =
+          std::ranges::find_if(solved->covariances, [](const PoseCovariance& c) { return c.time_s > 100.0; });
+      ASSERT_NE(at, solved->covariances.end());
+      believed = at->covariance.diagonal().head<2>().cwiseSqrt();
+      places.emplace_back(solved->trajectory.at(at->time_s)->translation().head<2>());
+    }
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& place : places) mean += place / double{kSeeds};
+    for (const Eigen::Vector2d& place : places) squares += (place - mean).cwiseAbs2() / (kSeeds - 1.0);
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_LT(std::sqrt(squares[axis]), 1.5 * believed[axis]) << axis;
+      EXPECT_GT(std::sqrt(squares[axis]), 0.4 * believed[axis]) << axis;
+      EXPECT_GT(believed[axis], 1.5 * last[axis]) << "less is known without pairs";
+    }
+    last = believed;
+  }
+}
+
+TEST(SlamSmoother, CovariancesBeginAtTheFirstPoseAndAreOfTheBody) {
+  const Basin basin{.duration_s = 60.0};
+  SlamOptions options;
+  const auto at_source = solve(basin, options);
+  // The body is 2 m behind the velocity's source: its place depends on the yaw.
+  options.body_from_source["dvl"] = Pose(Eigen::Translation3d(2.0, 0.0, 0.0));
+  options.matching = Matching::kNone;
+  const auto behind = solve(basin, options);
+  options.body_from_source.clear();
+  const auto reckoned = solve(basin, options);
+  options.estimation = Estimation::kCausal;
+  const auto causal = solve(basin, options);
+  ASSERT_TRUE(at_source && behind && reckoned && causal);
+  EXPECT_EQ(at_source->covariances.size(), at_source->report.knots);
+  EXPECT_LT(place_ellipse(at_source->covariances.front().covariance).along_m, 0.01);
+  EXPECT_TRUE(causal->covariances.empty());
+  const auto &of_source = reckoned->covariances.front(), &of_body = behind->covariances.front();
+  const double yaw_rad = std::sqrt(of_source.covariance(2, 2));
+  EXPECT_NEAR(place_ellipse(of_body.covariance).along_m, 2.0 * yaw_rad, 1e-3);
+  EXPECT_NEAR(of_body.covariance(2, 2), yaw_rad * yaw_rad, 1e-9);
+}
+
+TEST(SlamSmoother, EllipseOfAPlaceLiesAlongWhatIsKnownLeast) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(0.7).toRotationMatrix();
+  covariance.topLeftCorner<2, 2>() = turn * Eigen::Vector2d(4.0, 0.25).asDiagonal() * turn.transpose();
+  const PlaceEllipse ellipse = place_ellipse(covariance);
+  EXPECT_NEAR(ellipse.along_m, 2.0, 1e-12);
+  EXPECT_NEAR(ellipse.across_m, 0.5, 1e-12);
+  EXPECT_NEAR(ellipse.direction_rad, 0.7, 1e-12);
+}
+
+TEST(SlamSmoother, SaysWhatTheRecordingDoesNotTell) {
+  const auto solved = solve({.duration_s = 200.0}, {});
+  ASSERT_TRUE(solved);
+  const auto& unknown = solved->report.not_observable;
+  EXPECT_THAT(unknown, testing::Contains("constant of heading compass")) << "no fix says where north is";
+  EXPECT_THAT(unknown, testing::Not(testing::Contains("angle of the velocity")));
+  EXPECT_THAT(unknown, testing::Not(testing::Contains("cos1 of heading compass")));
+}
+
 // Kills a calibration that is not used, or used with the wrong sign: another drive of the same sensors, without pairs.
 TEST(SlamSmoother, CalibrationOfOneDriveMakesDeadReckoningOfAnotherBetter) {
   PINGVOX_SKIP_UNDER_SANITIZERS();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -56,6 +57,20 @@ struct SlamOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
+/// How well the vehicle's pose is known at a time, as the smoother believes: less well than this where walls were
+/// mistaken for one another.
+struct PoseCovariance {
+  double time_s = 0.0;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y [m] and yaw [rad] in the map, seen from the first
+};
+
+/// Standard deviations of a place, along the direction in which it is known least and across.
+struct PlaceEllipse {
+  double along_m = 0.0, across_m = 0.0;
+  double direction_rad = 0.0;  ///< counter-clockwise from x, in (-pi/2, pi/2]
+};
+PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance);
+
 struct SlamReport {
   std::size_t beams = 0;
   std::size_t sweeps = 0;
@@ -69,11 +84,15 @@ struct SlamReport {
   std::size_t velocities_clipped = 0;
   double longest_gap_s = 0.0;     ///< between valid velocities
   std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
+  /// What of the calibration the recording says little about, in words: more than half of the variance that was
+  /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
+  std::vector<std::string> not_observable;
 };
 
 struct SlamSolution {
   Trajectory trajectory;  ///< map_from_body at each beam: x east, y north as the headings say, the first pose at 0, 0
   SlamCalibration calibration;
+  std::vector<PoseCovariance> covariances;  ///< of the knots, some four a sweep; none with Estimation::kCausal
   SlamReport report;
 };
 
