@@ -23,6 +23,7 @@
 #include "open_log.hpp"
 #include "option_values.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/g2o.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
@@ -451,6 +452,10 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   const Stopwatch write;
   const auto written = write_results(solution->trajectory, *map, command);
   if (!written) return tl::unexpected(written.error());
+  if (command.graph) {
+    const auto drawn = write_file(*command.graph, [&](std::ostream& out) { return write_g2o(solution->graph, out); });
+    if (!drawn) return tl::unexpected(drawn.error());
+  }
   seconds.write = write.seconds();
   seconds.total = total.seconds();
   const Result<void> summary = command.output_options.report == Report::kJson

@@ -199,7 +199,7 @@ struct SlamCommand {
   std::vector<std::string> logs;  ///< at least one; "-" is standard input
   std::vector<std::string> navs;  ///< navigation logs
   std::string output;             ///< TUM lines; "-" is standard output
-  std::optional<std::string> map, calibration, covariance;
+  std::optional<std::string> map, calibration, covariance, graph;
   std::optional<std::string> known_calibration;  ///< output of an earlier 'slam --calibration'
   Format map_format = Format::kBt;
   double map_resolution_m = MapOptions{}.resolution_m;

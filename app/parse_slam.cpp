@@ -25,7 +25,7 @@ constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<
 
 Result<Command> slam_command(const Args& args) {
   SlamCommand command;
-  std::string output, map, calibration, known_calibration, covariance;
+  std::string output, map, calibration, known_calibration, covariance, graph;
   EchoArgs echoes;
   SlamOptions& slam = command.slam;
   Option resolution{"--resolution",
@@ -64,6 +64,10 @@ Result<Command> slam_command(const Args& args) {
       "",
       store(covariance)};
   covariance_option.only_for = beams;
+  Option graph_option{"--graph", 0,
+                      "FILE",    "graph of the poses of point scans as .g2o: key frames, odometry and loops",
+                      "",        store(graph)};
+  graph_option.only_for = {std::string(kPointLogs)};
   OptionTable::Group navigation{
       "Navigation",
       {std::move(nav),
@@ -99,6 +103,7 @@ Result<Command> slam_command(const Args& args) {
          std::move(resolution),
          std::move(calibration_option),
          std::move(covariance_option),
+         std::move(graph_option),
          json_option(command.output_options),
          quiet_option(command.output_options)}},
        std::move(navigation),
@@ -147,6 +152,10 @@ Result<Command> slam_command(const Args& args) {
       }
       command.covariance = covariance;
       outputs.push_back(covariance);
+    }
+    if (!graph.empty()) {
+      command.graph = graph;
+      outputs.push_back(graph);
     }
     for (const std::string& file : outputs) {
       if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());

@@ -42,7 +42,7 @@ _pingvox_options() {
       options+=(--gyro-noise --gyro-drift --depth-noise --nav-delay)
       ;;
     slam)
-      options+=(--output --map --resolution --calibration --covariance --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --matching)
+      options+=(--output --map --resolution --calibration --covariance --graph --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --matching)
       options+=(--causal --seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;

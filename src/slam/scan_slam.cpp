@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -35,9 +36,10 @@ struct LevelScan {
   }
 };
 
-/// Key frames, and for each scan its key frame.
+/// Key frames, the number of the first scan of each, and for each scan its key frame.
 struct Frames {
   std::vector<KeyFrame> frames;
+  std::vector<std::size_t> numbers;
   std::vector<std::size_t> of_scan;
 };
 
@@ -54,6 +56,7 @@ Frames key_frames(const std::vector<LevelScan>& scans, double reach_m) {
       }
     }
     result.frames.push_back({odometry, scan.points_m});
+    result.numbers.push_back(scan.number);
     result.of_scan.push_back(result.frames.size() - 1);
   }
   return result;
@@ -78,6 +81,24 @@ std::vector<PoseEdge> odometry_edges(const std::vector<KeyFrame>& frames, double
     edges.push_back({k, k + 1, step, deviation.cwiseAbs2().cwiseInverse().asDiagonal()});
   }
   return edges;
+}
+
+Eigen::Vector3d vector_of(const Pose2& pose) {
+  return {pose.place_m.x(), pose.place_m.y(), pose.yaw_rad};
+}
+
+/// @param weights  of the loops
+PoseGraph graph_of(std::span<const std::size_t> numbers, std::span<const Pose2> poses,
+                   std::span<const PoseEdge> odometry, std::span<const PoseEdge> loops,
+                   std::span<const double> weights) {
+  PoseGraph graph;
+  for (std::size_t k = 0; k < poses.size(); ++k) graph.nodes.push_back({numbers[k], vector_of(poses[k])});
+  const auto add = [&](const PoseEdge& edge, double weight) {
+    graph.edges.push_back({edge.a, edge.b, vector_of(edge.a_from_b), weight * edge.information});
+  };
+  for (const PoseEdge& edge : odometry) add(edge, 1.0);
+  for (std::size_t l = 0; l < loops.size(); ++l) add(loops[l], weights[l]);
+  return graph;
 }
 
 /// Where a scan is by the key frames before and after it.
@@ -125,21 +146,24 @@ Result<ScanSlamSolution> ScanSlam::solve() const {
   report.scans = scans.size();
   report.reach_m = reach_of(scans);
   if (!(report.reach_m > 0.0)) return fail(Error::Code::kUnsupported, "the scans have no points");
-  const auto [frames, frame_of] = key_frames(scans, report.reach_m);
+  const auto [frames, numbers, frame_of] = key_frames(scans, report.reach_m);
   report.key_frames = frames.size();
 
   std::vector<Pose2> poses;
   for (const KeyFrame& frame : frames) poses.push_back(frame.odometry);
   const std::vector<PoseEdge> odometry = odometry_edges(frames, report.reach_m);
+  std::vector<PoseEdge> kept_loops;
+  std::vector<double> weights;
   for (const auto& [share, yaw_rad] : kWindows) {
     double before = 0.0;
     for (std::size_t round = 0; round < kRoundsOfWindow; ++round) {
-      const Loops loops = find_loops(frames, poses, {report.reach_m, share * report.reach_m, yaw_rad});
+      Loops loops = find_loops(frames, poses, {report.reach_m, share * report.reach_m, yaw_rad});
       ++report.rounds;
       report.loops_found = loops.found;
       report.loops_kept = loops.kept.size();
-      solve_pose_graph(poses, odometry, loops.kept);
+      weights = solve_pose_graph(poses, odometry, loops.kept);
       const auto kept = static_cast<double>(loops.kept.size());
+      kept_loops = std::move(loops.kept);
       if (kept <= (1.0 + kFewNew) * before) break;
       before = kept;
     }
@@ -155,7 +179,7 @@ Result<ScanSlamSolution> ScanSlam::solve() const {
     stamped.push_back({static_cast<double>(scans[i].number), pose});
   }
   return Trajectory::make(std::move(stamped)).map([&](Trajectory trajectory) {
-    return ScanSlamSolution{std::move(trajectory), report};
+    return ScanSlamSolution{std::move(trajectory), graph_of(numbers, poses, odometry, kept_loops, weights), report};
   });
 }
 

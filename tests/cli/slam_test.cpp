@@ -165,6 +165,7 @@ TEST(Slam, SaysWhatIsWrongWithItsWords) {
     expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--nav-mount", mount}), 2,
                  {"--nav-mount"});
   }
+  expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--graph", "o.g2o"}), 2, {"--graph"});
   expect_error(here.call({"slam", "-", "--nav", "nav.csv", "-o", "o.tum", "--map", "m.bt"}), 2, {"--map"});
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--nav-mount", "dlv=0,0,0,0,0,9"}), 2,
                {"dlv", "compass"});
@@ -203,9 +204,11 @@ void write_scans(const Workplace& here) {
 TEST(SlamOfScans, WritesTrajectoryAndMap) {
   const Workplace here;
   write_scans(here);
-  const Outcome outcome =
-      here.call({"slam", "scans.log", "-o", "out.tum", "--map", "out.bt", "--resolution", "0.5", "--json"});
+  const Outcome outcome = here.call(
+      {"slam", "scans.log", "-o", "out.tum", "--map", "out.bt", "--resolution", "0.5", "--graph", "out.g2o", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(here.read("out.g2o"), testing::StartsWith("VERTEX_SE2 0 0 0 "));
+  EXPECT_THAT(here.read("out.g2o"), HasSubstr("\nEDGE_SE2 0 "));
   for (const char* part :
        {R"("scans": )", R"("skipped": 0)", R"("key_frames": )", R"("loops": {"found": )", R"("seconds": {"read": )"}) {
     EXPECT_THAT(outcome.out, HasSubstr(part));

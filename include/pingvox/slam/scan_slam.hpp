@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "pingvox/geometry/pose_graph.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/map/point_scan.hpp"
 #include "pingvox/result.hpp"
@@ -19,6 +20,9 @@ struct ScanSlamReport {
 
 struct ScanSlamSolution {
   Trajectory trajectory;  ///< of the sensor, one pose a scan; its times are the numbers of the scans
+  /// The key frames where they are in the end, odometry from each to the next, and the loops that were kept. The
+  /// information of a loop is as much as it counts in the end, so that plain least squares have the same solution.
+  PoseGraph graph;
   ScanSlamReport report;
 };
 
