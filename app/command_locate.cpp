@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "json.hpp"
 #include "map_log.hpp"
@@ -36,6 +37,7 @@ struct Motion {
   bool turns_only = false;  ///< x and y are not known
   std::optional<NavOffset> clock;
   std::size_t skipped = 0;
+  Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
 };
 
 /// What was found.
@@ -77,6 +79,11 @@ Result<Motion> motion_of(const LocateCommand& command) {
   OdometryOptions options = command.nav;
   options.offset_s = offset->offset_s;
   motion.clock = *std::move(offset);
+  if (command.calibration) {
+    const Result<Eigen::Vector3d> moved_m = use_calibration(*command.calibration, options);
+    if (!moved_m) return tl::unexpected(moved_m.error());
+    motion.sonar_moved_m = *moved_m;
+  }
   Result<Odometry> odometry = odometry_of(nav->log, options);
   if (!odometry)
     return fail(odometry.error().code, fmt::format("{}: {}", command.navs.front(), odometry.error().message));
@@ -123,6 +130,7 @@ DistanceFieldOptions layer_of(const LocateCommand& command, const std::optional<
 Result<Found> locate(std::vector<Beam> beams, const Motion& motion, DistanceField field, const LocateCommand& command) {
   LocalizerOptions options = command.localizer;
   if (motion.turns_only) options.noise = MotionNoise::turns_only();
+  options.body_from_sonar.pretranslate(motion.sonar_moved_m);
   Localizer localizer(std::move(field), options);
   if (command.start) {
     const StartPose& start = *command.start;

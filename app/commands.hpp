@@ -222,6 +222,7 @@ struct LocateCommand {
   std::string output;             ///< TUM lines; "-" is standard output
   std::vector<std::string> navs;  ///< navigation logs
   OdometryOptions nav;
+  std::optional<std::string> calibration;  ///< of the sensors of `navs`: output of 'slam --calibration'
   std::optional<double> nav_offset_s;      ///< added to the times of `navs`; nullopt: to be found
   std::optional<std::string> odometry;     ///< TUM lines in a frame that may drift; not with `navs`
   std::optional<StartPose> start;          ///< nullopt: anywhere

@@ -92,11 +92,9 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Da
     OdometryOptions options{.body_from_source = {}, .offset_s = offset->offset_s};
     Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();
     if (path.calibration) {
-      const Result<CalibrationFile> file = read_calibration(*path.calibration);
-      if (!file) return tl::unexpected(file.error());
-      options.body_from_source = file->body_from_source;
-      options.calibration = file->calibration;
-      sonar_moved_m << file->calibration.sonar_x_m.value, file->calibration.sonar_y_m.value, 0.0;
+      const Result<Eigen::Vector3d> moved_m = use_calibration(*path.calibration, options);
+      if (!moved_m) return tl::unexpected(moved_m.error());
+      sonar_moved_m = *moved_m;
     }
     return odometry_of(nav->log, options)
         .map([&](Odometry odometry) {

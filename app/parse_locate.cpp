@@ -70,6 +70,9 @@ Result<Command> locate_command(const Args& args) {
       "0,0,0,0,0,0",        store_nav_mounts(command.nav.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
   nav_mount.only_with = {{"--nav"}};
+  std::string calibration;
+  Option use_calibration = use_calibration_option(calibration, "correct --nav by what 'slam --calibration' wrote");
+  use_calibration.only_with = {{"--nav"}};
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   for (Option& option : echo_options.options) option.only_for.clear();
@@ -94,6 +97,7 @@ Result<Command> locate_command(const Args& args) {
         {std::move(nav),
          std::move(nav_offset),
          std::move(nav_mount),
+         std::move(use_calibration),
          {"--odometry", 0, "FILE", "poses in a frame that may drift, as TUM lines, instead of --nav", "",
           store(odometry)},
          mount_option(localizer.body_from_sonar)}},
@@ -121,10 +125,12 @@ Result<Command> locate_command(const Args& args) {
       if (!command.navs.empty()) return usage_error("--nav and --odometry: only one of them can say how it moved");
       command.odometry = odometry;
     }
+    if (!calibration.empty()) command.calibration = calibration;
     Args inputs = command.logs;
     inputs.push_back(command.map);
     inputs.insert(inputs.end(), command.navs.begin(), command.navs.end());
     if (command.odometry) inputs.push_back(*command.odometry);
+    if (command.calibration) inputs.push_back(*command.calibration);
     if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;

@@ -62,7 +62,7 @@ TEST(Slam, WritesTrajectoryMapAndCalibration) {
 }
 
 // The DVL of the basin is turned and its compass deviates: kills a calibration that is read and not used.
-TEST(Slam, CalibrationIsReadBackByMapRenderAndSlam) {
+TEST(Slam, CalibrationIsReadBackByMapRenderLocateAndSlam) {
   const Workplace here;
   write_basin(here);
   const std::vector<std::string> dive = {"beams.csv", "--nav", "nav.csv", "--mount", "0,0,0,0,0,40.1"};
@@ -91,6 +91,20 @@ TEST(Slam, CalibrationIsReadBackByMapRenderAndSlam) {
                               "--use-calibration", "b.toml"})
                 .status,
             0);
+
+  const std::vector<std::string> located = {"-o", "l.tum", "--map", "better.bt", "--start", "0,0,0"};
+  const auto with = [&](const char* calibration) {
+    std::vector<std::string> all = located;
+    all.insert(all.end(), {"--use-calibration", calibration});
+    return call({"locate"}, all);
+  };
+  ASSERT_EQ(call({"locate"}, located).status, 0);
+  const std::string uncalibrated = here.read("l.tum");
+  ASSERT_EQ(with("b.toml").status, 0);
+  EXPECT_NE(here.read("l.tum"), uncalibrated);
+  std::string other = here.read("b.toml");
+  here.write("other.toml", other.replace(other.find("\"compass\""), 9, "\"gyro\""));
+  expect_error(with("other.toml"), 2, {"no heading of compass"});
 
   expect_error(call({"slam"}, {"-o", "o.tum", "--matching", "none", "--calibration", "o.toml"}), 2, {"--calibration"});
   expect_error(here.call({"map", "beams.csv", "-o", "o.bt", "--use-calibration", "b.toml"}), 2,
