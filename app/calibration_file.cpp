@@ -263,7 +263,7 @@ Result<Eigen::Vector3d> use_calibration(const std::string& path, OdometryOptions
   Result<CalibrationFile> file = read_calibration(path);
   if (!file) return tl::unexpected(file.error());
   options.body_from_source.insert(file->body_from_source.begin(), file->body_from_source.end());
-  const Eigen::Vector3d moved_m(file->calibration.sonar_x_m.value, file->calibration.sonar_y_m.value, 0.0);
+  Eigen::Vector3d moved_m(file->calibration.sonar_x_m.value, file->calibration.sonar_y_m.value, 0.0);
   options.calibration = std::move(file->calibration);
   return moved_m;
 }

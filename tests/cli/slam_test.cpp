@@ -75,13 +75,9 @@ TEST(Slam, CalibrationIsReadBackByMapRenderLocateAndSlam) {
             0);
   EXPECT_THAT(here.read("a.toml"), HasSubstr("[[mount]]\nsource = \"dvl\"\npose = \"0.5,0,0,10,20,30\"\n"));
   ASSERT_EQ(call({"slam"}, {"-o", "out.tum", "--calibration", "b.toml"}).status, 0);
-  for (const char* known : {"a.toml", "b.toml"}) {
-    const Outcome again =
-        call({"slam"}, {"-o", "known.tum", "--use-calibration", known, "--calibration", "again.toml"});
-    ASSERT_EQ(again.status, 0) << again.err;
-    const auto has_mount = [&](const char* name) { return here.read(name).find("[[mount]]") != std::string::npos; };
-    EXPECT_EQ(has_mount("again.toml"), has_mount(known));
-  }
+  const Outcome again = call({"slam"}, {"-o", "o.tum", "--use-calibration", "a.toml", "--calibration", "again.toml"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(here.read("again.toml"), HasSubstr("[[mount]]\nsource = \"dvl\"\npose = \"0.5,0,0,10,20,30\"\n"));
   ASSERT_EQ(call({"map"}, {"-o", "raw.bt", "--resolution", "0.5", "--beam", "ray"}).status, 0);
   ASSERT_EQ(
       call({"map"}, {"-o", "better.bt", "--resolution", "0.5", "--beam", "ray", "--use-calibration", "b.toml"}).status,
@@ -92,19 +88,24 @@ TEST(Slam, CalibrationIsReadBackByMapRenderLocateAndSlam) {
                 .status,
             0);
 
-  const std::vector<std::string> located = {"-o", "l.tum", "--map", "better.bt", "--start", "0,0,0"};
-  const auto with = [&](const char* calibration) {
-    std::vector<std::string> all = located;
-    all.insert(all.end(), {"--use-calibration", calibration});
-    return call({"locate"}, all);
+  std::string few = here.read("beams.csv");
+  for (std::size_t line = 0, end = 0; line < 60; ++line) {
+    end = few.find('\n', end) + 1;
+    if (line == 59) few.resize(end);
+  }
+  here.write("few.csv", few);
+  const auto locate = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"locate", "few.csv", "--nav", "nav.csv", "--mount", "0,0,0,0,0,40.1", "--map",
+                               "better.bt", "--start", "0,0,90,0.1,5", "-o", "l.tum"});
+    return here.call(more);
   };
-  ASSERT_EQ(call({"locate"}, located).status, 0);
+  ASSERT_EQ(locate({}).status, 0);
   const std::string uncalibrated = here.read("l.tum");
-  ASSERT_EQ(with("b.toml").status, 0);
+  ASSERT_EQ(locate({"--use-calibration", "b.toml"}).status, 0);
   EXPECT_NE(here.read("l.tum"), uncalibrated);
   std::string other = here.read("b.toml");
   here.write("other.toml", other.replace(other.find("\"compass\""), 9, "\"gyro\""));
-  expect_error(with("other.toml"), 2, {"no heading of compass"});
+  expect_error(locate({"--use-calibration", "other.toml"}), 2, {"no heading of compass"});
 
   expect_error(call({"slam"}, {"-o", "o.tum", "--matching", "none", "--calibration", "o.toml"}), 2, {"--calibration"});
   expect_error(here.call({"map", "beams.csv", "-o", "o.bt", "--use-calibration", "b.toml"}), 2,
