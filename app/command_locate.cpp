@@ -121,7 +121,7 @@ Result<std::vector<Beam>> beams_of(const LocateCommand& command, std::size_t& sk
 
 /// The layer of the map around the sonar at the first beam.
 DistanceFieldOptions layer_of(const LocateCommand& command, const std::optional<Pose>& first) {
-  constexpr double kHalf_m = 0.25;
+  constexpr double kHalf_m = 0.5;
   const Pose body = first.value_or(Pose::Identity());
   const double z_m = (body * command.localizer.body_from_sonar.translation()).z();
   return {command.min_z_m.value_or(z_m - kHalf_m), command.max_z_m.value_or(z_m + kHalf_m)};

@@ -79,7 +79,7 @@ TEST(DistanceField, RefusesWhatIsEmptyOrTooLarge) {
   const auto nothing = DistanceField::make(OccupancyMap(), {});
   ASSERT_FALSE(nothing);
   EXPECT_EQ(nothing.error().code, Error::Code::kUnsupported);
-  EXPECT_THAT(nothing.error().message, HasSubstr("nothing is occupied between the heights -0.25 and 0.25 m"));
+  EXPECT_THAT(nothing.error().message, HasSubstr("nothing is occupied between the heights -0.5 and 0.5 m"));
 
   OccupancyMap wide({.resolution_m = 0.1, .depth = 32});
   auto editor = wide.edit();
