@@ -291,9 +291,6 @@ Result<void> use_calibration(const std::string& path, const NavLog& log, SlamOpt
 }
 
 Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> first, Console& console) {
-  if (command.navs.empty()) {
-    return fail(Error::Code::kBadOption, "slam: --nav is missing: a navigation log with velocity and heading");
-  }
   const Stopwatch total;
   Seconds seconds;
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});

@@ -22,7 +22,6 @@ std::size_t damaged_records(const NavFile& nav) {
 }
 
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage) {
-  assert(!names.empty());
   std::vector<NavSource> sources;
   std::optional<NavClock> clock;
   std::vector<YawChange> first_turns;
@@ -62,7 +61,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
       }
     }
   }
-  return NavLog::make(std::move(sources), *clock).map([&](NavLog log) { return NavFiles{std::move(log), damaged}; });
+  return NavLog::make(std::move(sources), clock.value_or(NavClock::kUnknown)).map([&](NavLog log) { return NavFiles{std::move(log), damaged}; });
 }
 
 void add_nav(JsonObject& json, const NavFile& nav) {

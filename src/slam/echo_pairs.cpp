@@ -108,10 +108,10 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal) {
+double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal, double scale) {
   const double along = kOfHalfLength * echo.run.half_length_m * normal.dot(ground.ray);
   const double across = kBearing_rad * echo.run.middle_m * cross(normal, ground.ray);
-  return kPlace_m * kPlace_m + along * along + across * across;
+  return scale * scale * kPlace_m * kPlace_m + along * along + across * across;
 }
 
 }  // namespace
@@ -184,7 +184,7 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
     far.clear();
     for (std::size_t other = 0; other < indices.size(); ++other) {
       const std::size_t apart = other > s ? other - s : s - other;
-      if (apart <= kFar || (sweep_places_m[s] - sweep_places_m[other]).norm() > kFarReach_m) continue;
+      if (apart <= kFar || (sweep_places_m[s] - sweep_places_m[other]).norm() > options.scale * kFarReach_m) continue;
       // The same for both, and in each iteration: fewer blocks in the normal equations.
       far.emplace_back(mix(mix(mix(options.seed) ^ std::min(s, other)) ^ std::max(s, other)), other);
     }
@@ -212,7 +212,8 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
         pair.normal = (ground[i].normal + (agreement < 0.0 ? -1.0 : 1.0) * other.normal).normalized();
         pair.distance_m = pair.normal.dot(ground[i].at - other.at);
         const double variance =
-            variance_of(echoes[i], ground[i], pair.normal) + variance_of(echoes[*nearest], other, pair.normal);
+            variance_of(echoes[i], ground[i], pair.normal, options.scale) +
+            variance_of(echoes[*nearest], other, pair.normal, options.scale);
         // Geman and McClure (1987): the weight of a residual.
         const double square = robust_m * robust_m;
         const double share = square / (square + pair.distance_m * pair.distance_m);

@@ -45,6 +45,7 @@ struct EchoPair {
 struct PairOptions {
   std::uint64_t seed = 1;
   double gate_m = 10.0;
+  double scale = 1.0;  ///< of the noise of an echo's place and of the reach of far partners
 };
 
 struct EchoPairs {

@@ -140,6 +140,18 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
   return heading;
 }
 
+std::optional<HeadingSource> turned_heading(const NavSource& source, const Pose& body_from_source) {
+  const std::vector<NavSample> samples = usable(source);
+  if (samples.size() < 2) return std::nullopt;
+  const auto rate = [&](const NavSample& sample) { return (body_from_source.rotation() * sample.value).z(); };
+  std::vector<double> yaw = {0.0};
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double step_s = samples[i].time_s - samples[i - 1].time_s;
+    yaw.push_back(yaw.back() + 0.5 * step_s * (rate(samples[i - 1]) + rate(samples[i])));
+  }
+  return HeadingSource{source.name, TimeSeries(times_of(samples), std::move(yaw)), std::nullopt, std::nullopt, true};
+}
+
 std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source) {
   std::optional<HeadingSource> best;
   for (const NavSource& source : log.sources()) {

@@ -43,10 +43,14 @@ struct HeadingSource {
   std::string name;
   TimeSeries yaw_rad;
   std::optional<TimeSeries> roll_rad, pitch_rad;  ///< of a source of attitude
+  bool drifts = false;                            ///< tells how the body turned, from 0 at the beginning
 };
 
 /// Turned into the frame of the body by the mount. nullopt: no valid sample.
 std::optional<HeadingSource> heading_source(const NavSource& source, const Pose& body_from_source);
+
+/// A heading that drifts: the turn rate integrated. nullopt: fewer than two valid samples.
+std::optional<HeadingSource> turned_heading(const NavSource& source, const Pose& body_from_source);
 
 /// The heading or attitude with most samples, the first of equals.
 /// @param body_from_source  how sources are mounted, by name; the identity for others
@@ -58,6 +62,7 @@ struct VelocitySource {
   TimeSeries ahead, left;
   TimeSeries density;       ///< standard deviation of the way after one second [m / sqrt(s)]
   std::size_t clipped = 0;  ///< samples that were outliers on either axis
+  bool by_sonar = false;    ///< by matching sweeps: it has no mount and no scale of its own
 };
 
 /// Which samples an outlier is judged by: itself, and those before and after it.

@@ -16,6 +16,8 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// Standard deviations of what is believed beforehand.
 constexpr double kFirstPosition_m = 1e-3;
+/// ... and of what is known: a scale or an angle that nothing has.
+constexpr double kHeld = 1e-6;
 constexpr double kVelocityYaw_rad = 10.0 * kDegree_rad, kVelocityScale = 0.005, kWall = 0.5, kLever_m = 0.3;
 constexpr double kConstant_rad = 3.0 * kDegree_rad, kHarmonic_rad = 5.0 * kDegree_rad;
 /// A source whose headings differ more than this from the main one's says where it turned, not where north is.
@@ -70,12 +72,17 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
       headings_(std::move(headings)),
       calibration_(calibration.value_or(usual_calibration())) {
   assert(knot_times_s_.size() >= 2 && !headings_.empty());
+  if (velocity_.by_sonar) calibration_.velocity_yaw_rad = calibration_.velocity_scale = {0.0, kHeld};
   for (const HeadingSource& source : headings_) {
     HeadingPrior prior{usual_heading(), source.name == velocity_.name};
     if (const HeadingCalibration* known = calibration_.heading(source.name)) {
       prior.deviation = *known;
     } else if (const double mean_rad = mean_angle(source, headings_.front()); std::abs(mean_rad) > kRelative_rad) {
       prior.deviation.constant_rad = {mean_rad, std::numbers::pi};
+    }
+    if (source.drifts) {
+      HeadingCalibration& h = prior.deviation;
+      h.sin1_rad = h.cos1_rad = h.sin2_rad = h.cos2_rad = {0.0, kHeld};
     }
     heading_priors_.push_back(std::move(prior));
   }
@@ -252,7 +259,7 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
   // Headings, and the changes of the main one.
   for (std::size_t s = 0; s < headings_.size(); ++s) {
     const auto first = static_cast<Eigen::Index>(global::heading(s));
-    for (std::size_t k = 0; k < knots(); ++k) {
+    for (std::size_t k = 0; k < (headings_[s].drifts ? 1 : knots()); ++k) {
       const double time_s = knot_times_s_[k];
       if (headings_[s].yaw_rad.gap_s(time_s, std::nextafter(time_s, time_s + 1.0)) > 0.0) continue;
       const HeadingResidual heading = heading_residual(unknowns, s, k);

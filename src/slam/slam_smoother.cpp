@@ -17,6 +17,7 @@
 #include "slam/pose2.hpp"
 #include "slam/slam_problem.hpp"
 #include "slam/slam_solver.hpp"
+#include "slam/sonar_odometry.hpp"
 
 namespace pingvox {
 namespace {
@@ -37,8 +38,8 @@ constexpr OutlierWindow kEarlier = {10, 0};
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double yaw_of(const Pose& pose) {
-  return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
+SonarMount sonar_mount(const Pose& pose) {
+  return {pose.translation().head<2>(), std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0))};
 }
 
 SlamCalibration calibration_of(const SlamSolver& solver) {
@@ -178,8 +179,36 @@ struct Navigation {
   std::optional<TimeSeries> depth;
 };
 
-Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) {
+std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options) {
+  const NavSource* fastest = log.best(NavQuantity::kVelocity);
+  if (fastest == nullptr) return std::nullopt;
+  if (fastest->name == kSonarSource) return sonar_velocity(*fastest);
   const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
+  return velocity_source(*fastest, mount_of(options, fastest->name), window);
+}
+
+/// All headings, the one with the most samples first. Without any, how the turn rates turn.
+std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options) {
+  std::vector<HeadingSource> headings, turns;
+  for (const NavSource& source : log.sources()) {
+    const Pose mount = mount_of(options, source.name);
+    if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
+      auto heading = heading_source(source, mount);
+      if (!heading) continue;
+      heading->drifts = source.name == kSonarSource;
+      headings.push_back(*std::move(heading));
+    } else if (source.quantity == NavQuantity::kTurnRate) {
+      if (auto heading = turned_heading(source, mount)) turns.push_back(*std::move(heading));
+    }
+  }
+  if (headings.empty()) headings = std::move(turns);
+  std::ranges::sort(headings, [](const HeadingSource& a, const HeadingSource& b) {
+    return std::tuple(b.yaw_rad.size(), a.name) < std::tuple(a.yaw_rad.size(), b.name);
+  });
+  return headings;
+}
+
+Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) {
   for (const auto& [name, mount] : options.body_from_source) {
     if (std::ranges::find(log.sources(), name, &NavSource::name) != log.sources().end()) continue;
     std::string known;
@@ -187,18 +216,8 @@ Result<Navigation> navigation_of(const NavLog& log, const SlamOptions& options) 
     return fail(Error::Code::kBadOption,
                 fmt::format("'{}' has a mount, but is no source of the navigation: {}", name, known));
   }
-  const NavSource* fastest = log.best(NavQuantity::kVelocity);
-  std::optional<VelocitySource> velocity;
-  if (fastest != nullptr) velocity = velocity_source(*fastest, mount_of(options, fastest->name), window);
-  std::vector<HeadingSource> headings;
-  for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
-    if (auto heading = heading_source(source, mount_of(options, source.name))) headings.push_back(*std::move(heading));
-  }
-  // The one with the most samples first.
-  std::ranges::sort(headings, [](const HeadingSource& a, const HeadingSource& b) {
-    return std::tuple(b.yaw_rad.size(), a.name) < std::tuple(a.yaw_rad.size(), b.name);
-  });
+  std::optional<VelocitySource> velocity = velocity_of(log, options);
+  std::vector<HeadingSource> headings = headings_of(log, options);
   if (!velocity || headings.empty()) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
@@ -296,8 +315,7 @@ SlamSolver solver_of(SlamProblem problem, const Recording& recording, const Slam
   const Pose velocity_from_sonar =
       Pose(Eigen::Translation3d(-mount_of(options, recording.navigation.velocity.name).translation())) *
       options.body_from_sonar;
-  const SonarMount mount{velocity_from_sonar.translation().head<2>(), yaw_of(velocity_from_sonar)};
-  return SlamSolver(std::move(problem), mount, recording.sweeps, options.seed, std::move(start));
+  return SlamSolver(std::move(problem), sonar_mount(velocity_from_sonar), recording.sweeps, options.seed, std::move(start));
 }
 
 /// The body's pose at each beam that is later than `after_s` and within the time of the knots.
@@ -432,6 +450,30 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
   return solution;
 }
 
+/// The sources, and how the sonar says that the vehicle moved where they have no velocity.
+Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> sources, std::span<const HeardSweep> sweeps,
+                                                   const SlamOptions& options) {
+  const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
+  if (!log) return tl::unexpected(log.error());
+  if (velocity_of(*log, options)) return sources;
+  const std::vector<HeadingSource> headings = headings_of(*log, options);
+  const SweepMotion motion =
+      options.estimation == Estimation::kCausal ? SweepMotion::kBefore : SweepMotion::kAround;
+  SonarOdometry odometry = sonar_odometry(sweeps, sonar_mount(options.body_from_sonar),
+                                          headings.empty() ? nullptr : &headings.front(), motion);
+  if (!odometry.tells) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("the navigation has no valid velocity over ground{}, and the sonar does not tell how the "
+                            "vehicle moved: {} of {} sweeps match those before them",
+                            headings.empty() ? " and no heading" : "", odometry.matched, std::max<std::size_t>(sweeps.size(), 1) - 1));
+  }
+  // One without a valid sample would be in its way.
+  std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });
+  sources.push_back(std::move(odometry.velocity));
+  if (headings.empty()) sources.push_back(std::move(odometry.heading));
+  return sources;
+}
+
 std::vector<NavSource> sources_until(const std::vector<NavSource>& sources, double time_s) {
   std::vector<NavSource> earlier = sources;
   for (NavSource& source : earlier) {
@@ -512,12 +554,14 @@ Result<SlamSolution> SlamSmoother::solve() const {
   std::vector<HeardSweep> sweeps = state_->sweeps;
   SweepAssembler rest = state_->assembler;
   if (const auto sweep = rest.finish()) sweeps.push_back(state_->heard(*sweep));
-  const Result<Recording> recording = recording_of(times_s, sweeps, state_->sources, options);
+  const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
+  if (!sources) return tl::unexpected(sources.error());
+  const Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
   if (!recording) return tl::unexpected(recording.error());
   if (options.matching == Matching::kPairs && sweeps.size() < 2) {
     return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
   }
-  return options.estimation == Estimation::kCausal ? solve_causal(*recording, state_->sources, options)
+  return options.estimation == Estimation::kCausal ? solve_causal(*recording, *sources, options)
                                                    : solve_batch(*recording, options);
 }
 

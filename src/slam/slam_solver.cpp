@@ -6,6 +6,9 @@
 namespace pingvox {
 namespace {
 
+/// Distances of pairs are for a sonar that reaches this far, and farther.
+constexpr double kUsualReach_m = 20.0;
+
 void add_row(const SlamProblem::Row& row, NormalEquations& equations) {
   const auto a = static_cast<Eigen::Index>(3 * row.knot), globals = equations.corner.cols();
   equations.add_block(row.knot, row.knot, row.by_knot * row.by_knot.transpose());
@@ -20,6 +23,17 @@ void add_row(const SlamProblem::Row& row, NormalEquations& equations) {
 }
 
 }  // namespace
+
+double reach_of(std::span<const HeardSweep> sweeps) {
+  std::vector<double> ranges_m;
+  for (const HeardSweep& sweep : sweeps) {
+    for (const EchoRun& run : sweep.runs) ranges_m.push_back(run.middle_m);
+  }
+  if (ranges_m.empty()) return 0.0;
+  const auto nine_of_ten = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() * 9 / 10);
+  std::ranges::nth_element(ranges_m, nine_of_ten);
+  return *nine_of_ten;
+}
 
 SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps,
                        std::uint64_t seed, Unknowns start)
@@ -36,6 +50,7 @@ SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<c
         std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(), problem_.knot_times_s().back());
     sweep_middles_.push_back(*problem_.between_knots(middle_s));
   }
+  if (problem_.velocity().by_sonar) scale_ = std::min(1.0, reach_of(sweeps) / kUsualReach_m);
 }
 
 bool SlamSolver::step(std::optional<double> gate_m) {
@@ -46,7 +61,7 @@ bool SlamSolver::step(std::optional<double> gate_m) {
     std::vector<Eigen::Vector2d> places;
     for (const auto& [knot, share] : sweep_middles_) places.emplace_back(knot_at(knot, share).head<2>());
     ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
-    pairs_ = echo_pairs(echoes_, ground, sweeps_, places, {seed_, *gate_m});
+    pairs_ = echo_pairs(echoes_, ground, sweeps_, places, {seed_, scale_ * *gate_m, scale_});
     // In order of the knots that they join.
     std::ranges::sort(pairs_.pairs, {}, [&](const EchoPair& pair) {
       return std::array<std::size_t, 4>{echoes_[pair.a].knot, echoes_[pair.b].knot, pair.a, pair.b};

@@ -23,6 +23,9 @@ struct HeardSweep {
   std::vector<EchoRun> runs;
 };
 
+/// The range that nine of ten echoes are within; 0 without echoes.
+double reach_of(std::span<const HeardSweep> sweeps);
+
 /// The least-squares problem of sweeps, and its iterations.
 class SlamSolver {
  public:
@@ -30,7 +33,8 @@ class SlamSolver {
              Unknowns start);
 
   /// One Gauss-Newton step. False: the problem does not determine its unknowns, and they stay.
-  /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs
+  /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs. Without a measured velocity it is
+  /// less for a sonar that reaches less than 20 m, in proportion.
   bool step(std::optional<double> gate_m);
 
   const SlamProblem& problem() const { return problem_; }
@@ -57,6 +61,7 @@ class SlamSolver {
   std::vector<PlacedEcho> echoes_;
   std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, and the end
   std::vector<std::pair<std::size_t, double>> sweep_middles_;
+  double scale_ = 1.0;
   EchoPairs pairs_;
   Eigen::MatrixXd global_covariance_;
 };

@@ -1,0 +1,251 @@
+#include "slam/sonar_odometry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "slam/point_field.hpp"
+#include "slam/pose2.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+/// How a vehicle may go when nothing is known: ahead at one of these speeds, turning if no heading tells it.
+constexpr std::array kSpeeds_m_s = {0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8};
+constexpr std::array kTurns_rad_s = {0.0, 0.06, -0.06, 0.12, -0.12};
+/// How far from what is expected a match is looked for: by the change of the velocity from a sweep to the next, and as
+/// a share of the reach; by the change of the turn rate, or by the error of the heading.
+constexpr double kMaxChange_m_s = 0.25, kMaxMove = 0.5;
+constexpr double kMaxTurnChange_rad_s = 2.5 * kDegree_rad, kMaxHeadingError_rad = 4.0 * kDegree_rad;
+/// Cells in the reach of the sonar, in each round: coarse ones bear echoes that are not where they should be yet.
+constexpr std::array kCellsOfReach = {25.0, 50.0, 100.0, 100.0};
+constexpr double kMinScore = 0.35;
+constexpr std::size_t kMinEchoes = 20;
+/// A peak that is wider than this along some direction is one of a straight wall: it does not tell the way along it.
+constexpr double kMaxSpread_cells = 2.3;
+/// Where the way is shorter than this share of what the vehicle covered, it turned too much to tell its velocity.
+constexpr double kMinWay = 0.3;
+/// The fewest sweeps that match, as a share, with a heading and without: a sonar that sees less tells no trajectory.
+constexpr double kMinMatched = 0.5, kMinMatchedAlone = 0.9;
+/// Standard deviation of the way after one second [m / sqrt(s)]: how unevenly a vehicle moves.
+constexpr double kDensity = 0.1;
+
+/// How the vehicle moves in its own frame.
+struct Motion {
+  Eigen::Vector2d velocity_m_s = Eigen::Vector2d::Zero();
+  double turn_rad_s = 0.0;
+};
+
+double middle_s(const HeardSweep& sweep) {
+  return 0.5 * (sweep.from_s + sweep.to_s);
+}
+
+/// What is known of a vehicle before its sonar tells how it moves.
+struct Vehicle {
+  SonarMount body_from_sonar;
+  const HeadingSource* heading;  ///< nullptr: not known
+};
+
+/// The yaw by the heading; where none is known by the turning since some time.
+double yaw_at(double time_s, double zero_s, double turn_rad_s, const Vehicle& vehicle) {
+  return vehicle.heading != nullptr ? vehicle.heading->yaw_rad.at(time_s) : turn_rad_s * (time_s - zero_s);
+}
+
+/// By which the velocity in the frame of the body is to be multiplied for the way between two times.
+Eigen::Matrix2d way_by_velocity(double from_s, double to_s, double turn_rad_s, const Vehicle& vehicle) {
+  constexpr int kParts = 8;
+  const double part_s = (to_s - from_s) / kParts;
+  Eigen::Matrix2d way = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < kParts; ++i) {
+    way += part_s * rotation2(yaw_at(from_s + (i + 0.5) * part_s, from_s, turn_rad_s, vehicle));
+  }
+  return way;
+}
+
+/// The echoes of a sweep around the vehicle at a time, before or after which it moves the same way. The axes are those
+/// of the heading's zero; where no heading is known those of the vehicle.
+std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, const Motion& motion,
+                                   const Vehicle& vehicle) {
+  const SonarMount& mount = vehicle.body_from_sonar;
+  std::vector<Eigen::Vector2d> points_m;
+  for (const EchoRun& run : sweep.runs) {
+    const double ray_rad = mount.yaw_rad + run.bearing_rad;
+    const Eigen::Vector2d in_body =
+        mount.place_m + run.middle_m * Eigen::Vector2d(std::cos(ray_rad), std::sin(ray_rad));
+    points_m.emplace_back(
+        way_by_velocity(zero_s, run.time_s, motion.turn_rad_s, vehicle) * motion.velocity_m_s +
+        rotation2(yaw_at(run.time_s, zero_s, motion.turn_rad_s, vehicle)) * in_body);
+  }
+  return points_m;
+}
+
+/// How the vehicle moved between the middles of each sweep and the next one.
+using Steps = std::vector<std::optional<Motion>>;
+
+/// The motion at a place among the steps, by the last known one of the first `before` steps and the first known one from
+/// `after` on: between them it changes evenly. Zero where none is known.
+Motion motion_at(double place, std::size_t before, std::size_t after, const Steps& steps) {
+  while (before > 0 && !steps[before - 1]) --before;
+  while (after < steps.size() && !steps[after]) ++after;
+  const bool has_before = before > 0, has_after = after < steps.size();
+  if (!has_before && !has_after) return {};
+  const Motion& a = *steps[has_before ? before - 1 : after];
+  const Motion& b = *steps[has_after ? after : before - 1];
+  const double share = has_before && has_after
+                           ? (place - static_cast<double>(before - 1)) / static_cast<double>(after - (before - 1))
+                           : 0.0;
+  return {a.velocity_m_s + share * (b.velocity_m_s - a.velocity_m_s),
+          a.turn_rad_s + share * (b.turn_rad_s - a.turn_rad_s)};
+}
+
+/// How the vehicle is taken to move around a step: from the sweep before it to its first one, during its first and its
+/// second sweep, and from one to the other.
+struct Guess {
+  Motion until_first, in_first, in_second, between;
+};
+
+struct Match {
+  Motion motion;
+  double score;
+};
+
+/// The motion from sweep k to the next, which is looked for among the echoes of sweep k and the one before: a vehicle
+/// that turns against the head sees too little in one sweep.
+std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> sweeps, const Guess& guess,
+                                     double cells_of_reach, const Vehicle& vehicle) {
+  const HeardSweep &first = sweeps[k], &second = sweeps[k + 1];
+  const double from_s = middle_s(first), to_s = middle_s(second), duration_s = to_s - from_s;
+  if (first.runs.size() < kMinEchoes || second.runs.size() < kMinEchoes || !(duration_s > 0.0)) return std::nullopt;
+  const double reach_m = reach_of(sweeps.subspan(k, 2)), cell_m = reach_m / cells_of_reach;
+  const double most_m = std::min(kMaxChange_m_s * duration_s, kMaxMove * reach_m);
+  const bool has_heading = vehicle.heading != nullptr;
+  const MatchWindow window{static_cast<int>(std::ceil(most_m / cell_m)),
+                           has_heading ? kMaxHeadingError_rad : kMaxTurnChange_rad_s * duration_s};
+  std::vector<Eigen::Vector2d> around = place(first, from_s, guess.in_first, vehicle);
+  if (k > 0) {
+    const std::vector<Eigen::Vector2d> before = place(sweeps[k - 1], from_s, guess.until_first, vehicle);
+    around.insert(around.end(), before.begin(), before.end());
+  }
+  const auto [velocity_m_s, expected_rad_s] = guess.between;
+  const Pose2 expected{way_by_velocity(from_s, to_s, expected_rad_s, vehicle) * velocity_m_s,
+                       has_heading ? 0.0 : expected_rad_s * duration_s};
+  const auto found = PointField(around, cell_m, window.cells)
+                         .match(place(second, to_s, guess.in_second, vehicle), expected, window, kMinScore);
+  if (!found) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(found->covariance.topLeftCorner<2, 2>().eval());
+  if (std::sqrt(spread.eigenvalues()[1]) > kMaxSpread_cells * cell_m) return std::nullopt;
+  // A heading is known better than the picture tells it.
+  const double turn_rad_s = has_heading ? 0.0 : found->pose.yaw_rad / duration_s;
+  const Eigen::Matrix2d way = way_by_velocity(from_s, to_s, turn_rad_s, vehicle);
+  if (way.determinant() < kMinWay * kMinWay * duration_s * duration_s) return std::nullopt;
+  return Match{{way.inverse() * found->pose.place_m, turn_rad_s}, found->score};
+}
+
+/// The steps as if the vehicle went ahead at one speed all the time: the one that fits best.
+Steps steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehicle) {
+  const std::span<const double> turns_rad_s(kTurns_rad_s.begin(),
+                                            vehicle.heading != nullptr ? 1 : kTurns_rad_s.size());
+  Steps best(sweeps.size() - 1);
+  double highest = 0.0;
+  for (const double speed_m_s : kSpeeds_m_s) {
+    Steps steps(sweeps.size() - 1);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      double score = 0.0;
+      for (const double turn_rad_s : turns_rad_s) {
+        const Motion motion{{speed_m_s, 0.0}, turn_rad_s};
+        const auto match =
+            match_with_next(k, sweeps, {motion, motion, motion, motion}, kCellsOfReach.front(), vehicle);
+        if (!match || match->score <= score) continue;
+        score = match->score;
+        steps[k] = match->motion;
+      }
+      sum += score;
+    }
+    if (sum <= highest) continue;
+    highest = sum;
+    best = std::move(steps);
+  }
+  return best;
+}
+
+/// The steps once more, each where those before and after it lead.
+Steps refine(const Steps& steps, std::span<const HeardSweep> sweeps, double cells_of_reach, SweepMotion which,
+             const Vehicle& vehicle) {
+  Steps refined(steps.size());
+  // On board, what comes later is known of the first sweep only, which has nothing before it.
+  const auto motion = [&](double place, std::size_t before, std::size_t after) {
+    return motion_at(place, before, which == SweepMotion::kAround || before == 0 ? after : steps.size(), steps);
+  };
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const auto at = static_cast<double>(k);
+    const Guess guess{motion(at - 1.0, k, k), motion(at - 0.5, k, k), motion(at + 0.5, k + 1, k + 1),
+                      motion(at, k, k + 1)};
+    if (const auto match = match_with_next(k, sweeps, guess, cells_of_reach, vehicle)) refined[k] = match->motion;
+  }
+  return refined;
+}
+
+NavSample sample_at(double time_s, const Eigen::Vector3d& value) {
+  NavSample sample;
+  sample.time_s = time_s;
+  sample.value = value;
+  return sample;
+}
+
+}  // namespace
+
+VelocitySource sonar_velocity(const NavSource& source) {
+  std::vector<double> times_s, ahead, left;
+  for (const NavSample& sample : source.samples) {
+    times_s.push_back(sample.time_s);
+    ahead.push_back(sample.value.x());
+    left.push_back(sample.value.y());
+  }
+  TimeSeries density({times_s.front()}, {kDensity});
+  return {source.name, TimeSeries(times_s, std::move(ahead)), TimeSeries(times_s, std::move(left)), std::move(density),
+          0, true};
+}
+
+SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
+                             const HeadingSource* heading, SweepMotion which) {
+  SonarOdometry odometry{{std::string(kSonarSource), NavQuantity::kVelocity, {}},
+                         {std::string(kSonarSource), NavQuantity::kHeading, {}}};
+  if (sweeps.size() < 2) return odometry;
+  const Vehicle vehicle{body_from_sonar, heading};
+  Steps steps = steps_at_one_speed(sweeps, vehicle);
+  for (const double cells : kCellsOfReach) steps = refine(steps, sweeps, cells, which, vehicle);
+
+  std::vector<NavSample>&velocities = odometry.velocity.samples, &headings = odometry.heading.samples;
+  const double begin_s = sweeps.front().from_s, end_s = sweeps.back().to_s;
+  double yaw_rad = 0.0, turn_rad_s = 0.0, since_s = begin_s;
+  headings.push_back(sample_at(begin_s, Eigen::Vector3d::Zero()));
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    if (!steps[k]) continue;
+    const double from_s = middle_s(sweeps[k]), to_s = middle_s(sweeps[k + 1]);
+    ++odometry.matched;
+    turn_rad_s = steps[k]->turn_rad_s;
+    yaw_rad += turn_rad_s * (to_s - since_s);
+    since_s = to_s;
+    headings.push_back(sample_at(to_s, {yaw_rad, 0.0, 0.0}));
+    const Eigen::Vector2d& velocity = steps[k]->velocity_m_s;
+    velocities.push_back(sample_at(0.5 * (from_s + to_s), {velocity.x(), velocity.y(), 0.0}));
+  }
+  const double least = heading != nullptr ? kMinMatched : kMinMatchedAlone;
+  odometry.tells = static_cast<double>(odometry.matched) >= std::max(1.0, least * static_cast<double>(steps.size()));
+  if (velocities.empty()) return odometry;
+  // The first and the last motion go on to the ends.
+  velocities.insert(velocities.begin(), sample_at(begin_s, velocities.front().value));
+  velocities.push_back(sample_at(end_s, velocities.back().value));
+  headings.push_back(sample_at(end_s, {yaw_rad + turn_rad_s * (end_s - since_s), 0.0, 0.0}));
+  return odometry;
+}
+
+}  // namespace pingvox

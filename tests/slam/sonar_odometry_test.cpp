@@ -1,0 +1,105 @@
+// How the vehicle moved by its sonar alone, in a basin whose truth is known.
+
+#include "slam/sonar_odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slam/basin.hpp"
+
+namespace pingvox::test {
+namespace {
+
+std::vector<HeardSweep> sweeps_of(const Basin& basin) {
+  std::vector<HeardSweep> sweeps;
+  SweepAssembler assembler;
+  const auto add = [&](const Sweep& sweep) {
+    sweeps.push_back(
+        {sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s, echo_runs(sweep, {}, EchoOptions())});
+  };
+  for (Beam& beam : basin.beams()) {
+    if (const auto sweep = assembler.add(std::move(beam))) add(*sweep);
+  }
+  if (const auto sweep = assembler.finish()) add(*sweep);
+  return sweeps;
+}
+
+HeadingSource heading_of(const Basin& basin) {
+  std::optional<HeadingSource> heading = heading_source(basin.sources()[1], Pose::Identity());
+  return *std::move(heading);
+}
+
+SonarMount mount_of(const Basin& basin) {
+  return {Eigen::Vector2d::Zero(), basin.sonar_yaw_rad};
+}
+
+/// Velocity of the vehicle along its yaw and to port.
+Eigen::Vector2d body_velocity_at(double time_s) {
+  const double yaw_rad = Basin::at(time_s).yaw_rad;
+  return rotation2(-yaw_rad) * Basin::velocity_at(time_s);
+}
+
+TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
+  const Basin basin{.duration_s = 300.0, .compass_cos = 0.0};
+  const HeadingSource heading = heading_of(basin);
+  const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), &heading, SweepMotion::kAround);
+  ASSERT_TRUE(odometry);
+  EXPECT_FALSE(odometry->heading);
+  EXPECT_GT(odometry->matched, 24U);
+  double sum = 0.0;
+  const auto& samples = odometry->velocity.samples;
+  for (const NavSample& sample : samples) {
+    sum += (sample.value.head<2>() - body_velocity_at(sample.time_s)).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(samples.size())), 0.06);
+}
+
+TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
+  const Basin basin{.duration_s = 300.0};
+  const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), nullptr, SweepMotion::kAround);
+  ASSERT_TRUE(odometry && odometry->heading);
+  const auto& samples = odometry->heading->samples;
+  const double start_rad = Basin::at(samples.front().time_s).yaw_rad;
+  for (const NavSample& sample : samples) {
+    const double turned_rad = Basin::at(sample.time_s).yaw_rad - start_rad;
+    EXPECT_NEAR(std::remainder(sample.value.x() - turned_rad, 2.0 * std::numbers::pi), 0.0, 0.2) << sample.time_s;
+  }
+}
+
+// Kills a velocity that is told although nothing was seen.
+TEST(SonarOdometry, TellsNothingWhereTheSonarSeesNothing) {
+  const Basin basin{.duration_s = 200.0};
+  const HeadingSource heading = heading_of(basin);
+  std::vector<HeardSweep> sweeps = sweeps_of(basin);
+  for (std::size_t k = 8; k < 14; ++k) sweeps[k].runs.clear();
+  const auto odometry = sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kAround);
+  ASSERT_TRUE(odometry);
+  for (const NavSample& sample : odometry->velocity.samples) {
+    EXPECT_FALSE(sample.time_s > 80.0 && sample.time_s < 140.0) << sample.time_s;
+  }
+  for (HeardSweep& sweep : sweeps) sweep.runs.clear();
+  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kAround));
+  EXPECT_FALSE(sonar_odometry({}, mount_of(basin), &heading, SweepMotion::kAround));
+}
+
+// Kills a search that is led by the end of the recording.
+TEST(SonarOdometry, OnBoardTheVelocityDoesNotDependOnLaterSweeps) {
+  const Basin basin{.duration_s = 150.0};
+  const HeadingSource heading = heading_of(basin);
+  std::vector<HeardSweep> sweeps = sweeps_of(basin);
+  const auto all = sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kBefore);
+  sweeps.resize(10);
+  const auto part = sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kBefore);
+  ASSERT_TRUE(all && part);
+  for (std::size_t i = 0; i + 1 < part->velocity.samples.size(); ++i) {
+    EXPECT_EQ(part->velocity.samples[i].value, all->velocity.samples[i].value) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pingvox::test
