@@ -185,6 +185,15 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
       .add("samples", report.velocities)
       .add("clipped", report.velocities_clipped)
       .add("longest_gap_s", report.longest_gap_s);
+  if (report.by_sonar) {
+    JsonObject by_sonar;
+    by_sonar.add("matched", report.by_sonar->matched)
+        .add("noise_m_sqrt_s", report.by_sonar->noise_m_sqrt_s)
+        .add("drift_m", report.by_sonar->drift_m);
+    velocity.add("by_sonar", by_sonar);
+  } else {
+    velocity.add_null("by_sonar");
+  }
   json.add("poses", solution.trajectory.poses().size())
       .add("beams", report.beams)
       .add("sweeps", report.sweeps)
@@ -225,6 +234,28 @@ std::string seconds_text(const Seconds& seconds) {
                      seconds.read, seconds.solve, seconds.map, seconds.write);
 }
 
+std::string velocity_text(const SlamReport& report) {
+  if (const auto& sonar = report.by_sonar) {
+    return fmt::format(
+        "not measured, but by the sonar: {} of {} sweeps match those before them, longest gap {:.0f} s; "
+        "without pairs it drifts by {:.1f} m",
+        sonar->matched, report.sweeps, report.longest_gap_s, sonar->drift_m);
+  }
+  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s", on_one_line(report.velocity),
+                     report.velocities, report.velocities_clipped, report.longest_gap_s);
+}
+
+std::string sensors_text(const SlamSolution& solution) {
+  const SlamCalibration& c = solution.calibration;
+  std::string text;
+  if (!solution.report.by_sonar) {
+    text = fmt::format("velocity turned by {} degrees, scaled by {:.4f} +- {:.4f}; ", degrees_text(c.velocity_yaw_rad),
+                       1.0 + c.velocity_scale.value, c.velocity_scale.deviation);
+  }
+  return text + fmt::format("sonar moved by {:.2f} {:.2f} m; wall at {:.2f} in its echo", c.sonar_x_m.value,
+                            c.sonar_y_m.value, c.wall_in_echo.value);
+}
+
 std::string text_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
                     const Seconds& seconds) {
   const SlamReport& report = solution.report;
@@ -232,21 +263,14 @@ std::string text_of(const SlamSolution& solution, const SlamCommand& command, co
   text += report_line(
       "read", fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes));
   text += report_line("nav clock", text_of(offset));
-  text += report_line("velocity",
-                      fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s", on_one_line(report.velocity),
-                                  report.velocities, report.velocities_clipped, report.longest_gap_s));
+  text += report_line("velocity", velocity_text(report));
   text += report_line("trajectory",
                       fmt::format("{} poses over {:.1f} s", solution.trajectory.poses().size(), recorded_s(solution)));
   if (command.slam.matching == Matching::kPairs) {
-    const SlamCalibration& c = solution.calibration;
     text += report_line("pairs", fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
                                              report.pair_median_m, report.loops_kept, report.loops_found));
-    text += report_line(
-        "sensors", fmt::format("velocity turned by {} degrees, scaled by {:.4f} +- {:.4f}; sonar moved by {:.2f} "
-                               "{:.2f} m; wall at {:.2f} in its echo",
-                               degrees_text(c.velocity_yaw_rad), 1.0 + c.velocity_scale.value,
-                               c.velocity_scale.deviation, c.sonar_x_m.value, c.sonar_y_m.value, c.wall_in_echo.value));
-    for (const HeadingCalibration& heading : c.headings) {
+    text += report_line("sensors", sensors_text(solution));
+    for (const HeadingCalibration& heading : solution.calibration.headings) {
       text +=
           report_line("heading", fmt::format("{}: constant {}, deviation {:.2f} and {:.2f} degrees",
                                              on_one_line(heading.source), degrees_text(heading.constant_rad),

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -61,7 +60,9 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
       }
     }
   }
-  return NavLog::make(std::move(sources), clock.value_or(NavClock::kUnknown)).map([&](NavLog log) { return NavFiles{std::move(log), damaged}; });
+  return NavLog::make(std::move(sources), clock.value_or(NavClock::kUnknown)).map([&](NavLog log) {
+    return NavFiles{std::move(log), damaged};
+  });
 }
 
 void add_nav(JsonObject& json, const NavFile& nav) {

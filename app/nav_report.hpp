@@ -19,7 +19,7 @@ struct NavFiles {
 };
 /// A log that counts from another start is aligned with the first by how the vehicle turned in both; kUnsupported when
 /// that cannot be told.
-/// @param names  at least one; - is standard input
+/// @param names  - is standard input; an empty log without any
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage);
 
 /// What `info` says of a navigation log: the members of its JSON object after "kind" and "format", but for the kinds of

@@ -211,9 +211,8 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
         pair.b = *nearest;
         pair.normal = (ground[i].normal + (agreement < 0.0 ? -1.0 : 1.0) * other.normal).normalized();
         pair.distance_m = pair.normal.dot(ground[i].at - other.at);
-        const double variance =
-            variance_of(echoes[i], ground[i], pair.normal, options.scale) +
-            variance_of(echoes[*nearest], other, pair.normal, options.scale);
+        const double variance = variance_of(echoes[i], ground[i], pair.normal, options.scale) +
+                                variance_of(echoes[*nearest], other, pair.normal, options.scale);
         // Geman and McClure (1987): the weight of a residual.
         const double square = robust_m * robust_m;
         const double share = square / (square + pair.distance_m * pair.distance_m);

@@ -315,7 +315,8 @@ SlamSolver solver_of(SlamProblem problem, const Recording& recording, const Slam
   const Pose velocity_from_sonar =
       Pose(Eigen::Translation3d(-mount_of(options, recording.navigation.velocity.name).translation())) *
       options.body_from_sonar;
-  return SlamSolver(std::move(problem), sonar_mount(velocity_from_sonar), recording.sweeps, options.seed, std::move(start));
+  return SlamSolver(std::move(problem), sonar_mount(velocity_from_sonar), recording.sweeps, options.seed,
+                    std::move(start));
 }
 
 /// The body's pose at each beam that is later than `after_s` and within the time of the knots.
@@ -396,6 +397,14 @@ SlamReport report_of(const SlamSolver& solver, const Recording& recording) {
   report.longest_gap_s = velocity.ahead.longest_step_s();
   report.velocity = velocity.name;
   report.heading = recording.navigation.headings.front().name;
+  if (velocity.by_sonar) {
+    double variance_m2 = 0.0;
+    for (const SlamProblem::Way& way : solver.problem().ways(solver.unknowns())) {
+      variance_m2 += way.deviation_m * way.deviation_m;
+    }
+    // The first and the last sample go on to the ends of the recording.
+    report.by_sonar = {velocity.ahead.size() - 2, velocity.density.values().front(), std::sqrt(variance_m2)};
+  }
   return report;
 }
 
@@ -457,15 +466,15 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   if (!log) return tl::unexpected(log.error());
   if (velocity_of(*log, options)) return sources;
   const std::vector<HeadingSource> headings = headings_of(*log, options);
-  const SweepMotion motion =
-      options.estimation == Estimation::kCausal ? SweepMotion::kBefore : SweepMotion::kAround;
+  const SweepMotion motion = options.estimation == Estimation::kCausal ? SweepMotion::kBefore : SweepMotion::kAround;
   SonarOdometry odometry = sonar_odometry(sweeps, sonar_mount(options.body_from_sonar),
                                           headings.empty() ? nullptr : &headings.front(), motion);
   if (!odometry.tells) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("the navigation has no valid velocity over ground{}, and the sonar does not tell how the "
                             "vehicle moved: {} of {} sweeps match those before them",
-                            headings.empty() ? " and no heading" : "", odometry.matched, std::max<std::size_t>(sweeps.size(), 1) - 1));
+                            headings.empty() ? " and no heading" : "", odometry.matched,
+                            std::max<std::size_t>(sweeps.size(), 1) - 1));
   }
   // One without a valid sample would be in its way.
   std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });

@@ -33,8 +33,8 @@ class SlamSolver {
              Unknowns start);
 
   /// One Gauss-Newton step. False: the problem does not determine its unknowns, and they stay.
-  /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs. Without a measured velocity it is
-  /// less for a sonar that reaches less than 20 m, in proportion.
+  /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs. Without a measured velocity it
+  /// is less for a sonar that reaches less than 20 m, in proportion.
   bool step(std::optional<double> gate_m);
 
   const SlamProblem& problem() const { return problem_; }

@@ -79,9 +79,8 @@ std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, const
     const double ray_rad = mount.yaw_rad + run.bearing_rad;
     const Eigen::Vector2d in_body =
         mount.place_m + run.middle_m * Eigen::Vector2d(std::cos(ray_rad), std::sin(ray_rad));
-    points_m.emplace_back(
-        way_by_velocity(zero_s, run.time_s, motion.turn_rad_s, vehicle) * motion.velocity_m_s +
-        rotation2(yaw_at(run.time_s, zero_s, motion.turn_rad_s, vehicle)) * in_body);
+    points_m.emplace_back(way_by_velocity(zero_s, run.time_s, motion.turn_rad_s, vehicle) * motion.velocity_m_s +
+                          rotation2(yaw_at(run.time_s, zero_s, motion.turn_rad_s, vehicle)) * in_body);
   }
   return points_m;
 }
@@ -89,8 +88,8 @@ std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, const
 /// How the vehicle moved between the middles of each sweep and the next one.
 using Steps = std::vector<std::optional<Motion>>;
 
-/// The motion at a place among the steps, by the last known one of the first `before` steps and the first known one from
-/// `after` on: between them it changes evenly. Zero where none is known.
+/// The motion at a place among the steps, by the last known one of the first `before` steps and the first known one
+/// from `after` on: between them it changes evenly. Zero where none is known.
 Motion motion_at(double place, std::size_t before, std::size_t after, const Steps& steps) {
   while (before > 0 && !steps[before - 1]) --before;
   while (after < steps.size() && !steps[after]) ++after;
@@ -150,8 +149,7 @@ std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> 
 
 /// The steps as if the vehicle went ahead at one speed all the time: the one that fits best.
 Steps steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehicle) {
-  const std::span<const double> turns_rad_s(kTurns_rad_s.begin(),
-                                            vehicle.heading != nullptr ? 1 : kTurns_rad_s.size());
+  const std::span<const double> turns_rad_s(kTurns_rad_s.begin(), vehicle.heading != nullptr ? 1 : kTurns_rad_s.size());
   Steps best(sweeps.size() - 1);
   double highest = 0.0;
   for (const double speed_m_s : kSpeeds_m_s) {
@@ -161,8 +159,7 @@ Steps steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehi
       double score = 0.0;
       for (const double turn_rad_s : turns_rad_s) {
         const Motion motion{{speed_m_s, 0.0}, turn_rad_s};
-        const auto match =
-            match_with_next(k, sweeps, {motion, motion, motion, motion}, kCellsOfReach.front(), vehicle);
+        const auto match = match_with_next(k, sweeps, {motion, motion, motion, motion}, kCellsOfReach.front(), vehicle);
         if (!match || match->score <= score) continue;
         score = match->score;
         steps[k] = match->motion;
@@ -210,8 +207,9 @@ VelocitySource sonar_velocity(const NavSource& source) {
     left.push_back(sample.value.y());
   }
   TimeSeries density({times_s.front()}, {kDensity});
-  return {source.name, TimeSeries(times_s, std::move(ahead)), TimeSeries(times_s, std::move(left)), std::move(density),
-          0, true};
+  return {
+      source.name, TimeSeries(times_s, std::move(ahead)), TimeSeries(times_s, std::move(left)), std::move(density), 0,
+      true};
 }
 
 SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,

@@ -177,7 +177,6 @@ TEST(Slam, CausalIsAnotherTrajectoryOfTheSameBeams) {
 TEST(Slam, SaysWhatIsWrongWithItsWords) {
   const Workplace here;
   write_basin(here);
-  expect_error(here.call({"slam", "beams.csv", "-o", "o.tum"}), 2, {"--nav is missing"});
   for (const char* mount : {"dvl", "dvl=1,2", "=0,0,0,0,0,0"}) {
     expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--nav-mount", mount}), 2,
                  {"--nav-mount"});
@@ -188,12 +187,34 @@ TEST(Slam, SaysWhatIsWrongWithItsWords) {
                {"dlv", "compass"});
 }
 
+TEST(Slam, SaysWhatTellsTheVelocityWhereNoneWasMeasured) {
+  const Workplace here;
+  write_basin(here);
+  std::istringstream lines(here.read("nav.csv"));
+  std::string compass;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("dvl") == std::string::npos) compass += line + "\n";
+  }
+  here.write("compass.csv", compass);
+  const Outcome text =
+      here.call({"slam", "beams.csv", "--nav", "compass.csv", "--mount", "0,0,0,0,0,40.1", "-o", "o.tum"});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("not measured, but by the sonar: "));
+  const Outcome json =
+      here.call({"slam", "beams.csv", "--nav", "compass.csv", "--mount", "0,0,0,0,0,40.1", "-o", "o.tum", "--json"});
+  EXPECT_THAT(json.out, HasSubstr(R"("by_sonar": {"matched": )"));
+  EXPECT_THAT(json.out, HasSubstr(R"("drift_m": )"));
+  here.write("silent.csv", "time_s,bearing_rad,bin_length_m,intensities\n0,0,0.1,0,0\n1,3,0.1,0,0\n2,0.1,0.1,0,0\n");
+  expect_error(here.call({"slam", "silent.csv", "-o", "silent.tum"}), 1, {"silent.csv", "sweeps match"});
+  EXPECT_FALSE(here.has("silent.tum"));
+}
+
 TEST(Slam, SaysWhatIsMissingInTheNavigation) {
   const Workplace here;
   write_basin(here);
-  here.write("depth.csv", "time_s,source,quantity,x\n1,bar,depth,2\n2,bar,depth,2\n");
-  expect_error(here.call({"slam", "beams.csv", "--nav", "depth.csv", "-o", "o.tum"}), 1,
-               {"beams.csv", "no valid velocity and no heading"});
+  here.write("still.csv", "time_s,source,quantity,x,y,z\n1,dvl,velocity,0,0,0\n99,dvl,velocity,0,0,0\n");
+  expect_error(here.call({"slam", "beams.csv", "--nav", "still.csv", "-o", "o.tum"}), 1,
+               {"beams.csv", "no valid heading"});
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "--nav-offset", "5000", "-o", "o.tum"}), 1,
                {"do not overlap in time"});
   EXPECT_FALSE(here.has("o.tum"));

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "pingvox/slam/odometry.hpp"
@@ -296,6 +297,66 @@ TEST(SlamSmoother, BelievesACalibrationAsFarAsItsDeviations) {
   EXPECT_THAT(refused.error().message, HasSubstr("A50, not of dvl"));
 }
 
+// Without a velocity.
+
+Result<SlamSolution> solve_without_velocity(const Basin& basin, SlamOptions options, const NavSource& turning) {
+  options.seed = 3;
+  SlamSmoother smoother = smoother_of(basin, std::move(options));
+  add(smoother, {turning});
+  for (const Beam& beam : basin.beams()) smoother.add(beam);
+  return smoother.solve();
+}
+
+/// The turn rate of a gyro with a bias.
+NavSource gyro_of(const Basin& basin) {
+  NavSource gyro{"gyro", NavQuantity::kTurnRate, {}};
+  for (int i = 0; 0.2 * i <= basin.duration_s; ++i) {
+    NavSample sample;
+    sample.time_s = 0.2 * i;
+    const double turned_rad = Basin::at(sample.time_s + 0.01).yaw_rad - Basin::at(sample.time_s - 0.01).yaw_rad;
+    sample.value.z() = std::remainder(turned_rad, 2.0 * std::numbers::pi) / 0.02 + 3e-4;
+    gyro.samples.push_back(sample);
+  }
+  return gyro;
+}
+
+TEST(SlamSmoother, FindsTheWayOfAVehicleWithoutVelocityByItsSonar) {
+  const Basin basin{.duration_s = 400.0, .compass_cos = 0.02};
+  const auto solved = solve_without_velocity(basin, {}, basin.sources()[1]);
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_LT(error_m(solved->trajectory), 0.5);
+  ASSERT_TRUE(solved->report.by_sonar);
+  EXPECT_GT(solved->report.by_sonar->matched, 36U);
+  EXPECT_GT(solved->report.by_sonar->drift_m, 1.0);
+  EXPECT_EQ(solved->calibration.velocity_scale.value, 0.0);
+  const auto same = solve_without_velocity(basin, {}, basin.sources()[1]);
+  ASSERT_TRUE(same);
+  for (std::size_t i = 0; i < same->trajectory.poses().size(); ++i) {
+    ASSERT_EQ(same->trajectory.poses()[i].map_from_body.matrix(), solved->trajectory.poses()[i].map_from_body.matrix());
+  }
+}
+
+TEST(SlamSmoother, FindsTheWayByTheSonarAndAGyroThatDrifts) {
+  const Basin basin{.duration_s = 400.0};
+  const auto solved = solve_without_velocity(basin, {}, gyro_of(basin));
+  ASSERT_TRUE(solved) << solved.error().message;
+  const auto& poses = solved->trajectory.poses();
+  // A gyro does not know where north is: the way back to where it began does not depend on that.
+  EXPECT_NEAR((poses.back().map_from_body.translation() - poses.front().map_from_body.translation()).norm(),
+              (Basin::at(poses.back().time_s).place - Basin::at(poses.front().time_s).place).norm(), 0.5);
+  EXPECT_EQ(solved->report.heading, "gyro");
+}
+
+TEST(SlamSmoother, FindsTheWayByTheSonarAsOnBoard) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
+  SlamOptions causal;
+  causal.estimation = Estimation::kCausal;
+  const Basin basin{.duration_s = 400.0, .compass_cos = 0.02};
+  const auto solved = solve_without_velocity(basin, causal, basin.sources()[1]);
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_LT(error_m(solved->trajectory), 1.0);
+}
+
 // What it cannot use.
 
 void expect_refused(const SlamSmoother& smoother, const char* reason) {
@@ -304,22 +365,31 @@ void expect_refused(const SlamSmoother& smoother, const char* reason) {
   EXPECT_THAT(solved.error().message, HasSubstr(reason));
 }
 
-TEST(SlamSmoother, RefusesToGuessWithoutBeamsVelocityOrHeading) {
+TEST(SlamSmoother, RefusesToGuessWithoutBeamsOrHeading) {
   const Basin basin;
   const auto sources = basin.sources();
   SlamSmoother smoother = smoother_of(basin, {});
   add(smoother, sources);
   expect_refused(smoother, "no beams");
 
-  SlamSmoother blind = smoother_of(basin, {});
-  for (const Beam& beam : basin.beams()) blind.add(beam);
-  expect_refused(blind, "no valid velocity and no heading");
-  add(blind, {sources[0]});
-  expect_refused(blind, "no valid heading");
-  SlamSmoother still = smoother_of(basin, {});
-  for (const Beam& beam : basin.beams()) still.add(beam);
-  add(still, {sources[1]});
-  expect_refused(still, "no valid velocity over ground");
+  SlamSmoother turning = smoother_of(basin, {});
+  for (const Beam& beam : basin.beams()) turning.add(beam);
+  add(turning, {sources[0]});
+  expect_refused(turning, "no valid heading");
+}
+
+// Kills a trajectory that nothing tells: a vehicle that stands still, or goes on for ever.
+TEST(SlamSmoother, RefusesToGuessWithoutVelocityAndEchoes) {
+  const Basin basin{.duration_s = 100.0};
+  for (const bool has_heading : {true, false}) {
+    SlamSmoother smoother = smoother_of(basin, {});
+    if (has_heading) add(smoother, {basin.sources()[1]});
+    for (Beam beam : basin.beams()) {
+      std::ranges::fill(beam.intensities, std::uint8_t{0});
+      smoother.add(std::move(beam));
+    }
+    expect_refused(smoother, "0 of 9 sweeps match");
+  }
 }
 
 TEST(SlamSmoother, RefusesNavigationOfAnotherTime) {

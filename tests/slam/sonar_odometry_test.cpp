@@ -48,11 +48,10 @@ TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
   const Basin basin{.duration_s = 300.0, .compass_cos = 0.0};
   const HeadingSource heading = heading_of(basin);
   const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), &heading, SweepMotion::kAround);
-  ASSERT_TRUE(odometry);
-  EXPECT_FALSE(odometry->heading);
-  EXPECT_GT(odometry->matched, 24U);
+  EXPECT_TRUE(odometry.tells);
+  EXPECT_GT(odometry.matched, 24U);
   double sum = 0.0;
-  const auto& samples = odometry->velocity.samples;
+  const auto& samples = odometry.velocity.samples;
   for (const NavSample& sample : samples) {
     sum += (sample.value.head<2>() - body_velocity_at(sample.time_s)).squaredNorm();
   }
@@ -62,8 +61,8 @@ TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
 TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
   const Basin basin{.duration_s = 300.0};
   const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), nullptr, SweepMotion::kAround);
-  ASSERT_TRUE(odometry && odometry->heading);
-  const auto& samples = odometry->heading->samples;
+  ASSERT_TRUE(odometry.tells);
+  const auto& samples = odometry.heading->samples;
   const double start_rad = Basin::at(samples.front().time_s).yaw_rad;
   for (const NavSample& sample : samples) {
     const double turned_rad = Basin::at(sample.time_s).yaw_rad - start_rad;
@@ -78,13 +77,13 @@ TEST(SonarOdometry, TellsNothingWhereTheSonarSeesNothing) {
   std::vector<HeardSweep> sweeps = sweeps_of(basin);
   for (std::size_t k = 8; k < 14; ++k) sweeps[k].runs.clear();
   const auto odometry = sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kAround);
-  ASSERT_TRUE(odometry);
-  for (const NavSample& sample : odometry->velocity.samples) {
+  EXPECT_TRUE(odometry.tells);
+  for (const NavSample& sample : odometry.velocity.samples) {
     EXPECT_FALSE(sample.time_s > 80.0 && sample.time_s < 140.0) << sample.time_s;
   }
   for (HeardSweep& sweep : sweeps) sweep.runs.clear();
-  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kAround));
-  EXPECT_FALSE(sonar_odometry({}, mount_of(basin), &heading, SweepMotion::kAround));
+  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kAround).tells);
+  EXPECT_FALSE(sonar_odometry({}, mount_of(basin), &heading, SweepMotion::kAround).tells);
 }
 
 // Kills a search that is led by the end of the recording.
@@ -95,9 +94,9 @@ TEST(SonarOdometry, OnBoardTheVelocityDoesNotDependOnLaterSweeps) {
   const auto all = sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kBefore);
   sweeps.resize(10);
   const auto part = sonar_odometry(sweeps, mount_of(basin), &heading, SweepMotion::kBefore);
-  ASSERT_TRUE(all && part);
-  for (std::size_t i = 0; i + 1 < part->velocity.samples.size(); ++i) {
-    EXPECT_EQ(part->velocity.samples[i].value, all->velocity.samples[i].value) << i;
+  ASSERT_TRUE(all.tells && part.tells);
+  for (std::size_t i = 0; i + 1 < part.velocity.samples.size(); ++i) {
+    EXPECT_EQ(part.velocity.samples[i].value, all.velocity.samples[i].value) << i;
   }
 }
 

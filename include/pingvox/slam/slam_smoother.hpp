@@ -71,6 +71,13 @@ struct PlaceEllipse {
 };
 PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance);
 
+/// How the velocity was found where the navigation has none: each sweep is matched with those before it.
+struct SonarMotion {
+  std::size_t matched = 0;      ///< sweeps that match
+  double noise_m_sqrt_s = 0.0;  ///< standard deviation of the way after one second: how unevenly it is taken to move
+  double drift_m = 0.0;         ///< standard deviation of the last position by this motion alone, without pairs
+};
+
 struct SlamReport {
   std::size_t beams = 0;
   std::size_t sweeps = 0;
@@ -87,6 +94,7 @@ struct SlamReport {
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
   std::vector<std::string> not_observable;
+  std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity, and longest_gap_s is between matches
 };
 
 struct SlamSolution {
@@ -108,14 +116,17 @@ class SlamSmoother {
 
   /// Takes the next beam, which must be valid.
   void add(Beam beam);
-  /// Takes a sample of a source. Velocity, attitude, heading and depth are used; others are passed over, as are samples
-  /// that are not valid.
+  /// Takes a sample of a source. Velocity, attitude, heading and depth are used, and turn rates where there is no
+  /// heading; others are passed over, as are samples that are not valid.
   /// @return kCorrupt when a number is not finite
   Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
   Result<void> add(const NavLog& log);
 
   /// Solves for all that was added so far. May be called again after more was added.
-  /// @return kUnsupported saying what is missing: beams, velocity or heading, or a time at which all were recorded;
+  /// Without a velocity, the sonar tells how the vehicle moved.
+  /// @return kUnsupported saying what is missing: beams, a velocity or sweeps that match each other, a heading, or a
+  /// time
+  ///         at which all were recorded;
   ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke, or the
   ///         calibration is of another velocity
   Result<SlamSolution> solve() const;
