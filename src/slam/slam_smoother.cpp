@@ -238,17 +238,23 @@ struct Span {
   double from_s, to_s;
 };
 
+bool overlap(const Span& span, const TimeSeries& series) {
+  return series.from_s() < span.to_s && series.to_s() > span.from_s;
+}
+
+tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, const std::string& what) {
+  return fail(Error::Code::kUnsupported,
+              fmt::format("beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, the "
+                          "{} is from {:.3f} to {:.3f} s",
+                          beams.from_s, beams.to_s, what, series.from_s(), series.to_s()));
+}
+
 /// The time that is common to all that is needed.
 Result<Span> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
   const Span beams{beam_times_s.front(), beam_times_s.back()};
   Span span = beams;
   const auto cut = [&](const TimeSeries& series, const std::string& what) -> Result<void> {
-    if (series.from_s() >= span.to_s || series.to_s() <= span.from_s) {
-      return fail(Error::Code::kUnsupported,
-                  fmt::format("beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, the "
-                              "{} is from {:.3f} to {:.3f} s",
-                              beams.from_s, beams.to_s, what, series.from_s(), series.to_s()));
-    }
+    if (!overlap(span, series)) return no_overlap(beams, series, what);
     span = {std::max(span.from_s, series.from_s()), std::min(span.to_s, series.to_s())};
     return {};
   };
@@ -466,15 +472,22 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   if (!log) return tl::unexpected(log.error());
   if (velocity_of(*log, options)) return sources;
   const std::vector<HeadingSource> headings = headings_of(*log, options);
-  const SweepMotion motion = options.estimation == Estimation::kCausal ? SweepMotion::kBefore : SweepMotion::kAround;
-  SonarOdometry odometry = sonar_odometry(sweeps, sonar_mount(options.body_from_sonar),
-                                          headings.empty() ? nullptr : &headings.front(), motion);
+  if (options.estimation == Estimation::kCausal) {
+    return fail(Error::Code::kUnsupported,
+                "the navigation has no valid velocity over ground, which estimation as on board needs");
+  }
+  if (!headings.empty()) {
+    const Span beams{sweeps.front().from_s, sweeps.back().to_s};
+    const HeadingSource& main = headings.front();
+    if (!overlap(beams, main.yaw_rad)) return no_overlap(beams, main.yaw_rad, "heading of " + main.name);
+  }
+  SonarOdometry odometry =
+      sonar_odometry(sweeps, sonar_mount(options.body_from_sonar), headings.empty() ? nullptr : &headings.front());
   if (!odometry.tells) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("the navigation has no valid velocity over ground{}, and the sonar does not tell how the "
                             "vehicle moved: {} of {} sweeps match those before them",
-                            headings.empty() ? " and no heading" : "", odometry.matched,
-                            std::max<std::size_t>(sweeps.size(), 1) - 1));
+                            headings.empty() ? " and no heading" : "", odometry.matched, sweeps.size() - 1));
   }
   // One without a valid sample would be in its way.
   std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });

@@ -26,6 +26,8 @@ constexpr double kMaxChange_m_s = 0.25, kMaxMove = 0.5;
 constexpr double kMaxTurnChange_rad_s = 2.5 * kDegree_rad, kMaxHeadingError_rad = 4.0 * kDegree_rad;
 /// Cells in the reach of the sonar, in each round: coarse ones bear echoes that are not where they should be yet.
 constexpr std::array kCellsOfReach = {25.0, 50.0, 100.0, 100.0};
+/// What is farther from the vehicle than this, in reaches, is left out.
+constexpr double kFarthest = 3.0;
 constexpr double kMinScore = 0.35;
 constexpr std::size_t kMinEchoes = 20;
 /// A peak that is wider than this along some direction is one of a straight wall: it does not tell the way along it.
@@ -69,9 +71,9 @@ Eigen::Matrix2d way_by_velocity(double from_s, double to_s, double turn_rad_s, c
   return way;
 }
 
-/// The echoes of a sweep around the vehicle at a time, before or after which it moves the same way. The axes are those
-/// of the heading's zero; where no heading is known those of the vehicle.
-std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, const Motion& motion,
+/// The echoes of a sweep within a distance of the vehicle at a time, before or after which it moves the same way. The
+/// axes are those of the heading's zero; where no heading is known those of the vehicle.
+std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, double within_m, const Motion& motion,
                                    const Vehicle& vehicle) {
   const SonarMount& mount = vehicle.body_from_sonar;
   std::vector<Eigen::Vector2d> points_m;
@@ -79,8 +81,9 @@ std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, const
     const double ray_rad = mount.yaw_rad + run.bearing_rad;
     const Eigen::Vector2d in_body =
         mount.place_m + run.middle_m * Eigen::Vector2d(std::cos(ray_rad), std::sin(ray_rad));
-    points_m.emplace_back(way_by_velocity(zero_s, run.time_s, motion.turn_rad_s, vehicle) * motion.velocity_m_s +
-                          rotation2(yaw_at(run.time_s, zero_s, motion.turn_rad_s, vehicle)) * in_body);
+    const Eigen::Vector2d at = way_by_velocity(zero_s, run.time_s, motion.turn_rad_s, vehicle) * motion.velocity_m_s +
+                               rotation2(yaw_at(run.time_s, zero_s, motion.turn_rad_s, vehicle)) * in_body;
+    if (at.norm() < within_m) points_m.push_back(at);
   }
   return points_m;
 }
@@ -123,20 +126,24 @@ std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> 
   const double from_s = middle_s(first), to_s = middle_s(second), duration_s = to_s - from_s;
   if (first.runs.size() < kMinEchoes || second.runs.size() < kMinEchoes || !(duration_s > 0.0)) return std::nullopt;
   const double reach_m = reach_of(sweeps.subspan(k, 2)), cell_m = reach_m / cells_of_reach;
-  const double most_m = std::min(kMaxChange_m_s * duration_s, kMaxMove * reach_m);
-  const bool has_heading = vehicle.heading != nullptr;
-  const MatchWindow window{static_cast<int>(std::ceil(most_m / cell_m)),
-                           has_heading ? kMaxHeadingError_rad : kMaxTurnChange_rad_s * duration_s};
-  std::vector<Eigen::Vector2d> around = place(first, from_s, guess.in_first, vehicle);
+  const double within_m = kFarthest * reach_m;
+  std::vector<Eigen::Vector2d> around = place(first, from_s, within_m, guess.in_first, vehicle);
   if (k > 0) {
-    const std::vector<Eigen::Vector2d> before = place(sweeps[k - 1], from_s, guess.until_first, vehicle);
+    const std::vector<Eigen::Vector2d> before = place(sweeps[k - 1], from_s, within_m, guess.until_first, vehicle);
     around.insert(around.end(), before.begin(), before.end());
   }
+  const std::vector<Eigen::Vector2d> points_m = place(second, to_s, within_m, guess.in_second, vehicle);
+  if (around.empty() || points_m.size() < kMinEchoes) return std::nullopt;
+  const double most_m = std::min(kMaxChange_m_s * duration_s, kMaxMove * reach_m);
+  const bool has_heading = vehicle.heading != nullptr;
+  const MatchWindow window{
+      static_cast<int>(std::ceil(most_m / cell_m)),
+      has_heading ? kMaxHeadingError_rad : std::min(kMaxTurnChange_rad_s * duration_s, std::numbers::pi)};
   const auto [velocity_m_s, expected_rad_s] = guess.between;
   const Pose2 expected{way_by_velocity(from_s, to_s, expected_rad_s, vehicle) * velocity_m_s,
                        has_heading ? 0.0 : expected_rad_s * duration_s};
-  const auto found = PointField(around, cell_m, window.cells)
-                         .match(place(second, to_s, guess.in_second, vehicle), expected, window, kMinScore);
+  if (!(expected.place_m.norm() < within_m)) return std::nullopt;
+  const auto found = PointField(around, cell_m, window.cells).match(points_m, expected, window, kMinScore);
   if (!found) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(found->covariance.topLeftCorner<2, 2>().eval());
   if (std::sqrt(spread.eigenvalues()[1]) > kMaxSpread_cells * cell_m) return std::nullopt;
@@ -174,17 +181,12 @@ Steps steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehi
 }
 
 /// The steps once more, each where those before and after it lead.
-Steps refine(const Steps& steps, std::span<const HeardSweep> sweeps, double cells_of_reach, SweepMotion which,
-             const Vehicle& vehicle) {
+Steps refine(const Steps& steps, std::span<const HeardSweep> sweeps, double cells_of_reach, const Vehicle& vehicle) {
   Steps refined(steps.size());
-  // On board, what comes later is known of the first sweep only, which has nothing before it.
-  const auto motion = [&](double place, std::size_t before, std::size_t after) {
-    return motion_at(place, before, which == SweepMotion::kAround || before == 0 ? after : steps.size(), steps);
-  };
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const auto at = static_cast<double>(k);
-    const Guess guess{motion(at - 1.0, k, k), motion(at - 0.5, k, k), motion(at + 0.5, k + 1, k + 1),
-                      motion(at, k, k + 1)};
+    const Guess guess{motion_at(at - 1.0, k, k, steps), motion_at(at - 0.5, k, k, steps),
+                      motion_at(at + 0.5, k + 1, k + 1, steps), motion_at(at, k, k + 1, steps)};
     if (const auto match = match_with_next(k, sweeps, guess, cells_of_reach, vehicle)) refined[k] = match->motion;
   }
   return refined;
@@ -213,13 +215,13 @@ VelocitySource sonar_velocity(const NavSource& source) {
 }
 
 SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
-                             const HeadingSource* heading, SweepMotion which) {
+                             const HeadingSource* heading) {
   SonarOdometry odometry{{std::string(kSonarSource), NavQuantity::kVelocity, {}},
                          {std::string(kSonarSource), NavQuantity::kHeading, {}}};
   if (sweeps.size() < 2) return odometry;
   const Vehicle vehicle{body_from_sonar, heading};
   Steps steps = steps_at_one_speed(sweeps, vehicle);
-  for (const double cells : kCellsOfReach) steps = refine(steps, sweeps, cells, which, vehicle);
+  for (const double cells : kCellsOfReach) steps = refine(steps, sweeps, cells, vehicle);
 
   std::vector<NavSample>&velocities = odometry.velocity.samples, &headings = odometry.heading.samples;
   const double begin_s = sweeps.front().from_s, end_s = sweeps.back().to_s;

@@ -15,12 +15,6 @@ namespace pingvox {
 /// The name of the sources that are made here.
 inline constexpr std::string_view kSonarSource = "sonar odometry";
 
-/// Which matches tell how a vehicle moved during a sweep.
-enum class SweepMotion {
-  kAround,  ///< with the sweep before and the one after
-  kBefore,  ///< with the sweep before only, as on board
-};
-
 struct SonarOdometry {
   NavSource velocity;       ///< in the frame of the body, in the middle between sweeps that match
   NavSource heading;        ///< what it turned, from 0; only of a vehicle whose heading is not known
@@ -33,7 +27,7 @@ struct SonarOdometry {
 /// along a straight wall, or one of two that are as good, says nothing; there the velocity is taken to change evenly.
 /// @param heading  of the body; nullptr: not known
 SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
-                             const HeadingSource* heading, SweepMotion which);
+                             const HeadingSource* heading);
 
 /// The velocity of such odometry. REQUIRES a sample.
 VelocitySource sonar_velocity(const NavSource& source);
