@@ -16,8 +16,6 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// Standard deviations of what is believed beforehand.
 constexpr double kFirstPosition_m = 1e-3;
-/// ... and of what is known: a scale or an angle that nothing has.
-constexpr double kHeld = 1e-6;
 constexpr double kVelocityYaw_rad = 10.0 * kDegree_rad, kVelocityScale = 0.005, kWall = 0.5, kLever_m = 0.3;
 constexpr double kConstant_rad = 3.0 * kDegree_rad, kHarmonic_rad = 5.0 * kDegree_rad;
 /// A source whose headings differ more than this from the main one's says where it turned, not where north is.

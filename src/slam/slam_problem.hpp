@@ -26,6 +26,9 @@ inline constexpr std::size_t heading(std::size_t source) {
 }
 }  // namespace global
 
+/// Standard deviation of an unknown that is known: no recording tells it.
+inline constexpr double kHeld = 1e-6;
+
 struct Unknowns {
   /// x, y of the velocity's source [m], and the body's yaw less that of the main heading [rad].
   std::vector<Eigen::Vector3d> knots;

@@ -81,6 +81,7 @@ std::vector<std::string> not_observable(const SlamSolver& solver) {
   const std::vector<Estimate> priors = solver.problem().global_priors();
   for (std::size_t g = 0; g < priors.size(); ++g) {
     const auto i = static_cast<Eigen::Index>(g);
+    if (priors[g].deviation <= kHeld) continue;
     const double before = priors[g].deviation * priors[g].deviation;
     if (solver.global_covariance()(i, i) > kMostOfVariance * before) unknown.push_back(names[g]);
   }
