@@ -60,7 +60,7 @@ TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
 }
 
 TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
-  const Basin basin{.duration_s = 300.0};
+  const Basin basin{.duration_s = 150.0};
   const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), nullptr);
   ASSERT_TRUE(odometry.tells);
   const auto& samples = odometry.heading.samples;
