@@ -24,8 +24,8 @@ struct Method {
 };
 
 constexpr Method kReckoning = {"dead reckoning", Matching::kNone, Estimation::kBatch};
-constexpr Method kBatch = {"batch", Matching::kPairs, Estimation::kBatch};
-constexpr Method kCausal = {"causal", Matching::kPairs, Estimation::kCausal};
+constexpr Method kBatch = {"slam", Matching::kPairs, Estimation::kBatch};
+constexpr Method kCausal = {"slam --causal", Matching::kPairs, Estimation::kCausal};
 
 struct Solved {
   SlamSolution solution;
