@@ -15,7 +15,7 @@ namespace pingvox {
 /// Which part of a map, and how far distances go.
 struct DistanceFieldOptions {
   double min_z_m = -0.5, max_z_m = 0.5;  ///< heights of the layer, map frame; finite, min below max
-  double truncation_m = 1.0;               ///< > 0; cut to 64 cells of the map
+  double truncation_m = 1.0;             ///< > 0; cut to 64 cells of the map
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
