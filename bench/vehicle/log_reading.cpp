@@ -55,7 +55,7 @@ Bytes seanet_frame(std::size_t beam) {
   for (const char digit : fmt::format("{:04X}", length)) frame.push_back(static_cast<std::uint8_t>(digit));
   put(frame, length, 2);
   put_bytes(frame, {2, 255, 0, 2, 0x80, 2});
-  put(frame, length - 7, 2);
+  put(frame, length - 8, 2);
   put_bytes(frame, {0x11, 0x10, 0});
   put(frame, 0x2307, 2);
   put(frame, 60, 2);
