@@ -90,9 +90,9 @@ Result<Command> slam_command(const Args& args) {
   const OptionTable table{
       "slam",
       "Estimates where the vehicle was, from beams and navigation: velocity over ground and at least one heading. The\n"
-      "mounting angles of the sensors and the deviation of the headings are estimated, too. Without a velocity the\n"
-      "sonar tells how the vehicle moved, with a heading or turn rates; without any it does where the vehicle hardly\n"
-      "turns. Of point scans, whose poses are taken as odometry, it corrects the drift where a place is seen again.",
+      "mounting angles of the sensors and the deviation of the headings are estimated, too. Without a velocity, how\n"
+      "the vehicle moved is estimated from the sonar; this needs a heading or turn rates, unless the vehicle hardly\n"
+      "turns. For point scans, whose poses are taken as odometry, the drift is corrected where a place is seen again.",
       {{"LOG", Positional::Count::kMany,
         "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
         store_each(command.logs)}},
