@@ -19,7 +19,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::string_view kUdp = "udp://";
+constexpr std::string_view kUdp = "udp://", kTcp = "tcp://";
 
 struct HostAndPort {
   std::string host, port;
@@ -76,7 +76,7 @@ int make_raw(int terminal, speed_t speed) {
 }
 
 /// "udp://HOST:PORT" of a socket.
-std::string address_of(int socket) {
+std::string address_of(int socket, std::string_view protocol) {
   sockaddr_storage own = {};
   socklen_t size = sizeof own;
   std::array<char, NI_MAXHOST> host = {};
@@ -87,33 +87,37 @@ std::string address_of(int socket) {
     return {};
   }
   const bool is_v6 = own.ss_family == AF_INET6;
-  return fmt::format("{}{}{}{}:{}", kUdp, is_v6 ? "[" : "", host.data(), is_v6 ? "]" : "", port.data());
+  return fmt::format("{}{}{}{}:{}", protocol, is_v6 ? "[" : "", host.data(), is_v6 ? "]" : "", port.data());
 }
 
 }  // namespace
 
 Result<Link> Link::open(const std::string& address) {
   if (address.starts_with(kUdp)) return open_socket(address, Kind::kSocket);
+  if (address.starts_with(kTcp)) return open_socket(address, Kind::kStream);
   if (address.starts_with('/')) return open_serial_port(address);
   return fail(Error::Code::kBadOption,
-              fmt::format("'{}': must be udp://HOST:PORT, or the path of a serial port", address));
+              fmt::format("'{}': must be udp://HOST:PORT, tcp://HOST:PORT, or the path of a serial port", address));
 }
 
 Result<Link> Link::listen(const std::string& address) {
   if (address.starts_with(kUdp)) return open_socket(address, Kind::kListeningSocket);
+  if (address.starts_with(kTcp)) return open_socket(address, Kind::kListeningStream);
   if (address == "pty") return open_pseudo_terminal();
-  return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT or pty", address));
+  return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT, tcp://HOST:PORT or pty", address));
 }
 
 Result<Link> Link::open_socket(const std::string& address, Kind kind) {
-  const std::optional<HostAndPort> parts = host_and_port(std::string_view(address).substr(kUdp.size()));
-  const bool listens = kind == Kind::kListeningSocket;
+  const bool listens = kind == Kind::kListeningSocket || kind == Kind::kListeningStream;
+  const bool is_stream = kind == Kind::kStream || kind == Kind::kListeningStream;
+  const std::string_view protocol = is_stream ? kTcp : kUdp;
+  const std::optional<HostAndPort> parts = host_and_port(std::string_view(address).substr(protocol.size()));
   if (!parts || (parts->host.empty() && !listens)) {
-    return fail(Error::Code::kBadOption, fmt::format("'{}': must be udp://HOST:PORT", address));
+    return fail(Error::Code::kBadOption, fmt::format("'{}': must be {}HOST:PORT", address, protocol));
   }
   addrinfo wanted = {};
   wanted.ai_family = AF_UNSPEC;
-  wanted.ai_socktype = SOCK_DGRAM;
+  wanted.ai_socktype = is_stream ? SOCK_STREAM : SOCK_DGRAM;
   wanted.ai_flags = AI_NUMERICSERV | AI_PASSIVE;
   addrinfo* found = nullptr;
   if (const int error =
@@ -122,15 +126,22 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
 
-  Descriptor socket(::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  Descriptor socket(::socket(found->ai_family, wanted.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket.valid()) return os_error(address, errno);
   // Room for what comes while a sweep is mapped; the system may allow less.
   constexpr int kBuffer_bytes = 4 << 20;
   static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &kBuffer_bytes, sizeof kBuffer_bytes));
+  // A server that is started again must get its port at once.
+  constexpr int kYes = 1;
+  if (kind == Kind::kListeningStream) {
+    static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &kYes, sizeof kYes));
+  }
   const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
                              : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
-  if (status != 0) return os_error(address, errno);
-  const std::string own = listens ? address_of(socket.get()) : address;
+  const bool is_connecting = kind == Kind::kStream && errno == EINPROGRESS;
+  if (status != 0 && !is_connecting) return os_error(address, errno);
+  if (kind == Kind::kListeningStream && ::listen(socket.get(), 1) != 0) return os_error(address, errno);
+  const std::string own = listens ? address_of(socket.get(), protocol) : address;
   return Link(kind, own, std::move(socket));
 }
 
@@ -171,7 +182,20 @@ Result<Link> Link::open_pseudo_terminal() {
   return link;
 }
 
+/// Of the listening TCP end: the next connection waits until this one ends.
+Result<std::size_t> Link::read_connection(std::span<std::uint8_t> to) {
+  if (!other_end_.valid())
+    other_end_ = Descriptor(::accept4(file_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!other_end_.valid()) return std::size_t{0};
+  const ssize_t got = ::recv(other_end_.get(), to.data(), to.size(), 0);
+  if (got > 0) return static_cast<std::size_t>(got);
+  const bool is_idle = got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
+  if (!is_idle) other_end_ = Descriptor(-1);
+  return std::size_t{0};
+}
+
 Result<std::size_t> Link::read(std::span<std::uint8_t> to) {
+  if (kind_ == Kind::kListeningStream) return read_connection(to);
   sockaddr_storage sender = {};
   socklen_t size = sizeof sender;
   const ssize_t got = kind_ == Kind::kTerminal ? ::read(file_.get(), to.data(), to.size())
@@ -179,7 +203,8 @@ Result<std::size_t> Link::read(std::span<std::uint8_t> to) {
                                                             reinterpret_cast<sockaddr*>(&sender), &size);
   if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) return std::size_t{0};
   if (got < 0) return os_error(address_, errno);
-  if (got == 0 && kind_ == Kind::kTerminal) return fail(Error::Code::kIo, fmt::format("{}: hung up", address_));
+  if (got == 0 && (kind_ == Kind::kTerminal || kind_ == Kind::kStream))
+    return fail(Error::Code::kIo, fmt::format("{}: hung up", address_));
   if (kind_ == Kind::kListeningSocket) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(&sender);
     host_.assign(bytes, bytes + size);
@@ -190,11 +215,16 @@ Result<std::size_t> Link::read(std::span<std::uint8_t> to) {
 Result<void> Link::write(std::span<const std::uint8_t> bytes) {
   // No bytes would be an empty datagram.
   if (bytes.empty() || (kind_ == Kind::kListeningSocket && host_.empty())) return {};
+  if (kind_ == Kind::kListeningStream) {
+    // A host that has gone is noticed by `read`.
+    if (other_end_.valid()) static_cast<void>(::send(other_end_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL));
+    return {};
+  }
   const auto* host = reinterpret_cast<const sockaddr*>(host_.data());
-  const ssize_t sent = kind_ == Kind::kTerminal ? ::write(file_.get(), bytes.data(), bytes.size())
-                       : kind_ == Kind::kSocket ? ::send(file_.get(), bytes.data(), bytes.size(), 0)
-                                                : ::sendto(file_.get(), bytes.data(), bytes.size(), 0, host,
-                                                           static_cast<socklen_t>(host_.size()));
+  const ssize_t sent = kind_ == Kind::kTerminal          ? ::write(file_.get(), bytes.data(), bytes.size())
+                       : kind_ != Kind::kListeningSocket ? ::send(file_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL)
+                                                         : ::sendto(file_.get(), bytes.data(), bytes.size(), 0, host,
+                                                                    static_cast<socklen_t>(host_.size()));
   const bool is_full = errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
   if (sent < 0 && !is_full) return os_error(address_, errno);
   return {};

@@ -1,6 +1,7 @@
 #include "pingvox/io/mavlink.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace pingvox {
 namespace {
@@ -124,6 +125,30 @@ MavlinkRead read_mavlink(std::span<const std::uint8_t> bytes) {
   const auto sent = static_cast<unsigned>(bytes[header + payload] | (bytes[header + payload + 1] << 8));
   frame.check = check_of(frame, bytes.subspan(1, header - 1), sent);
   return read;
+}
+
+std::vector<std::uint8_t> make_mavlink_frame(std::uint32_t message, std::span<const std::uint8_t> payload,
+                                             const MavlinkSender& sender) {
+  const Definition* const definition = definition_of(message);
+  assert(definition != nullptr && payload.size() <= definition->bytes);
+  // Zeros at the end are not sent, but for the first byte.
+  while (payload.size() > 1 && payload.back() == 0) payload = payload.first(payload.size() - 1);
+  const auto byte_of = [message](unsigned shift) { return static_cast<std::uint8_t>((message >> shift) & 0xffU); };
+  std::vector<std::uint8_t> frame = {kMagic2,
+                                     static_cast<std::uint8_t>(payload.size()),
+                                     0,
+                                     0,
+                                     sender.sequence,
+                                     sender.system,
+                                     sender.component,
+                                     byte_of(0),
+                                     byte_of(8),
+                                     byte_of(16)};
+  frame.insert(frame.end(), payload.begin(), payload.end());
+  const unsigned sum = Checksum().add(std::span(frame).subspan(1)).add(definition->extra).value();
+  frame.push_back(static_cast<std::uint8_t>(sum & 0xffU));
+  frame.push_back(static_cast<std::uint8_t>(sum >> 8U));
+  return frame;
 }
 
 void MavlinkStream::push(std::span<const std::uint8_t> bytes, const std::function<void(const MavlinkFrame&)>& take) {

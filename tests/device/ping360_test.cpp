@@ -311,7 +311,7 @@ TEST(ReplaySource, KeepsTheRhythmOfTheLogAtItsSpeed) {
 }
 
 TEST(Link, RefusesAddressesThatItDoesNotKnow) {
-  for (const char* address : {"", "tcp://a:1", "udp://", "udp://127.0.0.1", "udp://127.0.0.1:x",
+  for (const char* address : {"", "http://a:1", "tcp://a", "udp://", "udp://127.0.0.1", "udp://127.0.0.1:x",
                               "udp://127.0.0.1:70000", "/dev/null@1", "/dev/null@115200x"}) {
     const Result<Link> link = Link::open(address);
     ASSERT_FALSE(link) << address;

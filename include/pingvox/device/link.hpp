@@ -16,38 +16,44 @@ namespace pingvox {
 class Link {
  public:
   /// Opens the host's end.
-  /// @param address  "udp://HOST:PORT", or a serial port, "/dev/ttyUSB0" or "/dev/ttyUSB0@57600" (115200 baud, 8N1)
+  /// @param address  "udp://HOST:PORT", "tcp://HOST:PORT", or a serial port, "/dev/ttyUSB0" or "/dev/ttyUSB0@57600"
+  ///                 (115200 baud, 8N1). A TCP connection that cannot be made is an error of `read`.
   /// @return kBadOption when it is none of these, kIo when it cannot be opened
   static Result<Link> open(const std::string& address);
   /// Opens the end that waits for the other one: an emulator's, or that of a host to which a vehicle sends.
-  /// @param address  "udp://HOST:PORT" (no host: all addresses of this one; port 0: one that is free), or "pty" for a
-  ///                 new pseudo terminal
+  /// @param address  "udp://HOST:PORT" (no host: all addresses of this one; port 0: one that is free),
+  /// "tcp://HOST:PORT"
+  ///                 likewise, for one connection at a time, or "pty" for a new pseudo terminal
   static Result<Link> listen(const std::string& address);
 
   /// Address to open the other end: with the port that was chosen, or the path of the terminal.
   const std::string& address() const { return address_; }
   /// For poll().
-  int descriptor() const { return file_.get(); }
+  int descriptor() const {
+    return kind_ == Kind::kListeningStream && other_end_.valid() ? other_end_.get() : file_.get();
+  }
 
   /// Reads what has arrived, of datagrams one.
   /// @return 0: nothing; kIo when the line is lost
   Result<std::size_t> read(std::span<std::uint8_t> to);
-  /// Sends bytes; what the line does not take now is lost. Before the host sent anything, a listening UDP end sends
-  /// nothing. @return kIo when the line is lost
+  /// Sends bytes; what the line does not take now is lost. A listening end sends nothing before the host sent anything
+  /// (UDP) or connected (TCP). @return kIo when the line is lost
   Result<void> write(std::span<const std::uint8_t> bytes);
 
  private:
-  enum class Kind { kSocket, kListeningSocket, kTerminal };
+  enum class Kind { kSocket, kListeningSocket, kStream, kListeningStream, kTerminal };
   Link(Kind kind, std::string address, Descriptor file)
       : kind_(kind), address_(std::move(address)), file_(std::move(file)) {}
   static Result<Link> open_socket(const std::string& address, Kind kind);
   static Result<Link> open_serial_port(const std::string& address);
   static Result<Link> open_pseudo_terminal();
+  Result<std::size_t> read_connection(std::span<std::uint8_t> to);
 
   Kind kind_;
   std::string address_;
   Descriptor file_;
-  Descriptor other_end_{-1};             ///< of a pseudo terminal, which hangs up when nobody has it open
+  /// Of a pseudo terminal, which hangs up when nobody has it open; of a listening TCP end the connection.
+  Descriptor other_end_{-1};
   std::vector<std::uint8_t> host_ = {};  ///< socket address of the last datagram's sender
 };
 

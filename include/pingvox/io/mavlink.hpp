@@ -35,6 +35,13 @@ struct MavlinkRead {
 };
 MavlinkRead read_mavlink(std::span<const std::uint8_t> bytes);
 
+struct MavlinkSender {
+  std::uint8_t sequence = 0, system = 1, component = 1;
+};
+/// A frame of MAVLink 2. REQUIRES a message that `read_mavlink` can check, and at most its whole payload.
+std::vector<std::uint8_t> make_mavlink_frame(std::uint32_t message, std::span<const std::uint8_t> payload,
+                                             const MavlinkSender& sender);
+
 /// Finds frames in bytes that come piece by piece, as from a serial line. Only frames whose checksum is right come out:
 /// without one nothing tells a frame from bytes that look like it.
 class MavlinkStream {

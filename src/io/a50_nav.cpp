@@ -1,0 +1,56 @@
+#include "pingvox/io/a50_nav.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/dvl_a50.hpp"
+#include "io/nav_sources.hpp"
+
+namespace pingvox {
+
+struct A50Nav::State {
+  /// When a report was true, by its own words: it says how late it was sent. Positions do not, but they have a time of
+  /// the device: delays only add, so the smallest difference of the two clocks is the nearest; one that jumps means
+  /// that the device's clock was set.
+  double time_of(const A50Report& report, double received_s) {
+    if (report.kind != A50Report::Kind::kPosition || !report.made_s) return received_s - report.latency_s;
+    constexpr double kJump_s = 2.0;
+    const double start_s = received_s - *report.made_s;
+    const bool is_new = !start_s_ || std::fabs(start_s - *start_s_) > kJump_s;
+    start_s_ = is_new ? start_s : std::min(*start_s_, start_s);
+    return *start_s_ + *report.made_s;
+  }
+
+  DeadReckoningFrame frame;
+
+ private:
+  std::optional<double> start_s_;  ///< of the device's clock
+};
+
+A50Nav::A50Nav() : state_(std::make_unique<State>()) {}
+A50Nav::A50Nav(A50Nav&&) noexcept = default;
+A50Nav& A50Nav::operator=(A50Nav&&) noexcept = default;
+A50Nav::~A50Nav() = default;
+
+std::optional<std::vector<NavSource>> A50Nav::add(std::string_view line, double received_s) {
+  const auto members = json_members(line);
+  if (!members) return std::nullopt;
+  const A50Reading report = a50_report(*members);
+  if (!report) return std::nullopt;
+  NavSources sources;
+  if (report->kind != A50Report::Kind::kOther) {
+    add_a50_report(sources, "A50", state_->time_of(*report, received_s), *report, state_->frame);
+  }
+  return sources.take();
+}
+
+std::string with_timestamp(std::string_view line, double received_s) {
+  const auto members = json_members(line);
+  if (!members || members->empty()) return std::string(line);
+  const std::size_t brace = line.find('{');
+  return fmt::format(R"({{"timestamp":{:.6f},{})", received_s, line.substr(brace + 1));
+}
+
+}  // namespace pingvox

@@ -1,0 +1,192 @@
+// Receivers of navigation and their emulators.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pingvox/device/a50_receiver.hpp"
+#include "pingvox/device/link.hpp"
+#include "pingvox/device/mavlink_receiver.hpp"
+#include "pingvox/device/nav_emulator.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/nav.hpp"
+#include "pingvox/nav/live_poses.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::HasSubstr;
+
+/// Heads south-west of the origin, below it, rolled and pitched, and moves.
+Pose pose_at(double time_s) {
+  return pose_from_rpy({-3.0 + 0.2 * time_s, -2.0, -1.0 - 0.1 * time_s}, 0.1, -0.2, -2.5 + 0.05 * time_s);
+}
+
+void expect_near(const Pose& a, const Pose& b, double tolerance) {
+  EXPECT_LT((a.matrix() - b.matrix()).cwiseAbs().maxCoeff(), tolerance) << a.matrix() << "\n\n" << b.matrix();
+}
+
+/// Reads until a sample came; lines take a moment.
+std::vector<NavSource> read_some(A50Receiver& receiver, double now_s) {
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<NavSource> samples = receiver.read(now_s);
+    if (!samples.empty()) return samples;
+    pollfd file = {receiver.descriptor(), POLLIN, 0};
+    ::poll(&file, 1, 5);
+  }
+  return {};
+}
+
+/// Lets a host that connects in.
+void let_in(Link& line, A50Receiver& receiver, double now_s) {
+  std::array<std::uint8_t, 256> bytes;
+  for (int i = 0; i < 2000; ++i) {
+    receiver.read(now_s);
+    ASSERT_TRUE(line.read(bytes));
+    const int before = line.descriptor();
+    pollfd file = {before, POLLIN, 0};
+    ::poll(&file, 1, 1);
+    ASSERT_TRUE(line.read(bytes));
+    if (line.descriptor() != before || i > 20) return;
+  }
+}
+
+// Kills a wrong sign or order of the angles, and axes that are not converted, in either direction.
+TEST(NavEmulator, MavlinkSaysWhereTheVehicleIs) {
+  NavEmulator vehicle({.reports_per_s = 20.0}, NavEmulator::mavlink(pose_at));
+  MavlinkNav nav;
+  LivePoses poses;
+  std::size_t frames = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double now_s = i / 16.0;  // a little slower than it could
+    for (const NavEmulator::Message& message : vehicle.send(now_s)) {
+      const MavlinkRead read = read_mavlink(message);
+      ASSERT_TRUE(read.frame);
+      ASSERT_EQ(read.frame->check, MavlinkFrame::Check::kRight);
+      ASSERT_EQ(read.length, message.size());
+      EXPECT_EQ(read.frame->sequence, frames++ % 256);
+      for (const MavlinkNav::Report& report : nav.add(*read.frame, now_s)) {
+        poses.add(report.source, report.quantity, report.sample);
+        if (report.quantity != NavQuantity::kPressure) continue;
+        EXPECT_NEAR(report.sample.value.x(), 101'325.0 + 1025.0 * 9.80665 * (1.0 + 0.1 * now_s), 10.0);
+      }
+    }
+  }
+  EXPECT_EQ(frames, 4U * 60U);
+  const auto pose = poses.at(2.0);
+  ASSERT_TRUE(pose);
+  expect_near(*pose, pose_at(2.0), 1e-3);
+}
+
+TEST(NavEmulator, FaultsAreThoseThatWereAskedFor) {
+  NavEmulator vehicle({.reports_per_s = 1000.0, .lost = 0.1, .doubled = 0.2, .damaged = 0.3},
+                      NavEmulator::mavlink(pose_at));
+  std::size_t right = 0, wrong = 0;
+  for (double now_s = 0.0; right + wrong < 8000; now_s += 1e-3) {
+    for (const NavEmulator::Message& message : vehicle.send(now_s)) {
+      const MavlinkRead read = read_mavlink(message);
+      (read.frame && read.frame->check == MavlinkFrame::Check::kRight ? right : wrong)++;
+    }
+  }
+  // A bit in the address of a message makes it another one, which is damage that nothing tells.
+  EXPECT_NEAR(static_cast<double>(wrong) / static_cast<double>(right + wrong), 0.3, 0.03);
+  EXPECT_FALSE(NavEmulatorOptions{.lost = 0.6}.validate());
+  EXPECT_FALSE(NavEmulatorOptions{.reports_per_s = std::nan("")}.validate());
+}
+
+// The recording is what `map --nav` reads: the same samples, on the clock of the host.
+TEST(A50Receiver, ConnectsAgainAndRecordsWhatItReads) {
+  std::string folder = (std::filesystem::temp_directory_path() / "pingvox-a50-XXXXXX").string();
+  ASSERT_TRUE(::mkdtemp(folder.data()));
+  const std::string path = folder + "/dive.jsonl";
+  Result<Link> line = Link::listen("tcp://127.0.0.1:0");
+  ASSERT_TRUE(line) << line.error().message;
+  const std::string address = line->address();
+  Result<RecordFile> recorder = RecordFile::create(path);
+  ASSERT_TRUE(recorder);
+  constexpr double kStart_s = 1'764'000'000.0;
+  Result<A50Receiver> receiver = A50Receiver::make(address, *std::move(recorder), kStart_s);
+  ASSERT_TRUE(receiver);
+
+  LivePoses poses;
+  std::size_t samples = 0;
+  double now_s = 0.0;
+  constexpr std::size_t kRounds = 100;
+  NavEmulator dvl({.reports_per_s = 10.0}, NavEmulator::a50(pose_at));
+  for (std::size_t round = 1; round <= kRounds; ++round) {
+    SCOPED_TRACE(round);
+    let_in(*line, *receiver, now_s);
+    for (const NavEmulator::Message& message : dvl.send(now_s)) ASSERT_TRUE(line->write(message));
+    for (int i = 0; i < 2000 && receiver->status().reports < 2 * round; ++i) {
+      for (const NavSource& said : read_some(*receiver, now_s)) {
+        samples += said.samples.size();
+        for (const NavSample& sample : said.samples) poses.add(said.name, said.quantity, sample);
+      }
+    }
+    ASSERT_EQ(receiver->status().reports, 2 * round);
+    EXPECT_EQ(receiver->status().connections, round);
+    line = Link::listen("tcp://127.0.0.1:0");  // the DVL is gone
+    for (int i = 0; i < 2000 && receiver->status().is_connected; ++i) receiver->read(now_s);
+    EXPECT_FALSE(receiver->status().is_connected);
+    line = Link::listen(address);
+    ASSERT_TRUE(line) << line.error().message;
+    now_s += 1.0;
+  }
+  EXPECT_EQ(receiver->status().damaged, 0U);
+  const auto pose = poses.at(50.0);
+  ASSERT_TRUE(pose);
+  expect_near(*pose, pose_at(50.0), 1e-3);
+
+  const Result<FileBytes> bytes = read_file(path);
+  ASSERT_TRUE(bytes);
+  const auto recorded = read_nav(*bytes);
+  ASSERT_TRUE(recorded) << recorded.error().message;
+  EXPECT_EQ(recorded->log.clock(), NavClock::kUnix);
+  EXPECT_EQ(recorded->records, 2 * kRounds);
+  EXPECT_TRUE(recorded->damage.empty());
+  const NavSource* const positions = recorded->log.best(NavQuantity::kPosition);
+  ASSERT_TRUE(positions);
+  EXPECT_NEAR(positions->samples.at(50).time_s, kStart_s + 50.0, 1e-3);
+  EXPECT_EQ(samples, 4 * kRounds) << "velocity, range, position, attitude";
+  std::filesystem::remove_all(folder);
+}
+
+// A DVL that is unplugged closes nothing.
+TEST(A50Receiver, GivesUpALineThatIsSilentAndOneThatIsNotThere) {
+  Result<Link> line = Link::listen("tcp://127.0.0.1:0");
+  ASSERT_TRUE(line);
+  const std::string address = line->address();
+  Result<A50Receiver> receiver = A50Receiver::make(address, std::nullopt, 0.0);
+  ASSERT_TRUE(receiver);
+  let_in(*line, *receiver, 0.0);
+  ASSERT_TRUE(line->write(std::vector<std::uint8_t>{'{', '}', '\n', '{', '"'}));
+  for (int i = 0; i < 2000 && receiver->status().reports == 0; ++i) {
+    receiver->read(0.0);
+    ::usleep(1000);
+  }
+  EXPECT_TRUE(receiver->status().is_connected);
+  receiver->read(4.9);
+  EXPECT_TRUE(receiver->status().is_connected);
+  receiver->read(5.1);
+  EXPECT_FALSE(receiver->status().is_connected);
+  EXPECT_THAT(receiver->status().problem, HasSubstr("silent"));
+  EXPECT_EQ(receiver->status().damaged, 1U) << "the line that never ended";
+  line = Link::listen("tcp://127.0.0.1:0");
+  for (int i = 0; i < 2000 && receiver->status().problem.find("refused") == std::string::npos; ++i) {
+    receiver->read(6.0 + i);
+  }
+  EXPECT_THAT(receiver->status().problem, HasSubstr("Connection refused"));
+  EXPECT_FALSE(A50Receiver::make("udp://127.0.0.1:1", std::nullopt, 0.0));
+}
+
+}  // namespace
+}  // namespace pingvox
