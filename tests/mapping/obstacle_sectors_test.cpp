@@ -1,0 +1,98 @@
+#include "pingvox/mapping/obstacle_sectors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace pingvox {
+namespace {
+
+using What = ObstacleSectors::What;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+OccupancyMap empty_map() {
+  Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = 0.1});
+  EXPECT_TRUE(map);
+  return *std::move(map);
+}
+
+void set(OccupancyMap& map, const Eigen::Vector3d& place_m, float belief) {
+  Editor editor = map.edit();
+  editor.set(*map.lattice().key_of(place_m), map.lattice().depth(), LogOdds(belief));
+}
+
+/// A place at a range and an angle clockwise from the vehicle's ahead.
+Eigen::Vector3d around(const Pose& pose, double range_m, double clockwise_deg, double up_m = 0.0) {
+  const double angle_rad = -clockwise_deg * kDegree;
+  return pose * Eigen::Vector3d(range_m * std::cos(angle_rad), range_m * std::sin(angle_rad), up_m);
+}
+
+// Kills sectors that go round the other way, begin elsewhere, or turn with the map instead of the vehicle.
+TEST(ObstacleSectors, GoClockwiseFromAheadOfTheVehicle) {
+  const Pose pose = pose_from_rpy({3.0, -7.0, 1.0}, 0.0, 0.0, 2.1);
+  for (const std::size_t sector : {0U, 1U, 18U, 36U, 54U, 71U}) {
+    SCOPED_TRACE(sector);
+    OccupancyMap map = empty_map();
+    set(map, around(pose, 6.0, 5.0 * static_cast<double>(sector)), 2.0F);
+    const ObstacleSectors found = nearest_obstacles(map, pose, {});
+    for (std::size_t i = 0; i < found.sectors.size(); ++i) {
+      EXPECT_EQ(found.sectors[i].what, i == sector ? What::kObstacle : What::kUnknown) << i;
+    }
+    EXPECT_NEAR(found.sectors[sector].range_m, 6.0, 0.1);
+  }
+}
+
+TEST(ObstacleSectors, TheNearestCellCountsInEachSectorThatItReachesInto) {
+  OccupancyMap map = empty_map();
+  const Pose pose = pose_from_rpy({0.05, 0.05, 0.05}, 0.0, 0.0, 0.0);  // in the middle of a cell
+  set(map, around(pose, 4.0, 90.0), 2.0F);
+  set(map, around(pose, 2.0, 90.0), 2.0F);
+  set(map, around(pose, 3.0, 90.0), 2.0F);
+  set(map, around(pose, 0.5, 180.0), 2.0F);  // 8 degrees to either side
+  const ObstacleSectors found = nearest_obstacles(map, pose, {});
+  EXPECT_NEAR(found.sectors[18].range_m, 2.0, 0.1);
+  for (const std::size_t i : {35U, 36U, 37U}) EXPECT_EQ(found.sectors[i].what, What::kObstacle) << i;
+  for (const std::size_t i : {33U, 39U, 0U}) EXPECT_EQ(found.sectors[i].what, What::kUnknown) << i;
+}
+
+TEST(ObstacleSectors, LeaveOutTheVehicleItselfAndWhatIsAboveBelowOrFarAway) {
+  OccupancyMap map = empty_map();
+  const Pose pose = pose_from_rpy({0.0, 0.0, -5.0}, 0.3, 0.2, 0.0);
+  const auto place = [](double x, double z) { return Eigen::Vector3d(x, 0.05, z); };
+  set(map, place(0.12, -4.95), 2.0F);  // the vehicle
+  set(map, place(3.0, -4.2), 2.0F);    // above
+  set(map, place(3.0, -5.8), 2.0F);    // below
+  set(map, place(10.6, -4.95), 2.0F);  // far away
+  set(map, place(5.0, -4.95), -1.0F);  // free
+  EXPECT_EQ(nearest_obstacles(map, pose, {}).sectors[0].what, What::kUnknown);
+  set(map, place(7.0, -5.35), 2.0F);
+  const ObstacleSectors found = nearest_obstacles(map, pose, {});
+  EXPECT_EQ(found.sectors[0].what, What::kObstacle) << "roll and pitch move nothing";
+  EXPECT_NEAR(found.sectors[0].range_m, 7.0, 0.1);
+}
+
+TEST(ObstacleSectors, AreClearOnlyWhereAllIsFreeUpToTheRange) {
+  OccupancyMap map = empty_map();
+  for (double x = 0.85; x < 10.2; x += 0.1) {
+    set(map, {x, 0.05, 0.05}, -1.0F);
+    if (x < 9.0) set(map, {0.05, x, 0.05}, -1.0F);
+  }
+  const Pose pose = pose_from_rpy({0.05, 0.05, 0.05}, 0.0, 0.0, 0.0);
+  const ObstacleSectors found = nearest_obstacles(map, pose, {});
+  EXPECT_EQ(found.sectors[0].what, What::kClear);
+  EXPECT_EQ(found.sectors[54].what, What::kUnknown) << "left: free up to 9 m";
+  EXPECT_EQ(found.sectors[36].what, What::kUnknown);
+}
+
+TEST(ObstacleOptions, NameEachBrokenField) {
+  EXPECT_TRUE(ObstacleOptions{}.validate());
+  const auto broken = ObstacleOptions{.min_range_m = 2.0, .max_range_m = 1.0, .half_height_m = 0.0}.validate();
+  ASSERT_FALSE(broken);
+  EXPECT_NE(broken.error().message.find("max_range_m"), std::string::npos);
+  EXPECT_NE(broken.error().message.find("half_height_m"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pingvox
