@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -23,9 +24,40 @@ Scene scene_of(const std::string& world) {
   return tank_scene({});
 }
 
+/// Where the vehicle is at a time of the system's clock: emulators of one world that run side by side agree.
+class Vehicle {
+ public:
+  Vehicle(const Scene& scene, const EmulateCommand& command) : way_(Trajectory::still(Pose::Identity())) {
+    const Route* const route = scene.route(command.motion);
+    if (route == nullptr) return;
+    lap_s_ = length_m(*route) / command.speed_m_s;
+    way_ = follow_route(*route, lap_s_, {.speed_m_s = command.speed_m_s});
+  }
+
+  Pose at(double since_1970_s) const {
+    const double time_s = std::fmod(since_1970_s, lap_s_);
+    return way_.at(std::clamp(time_s, way_.poses().front().time_s, way_.poses().back().time_s))
+        .value_or(way_.poses().back().map_from_body);
+  }
+
+ private:
+  Trajectory way_;
+  double lap_s_ = 1.0;
+};
+
+/// map_from_body, by seconds since the start of this program.
+using PoseAt = NavEmulator::PoseAt;
+
+PoseAt pose_from_now(const Scene& scene, const EmulateCommand& command) {
+  const double since_1970_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return [vehicle = Vehicle(scene, command), since_1970_s](double now_s) { return vehicle.at(since_1970_s + now_s); };
+}
+
 /// Beams of the simulator, one at a time: its first one of a turn, with the head mounted so that it looks there.
-Ping360Emulator::Hear hear_in(Scene scene, std::uint64_t seed) {
-  return [scene = std::move(scene), seed](int angle_grad, std::size_t bins, double bin_length_m) mutable {
+Ping360Emulator::Hear hear_in(Scene scene, PoseAt pose_at, const Stopwatch& watch, std::uint64_t seed) {
+  return [scene = std::move(scene), pose_at = std::move(pose_at), &watch, seed](int angle_grad, std::size_t bins,
+                                                                                double bin_length_m) mutable {
     constexpr double kAhead_grad = 200.0, kGradian_rad = std::numbers::pi / 200.0;
     SonarOptions sonar;
     sonar.seed = seed++;  // new noise for each ping
@@ -35,10 +67,49 @@ Ping360Emulator::Hear hear_in(Scene scene, std::uint64_t seed) {
     sonar.beam_height_rad = 25.0 * kDegree_rad;
     sonar.body_from_sensor =
         pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, (kAhead_grad - angle_grad) * kGradian_rad);
-    SonarSimulator simulator(scene.world, Trajectory::still(Pose::Identity()), sonar, 1);
+    SonarSimulator simulator(scene.world, Trajectory::still(pose_at(watch.seconds())), sonar, 1);
     const Result<std::optional<Beam>> beam = simulator.next();
     return beam && *beam ? (*beam)->intensities : std::vector<std::uint8_t>(bins);
   };
+}
+
+/// Waits until bytes or a signal come, at most until a time [s].
+void wait(const StopSignals& signals, const Link& link, double seconds) {
+  constexpr double kMaxWait_s = 1.0;
+  std::array<pollfd, 2> files = {pollfd{signals.descriptor(), POLLIN, 0}, pollfd{link.descriptor(), POLLIN, 0}};
+  ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kMaxWait_s) * 1000.0)));
+}
+
+Result<int> emulate_head(const EmulateCommand& command, StopSignals& signals, Link& link) {
+  const Stopwatch watch;
+  Scene scene = scene_of(command.world);
+  PoseAt pose_at = pose_from_now(scene, command);
+  Ping360Emulator head(command.head, hear_in(std::move(scene), std::move(pose_at), watch, command.head.seed));
+  std::array<std::uint8_t, 65536> bytes;
+  while (!signals.arrived() && (command.max_pings == 0 || head.pings() < command.max_pings)) {
+    wait(signals, link, head.due_s() - watch.seconds());
+    const Result<std::size_t> got = link.read(bytes);
+    if (!got) return tl::unexpected(got.error());
+    head.take(std::span(bytes).first(*got), watch.seconds());
+    if (const auto sent = link.write(head.send(watch.seconds())); !sent) return tl::unexpected(sent.error());
+  }
+  return 0;
+}
+
+Result<int> emulate_navigation(const EmulateCommand& command, StopSignals& signals, Link& link) {
+  const Stopwatch watch;
+  PoseAt pose_at = pose_from_now(scene_of(command.world), command);
+  const bool is_dvl = command.device == EmulateCommand::Device::kA50;
+  NavEmulator device(command.nav,
+                     is_dvl ? NavEmulator::a50(std::move(pose_at)) : NavEmulator::mavlink(std::move(pose_at)));
+  std::array<std::uint8_t, 65536> bytes;
+  while (!signals.arrived()) {
+    wait(signals, link, device.due_s() - watch.seconds());
+    // A vehicle sends whether or not anybody listens; what hosts say is not for it.
+    static_cast<void>(link.read(bytes));
+    for (const NavEmulator::Message& message : device.send(watch.seconds())) static_cast<void>(link.write(message));
+  }
+  return 0;
 }
 
 }  // namespace
@@ -46,24 +117,12 @@ Ping360Emulator::Hear hear_in(Scene scene, std::uint64_t seed) {
 Result<int> run(const EmulateCommand& command, Console& console) {
   Result<StopSignals> signals = StopSignals::make();
   if (!signals) return tl::unexpected(signals.error());
-  Result<Link> link = Link::listen(command.listen);
+  const bool sends = command.device == EmulateCommand::Device::kMavlink;
+  Result<Link> link = sends ? Link::open(command.line) : Link::listen(command.line);
   if (!link) return tl::unexpected(link.error());
   if (const auto printed = console.print(link->address() + "\n"); !printed) return tl::unexpected(printed.error());
-
-  Ping360Emulator head(command.head, hear_in(scene_of(command.world), command.head.seed));
-  const Stopwatch watch;
-  std::array<std::uint8_t, 65536> bytes;
-  while (!signals->arrived() && (command.max_pings == 0 || head.pings() < command.max_pings)) {
-    constexpr double kMaxWait_s = 1.0;
-    const double wait_s = std::clamp(head.due_s() - watch.seconds(), 0.0, kMaxWait_s);
-    std::array<pollfd, 2> files = {pollfd{signals->descriptor(), POLLIN, 0}, pollfd{link->descriptor(), POLLIN, 0}};
-    ::poll(files.data(), files.size(), static_cast<int>(std::ceil(wait_s * 1000.0)));
-    const Result<std::size_t> got = link->read(bytes);
-    if (!got) return tl::unexpected(got.error());
-    head.take(std::span(bytes).first(*got), watch.seconds());
-    if (const auto sent = link->write(head.send(watch.seconds())); !sent) return tl::unexpected(sent.error());
-  }
-  return 0;
+  return command.device == EmulateCommand::Device::kPing360 ? emulate_head(command, *signals, *link)
+                                                            : emulate_navigation(command, *signals, *link);
 }
 
 }  // namespace pingvox::app

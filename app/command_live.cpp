@@ -5,22 +5,27 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <ctime>
 #include <deque>
 #include <filesystem>
 #include <future>
 #include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "commands.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
+#include "pingvox/device/a50_receiver.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/mavlink_receiver.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/io/mavlink_obstacles.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
+#include "pingvox/mapping/obstacle_sectors.hpp"
 #include "pingvox/nav/live_poses.hpp"
 #include "progress.hpp"
 #include "stop_signals.hpp"
@@ -66,34 +71,62 @@ Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
   return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
 }
 
-/// Where the vehicle is, by what it sends.
+/// Where the vehicle is, by what it or its DVL sends.
 class Navigation {
  public:
+  struct Status {
+    std::size_t messages = 0, damaged = 0;
+    bool is_connected = true;  ///< as far as it can be told
+    std::string problem;       ///< why not
+    std::optional<Error> recording_error;
+  };
+
   /// @param start_s  when the beams' clock was 0
-  static Result<Navigation> listen(const std::string& address, const std::optional<std::filesystem::path>& record,
-                                   double start_s) {
-    std::optional<TlogRecorder> recorder;
-    if (record) {
-      Result<TlogRecorder> created =
-          TlogRecorder::create(std::filesystem::path(*record).replace_extension(".tlog").string());
-      if (!created) return tl::unexpected(created.error());
-      recorder = std::move(*created);
-    }
+  static Result<Navigation> open(const LiveNavigation& from, const std::optional<std::filesystem::path>& record,
+                                 double start_s) {
     const double since_1970_s =
         std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-    return MavlinkReceiver::listen(address, std::move(recorder), since_1970_s).map([&](MavlinkReceiver receiver) {
-      return Navigation(std::move(receiver), start_s);
+    if (from.kind == LiveNavigation::Kind::kA50) {
+      Result<std::optional<RecordFile>> recorder = recorder_beside<RecordFile>(record, ".jsonl");
+      if (!recorder) return tl::unexpected(recorder.error());
+      return A50Receiver::make(from.address, *std::move(recorder), since_1970_s).map([&](A50Receiver receiver) {
+        return Navigation(std::move(receiver), "a50:", start_s);
+      });
+    }
+    Result<std::optional<TlogRecorder>> recorder = recorder_beside<TlogRecorder>(record, ".tlog");
+    if (!recorder) return tl::unexpected(recorder.error());
+    return MavlinkReceiver::listen(from.address, *std::move(recorder), since_1970_s).map([&](MavlinkReceiver receiver) {
+      return Navigation(std::move(receiver), "mavlink:", start_s);
     });
   }
 
-  const std::string& address() const { return receiver_.address(); }
-  int descriptor() const { return receiver_.descriptor(); }
-  const MavlinkReceiver::Status& status() const { return receiver_.status(); }
+  /// As --nav has it, with the port that was chosen.
+  std::string name() const {
+    return kind_ + std::visit([](const auto& receiver) { return receiver.address(); }, receiver_);
+  }
+  bool listens() const { return std::holds_alternative<MavlinkReceiver>(receiver_); }
+  int descriptor() const {
+    return std::visit([](const auto& receiver) { return receiver.descriptor(); }, receiver_);
+  }
+  Status status() const {
+    if (const auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
+      const A50Receiver::Status& status = dvl->status();
+      return {status.reports, status.damaged, status.is_connected, status.problem, status.recording_error};
+    }
+    const MavlinkReceiver::Status& status = std::get<MavlinkReceiver>(receiver_).status();
+    return {status.frames, status.damaged, true, {}, status.recording_error};
+  }
   const LivePoses& poses() const { return poses_; }
 
   Result<void> step(double now_s) {
     now_s_ = now_s - start_s_;
-    const auto reports = receiver_.read(now_s_);
+    if (auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
+      for (const NavSource& said : dvl->read(now_s_)) {
+        for (const NavSample& sample : said.samples) poses_.add(said.name, said.quantity, sample);
+      }
+      return {};
+    }
+    const auto reports = std::get<MavlinkReceiver>(receiver_).read(now_s_);
     if (!reports) return tl::unexpected(reports.error());
     for (const MavlinkNav::Report& report : *reports) poses_.add(report.source, report.quantity, report.sample);
     return {};
@@ -109,11 +142,69 @@ class Navigation {
   }
 
  private:
-  Navigation(MavlinkReceiver receiver, double start_s) : receiver_(std::move(receiver)), start_s_(start_s) {}
+  using Receiver = std::variant<MavlinkReceiver, A50Receiver>;
+  Navigation(Receiver receiver, std::string kind, double start_s)
+      : receiver_(std::move(receiver)), kind_(std::move(kind)), start_s_(start_s) {}
 
-  MavlinkReceiver receiver_;
+  /// @param record  the sonar's log; nullopt: nothing is recorded
+  template <class Recorder>
+  static Result<std::optional<Recorder>> recorder_beside(const std::optional<std::filesystem::path>& record,
+                                                         const char* suffix) {
+    if (!record) return std::nullopt;
+    return Recorder::create(std::filesystem::path(*record).replace_extension(suffix).string())
+        .map([](Recorder recorder) { return std::optional(std::move(recorder)); });
+  }
+
+  Receiver receiver_;
+  std::string kind_;  ///< "mavlink:"
   LivePoses poses_;
   double start_s_, now_s_ = 0.0;
+};
+
+/// Tells an autopilot what is nearest to the vehicle.
+class ObstacleSender {
+ public:
+  static Result<ObstacleSender> open(const std::string& address, const ObstacleOptions& options) {
+    return Link::open(address).map([&](Link link) { return ObstacleSender(std::move(link), options); });
+  }
+
+  double due_s() const { return due_s_; }
+
+  /// @param map_from_body  nullopt: not known
+  void send(const OccupancyMap& map, const std::optional<Pose>& map_from_body, double now_s) {
+    constexpr double kEvery_s = 0.2;
+    constexpr std::uint8_t kObstacleAvoidance = 196;  // a component
+    due_s_ = now_s + kEvery_s;
+    if (!map_from_body) return;
+    const ObstacleDistance message = message_of(nearest_obstacles(map, *map_from_body, options_));
+    const MavlinkSender sender = {.sequence = sequence_++, .component = kObstacleAvoidance};
+    // An autopilot that is not there is sent the next one.
+    static_cast<void>(link_.write(make_mavlink_frame(kObstacleDistance, payload_of(message), sender)));
+  }
+
+ private:
+  ObstacleSender(Link link, const ObstacleOptions& options) : link_(std::move(link)), options_(options) {}
+
+  ObstacleDistance message_of(const ObstacleSectors& obstacles) const {
+    const auto cm_of = [](double metres) { return static_cast<std::uint16_t>(std::lround(metres * 100.0)); };
+    ObstacleDistance message;
+    message.time_us = static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+            .count());
+    message.min_cm = cm_of(options_.min_range_m);
+    message.max_cm = cm_of(options_.max_range_m);
+    std::ranges::transform(obstacles.sectors, message.cm.begin(), [&](const ObstacleSectors::Sector& sector) {
+      using What = ObstacleSectors::What;
+      if (sector.what == What::kObstacle) return cm_of(sector.range_m);
+      return sector.what == What::kClear ? static_cast<std::uint16_t>(message.max_cm + 1) : ObstacleDistance::kUnknown;
+    });
+    return message;
+  }
+
+  Link link_;
+  ObstacleOptions options_;
+  double due_s_ = 0.0;
+  std::uint8_t sequence_ = 0;
 };
 
 /// Writes maps in a thread of its own: a disk may take seconds, in which the lines' buffers would overflow.
@@ -150,11 +241,12 @@ class MapWriter {
 class LiveRun {
  public:
   LiveRun(const LiveCommand& command, Console& console, std::unique_ptr<LiveSource> source,
-          std::optional<Navigation> nav, BeamMapper mapper, OccupancyMap& map)
+          std::optional<Navigation> nav, std::optional<ObstacleSender> obstacles, BeamMapper mapper, OccupancyMap& map)
       : command_(command),
         console_(console),
         source_(std::move(source)),
         nav_(std::move(nav)),
+        obstacles_(std::move(obstacles)),
         mapper_(std::move(mapper)),
         map_(map),
         writer_(command),
@@ -164,7 +256,8 @@ class LiveRun {
     double tell_at_s = watch.seconds() + kTell_s, write_at_s = watch.seconds() + command_.write_every_s;
     bool has_ended = false;
     while (!has_ended && !signals.arrived() && (command_.max_beams == 0 || beams_ < command_.max_beams)) {
-      const double next_s = std::min({tell_at_s, write_at_s, source_->due_s()});
+      const double next_s =
+          std::min({tell_at_s, write_at_s, source_->due_s(), obstacles_ ? obstacles_->due_s() : tell_at_s});
       wait(signals, can_map_one() ? 0.0 : next_s - watch.seconds());
       const Result<bool> goes_on = source_->step(watch.seconds(), arrived_);
       if (!goes_on) return tl::unexpected(goes_on.error());
@@ -176,6 +269,7 @@ class LiveRun {
       if (can_map_one()) map_one();
       tell_changes();
       const double now_s = watch.seconds();
+      if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map_, last_pose(), now_s);
       if (now_s >= tell_at_s) {
         tell(now_s);
         tell_at_s = now_s + kTell_s;
@@ -200,6 +294,13 @@ class LiveRun {
 
   bool can_map_one() const {
     return !waiting_.empty() && !(nav_ && !cannot_map_ && nav_->may_come(waiting_.front().time_s));
+  }
+
+  /// The latest one that is known.
+  std::optional<Pose> last_pose() const {
+    if (!nav_) return Pose::Identity();
+    const std::optional<double> until_s = nav_->poses().known_until_s();
+    return until_s ? nav_->poses().at(*until_s) : std::nullopt;
   }
 
   /// The oldest beams are dropped when too many wait: the record has them.
@@ -256,6 +357,7 @@ class LiveRun {
     tell_recording_error(status.recording_error, was_recording_error_told_);
     if (nav_) {
       tell_recording_error(nav_->status().recording_error, was_nav_recording_error_told_);
+      tell_connection_of_nav();
       tell_sources();
     }
     if (status.is_connected == was_connected_ && status.problem == last_problem_) return;
@@ -276,20 +378,32 @@ class LiveRun {
     note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
   }
 
+  void tell_connection_of_nav() {
+    if (nav_->listens()) return;
+    const Navigation::Status status = nav_->status();
+    if (status.is_connected == was_nav_connected_ && status.problem == last_nav_problem_) return;
+    bar_.clear();
+    console_.say(status.is_connected
+                     ? fmt::format("{}: connected", nav_->name())
+                     : fmt::format("{}: not connected ({}); trying again", nav_->name(), status.problem));
+    was_nav_connected_ = status.is_connected;
+    last_nav_problem_ = status.problem;
+  }
+
   /// When it is decided what the poses are made of, and when that takes long.
   void tell_sources() {
     const LivePoses& poses = nav_->poses();
     if (poses.position().empty() && nav_->now_s() > kLong_s && !was_silence_told_) {
       was_silence_told_ = true;
       bar_.clear();
-      console_.say(fmt::format("mavlink:{}: no attitude and position yet, {} messages so far: beams are not mapped",
-                               nav_->address(), nav_->status().frames));
+      console_.say(fmt::format("{}: no attitude and position yet, {} messages so far: beams are not mapped",
+                               nav_->name(), nav_->status().messages));
     }
     if (were_sources_told_ || poses.position().empty()) return;
     were_sources_told_ = true;
     bar_.clear();
-    console_.say(fmt::format("mavlink:{}: attitude of {}, position of {}", nav_->address(),
-                             on_one_line(poses.attitude()), on_one_line(poses.position())));
+    console_.say(fmt::format("{}: attitude of {}, position of {}", nav_->name(), on_one_line(poses.attitude()),
+                             on_one_line(poses.position())));
   }
 
   void tell(double now_s) {
@@ -320,7 +434,7 @@ class LiveRun {
         .add("memory_bytes", map_.memory_bytes());
     if (nav_) {
       JsonObject nav;
-      nav.add("messages", nav_->status().frames)
+      nav.add("messages", nav_->status().messages)
           .add("damaged", nav_->status().damaged)
           .add("attitude", nav_->poses().attitude())
           .add("position", nav_->poses().position())
@@ -341,8 +455,8 @@ class LiveRun {
         report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered, status.damaged,
                                         status.connections));
     if (nav_) {
-      text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->status().frames,
-                                             nav_->status().damaged, report.no_pose.count));
+      text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose",
+                                             nav_->status().messages, nav_->status().damaged, report.no_pose.count));
     }
     return text + map_text(map_, map_.counts());
   }
@@ -351,6 +465,7 @@ class LiveRun {
   Console& console_;
   std::unique_ptr<LiveSource> source_;
   std::optional<Navigation> nav_;  ///< nullopt: the vehicle stands still
+  std::optional<ObstacleSender> obstacles_;
   BeamMapper mapper_;
   OccupancyMap& map_;
   MapWriter writer_;
@@ -360,8 +475,8 @@ class LiveRun {
   std::size_t beams_ = 0, unmapped_ = 0;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_told_ = false, was_nav_recording_error_told_ = false;
-  bool were_sources_told_ = false, was_silence_told_ = false;
-  std::string last_problem_;
+  bool were_sources_told_ = false, was_silence_told_ = false, was_nav_connected_ = false;
+  std::string last_problem_, last_nav_problem_;
 };
 
 }  // namespace
@@ -378,15 +493,22 @@ Result<int> run(const LiveCommand& command, Console& console) {
   if (!source) return tl::unexpected(source.error());
   std::optional<Navigation> nav;
   if (command.nav) {
-    Result<Navigation> listening = Navigation::listen(*command.nav, record, start_s);
-    if (!listening) return tl::unexpected(listening.error());
-    nav = *std::move(listening);
-    console.say(fmt::format("mavlink:{}: listening", nav->address()));
+    Result<Navigation> opened = Navigation::open(*command.nav, record, start_s);
+    if (!opened) return tl::unexpected(opened.error());
+    nav = *std::move(opened);
+    if (nav->listens()) console.say(fmt::format("{}: listening", nav->name()));
   }
   const BuildOptions options = command.head.apply_to(command.build, (*source)->device());
   Result<BeamMapper> mapper = BeamMapper::make(options, *map);
   if (!mapper) return tl::unexpected(mapper.error());
-  return LiveRun(command, console, std::move(*source), std::move(nav), std::move(*mapper), *map).run(*signals, watch);
+  std::optional<ObstacleSender> obstacles;
+  if (command.obstacles) {
+    Result<ObstacleSender> opened = ObstacleSender::open(*command.obstacles, {.max_range_m = command.ping360.range_m});
+    if (!opened) return tl::unexpected(opened.error());
+    obstacles = *std::move(opened);
+  }
+  return LiveRun(command, console, std::move(*source), std::move(nav), std::move(obstacles), std::move(*mapper), *map)
+      .run(*signals, watch);
 }
 
 }  // namespace pingvox::app

@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "option_table.hpp"
+#include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/device/ping360_emulator.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -240,13 +241,21 @@ struct LiveDevice {
   std::string text;     ///< as typed
 };
 
+/// Who tells `live` where the vehicle is.
+struct LiveNavigation {
+  enum class Kind { kMavlink, kA50 };
+  Kind kind = Kind::kMavlink;
+  std::string address;  ///< that a vehicle sends MAVLink to, or of a DVL
+};
+
 struct LiveCommand {
   OutputOptions output_options;
   LiveDevice device;
   std::string output;
   Format format = Format::kBt;
-  std::optional<std::string> record;  ///< a file that does not exist, or a folder
-  std::optional<std::string> nav;     ///< address that a vehicle sends MAVLink to; nullopt: it stands still
+  std::optional<std::string> record;     ///< a file that does not exist, or a folder
+  std::optional<LiveNavigation> nav;     ///< nullopt: the vehicle stands still
+  std::optional<std::string> obstacles;  ///< address to send the nearest obstacles to
   Ping360Settings ping360;
   std::size_t max_beams = 0;  ///< stop after them; 0: never
   double write_every_s = 10.0;
@@ -257,10 +266,15 @@ struct LiveCommand {
 };
 
 struct EmulateCommand {
+  enum class Device { kPing360, kMavlink, kA50 };
   OutputOptions output_options;
-  std::string listen = "udp://127.0.0.1:9092";
+  Device device = Device::kPing360;
+  std::string line;  ///< to listen at; of kMavlink to send to
   std::string world = "tank";
+  Motion motion = Motion::kStill;
+  double speed_m_s = 0.25;
   Ping360EmulatorOptions head;
+  NavEmulatorOptions nav;
   std::size_t max_pings = 0;  ///< end after them; 0: never
 };
 

@@ -28,6 +28,7 @@ constexpr std::array kProgress = {Choice<ShowProgress>{"auto", ShowProgress::kAu
                                   Choice<ShowProgress>{"never", ShowProgress::kNever}};
 constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt}, Choice<Format>{"ot", Format::kOt},
                                     Choice<Format>{"pvx", Format::kPvx}};
+constexpr std::array kMotions = {Choice<Motion>{"still", Motion::kStill}, Choice<Motion>{"loop", Motion::kLoop}};
 constexpr double kGradian_deg = 0.9;
 
 Result<LiveDevice> device_from(const std::string& text) {
@@ -58,6 +59,25 @@ Result<LiveDevice> device_from(const std::string& text) {
   return usage_error(
       fmt::format("no such device '{}': must be ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD] or "
                   "replay:FILE[@SPEED]",
+                  text));
+}
+
+Result<LiveNavigation> navigation_from(const std::string& text) {
+  constexpr std::string_view kMavlink = "mavlink:", kA50 = "a50:", kTcp = "tcp://", kA50Port = ":16171";
+  if (text.starts_with("mavlink:udp://")) {
+    return LiveNavigation{LiveNavigation::Kind::kMavlink, text.substr(kMavlink.size())};
+  }
+  if (text.starts_with("a50:tcp://")) {
+    std::string address = text.substr(kA50.size());
+    const std::string_view host = std::string_view(address).substr(kTcp.size());
+    // The colons of "[::1]" are not that of a port.
+    const bool has_port = host.find(':', host.starts_with('[') ? host.find(']') : 0) != std::string_view::npos;
+    if (!has_port) address += kA50Port;
+    return LiveNavigation{LiveNavigation::Kind::kA50, address};
+  }
+  return usage_error(
+      fmt::format("no such source of navigation '{}': must be mavlink:udp://:PORT, mavlink:udp://ADDRESS:PORT or "
+                  "a50:tcp://HOST[:PORT]",
                   text));
 }
 
@@ -119,14 +139,14 @@ Result<Command> live_command(const Args& args) {
     return {};
   };
   const Take nav = [&](const std::string& text) -> Result<void> {
-    constexpr std::string_view kMavlink = "mavlink:";
-    if (!text.starts_with("mavlink:udp://")) {
-      return usage_error(
-          fmt::format("no such source of navigation '{}': must be mavlink:udp://:PORT or "
-                      "mavlink:udp://ADDRESS:PORT",
-                      text));
-    }
-    command.nav = text.substr(kMavlink.size());
+    const Result<LiveNavigation> taken = navigation_from(text);
+    if (!taken) return tl::unexpected(taken.error());
+    command.nav = *taken;
+    return {};
+  };
+  const Take obstacles = [&](const std::string& text) -> Result<void> {
+    if (!text.starts_with("udp://")) return usage_error(fmt::format("must be udp://HOST:PORT, is '{}'", text));
+    command.obstacles = text;
     return {};
   };
   OptionTable table{
@@ -164,10 +184,14 @@ Result<Command> live_command(const Args& args) {
          {"--timeout", 0, "S", "seconds to wait for an answer; the head may have to turn", number_text(head.timeout_s),
           within({0.01, 60.0}, store_number(head.timeout_s))}}},
        {"Navigation",
-        {{"--nav", 0, "mavlink:udp://:PORT",
-          "where the vehicle is, by what its autopilot sends to this port by MAVLink; recorded beside --record as "
-          ".tlog",
-          "the vehicle stands still", nav}}},
+        {{"--nav", 0, "NAV",
+          "where the vehicle is: mavlink:udp://:PORT, by what its autopilot sends to this port by MAVLink, or "
+          "a50:tcp://HOST[:PORT], by the dead reckoning of a Water Linked DVL; recorded beside --record as .tlog or "
+          ".jsonl",
+          "the vehicle stands still", nav},
+         {"--obstacles", 0, "udp://HOST:PORT",
+          "send what is nearest in 72 sectors, by MAVLink (OBSTACLE_DISTANCE) five times a second", "none",
+          obstacles}}},
        map_group(build),
        without(sensor_group(build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
        without(echo_group(build.echoes), {"--background"}),
@@ -175,6 +199,7 @@ Result<Command> live_command(const Args& args) {
       {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",
        "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",
        "pingvox live ping360:udp://192.168.2.2:9092 --nav mavlink:udp://:14550 -o dive.ot --record recordings",
+       "pingvox live ping360:udp://192.168.2.2:9092 --nav a50:tcp://192.168.2.95 -o dive.ot --record recordings",
        "pingvox live replay:dive.bin@10 -o dive.bt"},
       "Without --nav the vehicle is taken to stand still; then the map of a recording, by 'pingvox map' with the same "
       "options,\nis the same.\n"
@@ -221,11 +246,20 @@ Result<Command> live_command(const Args& args) {
 }
 
 Result<Command> emulate_command(const Args& args) {
+  using Device = EmulateCommand::Device;
   EmulateCommand command;
   Ping360EmulatorOptions& head = command.head;
-  const Take device = [](const std::string& text) -> Result<void> {
-    if (text == "ping360") return {};
-    return usage_error(fmt::format("no such device '{}': must be ping360", text));
+  constexpr std::array kDevices = {Choice<Device>{"ping360", Device::kPing360},
+                                   Choice<Device>{"mavlink", Device::kMavlink}, Choice<Device>{"a50", Device::kA50}};
+  std::string listen, send_to;
+  double lost = 0.0, doubled = 0.0, damaged = 0.0;
+  double rate = 0.0;  // 0: as usual
+  std::uint64_t seed = 1;
+  const Take device = [&](const std::string& text) -> Result<void> {
+    const Result<Device> value = choice_value(kDevices, text);
+    if (!value) return usage_error(fmt::format("no such device '{}': must be ping360, mavlink or a50", text));
+    command.device = *value;
+    return {};
   };
   const Take world = [&](const std::string& text) -> Result<void> {
     constexpr std::array<std::string_view, 4> kWorlds = {"tank", "harbour", "seabed", "cave"};
@@ -238,28 +272,58 @@ Result<Command> emulate_command(const Args& args) {
   const Limits fault{0.0, 0.5};
   const OptionTable table{
       "emulate",
-      "Answers like a device that stands still in a simulated world, to try 'pingvox live' without one. Prints the\n"
-      "address to connect to.",
-      {{"DEVICE", Positional::Count::kOne, "ping360", device}},
+      "Answers like a device in a simulated world, to try 'pingvox live' without one: a sonar head (ping360), an\n"
+      "autopilot that sends MAVLink (mavlink), or a DVL (a50). Prints the address to connect to.",
+      {{"DEVICE", Positional::Count::kOne, "ping360, mavlink or a50", device}},
       {{"Line",
-        {{"--listen", 0, "ADDRESS", "udp://HOST:PORT (port 0: any that is free), or pty for a new pseudo terminal",
-          command.listen, store(command.listen)},
-         {"--lost", 0, "S", "fraction of bytes that are lost", "0", within(fault, store_number(head.lost))},
-         {"--doubled", 0, "S", "fraction of bytes that come twice", "0", within(fault, store_number(head.doubled))},
-         {"--damaged", 0, "S", "fraction of bytes with a wrong bit", "0", within(fault, store_number(head.damaged))}}},
-       {"Head",
+        {{"--listen", 0, "ADDRESS",
+          "ping360: udp://HOST:PORT (port 0: any that is free), or pty for a new pseudo terminal; a50: tcp://HOST:PORT",
+          "udp://127.0.0.1:9092 or tcp://127.0.0.1:16171", store(listen)},
+         {"--to", 0, "ADDRESS", "mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
+         {"--lost", 0, "S", "fraction of bytes (of a head) or messages that are lost", "0",
+          within(fault, store_number(lost))},
+         {"--doubled", 0, "S", "fraction of bytes or messages that come twice", "0",
+          within(fault, store_number(doubled))},
+         {"--damaged", 0, "S", "fraction of bytes or messages with a wrong bit", "0",
+          within(fault, store_number(damaged))}}},
+       {"Vehicle",
         {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},
-         {"--rate", 0, "HZ", "pings a second", number_text(head.pings_per_s),
-          within({0.1, 100'000.0}, store_number(head.pings_per_s))},
+         choice("--trajectory", kMotions, "of the vehicle; emulators that run at once with the same options agree",
+                command.motion),
+         {"--speed", 0, "M/S", "of the vehicle", number_text(command.speed_m_s),
+          within({0.01, 100.0}, store_number(command.speed_m_s))},
+         {"--rate", 0, "HZ", "pings or reports a second", "20 or 10", within({0.1, 100'000.0}, store_number(rate))},
          {"--pings", 0, "N", "end after N pings", "never", store_number(command.max_pings)},
          {"--stall-every", 0, "N", "be silent after each N pings, as a head that restarts", "never",
           store_number(head.stall_every)},
          {"--stall", 0, "S", "how long, in seconds", number_text(head.stall_s),
           within({0.0, 3600.0}, store_number(head.stall_s))},
-         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(head.seed)}}}},
-      {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001"},
+         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(seed)}}}},
+      {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001",
+       "pingvox emulate mavlink --trajectory loop", "pingvox emulate a50 --trajectory loop"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> { return command; });
+  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+    const bool is_head = command.device == Device::kPing360, sends = command.device == Device::kMavlink;
+    if (sends && !listen.empty()) return usage_error("--listen: mavlink is sent, see --to");
+    if (!sends && !send_to.empty()) return usage_error("--to: only for mavlink");
+    command.line = sends ? send_to : listen;
+    if (command.line.empty()) {
+      command.line = is_head ? "udp://127.0.0.1:9092" : sends ? "udp://127.0.0.1:14550" : "tcp://127.0.0.1:16171";
+    }
+    const std::string_view scheme = sends ? "udp://" : "tcp://";
+    if (!is_head && !command.line.starts_with(scheme)) {
+      return usage_error(fmt::format("'{}': must be {}HOST:PORT", command.line, scheme));
+    }
+    if (rate > 0.0) head.pings_per_s = command.nav.reports_per_s = rate;
+    head.lost = command.nav.lost = lost;
+    head.doubled = command.nav.doubled = doubled;
+    head.damaged = command.nav.damaged = damaged;
+    head.seed = command.nav.seed = seed;
+    if (const auto valid = is_head ? head.validate() : command.nav.validate(); !valid) {
+      return tl::unexpected(valid.error());
+    }
+    return command;
+  });
 }
 
 }  // namespace pingvox::app

@@ -53,12 +53,12 @@ _pingvox_options() {
       ;;
     live)
       options+=(--output --format --record --write-every --beams --json --quiet --progress --config)
-      options+=(--range --sector --step --gain --timeout --nav)
+      options+=(--range --sector --step --gain --timeout --nav --obstacles)
       options+=(--resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar)
       ;;
-    emulate) options+=(--listen --lost --doubled --damaged --world --rate --pings --stall-every --stall --seed) ;;
+    emulate) options+=(--listen --to --lost --doubled --damaged --world --trajectory --speed --rate --pings --stall-every --stall --seed) ;;
     bench) options+=(--json --markdown --pictures --quiet) ;;
   esac
   printf '%s\n' "${options[@]}"
@@ -78,7 +78,10 @@ _pingvox_words() {
     --hit-from) printf '%s\n' fixed intensity ;;
     --parents) printf '%s\n' max mean ;;
     --silent) printf '%s\n' nothing free ;;
-    --trajectory) printf '%s\n' still line lawn-mower loop by-hand ;;
+    --trajectory)
+      printf '%s\n' still loop
+      [[ $2 == emulate ]] || printf '%s\n' line lawn-mower by-hand
+      ;;
     --format)
       [[ $2 != convert ]] || echo csv
       printf '%s\n' bt ot pvx
@@ -123,7 +126,7 @@ _pingvox() {
         --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
-        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside)
+        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --to | --obstacles | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside)
         return # a number or a text: nothing to offer
         ;;
     esac
@@ -138,7 +141,7 @@ _pingvox() {
       # What begins no world's name is the file of a mesh.
       [[ -n $(compgen -W "$words" -- "$current") ]] || words=""
     elif [[ $command == emulate && $previous == emulate ]]; then
-      words="ping360"
+      words="ping360 mavlink a50"
     fi
   fi
 

@@ -230,6 +230,60 @@ TEST(Live, MapsAroundAVehicleThatSaysWhereItIs) {
   }
 }
 
+// Emulators that are started one after the other have to put the vehicle at the same place: else walls are doubled.
+TEST(Live, MapsAlongTheWayThatAnEmulatedDvlTells) {
+  const Head head({"--trajectory", "loop", "--speed", "1"}, "100");
+  const Workplace here;
+  std::filesystem::create_directory(here.path("dives"));
+  const pid_t dvl = here.start({"emulate", "a50", "--listen", "tcp://127.0.0.1:0", "--trajectory", "loop", "--speed",
+                                "1", "--rate", "20", "--damaged", "0.02"},
+                               {.out_path = here.path("address")});
+  EXPECT_TRUE(wait_until([&] { return here.has("address") && here.read("address").find('\n') != std::string::npos; }));
+  const std::string address = here.read("address");
+  const Outcome live = here.call({"live", head.address(), "--nav", "a50:" + address.substr(0, address.find('\n')), "-o",
+                                  "live.bt", "--record", "dives", "--range", "6", "--step", "9", "--resolution", "0.1",
+                                  "--beams", "400", "--json"});
+  ::kill(dvl, SIGTERM);
+  EXPECT_EQ(status_of(dvl), 0);
+  ASSERT_EQ(live.status, 0) << live.err;
+  EXPECT_THAT(live.err, HasSubstr("attitude of A50, position of A50"));
+  EXPECT_THAT(live.err, HasSubstr(": connected"));
+  std::string sonar, nav;
+  for (const auto& entry : std::filesystem::directory_iterator(here.path("dives"))) {
+    (entry.path().extension() == ".jsonl" ? nav : sonar) = entry.path().string();
+  }
+  const Outcome mapped = here.call({"map", sonar, "--nav", nav, "-o", "map.bt", "--resolution", "0.1"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  const Outcome compared = here.call({"compare", "live.bt", "map.bt", "--json"});
+  auto json = flat_json(compared.out);
+  ASSERT_TRUE(json) << compared.out;
+  EXPECT_GT(std::stod((*json)["same"]), 0.5 * std::stod((*json)["cells"])) << compared.out;
+}
+
+TEST(Live, TellsTheAutopilotWhatIsNear) {
+  const Head head({}, "100");
+  const Workplace here;
+  const int autopilot = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  sockaddr_in own = {};
+  own.sin_family = AF_INET;
+  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof own;
+  ASSERT_EQ(::bind(autopilot, reinterpret_cast<const sockaddr*>(&own), size), 0);
+  ASSERT_EQ(::getsockname(autopilot, reinterpret_cast<sockaddr*>(&own), &size), 0);
+  const std::string address = "udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  const Outcome outcome = here.call(live(head.address(), {"--beams", "100", "--obstacles", address}));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  std::array<std::uint8_t, 300> frame = {};
+  int frames = 0;
+  while (::recv(autopilot, frame.data(), frame.size(), 0) == 179) ++frames;
+  ::close(autopilot);
+  EXPECT_GE(frames, 3);
+  EXPECT_EQ(frame[7] | frame[8] << 8, 330);
+  int near = 0;
+  for (std::size_t i = 18; i < 162; i += 2) near += (frame[i] | frame[i + 1] << 8) <= 400 ? 1 : 0;
+  EXPECT_GT(near, 18) << "of 72 sectors";
+}
+
 TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
   const Head head;
   const Workplace here;
@@ -266,7 +320,15 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--record", "dive.bin"}), 1,
                {"dive.bin", "exists"});
   EXPECT_EQ(here.read("dive.bin"), "here already");
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--nav", "a50:udp://dvl"}), 2,
+               {"a50:tcp://HOST[:PORT]"});
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--obstacles", "tcp://a:1"}), 2,
+               {"--obstacles", "udp://HOST:PORT"});
   expect_error(here.call({"emulate", "micron"}), 2, {"no such device 'micron'"});
+  expect_error(here.call({"emulate", "mavlink", "--listen", "udp://127.0.0.1:9"}), 2, {"--listen", "--to"});
+  expect_error(here.call({"emulate", "a50", "--to", "udp://127.0.0.1:9"}), 2, {"--to"});
+  expect_error(here.call({"emulate", "a50", "--listen", "pty"}), 2, {"tcp://HOST:PORT"});
+  expect_error(here.call({"emulate", "mavlink", "--rate", "2000"}), 2, {"reports_per_s"});
 }
 
 }  // namespace
