@@ -100,18 +100,28 @@ TEST(Live, FinishesRecordAndMapOnASignal) {
   }
 }
 
+// The first moment is before the record begins or early in it, the last one after many maps were written.
 TEST(Live, ALiveRunThatIsKilledLeavesARecordAndAWholeMap) {
   const Head head;
-  const Workplace here;
-  const pid_t child = here.start(live(head.address(), {"--quiet", "--write-every", "0.1"}));
-  EXPECT_TRUE(
-      wait_until([&] { return here.has("live.bt") && here.has("dive.bin") && here.read("dive.bin").size() > 40'000; }));
-  ::kill(child, SIGKILL);
-  EXPECT_EQ(status_of(child), 128 + SIGKILL);
-  const Outcome record = here.call({"info", "dive.bin", "--json"});
-  EXPECT_EQ(record.status, 0) << record.err;
-  EXPECT_THAT(record.out, HasSubstr(R"("format": "pingviewer")"));
-  EXPECT_EQ(here.call({"info", "live.bt"}).status, 0);
+  for (const std::size_t bytes : {0U, 5'000U, 40'000U, 80'000U, 160'000U}) {
+    SCOPED_TRACE(bytes);
+    const Workplace here;
+    const pid_t child = here.start(live(head.address(), {"--quiet", "--write-every", "0.1"}));
+    EXPECT_TRUE(wait_until([&] { return here.has("dive.bin") && here.read("dive.bin").size() >= bytes; }));
+    const bool waits_for_map = bytes >= 40'000;
+    EXPECT_TRUE(!waits_for_map || wait_until([&] { return here.has("live.bt"); }));
+    ::kill(child, SIGKILL);
+    EXPECT_EQ(status_of(child), 128 + SIGKILL);
+    if (bytes > 0) {
+      const Outcome record = here.call({"info", "dive.bin", "--json"});
+      EXPECT_EQ(record.status, 0) << record.err;
+      EXPECT_THAT(record.out, HasSubstr(R"("format": "pingviewer")"));
+      EXPECT_EQ(here.call({"info", "dive.bin", "--strict"}).status, 0) << "whole records only";
+    }
+    if (here.has("live.bt")) {
+      EXPECT_EQ(here.call({"info", "live.bt"}).status, 0);
+    }
+  }
 }
 
 TEST(Live, GoesOnMappingWhenTheRecordMeetsAFullDisk) {
