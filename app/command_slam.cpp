@@ -179,8 +179,9 @@ JsonObject json_of(const Seconds& seconds) {
 std::string json_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
                     std::size_t skipped, const Seconds& seconds) {
   const SlamReport& report = solution.report;
-  JsonObject loops, velocity, json;
+  JsonObject loops, submap_loops, velocity, json;
   loops.add("found", report.loops_found).add("kept", report.loops_kept);
+  submap_loops.add("found", report.submap_loops_found).add("kept", report.submap_loops_kept);
   velocity.add("source", report.velocity)
       .add("samples", report.velocities)
       .add("clipped", report.velocities_clipped)
@@ -203,6 +204,7 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
       .add("pairs", report.pairs)
       .add("pair_median_m", report.pair_median_m)
       .add("loops", loops)
+      .add("submap_loops", submap_loops)
       .add("velocity", velocity)
       .add("heading", report.heading)
       .add("nav_clock", json_of(offset));
@@ -269,6 +271,10 @@ std::string text_of(const SlamSolution& solution, const SlamCommand& command, co
   if (command.slam.matching == Matching::kPairs) {
     text += report_line("pairs", fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
                                              report.pair_median_m, report.loops_kept, report.loops_found));
+    if (report.submap_loops_found > 0) {
+      text += report_line(
+          "submaps", fmt::format("{} of {} loops kept before", report.submap_loops_kept, report.submap_loops_found));
+    }
     text += report_line("sensors", sensors_text(solution));
     for (const HeadingCalibration& heading : solution.calibration.headings) {
       text +=

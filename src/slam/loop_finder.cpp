@@ -78,6 +78,16 @@ std::vector<Eigen::Vector2d> thin(const std::vector<Eigen::Vector2d>& points_m) 
   return some;
 }
 
+/// Those that are not too far from the key frame.
+std::vector<Eigen::Vector2d> near_points(const std::vector<Eigen::Vector2d>& points_m, const LoopOptions& options) {
+  const double within_m = options.points_within * options.reach_m;
+  std::vector<Eigen::Vector2d> near;
+  for (const Eigen::Vector2d& point : points_m) {
+    if (point.norm() < within_m) near.push_back(point);
+  }
+  return near;
+}
+
 /// The direction along which points of walls tell worst where they are, and how well: the mean square of the walls'
 /// normals along it, 0..0.5. Nearly zero in a straight canal, where any place looks like the next one.
 struct Weakest {
@@ -263,12 +273,15 @@ Loops find_loops(std::span<const KeyFrame> frames, std::span<const Pose2> poses,
     if (returns.empty()) continue;
     const PointField field(points_m[k], cell_m, window.cells);
     for (const std::size_t j : returns) {
-      const std::vector<Eigen::Vector2d> points = thin(points_m[j]);
+      const std::vector<Eigen::Vector2d> points = thin(near_points(points_m[j], options));
+      if (points.size() < kMinPoints) continue;
       const auto match = field.match(points, poses[k].inverse() * poses[j], window, kMinScore);
       if (!match) continue;
       // Both see what the other sees.
       const PointField other(points_m[j], cell_m, 0);
-      if (other.score(thin(points_m[k]), match->pose.inverse()) < kMinScore) continue;
+      const std::vector<Eigen::Vector2d> mine = thin(near_points(points_m[k], options));
+      if (mine.size() < kMinPoints) continue;
+      if (other.score(mine, match->pose.inverse()) < kMinScore) continue;
       Loop loop{{k, j, match->pose, {}}, match->covariance};
       if (const auto [along, share] = weakest_direction(points_m[j], kStraight_cells * cell_m); share < kMinShare) {
         const Eigen::Vector2d free = kUnknown * options.reach_m * (rotation2(match->pose.yaw_rad) * along);

@@ -20,6 +20,9 @@ struct LoopOptions {
   double reach_m = 0.0;         ///< of the sensor; cells, windows and distances are in proportion to it
   double window_m = 0.0;        ///< largest error of the present poses along each axis
   double window_yaw_rad = 0.0;  ///< ... of their yaws
+  /// Of one of two submaps, only what is within so many reaches of its key frame is looked for in the other: else where
+  /// the submaps end would say where they are.
+  double points_within = 3.0;
 };
 
 /// Standard deviations of odometry over a stretch of way.

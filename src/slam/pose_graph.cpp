@@ -2,44 +2,12 @@
 
 #include <cassert>
 #include <utility>
-
-#include "slam/normal_equations.hpp"
-
 namespace pingvox {
 namespace {
 
 constexpr int kIterations = 30;
 /// Squared distance, in standard deviations, at which a loop counts half.
 constexpr double kCauchy2 = 4.0;
-
-struct Linear {
-  Eigen::Vector3d residual;
-  Eigen::Matrix3d by_a, by_b;
-};
-
-Linear linear(const PoseEdge& edge, const Pose2& a, const Pose2& b) {
-  const Eigen::Matrix2d turn = rotation2(-a.yaw_rad);
-  const Eigen::Vector2d between = turn * (b.place_m - a.place_m);
-  Linear result{residual_of(edge, a, b), -Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
-  result.by_a.topLeftCorner<2, 2>() = -turn;
-  result.by_a.topRightCorner<2, 1>() = Eigen::Vector2d(between.y(), -between.x());
-  result.by_b.topLeftCorner<2, 2>() = turn;
-  return result;
-}
-
-void add(NormalEquations& equations, const PoseEdge& edge, const Linear& line, double weight) {
-  const Eigen::Matrix3d of_a = weight * line.by_a.transpose() * edge.information,
-                        of_b = weight * line.by_b.transpose() * edge.information;
-  equations.add_block(edge.a, edge.a, of_a * line.by_a);
-  equations.add_block(edge.b, edge.b, of_b * line.by_b);
-  equations.add_block(edge.b, edge.a, of_b * line.by_a);
-  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.a)) += of_a * line.residual;
-  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.b)) += of_b * line.residual;
-}
-
-double weight_of(const PoseEdge& edge, const Eigen::Vector3d& residual) {
-  return 1.0 / (1.0 + residual.dot(edge.information * residual) / kCauchy2);
-}
 
 }  // namespace
 
@@ -48,6 +16,28 @@ Eigen::Vector3d residual_of(const PoseEdge& edge, const Pose2& a, const Pose2& b
   residual.head<2>() = rotation2(-a.yaw_rad) * (b.place_m - a.place_m) - edge.a_from_b.place_m;
   residual[2] = wrap_angle(b.yaw_rad - a.yaw_rad - edge.a_from_b.yaw_rad);
   return residual;
+}
+
+double loop_weight(const PoseEdge& edge, const Pose2& a, const Pose2& b) {
+  const Eigen::Vector3d residual = residual_of(edge, a, b);
+  return 1.0 / (1.0 + residual.dot(edge.information * residual) / kCauchy2);
+}
+
+void add_edge(const PoseEdge& edge, const Pose2& a, const Pose2& b, double weight, NormalEquations& equations) {
+  const Eigen::Matrix2d turn = rotation2(-a.yaw_rad);
+  const Eigen::Vector2d between = turn * (b.place_m - a.place_m);
+  const Eigen::Vector3d residual = residual_of(edge, a, b);
+  Eigen::Matrix3d by_a = -Eigen::Matrix3d::Identity(), by_b = Eigen::Matrix3d::Identity();
+  by_a.topLeftCorner<2, 2>() = -turn;
+  by_a.topRightCorner<2, 1>() = Eigen::Vector2d(between.y(), -between.x());
+  by_b.topLeftCorner<2, 2>() = turn;
+  const Eigen::Matrix3d of_a = weight * by_a.transpose() * edge.information,
+                        of_b = weight * by_b.transpose() * edge.information;
+  equations.add_block(edge.a, edge.a, of_a * by_a);
+  equations.add_block(edge.b, edge.b, of_b * by_b);
+  equations.add_block(edge.b, edge.a, of_b * by_a);
+  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.a)) += of_a * residual;
+  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.b)) += of_b * residual;
 }
 
 std::vector<double> solve_pose_graph(std::vector<Pose2>& poses, std::span<const PoseEdge> odometry,
@@ -61,18 +51,18 @@ std::vector<double> solve_pose_graph(std::vector<Pose2>& poses, std::span<const 
   }
   const auto weights = [&] {
     std::vector<double> each;
-    for (const PoseEdge& loop : loops) each.push_back(weight_of(loop, residual_of(loop, poses[loop.a], poses[loop.b])));
+    for (const PoseEdge& loop : loops) each.push_back(loop_weight(loop, poses[loop.a], poses[loop.b]));
     return each;
   };
   for (int i = 0; i < kIterations; ++i) {
     NormalEquations equations(poses.size(), 0, pairs);
     equations.add_block(0, 0, 1e12 * Eigen::Matrix3d::Identity());
     for (const PoseEdge& edge : odometry) {
-      add(equations, edge, linear(edge, poses[edge.a], poses[edge.b]), 1.0);
+      add_edge(edge, poses[edge.a], poses[edge.b], 1.0, equations);
     }
     for (const PoseEdge& loop : loops) {
-      const Linear line = linear(loop, poses[loop.a], poses[loop.b]);
-      add(equations, loop, line, weight_of(loop, line.residual));
+      const Pose2 &a = poses[loop.a], &b = poses[loop.b];
+      add_edge(loop, a, b, loop_weight(loop, a, b), equations);
     }
     const auto step = equations.solve();
     if (!step) break;

@@ -18,6 +18,7 @@
 #include "slam/slam_problem.hpp"
 #include "slam/slam_solver.hpp"
 #include "slam/sonar_odometry.hpp"
+#include "slam/sweep_loops.hpp"
 
 namespace pingvox {
 namespace {
@@ -451,8 +452,11 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
   Unknowns start = problem->dead_reckoning();
   SlamSolver solver = solver_of(*std::move(problem), recording, options, std::move(start));
   bool determined = true;
+  std::optional<SweepLoops> loops;
   if (options.matching == Matching::kPairs) {
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
+    if (determined) loops = close_sweep_loops(solver);
+    determined = determined && loops;
     for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
   }
   std::optional<std::vector<Eigen::Matrix3d>> of_knots;
@@ -462,7 +466,12 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
   }
   Result<SlamSolution> solution =
       solution_of(solver, recording, options, poses_of(solver, recording, options, -kInfinity));
-  if (solution) solution->covariances = covariances_of(solver, *of_knots, recording, options);
+  if (!solution) return solution;
+  solution->covariances = covariances_of(solver, *of_knots, recording, options);
+  if (loops) {
+    solution->report.submap_loops_found = loops->found;
+    solution->report.submap_loops_kept = loops->kept.size();
+  }
   return solution;
 }
 

@@ -50,7 +50,17 @@ SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<c
         std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(), problem_.knot_times_s().back());
     sweep_middles_.push_back(*problem_.between_knots(middle_s));
   }
-  if (problem_.velocity().by_sonar) scale_ = std::min(1.0, reach_of(sweeps) / kUsualReach_m);
+  reach_m_ = reach_of(sweeps);
+  if (problem_.velocity().by_sonar) scale_ = std::min(1.0, reach_m_ / kUsualReach_m);
+}
+
+Pose2 SlamSolver::pose_of_knot(std::size_t knot) const {
+  const Eigen::Vector3d& state = unknowns_.knots[knot];
+  return {state.head<2>(), wrap_angle(problem_.main_yaw_rad(problem_.knot_times_s()[knot]) + state.z())};
+}
+
+std::vector<EchoOnGround> SlamSolver::ground() const {
+  return place_echoes(problem_, mount_, unknowns_, problem_.ways(unknowns_), echoes_, sweeps_);
 }
 
 bool SlamSolver::step(std::optional<double> gate_m) {
@@ -99,9 +109,16 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
       for (const std::uint32_t y : {b, b + 1}) shared.emplace_back(x, y);
     }
   }
+  for (const PoseEdge& loop : loops_) {
+    shared.emplace_back(static_cast<std::uint32_t>(loop.a), static_cast<std::uint32_t>(loop.b));
+  }
   NormalEquations equations(problem_.knots(), problem_.globals(), shared);
   for (const SlamProblem::Row& row : problem_.rows(unknowns_, ways)) add_row(row, equations);
   add_pairs(ground, equations);
+  for (const PoseEdge& loop : loops_) {
+    const Pose2 a = pose_of_knot(loop.a), b = pose_of_knot(loop.b);
+    add_edge(loop, a, b, loop_weight(loop, a, b), equations);
+  }
   return equations;
 }
 

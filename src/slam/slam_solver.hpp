@@ -12,6 +12,7 @@
 #include "slam/echo_pairs.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/normal_equations.hpp"
+#include "slam/pose_graph.hpp"
 #include "slam/slam_problem.hpp"
 
 namespace pingvox {
@@ -37,12 +38,26 @@ class SlamSolver {
   /// is less for a sonar that reaches less than 20 m, in proportion.
   bool step(std::optional<double> gate_m);
 
+  /// Edges between knots that count in the steps to come, by Cauchy's function.
+  void set_loops(std::vector<PoseEdge> loops) { loops_ = std::move(loops); }
+  const std::vector<PoseEdge>& loops() const { return loops_; }
+
+  /// The body's yaw at a knot, and where the velocity's source is.
+  Pose2 pose_of_knot(std::size_t knot) const;
+  /// All echoes of the sweeps within the time of the knots.
+  std::vector<EchoOnGround> ground() const;
+  /// Where the echoes of each sweep begin, and the end of the last.
+  const std::vector<std::size_t>& sweeps() const { return sweeps_; }
+  /// The knots around the middle of each sweep, and the share of the way between them.
+  const std::vector<std::pair<std::size_t, double>>& sweep_middles() const { return sweep_middles_; }
+
   const SlamProblem& problem() const { return problem_; }
   const Unknowns& unknowns() const { return unknowns_; }
   const Eigen::MatrixXd& global_covariance() const { return global_covariance_; }
   /// Of x, y [m] and yaw [rad] at each knot, with the pairs of the last step. nullopt: not determined.
   std::optional<std::vector<Eigen::Matrix3d>> knot_covariances() const;
   const EchoPairs& pairs() const { return pairs_; }
+  double reach_m() const { return reach_m_; }  ///< see reach_of
   std::size_t echoes() const { return echoes_.size(); }
 
   /// Place of the velocity's source and yaw less the main heading, between a knot and the next.
@@ -61,8 +76,9 @@ class SlamSolver {
   std::vector<PlacedEcho> echoes_;
   std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, and the end
   std::vector<std::pair<std::size_t, double>> sweep_middles_;
-  double scale_ = 1.0;
+  double reach_m_ = 0.0, scale_ = 1.0;
   EchoPairs pairs_;
+  std::vector<PoseEdge> loops_;
   Eigen::MatrixXd global_covariance_;
 };
 

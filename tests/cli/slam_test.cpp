@@ -48,10 +48,10 @@ TEST(Slam, WritesTrajectoryMapAndCalibration) {
       here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "out.tum", "--map", "out.bt", "--resolution", "0.5",
                  "--calibration", "out.toml", "--covariance", "out.csv", "--mount", "0,0,0,0,0,40.1", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* part :
-       {R"("poses": 1001)", R"("sweeps": 10)", R"("pairs": )", R"("loops": {"found": )",
-        R"("calibration": {"velocity_yaw_deg": {"value": )", R"("seconds": {"read": )", R"("real_time_factor": )",
-        R"("source": "compass")", R"("name": "constant of heading compass")", R"("uncertainty": {"mean_sd_m": )"}) {
+  for (const char* part : {R"("poses": 1001)", R"("sweeps": 10)", R"("pairs": )", R"("loops": {"found": )",
+                           R"("submap_loops": {"found": )", R"("calibration": {"velocity_yaw_deg": {"value": )",
+                           R"("seconds": {"read": )", R"("real_time_factor": )", R"("source": "compass")",
+                           R"("name": "constant of heading compass")", R"("uncertainty": {"mean_sd_m": )"}) {
     EXPECT_THAT(outcome.out, HasSubstr(part));
   }
   EXPECT_THAT(here.call({"info", "out.tum"}).out, HasSubstr("1001"));

@@ -87,7 +87,10 @@ struct SlamReport {
   double pair_median_m = 0.0;   ///< median distance from line to point over the pairs
   std::size_t loops_found = 0;  ///< pairs of sweeps far apart in time and near in place
   std::size_t loops_kept = 0;   ///< of these, how many have at least ten pairs that count
-  std::size_t velocities = 0;   ///< valid samples
+  /// Submaps of some sweeps that look like one of an earlier time, and how many of these agree with each other: they
+  /// led the trajectory to where pairs were looked for. None with Estimation::kCausal.
+  std::size_t submap_loops_found = 0, submap_loops_kept = 0;
+  std::size_t velocities = 0;  ///< valid samples
   std::size_t velocities_clipped = 0;
   double longest_gap_s = 0.0;     ///< between valid velocities
   std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "slam/pose_graph.hpp"
+#include "slam/slam_solver.hpp"
+
+/// Loops of a scanning sonar that are beyond the reach of pairs of echoes.
+namespace pingvox {
+
+struct SweepLoops {
+  std::size_t found = 0;       ///< submaps of nine sweeps that look like one of an earlier time
+  std::vector<PoseEdge> kept;  ///< between knots: those that agree with each other
+};
+
+/// Finds loops by correlation of submaps, in ever smaller windows, and solves without pairs after each search, from the
+/// solver's present poses, which are taken to be those of dead reckoning. The loops do not stay: pairs of echoes tell
+/// more, once they are found.
+/// @return those of the last search. nullopt: the problem does not determine its unknowns
+std::optional<SweepLoops> close_sweep_loops(SlamSolver& solver);
+
+}  // namespace pingvox
