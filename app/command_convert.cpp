@@ -10,6 +10,8 @@
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "pingvox/analysis/slice.hpp"
+#include "pingvox/analysis/surface_map.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/grids.hpp"
@@ -17,8 +19,6 @@
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
-#include "pingvox/map/slice.hpp"
-#include "pingvox/map/surface_map.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 

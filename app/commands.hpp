@@ -9,6 +9,8 @@
 
 #include "console.hpp"
 #include "option_table.hpp"
+#include "pingvox/analysis/slice.hpp"
+#include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/device/ping360_emulator.hpp"
@@ -16,8 +18,6 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/map/occupancy_map.hpp"
-#include "pingvox/map/slice.hpp"
-#include "pingvox/map/visible_cells.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/nav_sensors.hpp"

@@ -10,9 +10,9 @@
 #include <string>
 
 #include "option_values.hpp"
+#include "pingvox/analysis/cut_tree.hpp"
+#include "pingvox/analysis/map_agreement.hpp"
 #include "pingvox/geometry/pose.hpp"
-#include "pingvox/map/cut_tree.hpp"
-#include "pingvox/map/map_agreement.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox::app {

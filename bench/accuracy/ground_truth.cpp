@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "app/world_map.hpp"
+#include "pingvox/analysis/slice.hpp"
+#include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "pingvox/map/slice.hpp"
-#include "pingvox/map/visible_cells.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 

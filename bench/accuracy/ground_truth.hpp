@@ -6,7 +6,7 @@
 
 #include "accuracy/recording.hpp"
 #include "accuracy/true_returns.hpp"
-#include "pingvox/map/map_agreement.hpp"
+#include "pingvox/analysis/map_agreement.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 #include "pingvox/result.hpp"

@@ -15,7 +15,7 @@
 #include "bench/speed/same_map.hpp"
 #include "claim.hpp"
 #include "map/map_access.hpp"
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/viewer/chart.hpp"
 
 namespace pingvox::bench {

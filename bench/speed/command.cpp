@@ -10,9 +10,9 @@
 
 #include "bench/paired_timing.hpp"
 #include "bench/process.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
-#include "pingvox/map/compare.hpp"
 #include "pingvox/sim/random.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "silent_stderr.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bench/paired_timing.hpp"
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/insonified_volume.hpp"
 #include "pingvox/sim/random.hpp"

@@ -8,7 +8,7 @@
 
 #include "bench/paired_timing.hpp"
 #include "bench/tank_beams.hpp"
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/build_map.hpp"
 

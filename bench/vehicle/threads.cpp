@@ -7,7 +7,7 @@
 
 #include "bench/paired_timing.hpp"
 #include "bench/speed/tank_echoes.hpp"
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/mapping/build_map.hpp"
 
 namespace pingvox::bench {

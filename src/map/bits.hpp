@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 namespace pingvox::detail {
 
@@ -41,17 +40,6 @@ inline std::uint64_t count_bits(const std::array<std::uint64_t, 64>& words) {
     quarters += (word + (word >> 8)) & 0x00FF00FF00FF00FF;
   }
   return quarters * 0x0001000100010001 >> 48;
-}
-
-/// Adds to a sum, which stays at the largest number when it would pass it.
-constexpr void add_saturated(std::uint64_t& sum, std::uint64_t n) {
-  constexpr std::uint64_t kMax = std::numeric_limits<std::uint64_t>::max();
-  sum = n > kMax - sum ? kMax : sum + n;
-}
-
-/// Cells of the finest resolution in a node that is so many levels high, saturated.
-constexpr std::uint64_t cells_in_node(int levels) {
-  return levels > 21 ? std::numeric_limits<std::uint64_t>::max() : std::uint64_t{1} << (3 * levels);
 }
 
 }  // namespace pingvox::detail

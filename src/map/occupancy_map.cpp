@@ -15,6 +15,7 @@
 #include "map/map_access.hpp"
 #include "map/page_updates.hpp"
 #include "map/tree_order.hpp"
+#include "pingvox/geometry/cell_counts.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sim/tank.hpp"
 

@@ -4,9 +4,9 @@
 #include <random>
 #include <sstream>
 
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/io/maps.hpp"
-#include "pingvox/map/compare.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sonar/polar_image.hpp"

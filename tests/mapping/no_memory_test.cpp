@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/mapping/build_map.hpp"
 
 namespace pingvox {

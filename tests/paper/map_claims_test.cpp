@@ -10,7 +10,7 @@
 #include "bench/paper/cube.hpp"
 #include "bench/paper/parents.hpp"
 #include "map/map_access.hpp"
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 
 namespace pingvox::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <ostream>
 #include <string_view>
 
-#include "pingvox/map/slice.hpp"
+#include "pingvox/analysis/slice.hpp"
 #include "pingvox/result.hpp"
 
 // Raster formats of other programs (docs/formats.md).

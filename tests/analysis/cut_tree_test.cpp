@@ -1,10 +1,10 @@
-#include "pingvox/map/cut_tree.hpp"
+#include "pingvox/analysis/cut_tree.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox {

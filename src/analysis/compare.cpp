@@ -1,4 +1,4 @@
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "map/bits.hpp"
+#include "pingvox/geometry/cell_counts.hpp"
 
 namespace pingvox {
 namespace {

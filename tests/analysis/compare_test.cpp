@@ -1,4 +1,4 @@
-#include "pingvox/map/compare.hpp"
+#include "pingvox/analysis/compare.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What could be seen in a room where that can be told by hand.
-#include "pingvox/map/visible_cells.hpp"
+#include "pingvox/analysis/visible_cells.hpp"
 
 #include <gtest/gtest.h>
 

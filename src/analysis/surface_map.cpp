@@ -1,4 +1,4 @@
-#include "pingvox/map/surface_map.hpp"
+#include "pingvox/analysis/surface_map.hpp"
 
 #include <fmt/core.h>
 

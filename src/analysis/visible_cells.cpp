@@ -1,4 +1,4 @@
-#include "pingvox/map/visible_cells.hpp"
+#include "pingvox/analysis/visible_cells.hpp"
 
 #include <fmt/core.h>
 

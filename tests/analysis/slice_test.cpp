@@ -1,4 +1,4 @@
-#include "pingvox/map/slice.hpp"
+#include "pingvox/analysis/slice.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

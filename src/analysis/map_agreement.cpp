@@ -1,11 +1,11 @@
-#include "pingvox/map/map_agreement.hpp"
+#include "pingvox/analysis/map_agreement.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "map/bits.hpp"
+#include "pingvox/geometry/cell_counts.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox {

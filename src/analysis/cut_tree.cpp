@@ -1,4 +1,4 @@
-#include "pingvox/map/cut_tree.hpp"
+#include "pingvox/analysis/cut_tree.hpp"
 
 #include <cassert>
 

@@ -1,6 +1,6 @@
 // Maps judged by ground truth, on worlds drawn by hand: '#' occupied, '.' free, ' ' unknown; a cell is 1 m wide, the
 // first row has the lowest y.
-#include "pingvox/map/map_agreement.hpp"
+#include "pingvox/analysis/map_agreement.hpp"
 
 #include <gtest/gtest.h>
 
