@@ -157,7 +157,8 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   std::string read;
   if (const std::size_t beams = report.beams - totals.points; beams > 0) {
     const std::size_t echoes = report.echoes - totals.points;
-    read = fmt::format("{} beams, {} complete sweeps, {} echoes", beams, report.sweeps - totals.scans, echoes);
+    read = fmt::format("{} beams, {} complete sweep{}, {} echoes", beams, report.sweeps - totals.scans,
+                       report.sweeps - totals.scans == 1 ? "" : "s", echoes);
     if (beams > echoes) read += fmt::format(", {} beams without echo", beams - echoes);
   }
   if (totals.scans > 0) {
