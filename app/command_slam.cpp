@@ -72,8 +72,13 @@ Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const 
 }
 
 /// Adds all logs to the map, along the trajectory.
-Result<void> map_along(const Trajectory& trajectory, const SlamCommand& command, OccupancyMap& map, Console& console) {
-  const VehiclePath path{trajectory, std::nullopt};
+/// @param calibration  of the sonar's place on the vehicle, which the trajectory goes with; nullptr: it is as mounted
+Result<void> map_along(const Trajectory& trajectory, const SlamCalibration* calibration, const SlamCommand& command,
+                       OccupancyMap& map, Console& console) {
+  VehiclePath path{trajectory, std::nullopt};
+  if (calibration != nullptr) {
+    path.sonar_moved_m = {calibration->sonar_x_m.value, calibration->sonar_y_m.value, 0.0};
+  }
   BuildOptions build = BuildArgs().build;
   build.filter = command.slam.filter;
   build.echo = command.slam.echo;
@@ -339,6 +344,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
     }
   }
   const std::map<std::string, Pose> mounts = options.body_from_source;
+  const std::optional<SlamCalibration> known = options.calibration;
   SlamSmoother smoother(std::move(options));
   const Result<std::size_t> skipped = read_all(smoother, *nav, command, std::move(first));
   if (!skipped) return tl::unexpected(skipped.error());
@@ -355,7 +361,9 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (command.map) {
     bar.draw(std::nullopt, "mapping");
     const Stopwatch mapping;
-    const Result<void> mapped = map_along(solution->trajectory, command, *map, console);
+    const SlamCalibration* calibration =
+        command.slam.matching == Matching::kPairs ? &solution->calibration : (known ? &*known : nullptr);
+    const Result<void> mapped = map_along(solution->trajectory, calibration, command, *map, console);
     if (!mapped) return tl::unexpected(mapped.error());
     seconds.map = mapping.seconds();
   }

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 
 #include "call.hpp"
+#include "json_reader.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "tests/slam/basin.hpp"
 #include "tests/slam/scanned_drive.hpp"
@@ -112,6 +114,44 @@ TEST(Slam, CalibrationIsReadBackByMapRenderLocateAndSlam) {
   expect_error(call({"slam"}, {"-o", "o.tum", "--matching", "none", "--calibration", "o.toml"}), 2, {"--calibration"});
   expect_error(here.call({"map", "beams.csv", "-o", "o.bt", "--use-calibration", "b.toml"}), 2,
                {"--use-calibration", "--nav"});
+}
+
+/// A number of a calibration.
+double number_in(const std::string& toml, const std::string& name) {
+  const std::size_t at = toml.find("\n" + name + " = ");
+  return at == std::string::npos ? std::nan("") : std::stod(toml.substr(at + name.size() + 4));
+}
+
+// The sonar of the basin is at 0, 0. Kills a map along the trajectory whose sonar is not where the trajectory has it.
+TEST(Slam, MapsFromTheSonarsEstimatedPlace) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
+  const Workplace here;
+  write_basin(here);
+  const std::vector<std::string> dive = {"slam", "beams.csv", "--nav", "nav.csv", "--mount", "0.4,-0.3,0,0,0,40.1"};
+  const auto slam = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> args = dive;
+    args.insert(args.end(), more.begin(), more.end());
+    return here.call(args);
+  };
+  const auto same_share = [&](const std::string& map, double x_m, double y_m) {
+    const Outcome mapped = here.call({"map", "beams.csv", "--poses", "out.tum", "-o", "expected.bt", "--resolution",
+                                      "0.2", "--mount", fmt::format("{},{},0,0,0,40.1", x_m, y_m)});
+    EXPECT_EQ(mapped.status, 0) << mapped.err;
+    auto json = flat_json(here.call({"compare", map, "expected.bt", "--json"}).out);
+    EXPECT_TRUE(json);
+    return json ? std::stod((*json)["same"]) / std::stod((*json)["cells"]) : 0.0;
+  };
+  const Outcome made = slam({"-o", "out.tum", "--map", "out.bt", "--resolution", "0.2", "--calibration", "c.toml"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const double x_m = number_in(here.read("c.toml"), "sonar-x"), y_m = number_in(here.read("c.toml"), "sonar-y");
+  EXPECT_GT(std::hypot(x_m, y_m), 0.1);
+  EXPECT_GT(same_share("out.bt", 0.4 + x_m, -0.3 + y_m), 0.999);
+  EXPECT_LT(same_share("out.bt", 0.4, -0.3), 0.99);
+
+  const Outcome reckoned = slam({"-o", "out.tum", "--map", "reckoned.bt", "--resolution", "0.2", "--matching", "none",
+                                 "--use-calibration", "c.toml"});
+  ASSERT_EQ(reckoned.status, 0) << reckoned.err;
+  EXPECT_GT(same_share("reckoned.bt", 0.4 + x_m, -0.3 + y_m), 0.999);
 }
 
 TEST(Slam, SaysWhatIsWrongWithACalibration) {
