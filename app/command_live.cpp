@@ -12,21 +12,18 @@
 #include <future>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "commands.hpp"
 #include "json.hpp"
+#include "live_navigation.hpp"
 #include "map_report.hpp"
-#include "pingvox/device/a50_receiver.hpp"
 #include "pingvox/device/live_source.hpp"
-#include "pingvox/device/mavlink_receiver.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mavlink_obstacles.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/obstacle_sectors.hpp"
-#include "pingvox/nav/live_poses.hpp"
 #include "progress.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"
@@ -70,96 +67,6 @@ Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
   }
   return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
 }
-
-/// Where the vehicle is, by what it or its DVL sends.
-class Navigation {
- public:
-  struct Status {
-    std::size_t messages = 0, damaged = 0;
-    bool is_connected = true;  ///< as far as it can be told
-    std::string problem;       ///< why not
-    std::optional<Error> recording_error;
-  };
-
-  /// @param start_s  when the beams' clock was 0
-  static Result<Navigation> open(const LiveNavigation& from, const std::optional<std::filesystem::path>& record,
-                                 double start_s) {
-    const double since_1970_s =
-        std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-    if (from.kind == LiveNavigation::Kind::kA50) {
-      Result<std::optional<RecordFile>> recorder = recorder_beside<RecordFile>(record, ".jsonl");
-      if (!recorder) return tl::unexpected(recorder.error());
-      return A50Receiver::make(from.address, *std::move(recorder), since_1970_s).map([&](A50Receiver receiver) {
-        return Navigation(std::move(receiver), "a50:", start_s);
-      });
-    }
-    Result<std::optional<TlogRecorder>> recorder = recorder_beside<TlogRecorder>(record, ".tlog");
-    if (!recorder) return tl::unexpected(recorder.error());
-    return MavlinkReceiver::listen(from.address, *std::move(recorder), since_1970_s).map([&](MavlinkReceiver receiver) {
-      return Navigation(std::move(receiver), "mavlink:", start_s);
-    });
-  }
-
-  /// As --nav has it, with the port that was chosen.
-  std::string name() const {
-    return kind_ + std::visit([](const auto& receiver) { return receiver.address(); }, receiver_);
-  }
-  bool listens() const { return std::holds_alternative<MavlinkReceiver>(receiver_); }
-  int descriptor() const {
-    return std::visit([](const auto& receiver) { return receiver.descriptor(); }, receiver_);
-  }
-  Status status() const {
-    if (const auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
-      const A50Receiver::Status& status = dvl->status();
-      return {status.reports, status.damaged, status.is_connected, status.problem, status.recording_error};
-    }
-    const MavlinkReceiver::Status& status = std::get<MavlinkReceiver>(receiver_).status();
-    return {status.frames, status.damaged, true, {}, status.recording_error};
-  }
-  const LivePoses& poses() const { return poses_; }
-
-  Result<void> step(double now_s) {
-    now_s_ = now_s - start_s_;
-    if (auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
-      for (const NavSource& said : dvl->read(now_s_)) {
-        for (const NavSample& sample : said.samples) poses_.add(said.name, said.quantity, sample);
-      }
-      return {};
-    }
-    const auto reports = std::get<MavlinkReceiver>(receiver_).read(now_s_);
-    if (!reports) return tl::unexpected(reports.error());
-    for (const MavlinkNav::Report& report : *reports) poses_.add(report.source, report.quantity, report.sample);
-    return {};
-  }
-
-  /// On the beams' clock.
-  double now_s() const { return now_s_; }
-  /// Whether the pose of a beam may still become known.
-  bool may_come(double beam_s) const {
-    constexpr double kPatience_s = 1.0;
-    const std::optional<double> until_s = poses_.known_until_s();
-    return now_s_ < beam_s + kPatience_s && !(until_s && *until_s >= beam_s);
-  }
-
- private:
-  using Receiver = std::variant<MavlinkReceiver, A50Receiver>;
-  Navigation(Receiver receiver, std::string kind, double start_s)
-      : receiver_(std::move(receiver)), kind_(std::move(kind)), start_s_(start_s) {}
-
-  /// @param record  the sonar's log; nullopt: nothing is recorded
-  template <class Recorder>
-  static Result<std::optional<Recorder>> recorder_beside(const std::optional<std::filesystem::path>& record,
-                                                         const char* suffix) {
-    if (!record) return std::nullopt;
-    return Recorder::create(std::filesystem::path(*record).replace_extension(suffix).string())
-        .map([](Recorder recorder) { return std::optional(std::move(recorder)); });
-  }
-
-  Receiver receiver_;
-  std::string kind_;  ///< "mavlink:"
-  LivePoses poses_;
-  double start_s_, now_s_ = 0.0;
-};
 
 /// Tells an autopilot what is nearest to the vehicle.
 class ObstacleSender {
@@ -250,7 +157,8 @@ class LiveRun {
         mapper_(std::move(mapper)),
         map_(map),
         writer_(command),
-        bar_(command.output_options) {}
+        bar_(command.output_options),
+        told_(nav_ ? nav_->devices().size() : 0) {}
 
   Result<int> run(StopSignals& signals, const Stopwatch& watch) {
     double tell_at_s = watch.seconds() + kTell_s, write_at_s = watch.seconds() + command_.write_every_s;
@@ -265,8 +173,8 @@ class LiveRun {
       if (nav_) {
         if (const auto read = nav_->step(watch.seconds()); !read) return tl::unexpected(read.error());
       }
-      queue_arrived();
-      if (can_map_one()) map_one();
+      queue_arrived(watch.seconds());
+      if (can_map_one()) map_one(watch);
       tell_changes();
       const double now_s = watch.seconds();
       if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map_, last_pose(), now_s);
@@ -285,15 +193,28 @@ class LiveRun {
  private:
   static constexpr double kTell_s = 1.0, kLong_s = 5.0;
 
+  struct Waiting {
+    Beam beam;
+    double arrived_s;
+  };
+  /// Since the last status.
+  struct Recent {
+    double since_s = 0.0;
+    std::size_t first_beam = 0;
+    double latency_s = 0.0;  ///< longest time from a beam's last byte until the mapper was done with it
+  };
+
   void wait(const StopSignals& signals, double seconds) const {
     // poll() passes over -1.
-    std::array<pollfd, 3> files = {pollfd{signals.descriptor(), POLLIN, 0}, pollfd{source_->descriptor(), POLLIN, 0},
-                                   pollfd{nav_ ? nav_->descriptor() : -1, POLLIN, 0}};
+    std::vector<pollfd> files = {{signals.descriptor(), POLLIN, 0}, {source_->descriptor(), POLLIN, 0}};
+    if (nav_) {
+      for (const NavDevice& device : nav_->devices()) files.push_back({device.descriptor(), POLLIN, 0});
+    }
     ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kTell_s) * 1000.0)));
   }
 
   bool can_map_one() const {
-    return !waiting_.empty() && !(nav_ && !cannot_map_ && nav_->may_come(waiting_.front().time_s));
+    return !waiting_.empty() && !(nav_ && !cannot_map_ && nav_->may_come(waiting_.front().beam.time_s));
   }
 
   /// The latest one that is known.
@@ -304,18 +225,18 @@ class LiveRun {
   }
 
   /// The oldest beams are dropped when too many wait: the record has them.
-  void queue_arrived() {
+  void queue_arrived(double now_s) {
     constexpr std::size_t kMaxWaiting = 2000;  // at most 2.4 MB of a Ping360
     for (Beam& beam : arrived_) {
       ++beams_;
-      waiting_.push_back(std::move(beam));
+      waiting_.push_back({std::move(beam), now_s});
     }
     arrived_.clear();
     for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++unmapped_;
   }
 
-  void map_one() {
-    Beam beam = std::move(waiting_.front());
+  void map_one(const Stopwatch& watch) {
+    auto [beam, arrived_s] = std::move(waiting_.front());
     waiting_.pop_front();
     if (cannot_map_) {
       ++unmapped_;
@@ -326,12 +247,13 @@ class LiveRun {
       cannot_map_ = true;
       note(added.error());
     }
+    recent_.latency_s = std::max(recent_.latency_s, watch.seconds() - arrived_s);
   }
 
   Result<int> finish(const Stopwatch& watch) {
     source_->finish(arrived_);
-    queue_arrived();
-    while (!waiting_.empty()) map_one();
+    queue_arrived(watch.seconds());
+    while (!waiting_.empty()) map_one(watch);
     if (!cannot_map_) {
       if (const auto finished = mapper_.finish(); !finished) note(finished.error());
     }
@@ -356,8 +278,7 @@ class LiveRun {
     const LiveStatus status = source_->status();
     tell_recording_error(status.recording_error, was_recording_error_told_);
     if (nav_) {
-      tell_recording_error(nav_->status().recording_error, was_nav_recording_error_told_);
-      tell_connection_of_nav();
+      for (std::size_t i = 0; i < told_.size(); ++i) tell_changes(nav_->devices()[i], told_[i]);
       tell_sources();
     }
     if (status.is_connected == was_connected_ && status.problem == last_problem_) return;
@@ -378,16 +299,22 @@ class LiveRun {
     note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
   }
 
-  void tell_connection_of_nav() {
-    if (nav_->listens()) return;
-    const Navigation::Status status = nav_->status();
-    if (status.is_connected == was_nav_connected_ && status.problem == last_nav_problem_) return;
+  /// What was said of a device of navigation.
+  struct Told {
+    bool recording_error = false, is_connected = false;
+    std::string problem;
+  };
+
+  void tell_changes(const NavDevice& device, Told& told) {
+    const NavDevice::Status status = device.status();
+    tell_recording_error(status.recording_error, told.recording_error);
+    if (device.listens() || (status.is_connected == told.is_connected && status.problem == told.problem)) return;
     bar_.clear();
     console_.say(status.is_connected
-                     ? fmt::format("{}: connected", nav_->name())
-                     : fmt::format("{}: not connected ({}); trying again", nav_->name(), status.problem));
-    was_nav_connected_ = status.is_connected;
-    last_nav_problem_ = status.problem;
+                     ? fmt::format("{}: connected", device.name())
+                     : fmt::format("{}: not connected ({}); trying again", device.name(), status.problem));
+    told.is_connected = status.is_connected;
+    told.problem = status.problem;
   }
 
   /// When it is decided what the poses are made of, and when that takes long.
@@ -397,25 +324,28 @@ class LiveRun {
       was_silence_told_ = true;
       bar_.clear();
       console_.say(fmt::format("{}: no attitude and position yet, {} messages so far: beams are not mapped",
-                               nav_->name(), nav_->status().messages));
+                               nav_->names(), nav_->messages()));
     }
     if (were_sources_told_ || poses.position().empty()) return;
     were_sources_told_ = true;
     bar_.clear();
-    console_.say(fmt::format("{}: attitude of {}, position of {}", nav_->name(), on_one_line(poses.attitude()),
+    console_.say(fmt::format("{}: attitude of {}, position of {}", nav_->names(), on_one_line(poses.attitude()),
                              on_one_line(poses.position())));
   }
 
   void tell(double now_s) {
+    const double beams_per_s = static_cast<double>(beams_ - recent_.first_beam) / (now_s - recent_.since_s);
     if (command_.output_options.report == Report::kJson) {
       // A reader that has gone ends nothing.
       static_cast<void>(console_.print(json_of(now_s, false).text() + "\n"));
     }
     const LiveStatus status = source_->status();
     bar_.draw(std::nullopt,
-              fmt::format("{}{} beams, {} echoes, {} lost, {} not mapped, {:.0f} s, map {}",
-                          status.is_connected ? "" : "not connected, ", beams_, mapper_.report().echoes,
-                          status.unanswered + status.damaged, unmapped_, now_s, bytes_text(map_.memory_bytes())));
+              fmt::format("{}{} beams, {:.1f} a second, {} echoes, {} lost, {} not mapped, latency {:.1f} ms, map {}",
+                          status.is_connected ? "" : "not connected, ", beams_, beams_per_s, mapper_.report().echoes,
+                          status.unanswered + status.damaged, unmapped_, 1e3 * recent_.latency_s,
+                          bytes_text(map_.memory_bytes())));
+    recent_ = {now_s, beams_, 0.0};
   }
 
   JsonObject json_of(double now_s, bool is_last) const {
@@ -429,20 +359,35 @@ class LiveRun {
         .add("mapped", mapper_.report().beams)
         .add("echoes", mapper_.report().echoes)
         .add("not_mapped", unmapped_)
+        .add("latency_ms", round_to_us(1e3 * recent_.latency_s))
         .add("unanswered", status.unanswered)
         .add("damaged", status.damaged)
+        .add_truth("recording_failed", status.recording_error.has_value())
         .add("memory_bytes", map_.memory_bytes());
     if (nav_) {
-      JsonObject nav;
-      nav.add("messages", nav_->status().messages)
-          .add("damaged", nav_->status().damaged)
-          .add("attitude", nav_->poses().attitude())
-          .add("position", nav_->poses().position())
-          .add("without_pose", mapper_.report().no_pose.count);
-      json.add("nav", nav);
+      json.add("nav", json_of(*nav_));
     } else {
       json.add_null("nav");
     }
+    return json;
+  }
+
+  JsonObject json_of(const Navigation& navigation) const {
+    std::vector<JsonObject> devices;
+    for (const NavDevice& device : navigation.devices()) {
+      const NavDevice::Status status = device.status();
+      JsonObject& json = devices.emplace_back();
+      json.add("device", device.name());
+      if (!device.listens()) json.add_truth("connected", status.is_connected).add("connections", status.connections);
+      json.add("messages", status.messages)
+          .add("damaged", status.damaged)
+          .add_truth("recording_failed", status.recording_error.has_value());
+    }
+    JsonObject json;
+    json.add("attitude", navigation.poses().attitude())
+        .add("position", navigation.poses().position())
+        .add("without_pose", mapper_.report().no_pose.count)
+        .add("devices", devices);
     return json;
   }
 
@@ -455,8 +400,8 @@ class LiveRun {
         report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered, status.damaged,
                                         status.connections));
     if (nav_) {
-      text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose",
-                                             nav_->status().messages, nav_->status().damaged, report.no_pose.count));
+      text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->messages(),
+                                             nav_->damaged(), report.no_pose.count));
     }
     return text + map_text(map_, map_.counts());
   }
@@ -471,12 +416,14 @@ class LiveRun {
   MapWriter writer_;
   ProgressBar bar_;
   std::vector<Beam> arrived_;
-  std::deque<Beam> waiting_;
+  std::deque<Waiting> waiting_;
   std::size_t beams_ = 0, unmapped_ = 0;
+  Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
-  bool was_connected_ = false, was_recording_error_told_ = false, was_nav_recording_error_told_ = false;
-  bool were_sources_told_ = false, was_silence_told_ = false, was_nav_connected_ = false;
-  std::string last_problem_, last_nav_problem_;
+  bool was_connected_ = false, was_recording_error_told_ = false;
+  bool were_sources_told_ = false, was_silence_told_ = false;
+  std::string last_problem_;
+  std::vector<Told> told_;  ///< of the devices of navigation
 };
 
 }  // namespace
@@ -492,11 +439,13 @@ Result<int> run(const LiveCommand& command, Console& console) {
   Result<std::unique_ptr<LiveSource>> source = source_of(command, record, start_s);
   if (!source) return tl::unexpected(source.error());
   std::optional<Navigation> nav;
-  if (command.nav) {
-    Result<Navigation> opened = Navigation::open(*command.nav, record, start_s);
+  if (!command.nav.empty()) {
+    Result<Navigation> opened = Navigation::open(command.nav, record, start_s);
     if (!opened) return tl::unexpected(opened.error());
     nav = *std::move(opened);
-    if (nav->listens()) console.say(fmt::format("{}: listening", nav->name()));
+    for (const NavDevice& device : nav->devices()) {
+      if (device.listens()) console.say(fmt::format("{}: listening", device.name()));
+    }
   }
   const BuildOptions options = command.head.apply_to(command.build, (*source)->device());
   Result<BeamMapper> mapper = BeamMapper::make(options, *map);

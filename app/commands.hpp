@@ -254,7 +254,7 @@ struct LiveCommand {
   std::string output;
   Format format = Format::kBt;
   std::optional<std::string> record;     ///< a file that does not exist, or a folder
-  std::optional<LiveNavigation> nav;     ///< nullopt: the vehicle stands still
+  std::vector<LiveNavigation> nav;       ///< empty: the vehicle stands still
   std::optional<std::string> obstacles;  ///< address to send the nearest obstacles to
   Ping360Settings ping360;
   std::size_t max_beams = 0;  ///< stop after them; 0: never

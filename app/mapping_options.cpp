@@ -301,7 +301,9 @@ OptionTable::Group map_group(BuildArgs& args) {
        {"--clamp", 0, "P,P", "lowest and highest probability a cell can reach",
         number_text(map.clamp.lowest.probability()) + "," + number_text(map.clamp.highest.probability()),
         store_clamp(map.clamp)},
-       choice("--vote", kVotes, "update a cell once per sweep (a hit beats a miss) or once per beam", args.build.vote),
+       choice("--vote", kVotes,
+              "update a cell once per sweep (a hit beats a miss), when it ends, or once per beam, as it comes",
+              args.build.vote),
        {"--memory-limit", 0, "BYTES", "stop before the map grows larger; also 512M, 2G", "none",
         store_bytes(map.memory_limit_bytes)}}};
   for (Option& option : group.options) {

@@ -60,6 +60,7 @@ struct BuildArgs {
     all.filter = echoes.filter_options();
     all.echo = echoes.echo;
     all.sound_speed_ratio = echoes.sound_speed_ratio();
+    all.timing = all.vote == Vote::kPerBeam ? Timing::kByBeam : Timing::kBySweep;
     return all;
   }
   /// kBadOption when both are given.

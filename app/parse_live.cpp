@@ -141,7 +141,7 @@ Result<Command> live_command(const Args& args) {
   const Take nav = [&](const std::string& text) -> Result<void> {
     const Result<LiveNavigation> taken = navigation_from(text);
     if (!taken) return tl::unexpected(taken.error());
-    command.nav = *taken;
+    command.nav.push_back(*taken);
     return {};
   };
   const Take obstacles = [&](const std::string& text) -> Result<void> {
@@ -187,8 +187,8 @@ Result<Command> live_command(const Args& args) {
         {{"--nav", 0, "NAV",
           "where the vehicle is: mavlink:udp://:PORT, by what its autopilot sends to this port by MAVLink, or "
           "a50:tcp://HOST[:PORT], by the dead reckoning of a Water Linked DVL; recorded beside --record as .tlog or "
-          ".jsonl",
-          "the vehicle stands still", nav},
+          ".jsonl; several may be given",
+          "the vehicle stands still", nav, Repeats::kEachCounts},
          {"--obstacles", 0, "udp://HOST:PORT",
           "send what is nearest in 72 sectors, by MAVLink (OBSTACLE_DISTANCE) five times a second", "none",
           obstacles}}},
@@ -232,7 +232,7 @@ Result<Command> live_command(const Args& args) {
       }
       command.record = record;
     }
-    if (command.nav && command.device.kind == LiveDevice::Kind::kReplay) {
+    if (!command.nav.empty() && command.device.kind == LiveDevice::Kind::kReplay) {
       return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
     }
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());

@@ -107,6 +107,11 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
+double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+}
+
 PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTimingOptions& options) {
   const auto times_for = [&](const Side& side) {
     if (options.warm_up == WarmUp::kNone) return 1;

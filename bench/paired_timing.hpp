@@ -20,6 +20,9 @@ double childrens_cpu_time_s();
 /// Median; the mean of the middle two of an even number. REQUIRES at least one value.
 double median(std::vector<double> values);
 
+/// The value that a share of all (0..1) is not above. REQUIRES at least one value.
+double percentile(std::vector<double> values, double share);
+
 /// One side of a comparison. `prepare` (a fresh map, a copy of the input) is not timed; may be empty.
 struct Side {
   std::function<void()> prepare;

@@ -100,11 +100,6 @@ std::vector<double> medians_by_beam(const std::vector<Replay>& replays, std::vec
   return medians;
 }
 
-double percentile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
-}
-
 }  // namespace
 
 Result<std::vector<Row>> realtime(const BenchOptions&) {

@@ -19,16 +19,17 @@ constexpr std::array<std::string_view, 4> kMainEstimates = {"ATTITUDE", "ATT", "
                                                             "GLOBAL_POSITION_INT"};
 
 /// Only its valid samples; nullopt: there are none.
-/// @param preferred  taken before other sources, but not before the main estimates
+/// @param preferred  name of a source that is taken before all others
 std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity, std::string_view preferred = {}) {
   const NavSource* chosen = log.best(quantity);
   if (chosen == nullptr) return std::nullopt;
-  bool has_main = false;
   for (const NavSource& source : log.sources()) {
     if (source.quantity != quantity || std::ranges::none_of(source.samples, &NavSample::valid)) continue;
-    const bool is_main = std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end();
-    if (is_main || (source.name == preferred && !has_main)) chosen = &source;
-    has_main = has_main || is_main;
+    if (source.name == preferred) {
+      chosen = &source;
+      break;
+    }
+    if (std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end()) chosen = &source;
   }
   NavSource valid = *chosen;
   std::erase_if(valid.samples, [](const NavSample& sample) { return !sample.valid; });

@@ -250,17 +250,18 @@ TEST(Live, MapsAlongTheWayThatAnEmulatedDvlTells) {
                                {.out_path = here.path("address")});
   EXPECT_TRUE(wait_until([&] { return here.has("address") && here.read("address").find('\n') != std::string::npos; }));
   const std::string address = here.read("address");
-  const Outcome live = here.call({"live", head.address(), "--nav", "a50:" + address.substr(0, address.find('\n')), "-o",
-                                  "live.bt", "--record", "dives", "--range", "6", "--step", "9", "--resolution", "0.1",
-                                  "--beams", "400", "--json"});
+  const Outcome live = here.call({"live", head.address(), "--nav", "a50:" + address.substr(0, address.find('\n')),
+                                  "--nav", "mavlink:udp://127.0.0.1:0", "-o", "live.bt", "--record", "dives", "--range",
+                                  "6", "--step", "9", "--resolution", "0.1", "--beams", "400", "--json"});
   ::kill(dvl, SIGTERM);
   EXPECT_EQ(status_of(dvl), 0);
   ASSERT_EQ(live.status, 0) << live.err;
-  EXPECT_THAT(live.err, HasSubstr("attitude of A50, position of A50"));
+  EXPECT_THAT(live.err, HasSubstr("attitude of A50, position of A50")) << "the autopilot is silent";
   EXPECT_THAT(live.err, HasSubstr(": connected"));
   std::string sonar, nav;
   for (const auto& entry : std::filesystem::directory_iterator(here.path("dives"))) {
-    (entry.path().extension() == ".jsonl" ? nav : sonar) = entry.path().string();
+    if (entry.path().extension() == ".jsonl") nav = entry.path().string();
+    if (entry.path().extension() == ".bin") sonar = entry.path().string();
   }
   const Outcome mapped = here.call({"map", sonar, "--nav", nav, "-o", "map.bt", "--resolution", "0.1"});
   ASSERT_EQ(mapped.status, 0) << mapped.err;
@@ -297,20 +298,40 @@ TEST(Live, TellsTheAutopilotWhatIsNear) {
 TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
   const Head head;
   const Workplace here;
+  const std::string silent = "mavlink:udp://127.0.0.1:0";
   const Outcome outcome =
-      here.call(live(head.address(), {"--nav", "mavlink:udp://127.0.0.1:0", "--beams", "50", "--json"}));
+      here.call(live(head.address(), {"--nav", silent, "--nav", silent, "--beams", "50", "--json"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr(R"("mapped": 0)"));
-  EXPECT_EQ(here.files(), (std::vector<std::string>{"dive.bin", "dive.tlog", "live.bt"}));
+  EXPECT_THAT(outcome.out, HasSubstr(R"("messages": 0, "damaged": 0, "recording_failed": false)"));
+  EXPECT_EQ(here.files(), (std::vector<std::string>{"dive-2.tlog", "dive.bin", "dive.tlog", "live.bt"}));
 }
 
 TEST(Live, AReplayMapsAsMapDoes) {
   const Workplace here;
   here.simulate_tank();
-  const Outcome outcome = here.call({"live", "replay:tank.csv@max", "-o", "live.bt", "--quiet"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(here.call({"map", "tank.csv", "-o", "map.bt", "--quiet"}).status, 0);
-  EXPECT_EQ(here.read("live.bt"), here.read("map.bt"));
+  for (const char* vote : {"sweep", "beam"}) {
+    const Outcome outcome = here.call({"live", "replay:tank.csv@max", "-o", "live.ot", "--vote", vote, "--quiet"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(here.call({"map", "tank.csv", "-o", "map.ot", "--vote", vote, "--quiet"}).status, 0);
+    EXPECT_EQ(here.call({"compare", "live.ot", "map.ot"}).status, 0) << vote;
+  }
+}
+
+// A head takes 20 s for a turn: an obstacle that is heard at its beginning has to be told before its end.
+TEST(Live, MapsBeamsBeforeTheirSweepEndsWithAVotePerBeam) {
+  for (const std::string vote : {"sweep", "beam"}) {
+    const Head head({"--pings", "250"});  // of 400 a turn
+    const Workplace here;
+    const pid_t child = here.start({"live", head.address(), "-o", "live.bt", "--range", "4", "--resolution", "0.1",
+                                    "--vote", vote, "--quiet", "--json"},
+                                   {.out_path = here.path("said")});
+    const auto said = [&](const std::string& what) { return here.read("said").find(what) != std::string::npos; };
+    EXPECT_TRUE(wait_until([&] { return here.has("said") && said(R"("beams": 250,)"); }));
+    EXPECT_EQ(said(R"("beams": 250, "mapped": 0,)"), vote == "sweep");
+    ::kill(child, SIGKILL);
+    status_of(child);
+  }
 }
 
 TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {

@@ -82,6 +82,16 @@ TEST(NavTrajectory, PrefersTheMainFilterToWhatSpeaksMoreOften) {
   EXPECT_TRUE(made->trajectory.at(0)->isApprox(pose_from_rpy({1, 0, 0}, 0, 0, 0)));
 }
 
+// A DVL's dead reckoning starts where it was switched on: north is elsewhere than in the autopilot's attitude.
+TEST(NavTrajectory, TakesTheAttitudeOfThePositionsOwnSource) {
+  const auto made = trajectory_of({source_of("ATTITUDE", NavQuantity::kAttitude, {{0, {0, 0, 1}}, {1, {0, 0, 1}}}),
+                                   source_of("A50", NavQuantity::kAttitude, {{0, {0, 0, 2}}, {1, {0, 0, 2}}}),
+                                   source_of("A50", NavQuantity::kPosition, {{0, {1, 0, 0}}, {1, {1, 0, 0}}})});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->attitude, "A50");
+  EXPECT_TRUE(made->trajectory.at(0)->isApprox(pose_from_rpy({1, 0, 0}, 0, 0, 2)));
+}
+
 TEST(NavTrajectory, MakesMetresOfFixesAlsoAcrossTheDateLine) {
   // By tables a degree at 45 degrees north is 111.132 km long to the north, and 78.847 km to the east.
   constexpr double kDegree = std::numbers::pi / 180.0;

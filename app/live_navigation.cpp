@@ -1,0 +1,129 @@
+#include "live_navigation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+
+namespace pingvox::app {
+namespace {
+
+template <class Recorder>
+Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record, const char* suffix) {
+  if (!record) return std::nullopt;
+  return Recorder::create(record->string() + suffix).map([](Recorder recorder) {
+    return std::optional(std::move(recorder));
+  });
+}
+
+}  // namespace
+
+Result<NavDevice> NavDevice::open(const LiveNavigation& from, const std::optional<std::filesystem::path>& record,
+                                  double since_1970_s) {
+  if (from.kind == LiveNavigation::Kind::kA50) {
+    Result<std::optional<RecordFile>> recorder = recorder_of<RecordFile>(record, ".jsonl");
+    if (!recorder) return tl::unexpected(recorder.error());
+    return A50Receiver::make(from.address, *std::move(recorder), since_1970_s).map([](A50Receiver receiver) {
+      return NavDevice(std::move(receiver));
+    });
+  }
+  Result<std::optional<TlogRecorder>> recorder = recorder_of<TlogRecorder>(record, ".tlog");
+  if (!recorder) return tl::unexpected(recorder.error());
+  return MavlinkReceiver::listen(from.address, *std::move(recorder), since_1970_s).map([](MavlinkReceiver receiver) {
+    return NavDevice(std::move(receiver));
+  });
+}
+
+std::string NavDevice::name() const {
+  return (listens() ? "mavlink:" : "a50:") +
+         std::visit([](const auto& receiver) { return receiver.address(); }, receiver_);
+}
+
+int NavDevice::descriptor() const {
+  return std::visit([](const auto& receiver) { return receiver.descriptor(); }, receiver_);
+}
+
+NavDevice::Status NavDevice::status() const {
+  Status status;
+  if (const auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
+    const A50Receiver::Status& said = dvl->status();
+    status.messages = said.reports;
+    status.damaged = said.damaged;
+    status.is_connected = said.is_connected;
+    status.connections = said.connections;
+    status.problem = said.problem;
+    status.recording_error = said.recording_error;
+  } else {
+    const MavlinkReceiver::Status& said = std::get<MavlinkReceiver>(receiver_).status();
+    status.messages = said.frames;
+    status.damaged = said.damaged;
+    status.recording_error = said.recording_error;
+  }
+  return status;
+}
+
+Result<void> NavDevice::read(double now_s, LivePoses& poses) {
+  if (auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
+    for (const NavSource& said : dvl->read(now_s)) {
+      for (const NavSample& sample : said.samples) poses.add(said.name, said.quantity, sample);
+    }
+    return {};
+  }
+  const auto reports = std::get<MavlinkReceiver>(receiver_).read(now_s);
+  if (!reports) return tl::unexpected(reports.error());
+  for (const MavlinkNav::Report& report : *reports) poses.add(report.source, report.quantity, report.sample);
+  return {};
+}
+
+Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from,
+                                    const std::optional<std::filesystem::path>& record, double start_s) {
+  const double since_1970_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  std::vector<NavDevice> devices;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::optional<std::filesystem::path> name;
+    if (record) name = std::filesystem::path(*record).replace_extension();
+    const auto before = std::span(from).first(i);
+    const auto of_kind = std::ranges::count(before, from[i].kind, &LiveNavigation::kind);
+    if (name && of_kind > 0) *name += fmt::format("-{}", of_kind + 1);
+    Result<NavDevice> device = NavDevice::open(from[i], name, since_1970_s);
+    if (!device) return tl::unexpected(device.error());
+    devices.push_back(*std::move(device));
+  }
+  return Navigation(std::move(devices), start_s);
+}
+
+std::string Navigation::names() const {
+  std::string names;
+  for (const NavDevice& device : devices_) names += (names.empty() ? "" : ", ") + device.name();
+  return names;
+}
+
+std::size_t Navigation::messages() const {
+  std::size_t sum = 0;
+  for (const NavDevice& device : devices_) sum += device.status().messages;
+  return sum;
+}
+
+std::size_t Navigation::damaged() const {
+  std::size_t sum = 0;
+  for (const NavDevice& device : devices_) sum += device.status().damaged;
+  return sum;
+}
+
+Result<void> Navigation::step(double now_s) {
+  now_s_ = now_s - start_s_;
+  for (NavDevice& device : devices_) {
+    if (const auto read = device.read(now_s_, poses_); !read) return read;
+  }
+  return {};
+}
+
+bool Navigation::may_come(double beam_s) const {
+  constexpr double kPatience_s = 1.0;
+  const std::optional<double> until_s = poses_.known_until_s();
+  return now_s_ < beam_s + kPatience_s && !(until_s && *until_s >= beam_s);
+}
+
+}  // namespace pingvox::app

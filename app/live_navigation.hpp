@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "commands.hpp"
+#include "pingvox/device/a50_receiver.hpp"
+#include "pingvox/device/mavlink_receiver.hpp"
+#include "pingvox/nav/live_poses.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// An autopilot or a DVL that tells where the vehicle is.
+class NavDevice {
+ public:
+  struct Status {
+    std::size_t messages = 0, damaged = 0;
+    bool is_connected = true;  ///< as far as it can be told
+    std::size_t connections = 0;
+    std::string problem;  ///< why not
+    std::optional<Error> recording_error;
+  };
+
+  /// @param record        name of the record, less its suffix; nullopt: nothing is recorded
+  /// @param since_1970_s  time of the recording at 0 of the clock that `read` is told
+  static Result<NavDevice> open(const LiveNavigation& from, const std::optional<std::filesystem::path>& record,
+                                double since_1970_s);
+
+  /// As --nav has it, with the port that was chosen.
+  std::string name() const;
+  /// It waits for others to send to it, and does not know who they are.
+  bool listens() const { return std::holds_alternative<MavlinkReceiver>(receiver_); }
+  int descriptor() const;  ///< for poll()
+  Status status() const;
+
+  /// Adds the samples that have arrived. @param now_s  on the beams' clock
+  Result<void> read(double now_s, LivePoses& poses);
+
+ private:
+  using Receiver = std::variant<MavlinkReceiver, A50Receiver>;
+  explicit NavDevice(Receiver receiver) : receiver_(std::move(receiver)) {}
+  Receiver receiver_;
+};
+
+/// Where the vehicle is, by what all devices of navigation say.
+class Navigation {
+ public:
+  /// @param record   the sonar's log, beside which they are recorded; nullopt: nothing is recorded
+  /// @param start_s  when the beams' clock was 0
+  static Result<Navigation> open(const std::vector<LiveNavigation>& from,
+                                 const std::optional<std::filesystem::path>& record, double start_s);
+
+  const std::vector<NavDevice>& devices() const { return devices_; }
+  std::string names() const;  ///< of the devices
+  std::size_t messages() const;
+  std::size_t damaged() const;
+  const LivePoses& poses() const { return poses_; }
+
+  /// Reads what has arrived at all devices.
+  Result<void> step(double now_s);
+
+  /// On the beams' clock.
+  double now_s() const { return now_s_; }
+  /// Whether the pose of a beam may still become known.
+  bool may_come(double beam_s) const;
+
+ private:
+  Navigation(std::vector<NavDevice> devices, double start_s) : devices_(std::move(devices)), start_s_(start_s) {}
+
+  std::vector<NavDevice> devices_;
+  LivePoses poses_;
+  double start_s_, now_s_ = 0.0;
+};
+
+}  // namespace pingvox::app
