@@ -22,30 +22,37 @@ Result<OccupancyMap> part_of(const OccupancyMap& map, Extent extent) {
 
 Result<GroundTruth> GroundTruth::make(const Recording& recording, Extent extent, double resolution_m,
                                       double min_range_m) {
-  Eigen::AlignedBox3d water = recording.scene.water_m;
+  std::vector<Pose> map_from_sensor;
+  for (const SonarSimulator::Ping& ping : recording.pings) map_from_sensor.push_back(ping.map_from_sensor);
+  return make(recording.scene, map_from_sensor,
+              {.min_range_m = min_range_m,
+               .max_range_m = recording.sonar.range_m(),
+               .height_rad = recording.sonar.beam_height_rad},
+              extent, resolution_m);
+}
+
+Result<GroundTruth> GroundTruth::make(const Scene& scene, std::span<const Pose> map_from_sensor,
+                                      const ViewOptions& view, Extent extent, double resolution_m) {
+  Eigen::AlignedBox3d water = scene.water_m;
   if (extent == Extent::kPlane) {
     water.min().z() = -2.0 * resolution_m;
     water.max().z() = 2.0 * resolution_m;
   }
-  const Eigen::Vector3d inside_m = recording.pings.front().map_from_sensor.translation();
-  const Result<OccupancyMap> world = app::world_map(recording.scene.world, water, inside_m, resolution_m);
+  const Eigen::Vector3d inside_m = map_from_sensor.front().translation();
+  const Result<OccupancyMap> world = app::world_map(scene.world, water, inside_m, resolution_m);
   if (!world) return tl::unexpected(world.error());
   Result<OccupancyMap> truth = part_of(*world, extent);
   if (!truth) return tl::unexpected(truth.error());
-  std::vector<Pose> map_from_sensor;
-  for (const SonarSimulator::Ping& ping : recording.pings) map_from_sensor.push_back(ping.map_from_sensor);
-  Result<OccupancyMap> visible = visible_cells(*truth, *world, map_from_sensor,
-                                               {.min_range_m = min_range_m,
-                                                .max_range_m = recording.sonar.range_m(),
-                                                .height_rad = recording.sonar.beam_height_rad});
+  Result<OccupancyMap> visible = visible_cells(*truth, *world, map_from_sensor, view);
   if (!visible) return tl::unexpected(visible.error());
   return GroundTruth(extent, *std::move(truth), *std::move(visible));
 }
 
-Result<MapAgreement> GroundTruth::score(const OccupancyMap& map, const Thresholds& thresholds) const {
+Result<MapAgreement> GroundTruth::score(const OccupancyMap& map, const Thresholds& thresholds,
+                                        std::uint32_t near_cells) const {
   const Result<OccupancyMap> part = part_of(map, extent_);
   if (!part) return tl::unexpected(part.error());
-  return agreement_of(with_thresholds(*part, thresholds), truth_, {judged_box(truth_), &visible_});
+  return agreement_of(with_thresholds(*part, thresholds), truth_, {judged_box(truth_), &visible_, near_cells});
 }
 
 Echoes detect(const Recording& recording, const FilterOptions& filter, const EchoOptions& options) {

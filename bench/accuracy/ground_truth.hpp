@@ -1,15 +1,19 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "accuracy/recording.hpp"
 #include "accuracy/true_returns.hpp"
 #include "pingvox/analysis/map_agreement.hpp"
+#include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/sim/scene.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 
 namespace pingvox::bench {
@@ -25,10 +29,13 @@ enum class Extent {
 class GroundTruth {
  public:
   static Result<GroundTruth> make(const Recording& recording, Extent extent, double resolution_m, double min_range_m);
+  /// @param map_from_sensor  poses of the head, at least one
+  static Result<GroundTruth> make(const Scene& scene, std::span<const Pose> map_from_sensor, const ViewOptions& view,
+                                  Extent extent, double resolution_m);
 
   /// REQUIRES a map of this resolution and 16 levels. @return kUnsupported when nothing is known in the plane
   Result<MapAgreement> score(const OccupancyMap& map) const { return score(map, map.options().thresholds); }
-  Result<MapAgreement> score(const OccupancyMap& map, const Thresholds& thresholds) const;
+  Result<MapAgreement> score(const OccupancyMap& map, const Thresholds& thresholds, std::uint32_t near_cells = 1) const;
 
  private:
   GroundTruth(Extent extent, OccupancyMap truth, OccupancyMap visible)

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <filesystem>
 #include <ostream>
 #include <system_error>
@@ -17,36 +15,15 @@
 namespace pingvox::bench {
 namespace {
 
-Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& places) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& place : places) sum += place;
-  return sum / static_cast<double>(places.size());
-}
-
-/// The reference turned and shifted so that its distances from a trajectory have the least sum of squares.
-Result<Trajectory> align(const Trajectory& reference, const Trajectory& to) {
+/// The part of the reference at whose times the trajectory is known, turned and shifted onto it.
+Result<Trajectory> aligned_reference(const Trajectory& reference, const Trajectory& to) {
   std::vector<StampedPose> poses;
-  std::vector<Eigen::Vector2d> from, onto;
   for (const StampedPose& pose : reference.poses()) {
-    const auto there = to.at(pose.time_s);
-    if (!there) continue;
-    poses.push_back(pose);
-    from.emplace_back(pose.map_from_body.translation().head<2>());
-    onto.emplace_back(there->translation().head<2>());
+    if (to.at(pose.time_s)) poses.push_back(pose);
   }
-  if (from.size() < 2)
-    return fail(Error::Code::kUnsupported, "the reference has no pose at the time of the trajectory");
-  const Eigen::Vector2d from_middle = middle_of(from), onto_middle = middle_of(onto);
-  double sine = 0.0, cosine = 0.0;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const Eigen::Vector2d a = from[i] - from_middle, b = onto[i] - onto_middle;
-    cosine += a.dot(b);
-    sine += a.x() * b.y() - a.y() * b.x();
-  }
-  const Eigen::Rotation2Dd turn(std::atan2(sine, cosine));
-  const Eigen::Vector2d shift = onto_middle - turn * from_middle;
-  const Pose moved = pose_from_rpy({shift.x(), shift.y(), 0.0}, 0.0, 0.0, turn.angle());
-  for (StampedPose& pose : poses) pose.map_from_body = moved * pose.map_from_body;
+  const Result<Pose> by = align(reference, to);
+  if (!by) return tl::unexpected(by.error());
+  for (StampedPose& pose : poses) pose.map_from_body = *by * pose.map_from_body;
   return Trajectory::make(std::move(poses));
 }
 
@@ -58,7 +35,7 @@ Result<Panel> panel_of(const Drive& drive, const MapPath& path) {
   build.model.shape = BeamShape::kRay;
   build.body_from_sensor = drive.body_from_sonar;
   if (const auto built = build_map(beams, path.map_from_body, build, map); !built) return tl::unexpected(built.error());
-  Result<Trajectory> reference = align(drive.reference, path.map_from_body);
+  Result<Trajectory> reference = aligned_reference(drive.reference, path.map_from_body);
   if (!reference) return tl::unexpected(reference.error());
   MapPictureOptions picture;
   picture.paths = {path, {"reference", *std::move(reference)}};

@@ -26,6 +26,12 @@ Result<NavLog> read_navigation(const std::filesystem::path& path) {
   return std::move(nav->log);
 }
 
+Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& places) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& place : places) sum += place;
+  return sum / static_cast<double>(places.size());
+}
+
 }  // namespace
 
 Result<Drive> simulate_drive(const Scene& scene, Motion motion, std::optional<std::size_t> turns, std::uint64_t seed) {
@@ -55,6 +61,33 @@ Result<Drive> simulate_drive(const Scene& scene, Motion motion, std::optional<st
   sensors.delay_s = 0.0;
   SimulatedNav nav = simulate_nav(way, 0.0, end_s, sensors);
   return Drive{std::move(beams), std::move(nav.log), Pose::Identity(), way};
+}
+
+Result<Pose> align(const Trajectory& from, const Trajectory& onto) {
+  std::vector<Eigen::Vector2d> these, those;
+  for (const StampedPose& pose : from.poses()) {
+    const auto there = onto.at(pose.time_s);
+    if (!there) continue;
+    these.emplace_back(pose.map_from_body.translation().head<2>());
+    those.emplace_back(there->translation().head<2>());
+  }
+  if (these.size() < 2) return fail(Error::Code::kUnsupported, "the trajectories have no two times in common");
+  const Eigen::Vector2d these_middle = middle_of(these), those_middle = middle_of(those);
+  double sine = 0.0, cosine = 0.0;
+  for (std::size_t i = 0; i < these.size(); ++i) {
+    const Eigen::Vector2d a = these[i] - these_middle, b = those[i] - those_middle;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const Eigen::Rotation2Dd turn(std::atan2(sine, cosine));
+  const Eigen::Vector2d shift = those_middle - turn * these_middle;
+  return pose_from_rpy({shift.x(), shift.y(), 0.0}, 0.0, 0.0, turn.angle());
+}
+
+Trajectory move_by(const Pose& by, const Trajectory& trajectory) {
+  std::vector<StampedPose> poses = trajectory.poses();
+  for (StampedPose& pose : poses) pose.map_from_body = by * pose.map_from_body;
+  return *Trajectory::make(std::move(poses));
 }
 
 Result<std::optional<Drive>> recorded_marina() {

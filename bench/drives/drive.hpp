@@ -29,6 +29,11 @@ struct Drive {
 /// REQUIRES a motion other than kStill.
 Result<Drive> simulate_drive(const Scene& scene, Motion motion, std::optional<std::size_t> turns, std::uint64_t seed);
 
+/// Turns and shifts in the plane what `from` is in onto what `onto` is in: their distances at the poses of `from` have
+/// the least sum of squares. @return kUnsupported when they have fewer than two times in common
+Result<Pose> align(const Trajectory& from, const Trajectory& onto);
+Trajectory move_by(const Pose& by, const Trajectory& trajectory);
+
 /// The abandoned marina of Ribas et al. (2008), as tools/marina gives it to `pingvox slam`. nullopt: it is not there.
 Result<std::optional<Drive>> recorded_marina();
 

@@ -10,6 +10,7 @@
 
 #include "drives/draw_drive.hpp"
 #include "drives/drive.hpp"
+#include "drives/drive_maps.hpp"
 #include "paired_timing.hpp"
 #include "pingvox/nav/trajectory_score.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
@@ -87,13 +88,22 @@ class Measurement {
  public:
   Measurement(const BenchOptions& options, std::vector<Row>& rows) : options_(options), rows_(rows) {}
 
-  Result<void> measure(std::string_view name, const Drive& drive, const Method& method, std::uint64_t seed) {
+  Result<void> measure(std::string_view name, const Drive& drive, const Method& method, std::uint64_t seed,
+                       const DriveMaps* maps = nullptr) {
     if (options_.say != nullptr) options_.say(fmt::format("  {}: {}, seed {}", name, method.name, seed));
     const Result<Solved> solved = solve(drive, method, seed);
     if (!solved) return tl::unexpected(solved.error());
     Result<Row> row = row_of(name, method, seed, *solved, drive.reference);
     if (!row) return tl::unexpected(row.error());
     rows_.push_back(*std::move(row));
+    if (maps != nullptr) {
+      Pose body_from_sonar = drive.body_from_sonar;
+      if (method.matching == Matching::kPairs) {
+        const SlamCalibration& found = solved->solution.calibration;
+        body_from_sonar.pretranslate(Eigen::Vector3d(found.sonar_x_m.value, found.sonar_y_m.value, 0.0));
+      }
+      if (auto judged = judge(*maps, method.name, solved->solution.trajectory, body_from_sonar); !judged) return judged;
+    }
     if (!options_.pictures || drawn_.size() == 2) return {};
     drawn_.push_back({std::string(method.name), solved->solution.trajectory});
     if (drawn_.size() < 2) return {};
@@ -101,17 +111,38 @@ class Measurement {
   }
   void next_drive() { drawn_.clear(); }
 
+  Result<void> judge(const DriveMaps& maps, std::string_view method, const Trajectory& trajectory,
+                     const Pose& body_from_sonar) {
+    Result<std::vector<Row>> judged = maps.judge(method, trajectory, body_from_sonar);
+    if (!judged) return tl::unexpected(judged.error());
+    map_rows_.insert(map_rows_.end(), judged->begin(), judged->end());
+    return {};
+  }
+  const std::vector<Row>& map_rows() const { return map_rows_; }
+
  private:
   const BenchOptions& options_;
   std::vector<Row>& rows_;
+  std::vector<Row> map_rows_;
   std::vector<MapPath> drawn_;
 };
+
+/// Dead reckoning and SLAM of a simulated drive, and the maps along both and along the true way.
+Result<void> measure_simulated(std::string_view name, const Scene& scene, const Drive& drive, std::uint64_t seed,
+                               Measurement& measurement) {
+  const Result<DriveMaps> maps = DriveMaps::make(name, scene, drive, seed);
+  if (!maps) return tl::unexpected(maps.error());
+  for (const Method& method : {kReckoning, kBatch}) {
+    if (auto done = measurement.measure(name, drive, method, seed, &*maps); !done) return done;
+  }
+  return measurement.judge(*maps, "true", drive.reference, drive.body_from_sonar);
+}
 
 }  // namespace
 
 Result<std::vector<Row>> slam(const BenchOptions& options) {
   constexpr std::uint64_t kRecordedSeeds = 5, kSimulatedSeeds = 10;
-  std::vector<Row> rows;
+  std::vector<Row> rows, rebuilt;
   Measurement measurement(options, rows);
   const Result<std::optional<Drive>> recorded = recorded_marina();
   if (!recorded) return tl::unexpected(recorded.error());
@@ -125,17 +156,32 @@ Result<std::vector<Row>> slam(const BenchOptions& options) {
     }
     if (const auto done = measure(kCausal, 1); !done) return tl::unexpected(done.error());
   }
-  const Scene marina = marina_scene({});
-  for (std::uint64_t seed = 1; seed <= kSimulatedSeeds; ++seed) {
-    if (seed == 1) measurement.next_drive();
-    const Result<Drive> drive = simulate_drive(marina, Motion::kByHand, std::nullopt, seed);
-    if (!drive) return tl::unexpected(drive.error());
-    for (const Method& method : {kReckoning, kBatch}) {
-      if (const auto done = measurement.measure("simulated", *drive, method, seed); !done) {
-        return tl::unexpected(done.error());
+  constexpr std::size_t kHarbourTurns = 50;  // two laps
+  const Scene marina = marina_scene({}), harbour = harbour_scene({});
+  const auto each_seed = [&](std::string_view name, const Scene& scene, Motion motion,
+                             std::optional<std::size_t> turns) -> Result<void> {
+    for (std::uint64_t seed = 1; seed <= kSimulatedSeeds; ++seed) {
+      if (seed == 1) measurement.next_drive();
+      const Result<Drive> drive = simulate_drive(scene, motion, turns, seed);
+      if (!drive) return tl::unexpected(drive.error());
+      if (auto done = measure_simulated(name, scene, *drive, seed, measurement); !done) return done;
+      if (seed > 1 || motion != Motion::kByHand) continue;
+      for (const auto& [shape, cell_m] : {std::pair{BeamShape::kRay, 0.1}, {BeamShape::kCone, 0.2}}) {
+        Result<Row> row = rebuild_map(name, *drive, shape, cell_m);
+        if (!row) return tl::unexpected(row.error());
+        rebuilt.push_back(*std::move(row));
       }
     }
+    return {};
+  };
+  if (const auto done = each_seed("simulated", marina, Motion::kByHand, std::nullopt); !done) {
+    return tl::unexpected(done.error());
   }
+  if (const auto done = each_seed("harbour", harbour, Motion::kLoop, kHarbourTurns); !done) {
+    return tl::unexpected(done.error());
+  }
+  rows.insert(rows.end(), measurement.map_rows().begin(), measurement.map_rows().end());
+  rows.insert(rows.end(), rebuilt.begin(), rebuilt.end());
   return rows;
 }
 

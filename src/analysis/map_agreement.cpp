@@ -64,11 +64,11 @@ std::optional<CellRange> cells_in(const Lattice& lattice, const std::optional<Bo
 }
 
 template <KeyWord W>
-bool is_near(const OccupancyMap& map, const BasicKey<W>& key, Occupancy kind) {
+bool is_near(const OccupancyMap& map, const BasicKey<W>& key, Occupancy kind, std::uint32_t near_cells) {
   if (map.classify(key) == kind) return true;
-  const WideWord last = ~WideWord{0} >> (kMaxDepth - map.lattice().depth());
-  const auto low = [](W word) { return word == 0 ? word : static_cast<W>(word - 1); };
-  const auto high = [last](W word) { return word == static_cast<W>(last) ? word : static_cast<W>(word + 1); };
+  const WideWord last = ~WideWord{0} >> (kMaxDepth - map.lattice().depth()), reach = near_cells;
+  const auto low = [reach](W word) { return static_cast<W>(word < reach ? 0 : word - reach); };
+  const auto high = [last, reach](W word) { return static_cast<W>(last - word < reach ? last : word + reach); };
   for (W x = low(key.x);; ++x) {
     for (W y = low(key.y);; ++y) {
       for (W z = low(key.z);; ++z) {
@@ -84,12 +84,12 @@ bool is_near(const OccupancyMap& map, const BasicKey<W>& key, Occupancy kind) {
 
 /// How many cells of a range are near one of a kind. REQUIRES few enough to visit each.
 template <KeyWord W>
-std::uint64_t near_cells(const CellRange& range, const OccupancyMap& to, Occupancy kind) {
+std::uint64_t count_near(const CellRange& range, const OccupancyMap& to, Occupancy kind, std::uint32_t near_cells) {
   std::uint64_t near = 0;
   for (WideWord x = range.first[0];; ++x) {
     for (WideWord y = range.first[1];; ++y) {
       for (WideWord z = range.first[2];; ++z) {
-        near += is_near(to, BasicKey<W>{static_cast<W>(x), static_cast<W>(y), static_cast<W>(z)}, kind);
+        near += is_near(to, BasicKey<W>{static_cast<W>(x), static_cast<W>(y), static_cast<W>(z)}, kind, near_cells);
         if (z == range.last[2]) break;
       }
       if (y == range.last[1]) break;
@@ -118,18 +118,25 @@ std::uint64_t occupied_cells(const OccupancyMap& map, const CellRange& within) {
 
 /// How many occupied cells of one map, within a range, are near one of the other's.
 template <KeyWord W>
-std::uint64_t occupied_near(const OccupancyMap& of, const OccupancyMap& to, const CellRange& within) {
+std::uint64_t occupied_near(const OccupancyMap& of, const OccupancyMap& to, const CellRange& within,
+                            std::uint32_t near_cells) {
   std::uint64_t near = 0;
-  for_each_occupied<W>(of, within,
-                       [&](const CellRange& cells) { near += near_cells<W>(cells, to, Occupancy::kOccupied); });
+  for_each_occupied<W>(
+      of, within, [&](const CellRange& cells) { near += count_near<W>(cells, to, Occupancy::kOccupied, near_cells); });
   return near;
 }
 
 /// Walks both trees at once: the time follows from their nodes, not from their cells.
 class Walk {
  public:
-  Walk(const OccupancyMap& a, const OccupancyMap& b, const CellRange& within, MapAgreement& out)
-      : a_(a.options().thresholds), b_(b.options().thresholds), map_b_(b), within_(within), out_(out) {}
+  Walk(const OccupancyMap& a, const OccupancyMap& b, const CellRange& within, std::uint32_t near_cells,
+       MapAgreement& out)
+      : a_(a.options().thresholds),
+        b_(b.options().thresholds),
+        map_b_(b),
+        within_(within),
+        near_cells_(near_cells),
+        out_(out) {}
 
   void visit(const std::optional<NodeView>& a, const std::optional<NodeView>& b, const WideKey& key, int depth) {
     if (!a && !b) return;
@@ -172,12 +179,13 @@ class Walk {
     detail::add_saturated(freed_only_by_a_, cells);
     if (freed_only_by_a_ > MapAgreement::kMaxLookedAround) return;
     with_key_word(map_b_.lattice().depth(),
-                  [&]<KeyWord W>() { near_free_ += near_cells<W>(range, map_b_, Occupancy::kFree); });
+                  [&]<KeyWord W>() { near_free_ += count_near<W>(range, map_b_, Occupancy::kFree, near_cells_); });
   }
 
   Thresholds a_, b_;
   const OccupancyMap& map_b_;
   const CellRange& within_;
+  std::uint32_t near_cells_;
   MapAgreement& out_;
   std::uint64_t freed_only_by_a_ = 0, near_free_ = 0;
 };
@@ -236,15 +244,15 @@ MapAgreement agreement_of(const OccupancyMap& a, const OccupancyMap& b, const Ag
   MapAgreement out;
   const std::optional<CellRange> within = cells_in(a.lattice(), options.box);
   if (!within) return out;
-  Walk walk(a, b, *within, out);
+  Walk walk(a, b, *within, options.near_cells, out);
   walk.visit(a.root(), b.root(), {}, 0);
   const OccupancyMap& to_find = options.visible != nullptr ? *options.visible : b;
   out.to_find = options.visible != nullptr ? occupied_cells(to_find, *within) : out.occupied_b;
   if (const auto near = walk.near_free()) out.free_near = out.free_both + *near;
   if (out.occupied_a > MapAgreement::kMaxLookedAround || out.to_find > MapAgreement::kMaxLookedAround) return out;
   with_key_word(a.lattice().depth(), [&]<KeyWord W>() {
-    out.a_near_b = occupied_near<W>(a, b, *within);
-    out.found_by_a = occupied_near<W>(to_find, a, *within);
+    out.a_near_b = occupied_near<W>(a, b, *within, options.near_cells);
+    out.found_by_a = occupied_near<W>(to_find, a, *within, options.near_cells);
   });
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 
 namespace pingvox {
 namespace {
@@ -144,7 +145,7 @@ std::vector<std::uint8_t> make_mavlink_frame(std::uint32_t message, std::span<co
                                      byte_of(0),
                                      byte_of(8),
                                      byte_of(16)};
-  frame.insert(frame.end(), payload.begin(), payload.end());
+  std::ranges::copy(payload, std::back_inserter(frame));
   const unsigned sum = Checksum().add(std::span(frame).subspan(1)).add(definition->extra).value();
   frame.push_back(static_cast<std::uint8_t>(sum & 0xffU));
   frame.push_back(static_cast<std::uint8_t>(sum >> 8U));

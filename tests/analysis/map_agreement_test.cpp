@@ -69,6 +69,22 @@ TEST(MapAgreement, ForgivesAWallOneCellOffAndNotTwo) {
   EXPECT_EQ(two.recall(), 0.0);
 }
 
+// Kills a distance that is always one cell, is counted along the axes only, or wraps at the border of the lattice.
+TEST(MapAgreement, ForgivesAsManyCellsAsItIsTold) {
+  const OccupancyMap wall = draw(kWall), two_off = draw({"......", "######"}), three_off = draw({"######"});
+  const AgreementOptions two{.box = {}, .visible = nullptr, .near_cells = 2};
+  EXPECT_EQ(agreement_of(two_off, wall, two).precision(), 1.0);
+  EXPECT_EQ(agreement_of(two_off, wall, two).recall(), 1.0);
+  EXPECT_EQ(agreement_of(three_off, wall, two).precision(), 0.0);
+  EXPECT_EQ(agreement_of(three_off, wall, two).recall(), 0.0);
+
+  OccupancyMap first(MapOptions{.resolution_m = 1.0, .depth = 4}), last(first);
+  first.edit().set(Key{0, 0, 0}, 4, LogOdds(2.0F));
+  last.edit().set(Key{15, 15, 15}, 4, LogOdds(2.0F));
+  EXPECT_EQ(agreement_of(first, last, two).precision(), 0.0);
+  EXPECT_EQ(agreement_of(last, first, {.box = {}, .visible = nullptr, .near_cells = 15}).precision(), 1.0);
+}
+
 TEST(MapAgreement, AWallThatIsNotThereLowersPrecisionOnly) {
   const MapAgreement score = judged({"######", "......", "......", "######"});
   EXPECT_EQ(score.precision(), 0.5);

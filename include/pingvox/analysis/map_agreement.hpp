@@ -11,11 +11,13 @@ namespace pingvox {
 struct AgreementOptions {
   std::optional<Box> box;                 ///< only cells with their middle in it; nullopt: all
   const OccupancyMap* visible = nullptr;  ///< only its occupied cells are to be found; nullptr: all that B has
+  std::uint32_t near_cells = 1;           ///< cells at most so many apart along each axis are near each other
 };
 
 /// Where two maps agree on what is occupied and what is free, each by its own thresholds. Cells are of the finest
-/// resolution; sums that pass 2^64 - 1 stay there. `near` means in the same place or touching it (by a face, an edge or
-/// a corner); these counts are nullopt where there are too many cells to look around each.
+/// resolution; sums that pass 2^64 - 1 stay there. `near` means within AgreementOptions::near_cells, usually in the
+/// same place or touching it (by a face, an edge or a corner); these counts are nullopt where there are too many cells
+/// to look around each.
 struct MapAgreement {
   std::uint64_t occupied_a = 0, occupied_b = 0, occupied_both = 0;
   std::uint64_t free_a = 0, free_b = 0, free_both = 0;
@@ -27,10 +29,10 @@ struct MapAgreement {
   static constexpr std::uint64_t kMaxLookedAround = 20'000'000;
 
   /// B taken as ground truth: shares, nullopt where there is nothing to divide by.
-  std::optional<double> precision() const;       ///< of A's occupied cells, those within one cell of one of B's
-  std::optional<double> recall() const;          ///< of the cells to find, those within one cell of one of A's
+  std::optional<double> precision() const;       ///< of A's occupied cells, those near one of B's
+  std::optional<double> recall() const;          ///< of the cells to find, those near one of A's
   std::optional<double> free_true() const;       ///< of A's free cells, those that are free in B
-  std::optional<double> free_true_near() const;  ///< of A's free cells, those within one cell of a free one of B
+  std::optional<double> free_true_near() const;  ///< of A's free cells, those near a free one of B
 };
 
 /// REQUIRES maps of the same lattice, `options.visible` too.

@@ -1,0 +1,168 @@
+#include "mapping/heard_mapper.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pingvox/map/cast_ray.hpp"
+
+namespace pingvox::detail {
+
+HeardBeams heard_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
+                       std::size_t complete_sweeps) {
+  HeardBeams out;
+  out.complete_sweeps = complete_sweeps;
+  out.beams.reserve(heard.size());
+  out.numbers.reserve(heard.size());
+  for (const EchoStream::BeamWithEcho& one : heard) {
+    const std::size_t bins =
+        std::min<std::size_t>(one.beam.intensities.size(), std::numeric_limits<std::uint32_t>::max());
+    // Sound that came back from beyond the range has passed all before.
+    out.beams.push_back({one.beam.time_s, one.beam.bearing_rad, one.beam.bin_length_m, static_cast<std::uint32_t>(bins),
+                         one.echo ? HeardBeam::Where::kInRange : HeardBeam::Where::kBeyond,
+                         one.echo ? one.echo : one.beyond});
+    out.numbers.push_back(first + one.number);
+  }
+  return out;
+}
+
+EchoStream echo_stream(const BuildOptions& options) {
+  return {options.filter, options.echo,
+          options.timing == Timing::kBySweep ? EchoStream::Wait::kForSweep : EchoStream::Wait::kForNeighbours};
+}
+
+HeardMapper::HeardMapper(const BuildOptions& options, OccupancyMap& map)
+    : options_(options),
+      map_(&map),
+      tracer_(options.model, options.echo.max_range_m),
+      scan_(map.lattice(), options.miss),
+      parts_(options.threads) {}
+
+Result<void> HeardMapper::add(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
+                              BuildReport& report) {
+  watch_.skip();
+  if (options_.timing == Timing::kBySweep) no_pose_before_ = report.no_pose.count;  // these beams are one sweep
+  const Result<std::vector<Placed>> placed = place(heard, map_from_body, report);
+  if (!placed) return tl::unexpected(placed.error());
+  Result<void> mapped =
+      options_.vote == Vote::kPerSweep ? map_as_one_scan(*placed, report) : map_one_by_one(*placed, report);
+  if (!mapped) return mapped;
+  if (heard.complete_sweeps > sweeps_) {
+    if (report.no_pose.count == no_pose_before_) report.sweeps += heard.complete_sweeps - sweeps_;
+    no_pose_before_ = report.no_pose.count;
+  }
+  sweeps_ = heard.complete_sweeps;
+  report.skipped = report.no_pose.count + report.outside.count + report.blocked.count;
+  return {};
+}
+
+void HeardMapper::restart() {
+  sweeps_ = 0;
+  scan_.clear();
+}
+
+/// Each beam where it was heard: de-skew. Those without a pose are left out.
+Result<std::vector<HeardMapper::Placed>> HeardMapper::place(const HeardBeams& heard,
+                                                            std::span<const std::optional<Pose>> map_from_body,
+                                                            BuildReport& report) const {
+  std::vector<Placed> placed;
+  placed.reserve(heard.beams.size());
+  for (std::size_t n = 0; n < heard.beams.size(); ++n) {
+    const HeardBeam& beam = heard.beams[n];
+    if (!map_from_body[n]) {
+      report.no_pose.add(beam.time_s);
+      continue;
+    }
+    placed.push_back({&beam, *map_from_body[n] * options_.body_from_sensor});
+    if (is_blocked(placed.back())) {
+      report.blocked.add(beam.time_s);
+      placed.pop_back();
+      continue;
+    }
+    if (const auto fits = check_size(beam); !fits) return tl::unexpected(fits.error());
+  }
+  for (const Placed& beam : placed) {
+    if (!beam.heard->echo || beam.heard->where == HeardBeam::Where::kBeyond) continue;
+    const int threshold = beam.heard->echo->threshold;
+    ++report.echoes;
+    report.min_threshold = std::min(report.min_threshold.value_or(threshold), threshold);
+    report.max_threshold = std::max(report.max_threshold.value_or(threshold), threshold);
+  }
+  report.beams += placed.size();
+  return placed;
+}
+
+/// Whether the map has an obstacle on the beam's axis within the blanking range. Its own echo is not heard; what is
+/// heard are its second echo, or sound that went round it.
+bool HeardMapper::is_blocked(const Placed& beam) const {
+  const double blanking_m = options_.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
+  if (map_->empty() || !(blanking_m > 0.0)) return false;
+  const double bearing_rad = beam.heard->bearing_rad;
+  const Eigen::Vector3d axis{std::cos(bearing_rad), std::sin(bearing_rad), 0.0};
+  const Pose& pose = beam.map_from_sensor;
+  return cast_ray(*map_, pose.translation(), pose.linear() * axis, blanking_m).what == Occupancy::kOccupied;
+}
+
+/// Refuses cells so small that a single beam would take all memory.
+Result<void> HeardMapper::check_size(const HeardBeam& beam) const {
+  const double range_m = beam.echo ? beam.echo->range_m : static_cast<double>(beam.bins) * beam.bin_length_m;
+  const double resolution_m = map_->lattice().resolution_m();
+  const double cells = cells_in_beam(options_.model, std::min(range_m, options_.echo.max_range_m), resolution_m);
+  if (cells <= kMaxCellsInBeam) return {};
+  return fail(
+      Error::Code::kLimit,
+      fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
+                  "a shorter maximum range or a thinner beam would do",
+                  range_m, beam.time_s, cells, resolution_m, kMaxCellsInBeam));
+}
+
+HeardMapper::Fit HeardMapper::trace(const Placed& placed, Beam& beam, BeamTracer& tracer, ScanUpdate& scan) {
+  const HeardBeam& heard = *placed.heard;
+  beam.time_s = heard.time_s;
+  beam.bearing_rad = heard.bearing_rad;
+  beam.bin_length_m = heard.bin_length_m;
+  beam.intensities.resize(heard.bins);  // of which only the number counts
+  const std::size_t left_out = tracer.trace(placed.map_from_sensor, beam, heard.echo, scan);
+  return left_out == 0 ? Fit::kInside : Fit::kPartlyOutside;
+}
+
+/// All beams in one scan.
+Result<void> HeardMapper::map_as_one_scan(const std::vector<Placed>& beams, BuildReport& report) {
+  std::vector<Fit> fits(beams.size());
+  parts_.run(beams.size(), scan_, [&](std::size_t, std::size_t first, std::size_t last, ScanUpdate& part) {
+    BeamTracer tracer(options_.model, options_.echo.max_range_m);
+    Beam beam;
+    for (std::size_t i = first; i < last; ++i) fits[i] = trace(beams[i], beam, tracer, part);
+  });
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (fits[i] == Fit::kPartlyOutside) report.outside.add(beams[i].heard->time_s);
+  }
+  return apply(report);
+}
+
+/// Each beam as a scan of its own.
+Result<void> HeardMapper::map_one_by_one(const std::vector<Placed>& beams, BuildReport& report) {
+  for (const Placed& placed : beams) {
+    if (trace(placed, beam_, tracer_, scan_) == Fit::kPartlyOutside) report.outside.add(placed.heard->time_s);
+    if (const auto applied = apply(report); !applied) return applied;
+  }
+  return {};
+}
+
+/// Applies the scan and empties it.
+Result<void> HeardMapper::apply(BuildReport& report) {
+  watch_.lap(report.seconds.trace);
+  if (scan_.empty()) return {};
+  const Result<ApplyReport> applied = map_->apply(scan_);
+  if (!applied) return tl::unexpected(applied.error());
+  report.cells_freed += applied->cells_freed;
+  report.cells_hit += applied->cells_hit;
+  scan_.clear();
+  watch_.lap(report.seconds.apply);
+  return {};
+}
+
+}  // namespace pingvox::detail

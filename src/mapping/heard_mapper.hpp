@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mapping/scan_parts.hpp"
+#include "mapping/stopwatch.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/map/scan_update.hpp"
+#include "pingvox/mapping/beam_tracer.hpp"
+#include "pingvox/mapping/build_options.hpp"
+#include "pingvox/sonar/echo_stream.hpp"
+
+namespace pingvox::detail {
+
+/// What a map needs of a beam whose echo is known.
+struct HeardBeam {
+  double time_s, bearing_rad, bin_length_m;
+  std::uint32_t bins;
+  enum class Where : std::uint8_t { kInRange, kBeyond } where = Where::kInRange;  ///< is the echo
+  std::optional<Echo> echo;                                                       ///< the first thing heard
+};
+
+/// Beams whose echoes became final together.
+struct HeardBeams {
+  std::vector<HeardBeam> beams;
+  std::vector<std::uint64_t> numbers;  ///< of the beams, in the order in which they came
+  std::size_t complete_sweeps = 0;     ///< of the stream up to here
+};
+
+/// @param first  number of the stream's first beam
+HeardBeams heard_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
+                       std::size_t complete_sweeps);
+
+/// The stream that finds the echoes of beams for a map.
+EchoStream echo_stream(const BuildOptions& options);
+
+/// Brings beams whose echoes are known into a map. The same beams at the same poses make the same map.
+class HeardMapper {
+ public:
+  /// REQUIRES valid options. `map` has to outlive this.
+  HeardMapper(const BuildOptions& options, OccupancyMap& map);
+
+  /// @param map_from_body  of each beam; nullopt: not known, and the beam is left out and counted
+  /// @return kLimit when the map or a beam would grow too large; the map keeps what it had got. Throws std::bad_alloc.
+  Result<void> add(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body, BuildReport& report);
+
+  /// After an error, and when the stream of echoes begins anew.
+  void restart();
+
+ private:
+  /// A beam, and where the head was when it was heard.
+  struct Placed {
+    const HeardBeam* heard;
+    Pose map_from_sensor;
+  };
+  enum class Fit { kInside, kPartlyOutside };
+
+  Result<std::vector<Placed>> place(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
+                                    BuildReport& report) const;
+  bool is_blocked(const Placed& beam) const;
+  Result<void> check_size(const HeardBeam& beam) const;
+  static Fit trace(const Placed& placed, Beam& beam, BeamTracer& tracer, ScanUpdate& scan);
+  Result<void> map_as_one_scan(const std::vector<Placed>& beams, BuildReport& report);
+  Result<void> map_one_by_one(const std::vector<Placed>& beams, BuildReport& report);
+  Result<void> apply(BuildReport& report);
+
+  BuildOptions options_;
+  OccupancyMap* map_;
+  BeamTracer tracer_;
+  Beam beam_;  ///< that is traced
+  ScanUpdate scan_;
+  ScanParts parts_;
+  std::size_t sweeps_ = 0;          ///< complete ones that were counted
+  std::size_t no_pose_before_ = 0;  ///< beams left out before this sweep
+  Stopwatch watch_;
+};
+
+}  // namespace pingvox::detail
