@@ -341,7 +341,7 @@ class LiveRun {
     }
     const LiveStatus status = source_->status();
     bar_.draw(std::nullopt,
-              fmt::format("{}{} beams, {:.1f} a second, {} echoes, {} lost, {} not mapped, latency {:.1f} ms, map {}",
+              fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, {:.0f} ms late, map {}",
                           status.is_connected ? "" : "not connected, ", beams_, beams_per_s, mapper_.report().echoes,
                           status.unanswered + status.damaged, unmapped_, 1e3 * recent_.latency_s,
                           bytes_text(map_.memory_bytes())));
@@ -373,15 +373,15 @@ class LiveRun {
   }
 
   JsonObject json_of(const Navigation& navigation) const {
-    std::vector<JsonObject> devices;
+    JsonObject devices;
     for (const NavDevice& device : navigation.devices()) {
       const NavDevice::Status status = device.status();
-      JsonObject& json = devices.emplace_back();
-      json.add("device", device.name());
+      JsonObject json;
       if (!device.listens()) json.add_truth("connected", status.is_connected).add("connections", status.connections);
       json.add("messages", status.messages)
           .add("damaged", status.damaged)
           .add_truth("recording_failed", status.recording_error.has_value());
+      devices.add(device.name(), json);
     }
     JsonObject json;
     json.add("attitude", navigation.poses().attitude())

@@ -25,6 +25,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 /// Waits until something holds, at most a minute.
 template <class Holds>
@@ -258,6 +259,8 @@ TEST(Live, MapsAlongTheWayThatAnEmulatedDvlTells) {
   ASSERT_EQ(live.status, 0) << live.err;
   EXPECT_THAT(live.err, HasSubstr("attitude of A50, position of A50")) << "the autopilot is silent";
   EXPECT_THAT(live.err, HasSubstr(": connected"));
+  EXPECT_THAT(live.out, MatchesRegex("(\\{[^\n]*\\}\n)+")) << "an object a line";
+  EXPECT_THAT(live.out, HasSubstr(R"("connected": true, "connections": 1, "messages":)"));
   std::string sonar, nav;
   for (const auto& entry : std::filesystem::directory_iterator(here.path("dives"))) {
     if (entry.path().extension() == ".jsonl") nav = entry.path().string();
