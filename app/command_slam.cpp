@@ -184,9 +184,10 @@ JsonObject json_of(const Seconds& seconds) {
 std::string json_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
                     std::size_t skipped, const Seconds& seconds) {
   const SlamReport& report = solution.report;
-  JsonObject loops, submap_loops, velocity, json;
+  JsonObject loops, submap_loops, velocity, largest, json;
   loops.add("found", report.loops_found).add("kept", report.loops_kept);
   submap_loops.add("found", report.submap_loops_found).add("kept", report.submap_loops_kept);
+  largest.add("knots", report.largest.knots).add("echoes", report.largest.echoes).add("pairs", report.largest.pairs);
   velocity.add("source", report.velocity)
       .add("samples", report.velocities)
       .add("clipped", report.velocities_clipped)
@@ -213,6 +214,7 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
       .add("velocity", velocity)
       .add("heading", report.heading)
       .add("nav_clock", json_of(offset));
+  command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
   for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
   json.add("not_observable", not_observable);

@@ -20,9 +20,8 @@ constexpr std::size_t kLineEchoes = 8, kMinLineEchoes = 4;
 constexpr double kLineReach_m = 5.0, kWidthOfLength = 0.25;
 
 /// Which sweeps are partners of a sweep: these many before and after it, and some that are near in place only.
-constexpr std::array<std::size_t, 5> kNear = {1, 2, 3, 5, 8};
-constexpr std::size_t kFar = 12, kFarPartners = 10, kLoopPairs = 10;
-constexpr double kFarReach_m = 35.0;
+constexpr std::array<std::size_t, 5> kNear = {1, 2, 3, 5, kFarthestNear};
+constexpr std::size_t kLoopPairs = 10;
 
 constexpr double kMinAgreement = 0.85;  ///< of two normals, cosine
 /// Noise of an echo: of its place, of half its length along the beam, of the beam's direction.
@@ -116,12 +115,29 @@ double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eig
 
 }  // namespace
 
+double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns) {
+  if (echo.held) return echo.held->yaw_rad;
+  const double error_rad =
+      unknowns.knots[echo.knot].z() + echo.share * (unknowns.knots[echo.knot + 1].z() - unknowns.knots[echo.knot].z());
+  return echo.main_yaw_rad + error_rad;
+}
+
+std::uint64_t partner_rank(std::uint64_t seed, std::size_t sweep, std::size_t other) {
+  return mix(mix(mix(seed) ^ std::min(sweep, other)) ^ std::max(sweep, other));
+}
+
 EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
                         const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo) {
   EchoOnGround ground;
-  const Eigen::Vector3d knot =
-      unknowns.knots[echo.knot] + echo.share * (unknowns.knots[echo.knot + 1] - unknowns.knots[echo.knot]);
-  const double yaw_rad = echo.main_yaw_rad + knot.z();
+  Eigen::Vector2d place_m;
+  if (echo.held) {
+    place_m = echo.held->place_m;
+  } else {
+    place_m = unknowns.knots[echo.knot].head<2>() +
+              echo.share * (unknowns.knots[echo.knot + 1] - unknowns.knots[echo.knot]).head<2>();
+    ground.bulge = problem.bulge(unknowns, ways[echo.knot], echo.knot, echo.run.time_s);
+  }
+  const double yaw_rad = yaw_of(echo, unknowns);
   const double ray_rad = yaw_rad + mount.yaw_rad + echo.run.bearing_rad;
   ground.ray = {std::cos(ray_rad), std::sin(ray_rad)};
   const auto& g = unknowns.globals;
@@ -129,8 +145,7 @@ EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, con
   const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
   ground.arm = Eigen::Vector2d(c * lever.x() - s * lever.y(), s * lever.x() + c * lever.y()) +
                (echo.run.middle_m + g[global::kWall] * echo.run.half_length_m) * ground.ray;
-  ground.bulge = problem.bulge(unknowns, ways[echo.knot], echo.knot, echo.run.time_s);
-  ground.at = knot.head<2>() + ground.bulge + ground.arm;
+  ground.at = place_m + ground.bulge + ground.arm;
   return ground;
 }
 
@@ -167,7 +182,7 @@ std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMo
 }
 
 EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
-                     std::span<const std::size_t> sweeps, std::span<const Eigen::Vector2d> sweep_places_m,
+                     std::span<const std::size_t> sweeps, std::span<const SweepPlace> places,
                      const PairOptions& options) {
   EchoPairs result;
   const std::vector<SweepIndex> indices = index_sweeps(ground, sweeps);
@@ -175,18 +190,26 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
   std::vector<std::size_t> pairs_of(echoes.size(), 0);
   std::vector<std::pair<std::uint64_t, std::size_t>> far;
   for (std::size_t s = 0; s < indices.size(); ++s) {
+    if (places[s].is_held) continue;
+    const std::size_t number = places[s].number;
     std::vector<std::size_t> partners;
+    const auto add_number = [&](std::size_t partner) {
+      const auto found = std::ranges::lower_bound(places, partner, {}, &SweepPlace::number);
+      if (found == places.end() || found->number != partner) return;
+      partners.push_back(static_cast<std::size_t>(found - places.begin()));
+    };
     for (const std::size_t step : kNear) {
-      if (step <= s) partners.push_back(s - step);
-      if (s + step < indices.size()) partners.push_back(s + step);
+      if (step <= number) add_number(number - step);
+      add_number(number + step);
     }
     const std::size_t near_partners = partners.size();
     far.clear();
     for (std::size_t other = 0; other < indices.size(); ++other) {
-      const std::size_t apart = other > s ? other - s : s - other;
-      if (apart <= kFar || (sweep_places_m[s] - sweep_places_m[other]).norm() > options.scale * kFarReach_m) continue;
+      const std::size_t of_other = places[other].number;
+      const std::size_t apart = of_other > number ? of_other - number : number - of_other;
+      if (apart <= kFar || (places[s].place_m - places[other].place_m).norm() > options.scale * kFarReach_m) continue;
       // The same for both, and in each iteration: fewer blocks in the normal equations.
-      far.emplace_back(mix(mix(mix(options.seed) ^ std::min(s, other)) ^ std::max(s, other)), other);
+      far.emplace_back(partner_rank(options.seed, number, of_other), other);
     }
     const std::size_t far_partners = std::min(far.size(), kFarPartners);
     std::ranges::partial_sort(far, far.begin() + static_cast<std::ptrdiff_t>(far_partners));
@@ -233,16 +256,16 @@ PairRow pair_row(const PlacedEcho& a, const EchoOnGround& ground_a, const Placed
   PairRow row;
   row.distance_m = pair.normal.dot(ground_a.at - ground_b.at);
   const auto add = [&](const PlacedEcho& echo, const EchoOnGround& ground, double sign, Eigen::Index first) {
-    const double rest = 1.0 - echo.share;
-    const double by_yaw = sign * pair.normal.dot(quarter_turn(ground.arm));
-    row.by.segment<2>(first) = sign * rest * pair.normal;
-    row.by[first + 2] = rest * by_yaw;
-    row.by.segment<2>(first + 3) = sign * echo.share * pair.normal;
-    row.by[first + 5] = echo.share * by_yaw;
+    if (!echo.held) {
+      const double rest = 1.0 - echo.share;
+      const double by_yaw = sign * pair.normal.dot(quarter_turn(ground.arm));
+      row.by.segment<2>(first) = sign * rest * pair.normal;
+      row.by[first + 2] = rest * by_yaw;
+      row.by.segment<2>(first + 3) = sign * echo.share * pair.normal;
+      row.by[first + 5] = echo.share * by_yaw;
+    }
     row.by[12] += sign * echo.run.half_length_m * pair.normal.dot(ground.ray);
-    const double error = unknowns.knots[echo.knot].z() +
-                         echo.share * (unknowns.knots[echo.knot + 1].z() - unknowns.knots[echo.knot].z());
-    const double yaw_rad = echo.main_yaw_rad + error;
+    const double yaw_rad = yaw_of(echo, unknowns);
     const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
     row.by[13] += sign * pair.normal.dot(ahead);
     row.by[14] += sign * pair.normal.dot(quarter_turn(ahead));

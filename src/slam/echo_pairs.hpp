@@ -26,6 +26,9 @@ struct SonarMount {
   double yaw_rad = 0.0;
 };
 
+/// The body's yaw at an echo.
+double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns);
+
 EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
                         const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo);
 
@@ -48,19 +51,35 @@ struct PairOptions {
   double scale = 1.0;  ///< of the noise of an echo's place and of the reach of far partners
 };
 
+/// Sweeps farther apart in the log than this are partners where they are near in place: so many of them, and so near.
+inline constexpr std::size_t kFar = 12, kFarPartners = 10;
+inline constexpr double kFarReach_m = 35.0;
+/// Sweeps before a sweep that are its partners in any case are no farther back than this.
+inline constexpr std::size_t kFarthestNear = 8;
+/// The far partners of a sweep are those of the lowest numbers: the same for both, and in each iteration.
+std::uint64_t partner_rank(std::uint64_t seed, std::size_t sweep, std::size_t other);
+
 struct EchoPairs {
   std::vector<EchoPair> pairs;
   std::size_t loops_found = 0, loops_kept = 0;  ///< see SlamReport
 };
 
-/// Pairs of each echo with the nearest of other sweeps: of those before and after its own, and of some of those that
-/// are near in place only.
+/// Which sweep of the log it is, and where the vehicle was in its middle.
+struct SweepPlace {
+  std::size_t number = 0;
+  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
+  bool is_held = false;
+};
+
+/// Pairs of each echo of a sweep that is not held with the nearest of other sweeps: of those before and after its own,
+/// and of some of those that are near in place only.
+/// @param places  of each sweep, in rising order of their numbers
 EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
-                     std::span<const std::size_t> sweeps, std::span<const Eigen::Vector2d> sweep_places_m,
+                     std::span<const std::size_t> sweeps, std::span<const SweepPlace> places,
                      const PairOptions& options);
 
 /// Distance of a pair along its normal, and its derivatives by the knots around both echoes and by the globals from
-/// kWall to kSonarY. The bulges and the normal are held.
+/// kWall to kSonarY. The bulges and the normal are held, and the knots of echoes that are.
 struct PairRow {
   double distance_m = 0.0;
   Eigen::Matrix<double, 15, 1> by = Eigen::Matrix<double, 15, 1>::Zero();  ///< a, after a, b, after b, globals

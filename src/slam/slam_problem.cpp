@@ -257,7 +257,8 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
   // Headings, and the changes of the main one.
   for (std::size_t s = 0; s < headings_.size(); ++s) {
     const auto first = static_cast<Eigen::Index>(global::heading(s));
-    for (std::size_t k = 0; k < (headings_[s].drifts ? 1 : knots()); ++k) {
+    const std::size_t absolute = !headings_[s].drifts ? knots() : has_prior_ ? 0 : 1;
+    for (std::size_t k = 0; k < absolute; ++k) {
       const double time_s = knot_times_s_[k];
       if (headings_[s].yaw_rad.gap_s(time_s, std::nextafter(time_s, time_s + 1.0)) > 0.0) continue;
       const HeadingResidual heading = heading_residual(unknowns, s, k);
@@ -286,6 +287,7 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
     }
     rows.push_back(std::move(r));
   }
+  if (has_prior_) return rows;
   // What is believed beforehand.
   for (int axis = 0; axis < 2; ++axis) {
     Row r = row(0, unknowns.knots.front()[axis] / kFirstPosition_m);

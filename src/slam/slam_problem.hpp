@@ -11,6 +11,7 @@
 #include "pingvox/slam/slam_calibration.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/navigation.hpp"
+#include "slam/pose2.hpp"
 
 /// The least-squares problem of SlamSmoother: what is known, what is unknown, and the residuals with their derivatives
 /// (docs/slam.md).
@@ -41,13 +42,24 @@ struct HeadingPrior {
   bool turns_with_velocity = false;  ///< same device as the velocity: turned against its mount by the same angle
 };
 
-/// An echo within the time of the knots.
+/// An echo within the time of the knots, or one from before them.
 struct PlacedEcho {
   EchoRun run;
   std::size_t sweep = 0;
   std::size_t knot = 0;  ///< before it
   double share = 0.0;    ///< of the way to the next knot, in time
   double main_yaw_rad = 0.0;
+  /// From before the knots: where the velocity's source was and the body's yaw, which stay. No knot then.
+  std::optional<Pose2> held = std::nullopt;
+};
+
+/// What is known of the first knot and the globals from knots that left the problem: half of x'Ax + b'x of what they
+/// differ from where it was made.
+struct WindowPrior {
+  Eigen::Vector3d knot = Eigen::Vector3d::Zero();
+  Eigen::VectorXd globals;
+  Eigen::MatrixXd information;  ///< the knot, then the globals
+  Eigen::VectorXd gradient;
 };
 
 /// What is known.
@@ -92,6 +104,9 @@ class SlamProblem {
     Eigen::Vector3d by_knot = Eigen::Vector3d::Zero(), by_next = Eigen::Vector3d::Zero();
     Eigen::VectorXd by_globals;
   };
+  /// What is believed beforehand is in a WindowPrior.
+  void begin_with_prior() { has_prior_ = true; }
+
   /// All but the pairs: motion, headings and what is believed beforehand.
   std::vector<Row> rows(const Unknowns& unknowns, const std::vector<Way>& ways) const;
 
@@ -114,6 +129,7 @@ class SlamProblem {
   std::vector<HeadingSource> headings_;
   SlamCalibration calibration_;  ///< but for its headings
   std::vector<HeadingPrior> heading_priors_;
+  bool has_prior_ = false;
   std::vector<std::vector<Node>> nodes_;  ///< of each interval, both ends included
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -106,6 +107,9 @@ Result<void> SlamOptions::validate() const {
     if (const auto valid = calibration->validate(); !valid) {
       return fail(valid.error().code, "calibration: " + valid.error().message);
     }
+  }
+  if (causal_sweeps < kSweepsOfStep) {
+    return fail(Error::Code::kBadOption, fmt::format("causal_sweeps: must be {} or more", kSweepsOfStep));
   }
   if (const auto valid = filter.validate(); !valid) return valid;
   return echo.validate();
@@ -319,12 +323,13 @@ Result<SlamProblem> problem_of(const Recording& recording, const SlamOptions& op
                      options.calibration);
 }
 
-SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start) {
+SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start,
+                     Before before = {}) {
   const Pose velocity_from_sonar =
       Pose(Eigen::Translation3d(-mount_of(options, recording.navigation.velocity.name).translation())) *
       options.body_from_sonar;
   return SlamSolver(std::move(problem), sonar_mount(velocity_from_sonar), recording.sweeps, options.seed,
-                    std::move(start));
+                    std::move(start), std::move(before));
 }
 
 /// The body's pose at each beam that is later than `after_s` and within the time of the knots.
@@ -350,40 +355,6 @@ std::vector<StampedPose> poses_of(const SlamSolver& solver, const Recording& rec
     poses.push_back({time_s, pose});
   }
   return poses;
-}
-
-/// What an earlier solution says of a problem that goes on longer; dead reckoning after its end.
-Unknowns continue_from(const SlamSolver& last, const SlamProblem& problem) {
-  Unknowns start = problem.dead_reckoning();
-  start.globals.head(global::kHeadings) = last.unknowns().globals.head(global::kHeadings);
-  const auto& headings = problem.headings();
-  for (std::size_t s = 0; s < headings.size(); ++s) {
-    const auto& before = last.problem().headings();
-    const auto same = std::ranges::find(before, headings[s].name, &HeadingSource::name);
-    if (same == before.end()) continue;
-    const auto from = global::heading(static_cast<std::size_t>(same - before.begin()));
-    start.globals.segment<global::kOfHeading>(static_cast<Eigen::Index>(global::heading(s))) =
-        last.unknowns().globals.segment<global::kOfHeading>(static_cast<Eigen::Index>(from));
-  }
-  const double end_s = last.problem().knot_times_s().back();
-  const std::vector<SlamProblem::Way> ways = last.problem().ways(last.unknowns());
-  std::size_t known = 0;
-  for (std::size_t k = 0; k < problem.knots(); ++k) {
-    const double time_s = problem.knot_times_s()[k], within_s = std::min(time_s, end_s);
-    const auto [knot, share] = *last.problem().between_knots(within_s);
-    Eigen::Vector3d state = last.knot_at(knot, share);
-    state.head<2>() += last.problem().bulge(last.unknowns(), ways[knot], knot, within_s);
-    // The main heading may be another one by now.
-    state.z() = std::remainder(state.z() + last.problem().main_yaw_rad(within_s) - problem.main_yaw_rad(within_s),
-                               2.0 * std::numbers::pi);
-    start.knots[k] = state;
-    if (time_s <= end_s) known = k;
-  }
-  const std::vector<SlamProblem::Way> moved = problem.ways(start);
-  for (std::size_t k = known; k + 1 < problem.knots(); ++k) {
-    start.knots[k + 1].head<2>() = start.knots[k].head<2>() + moved[k].moved;
-  }
-  return start;
 }
 
 SlamReport report_of(const SlamSolver& solver, const Recording& recording) {
@@ -506,12 +477,20 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   return sources;
 }
 
-std::vector<NavSource> sources_until(const std::vector<NavSource>& sources, double time_s) {
-  std::vector<NavSource> earlier = sources;
-  for (NavSource& source : earlier) {
-    std::erase_if(source.samples, [&](const NavSample& sample) { return sample.time_s > time_s; });
+/// Samples until a time, from a time on, and those before it that tell noise and outliers at that time. They are in
+/// order.
+std::vector<NavSource> sources_within(const std::vector<NavSource>& sources, double from_s, double to_s) {
+  constexpr double kBefore_s = 60.0;
+  constexpr std::ptrdiff_t kSamplesBefore = 16;  // at least: a source that falls silent stays known
+  std::vector<NavSource> within;
+  for (const NavSource& source : sources) {
+    const auto& samples = source.samples;
+    const auto end = std::ranges::upper_bound(samples, to_s, {}, &NavSample::time_s);
+    auto first = std::ranges::lower_bound(samples.begin(), end, from_s - kBefore_s, {}, &NavSample::time_s);
+    first -= std::min(kSamplesBefore, first - samples.begin());
+    within.push_back({source.name, source.quantity, {first, end}});
   }
-  return earlier;
+  return within;
 }
 
 /// The turn and move that brings places nearest to others, in the mean square.
@@ -532,28 +511,195 @@ Pose2 align(const std::vector<Eigen::Vector3d>& places, const std::vector<Eigen:
   return {mean_to - rotation2(yaw_rad) * mean, yaw_rad};
 }
 
-/// After each few sweeps, the poses of their beams by dead reckoning from the last solution; then a new solution.
-Result<SlamSolution> solve_causal(const Recording& whole, const std::vector<NavSource>& sources,
+/// The part of the trajectory that is still estimated, and what is left of the time before.
+struct Window {
+  std::size_t first_sweep = 0;  ///< of the log
+  std::vector<double> times_s;  ///< of the knots
+  /// Of each step of the solution: how many knots it added.
+  std::deque<std::size_t> steps;
+  std::vector<Eigen::Vector3d> poses;  ///< of the knots: x, y, yaw
+  std::vector<std::string> headings;
+  Eigen::VectorXd globals;
+  std::optional<WindowPrior> prior;  ///< its knot's last number is the yaw
+  HeldSweeps held;
+  std::size_t echoes = 0, left_knots = 0, left_echoes = 0;
+  LargestSolution largest;
+};
+
+/// Keeps what a solution says, and lets knots and sweeps older than the window leave. False: not determined.
+bool keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps, std::size_t longest, Window& window) {
+  const SlamProblem& problem = solver.problem();
+  const auto yaw_rad = [&](std::size_t knot) { return problem.main_yaw_rad(window.times_s[knot]); };
+  window.poses = solver.unknowns().knots;
+  for (std::size_t k = 0; k < window.poses.size(); ++k) window.poses[k].z() += yaw_rad(k);
+  window.globals = solver.unknowns().globals;
+  window.headings.clear();
+  for (const HeadingSource& heading : problem.headings()) window.headings.push_back(heading.name);
+  std::size_t leaving = 0;
+  while (window.steps.size() * kSweepsOfStep > longest) {
+    leaving += window.steps.front();
+    window.steps.pop_front();
+  }
+  window.prior = leaving > 0 ? solver.prior_at(leaving) : solver.before().prior;
+  if (leaving > 0 && !window.prior) return false;
+  if (window.prior) window.prior->knot.z() += yaw_rad(leaving);
+  if (leaving == 0) return true;
+  std::size_t ended = 0;
+  while (ended < sweeps.size() && 0.5 * (sweeps[ended].from_s + sweeps[ended].to_s) < window.times_s[leaving]) ++ended;
+  for (HeldSweep& sweep : solver.hold(ended)) {
+    window.left_echoes += sweep.echoes.size();
+    window.echoes -= sweep.echoes.size();
+    window.held.add(std::move(sweep));
+  }
+  window.left_knots += leaving;
+  window.first_sweep += ended;
+  window.times_s.erase(window.times_s.begin(), window.times_s.begin() + static_cast<std::ptrdiff_t>(leaving));
+  window.poses.erase(window.poses.begin(), window.poses.begin() + static_cast<std::ptrdiff_t>(leaving));
+  return true;
+}
+
+/// The globals of a problem by those of the window, where they are: a heading may be new, or the main one.
+std::vector<std::optional<Eigen::Index>> known_globals(const SlamProblem& problem, const Window& window) {
+  std::vector<std::optional<Eigen::Index>> known;
+  for (std::size_t g = 0; g < global::kHeadings; ++g) known.emplace_back(static_cast<Eigen::Index>(g));
+  for (const HeadingSource& heading : problem.headings()) {
+    const auto same = std::ranges::find(window.headings, heading.name);
+    for (std::size_t i = 0; i < global::kOfHeading; ++i) {
+      const std::size_t from = global::heading(static_cast<std::size_t>(same - window.headings.begin())) + i;
+      known.push_back(same == window.headings.end() ? std::nullopt : std::optional(static_cast<Eigen::Index>(from)));
+    }
+  }
+  return known;
+}
+
+/// What the window says of the problem that goes on longer; dead reckoning after its end.
+Unknowns continue_from(const Window& window, const SlamProblem& problem) {
+  Unknowns start = problem.dead_reckoning();
+  const auto known = known_globals(problem, window);
+  for (std::size_t g = 0; g < known.size(); ++g) {
+    if (known[g]) start.globals[static_cast<Eigen::Index>(g)] = window.globals[*known[g]];
+  }
+  double error_rad = 0.0;
+  for (std::size_t k = 0; k < problem.knots(); ++k) {
+    if (k < window.poses.size()) {
+      start.knots[k] = window.poses[k];
+      const double error = window.poses[k].z() - problem.main_yaw_rad(problem.knot_times_s()[k]);
+      error_rad += wrap_angle(error - error_rad);
+    }
+    // After the end of the window, as at its end.
+    start.knots[k].z() = error_rad;
+  }
+  const std::vector<SlamProblem::Way> moved = problem.ways(start);
+  for (std::size_t k = window.poses.size() - 1; k + 1 < problem.knots(); ++k) {
+    start.knots[k + 1].head<2>() = start.knots[k].head<2>() + moved[k].moved;
+  }
+  return start;
+}
+
+/// The window's prior in the unknowns of a problem that starts with `start`. A heading that is new is believed as
+/// usual.
+std::optional<WindowPrior> prior_of(const Window& window, const SlamProblem& problem, const Unknowns& start) {
+  if (!window.prior) return std::nullopt;
+  const WindowPrior& from = *window.prior;
+  const auto known = known_globals(problem, window);
+  const auto size = static_cast<Eigen::Index>(3 + known.size());
+  const std::vector<Estimate> usual = problem.global_priors();
+  WindowPrior prior{from.knot, start.globals, Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  const double error_rad = start.knots.front().z();
+  prior.knot.z() = error_rad + wrap_angle(from.knot.z() - problem.main_yaw_rad(window.times_s.front()) - error_rad);
+  std::vector<std::optional<Eigen::Index>> places = {0, 1, 2};
+  for (const auto& place : known) places.push_back(place ? std::optional(*place + 3) : std::nullopt);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const auto& row = places[static_cast<std::size_t>(i)];
+    if (!row) {
+      const Estimate& believed = usual[static_cast<std::size_t>(i - 3)];
+      prior.globals[i - 3] = believed.value;
+      prior.information(i, i) = 1.0 / (believed.deviation * believed.deviation);
+      continue;
+    }
+    if (i >= 3) prior.globals[i - 3] = from.globals[*row - 3];
+    prior.gradient[i] = from.gradient[*row];
+    for (Eigen::Index j = 0; j < size; ++j) {
+      const auto& column = places[static_cast<std::size_t>(j)];
+      if (column) prior.information(i, j) = from.information(*row, *column);
+    }
+  }
+  return prior;
+}
+
+/// The knots of the window, and new ones until the end of what was recorded.
+Result<std::vector<double>> window_knot_times(const Window& window, const Recording& recording) {
+  const double step_s = sweep_duration_s(recording.sweeps) / kKnotsOfSweep;
+  if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
+  const bool is_first = window.times_s.empty();
+  const Span span{is_first ? recording.span.from_s : window.times_s.back(), recording.span.to_s};
+  Result<std::vector<double>> added = knot_times(span, step_s, recording.beam_times_s.size());
+  if (!added || is_first) return added;
+  std::vector<double> times_s = window.times_s;
+  times_s.insert(times_s.end(), added->begin() + 1, added->end());
+  return times_s;
+}
+
+Result<SlamSolution> window_solution(const SlamSolver& solver, const Recording& whole, const Window& window,
+                                     const SlamOptions& options, std::vector<StampedPose> poses) {
+  Result<SlamSolution> solution = solution_of(solver, whole, options, std::move(poses));
+  if (!solution) return solution;
+  solution->report.knots = window.left_knots + window.times_s.size();
+  solution->report.echoes = window.left_echoes + window.echoes;
+  solution->report.largest = window.largest;
+  return solution;
+}
+
+/// After each few sweeps, the poses of their beams by dead reckoning from the last solution; then a new solution of the
+/// window.
+Result<SlamSolution> solve_causal(const Recording& whole, const std::vector<NavSource>& unsorted,
                                   const SlamOptions& options) {
+  const Result<NavLog> log = NavLog::make(unsorted, NavClock::kUnknown);
+  if (!log) return tl::unexpected(log.error());
+  const std::vector<NavSource>& sources = log->sources();
   std::optional<SlamSolver> last;
+  Window window{.first_sweep = 0,
+                .times_s = {},
+                .steps = {},
+                .poses = {},
+                .headings = {},
+                .globals = {},
+                .prior = std::nullopt,
+                .held = HeldSweeps(options.seed),
+                .echoes = 0,
+                .left_knots = 0,
+                .left_echoes = 0,
+                .largest = {}};
   std::vector<StampedPose> poses;
   // Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
-  // those before, or their map would bend.
+  // those before, or their map would bend. What left the window keeps its frame.
   Pose2 frame;
   for (std::size_t end = std::min(kSweepsOfStep, whole.sweeps.size());;
        end = std::min(end + kSweepsOfStep, whole.sweeps.size())) {
     const bool is_whole = end == whole.sweeps.size();
     const double until_s = whole.sweeps[end - 1].to_s;
-    const auto beams = std::ranges::upper_bound(whole.beam_times_s, until_s) - whole.beam_times_s.begin();
+    const double from_s = window.times_s.empty() ? -kInfinity : window.times_s.front();
+    const auto first_beam = std::ranges::lower_bound(whole.beam_times_s, from_s) - whole.beam_times_s.begin();
+    const auto end_beam = std::ranges::upper_bound(whole.beam_times_s, until_s) - whole.beam_times_s.begin();
     const Result<Recording> recording =
-        recording_of(whole.beam_times_s.first(static_cast<std::size_t>(beams)), whole.sweeps.first(end),
-                     sources_until(sources, is_whole ? kInfinity : until_s), options);
-    Result<SlamProblem> problem = recording.and_then([&](const Recording& part) { return problem_of(part, options); });
-    // Too early for velocity and heading: these beams have no pose.
-    if (!problem && !is_whole) continue;
-    if (!problem) return tl::unexpected(problem.error());
-    const Unknowns start = last ? continue_from(*last, *problem) : problem->dead_reckoning();
-    SlamSolver solver = solver_of(*std::move(problem), *recording, options, start);
+        recording_of(whole.beam_times_s.subspan(static_cast<std::size_t>(first_beam),
+                                                static_cast<std::size_t>(end_beam - first_beam)),
+                     whole.sweeps.subspan(window.first_sweep, end - window.first_sweep),
+                     sources_within(sources, from_s, is_whole ? kInfinity : until_s), options);
+    const bool goes_on = recording && (window.times_s.empty() || recording->span.to_s > window.times_s.back());
+    Result<std::vector<double>> times_s =
+        recording.and_then([&](const Recording& part) { return window_knot_times(window, part); });
+    if (!goes_on || !times_s) {
+      if (!is_whole) continue;  // Too early for velocity and heading, or they are silent: these beams have no pose yet.
+      if (last) return window_solution(*last, whole, window, options, std::move(poses));
+      return tl::unexpected(recording ? times_s.error() : recording.error());
+    }
+    window.steps.push_back(times_s->size() - std::max<std::size_t>(window.times_s.size(), 1));
+    SlamProblem problem(*times_s, recording->navigation.velocity, recording->navigation.headings, options.calibration);
+    const Unknowns start = last ? continue_from(window, problem) : problem.dead_reckoning();
+    Before before{window.first_sweep, prior_of(window, problem, start), &window.held};
+    window.times_s = *std::move(times_s);
+    SlamSolver solver = solver_of(std::move(problem), *recording, options, start, std::move(before));
     for (const StampedPose& pose :
          poses_of(solver, *recording, options, poses.empty() ? -kInfinity : poses.back().time_s)) {
       const Eigen::AngleAxisd turn(frame.yaw_rad, Eigen::Vector3d::UnitZ());
@@ -565,9 +711,16 @@ Result<SlamSolution> solve_causal(const Recording& whole, const std::vector<NavS
       if (!last) solver.step(std::nullopt);
       for (const double gate_m : kCausalGates_m) solver.step(gate_m);
     }
-    if (!poses.empty() && until_s - poses.front().time_s > kSettle_s)
+    if (!poses.empty() && !window.prior && until_s - poses.front().time_s > kSettle_s)
       frame = frame * align(solver.unknowns().knots, start.knots);
-    if (is_whole) return solution_of(solver, *recording, options, std::move(poses));
+    window.echoes = solver.echoes();
+    window.largest.knots = std::max(window.largest.knots, solver.problem().knots());
+    window.largest.echoes = std::max(window.largest.echoes, solver.echoes() + solver.held_echoes());
+    window.largest.pairs = std::max(window.largest.pairs, solver.pairs().pairs.size());
+    if (is_whole) return window_solution(solver, whole, window, options, std::move(poses));
+    if (!keep(solver, recording->sweeps, options.causal_sweeps, window)) {
+      return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
+    }
     last.emplace(std::move(solver));
   }
 }

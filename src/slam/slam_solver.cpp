@@ -1,5 +1,6 @@
 #include "slam/slam_solver.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 
@@ -22,6 +23,13 @@ void add_row(const SlamProblem::Row& row, NormalEquations& equations) {
   equations.gradient.tail(globals) += row.residual * row.by_globals;
 }
 
+/// Gradient of what is known from before, where the first knot and the globals are now.
+Eigen::VectorXd gradient_at(const WindowPrior& prior, const Eigen::Vector3d& knot, const Eigen::VectorXd& globals) {
+  Eigen::VectorXd off(3 + globals.size());
+  off << knot - prior.knot, globals - prior.globals;
+  return prior.gradient + prior.information * off;
+}
+
 }  // namespace
 
 double reach_of(std::span<const HeardSweep> sweeps) {
@@ -36,9 +44,29 @@ double reach_of(std::span<const HeardSweep> sweeps) {
 }
 
 SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps,
-                       std::uint64_t seed, Unknowns start)
-    : problem_(std::move(problem)), mount_(mount), seed_(seed), unknowns_(std::move(start)) {
+                       std::uint64_t seed, Unknowns start, Before before)
+    : problem_(std::move(problem)),
+      mount_(mount),
+      seed_(seed),
+      unknowns_(std::move(start)),
+      before_(std::move(before)) {
+  if (before_.prior) problem_.begin_with_prior();
+  for (const HeardSweep& sweep : sweeps) {
+    const double middle_s =
+        std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(), problem_.knot_times_s().back());
+    sweep_middles_.push_back(*problem_.between_knots(middle_s));
+  }
+  reach_m_ = reach_of(sweeps);
+  if (problem_.velocity().by_sonar) scale_ = std::min(1.0, reach_m_ / kUsualReach_m);
   sweeps_.push_back(0);
+  if (before_.held != nullptr) {
+    for (const auto& held : before_.held->partners(sweep_places(), scale_ * kFarReach_m)) {
+      held_places_.push_back(held->place);
+      echoes_.insert(echoes_.end(), held->echoes.begin(), held->echoes.end());
+      sweeps_.push_back(echoes_.size());
+    }
+  }
+  held_echoes_ = echoes_.size();
   for (const HeardSweep& sweep : sweeps) {
     for (const EchoRun& run : sweep.runs) {
       const auto between = problem_.between_knots(run.time_s);
@@ -46,12 +74,16 @@ SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<c
       echoes_.push_back({run, sweeps_.size() - 1, between->first, between->second, problem_.main_yaw_rad(run.time_s)});
     }
     sweeps_.push_back(echoes_.size());
-    const double middle_s =
-        std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(), problem_.knot_times_s().back());
-    sweep_middles_.push_back(*problem_.between_knots(middle_s));
   }
-  reach_m_ = reach_of(sweeps);
-  if (problem_.velocity().by_sonar) scale_ = std::min(1.0, reach_m_ / kUsualReach_m);
+}
+
+std::vector<SweepPlace> SlamSolver::sweep_places() const {
+  std::vector<SweepPlace> places = held_places_;
+  for (const auto& [knot, share] : sweep_middles_) {
+    const std::size_t number = before_.sweeps + places.size() - held_places_.size();
+    places.push_back({number, knot_at(knot, share).head<2>()});
+  }
+  return places;
 }
 
 Pose2 SlamSolver::pose_of_knot(std::size_t knot) const {
@@ -68,13 +100,11 @@ bool SlamSolver::step(std::optional<double> gate_m) {
   std::vector<EchoOnGround> ground;
   pairs_ = {};
   if (gate_m) {
-    std::vector<Eigen::Vector2d> places;
-    for (const auto& [knot, share] : sweep_middles_) places.emplace_back(knot_at(knot, share).head<2>());
     ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
-    pairs_ = echo_pairs(echoes_, ground, sweeps_, places, {seed_, scale_ * *gate_m, scale_});
+    pairs_ = echo_pairs(echoes_, ground, sweeps_, sweep_places(), {seed_, scale_ * *gate_m, scale_});
     // In order of the knots that they join.
     std::ranges::sort(pairs_.pairs, {}, [&](const EchoPair& pair) {
-      return std::array<std::size_t, 4>{echoes_[pair.a].knot, echoes_[pair.b].knot, pair.a, pair.b};
+      return std::array<std::size_t, 4>{echoes_[pair.a].knot, second_knot(pair), pair.a, pair.b};
     });
   }
   const std::optional<NormalEquations::Step> step = equations(ways, ground).solve();
@@ -97,8 +127,7 @@ std::optional<std::vector<Eigen::Matrix3d>> SlamSolver::knot_covariances() const
 NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
                                       const std::vector<EchoOnGround>& ground) const {
   const auto joined = [&](const EchoPair& pair) {
-    return std::pair{static_cast<std::uint32_t>(echoes_[pair.a].knot),
-                     static_cast<std::uint32_t>(echoes_[pair.b].knot)};
+    return std::pair{static_cast<std::uint32_t>(echoes_[pair.a].knot), static_cast<std::uint32_t>(second_knot(pair))};
   };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;
   for (std::uint32_t k = 0; k + 1 < problem_.knots(); ++k) shared.emplace_back(k, k + 1);
@@ -119,7 +148,95 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
     const Pose2 a = pose_of_knot(loop.a), b = pose_of_knot(loop.b);
     add_edge(loop, a, b, loop_weight(loop, a, b), equations);
   }
+  if (before_.prior) {
+    const WindowPrior& prior = *before_.prior;
+    const auto globals = static_cast<Eigen::Index>(problem_.globals());
+    const Eigen::VectorXd gradient = gradient_at(prior, unknowns_.knots.front(), unknowns_.globals);
+    equations.add_block(0, 0, prior.information.topLeftCorner<3, 3>());
+    equations.border.topRows<3>() += prior.information.topRightCorner(3, globals);
+    equations.corner += prior.information.bottomRightCorner(globals, globals);
+    equations.gradient.head<3>() += gradient.head<3>();
+    equations.gradient.tail(globals) += gradient.tail(globals);
+  }
   return equations;
+}
+
+std::optional<WindowPrior> SlamSolver::prior_at(std::size_t knot) const {
+  constexpr std::size_t kAtOnce = 16;  // few, for the equations are dense
+  const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
+  const std::vector<SlamProblem::Row> rows = problem_.rows(unknowns_, ways);
+  std::vector<EchoOnGround> ground;
+  if (!pairs_.pairs.empty()) ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
+  const auto globals = static_cast<Eigen::Index>(problem_.globals());
+  std::optional<WindowPrior> prior = before_.prior;
+  for (std::size_t first = 0; first < knot;) {
+    const std::size_t last = std::min(first + kAtOnce, knot);
+    const auto leaving = static_cast<Eigen::Index>(3 * (last - first)), size = leaving + 3 + globals;
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
+    const auto add = [&](const Eigen::VectorXd& by, double residual, double weight) {
+      information.selfadjointView<Eigen::Lower>().rankUpdate(by, weight);
+      gradient += weight * residual * by;
+    };
+    for (const SlamProblem::Row& row : rows) {
+      if (row.knot < first || row.knot >= last) continue;
+      Eigen::VectorXd by = Eigen::VectorXd::Zero(size);
+      by.segment<3>(static_cast<Eigen::Index>(3 * (row.knot - first))) = row.by_knot;
+      by.segment<3>(static_cast<Eigen::Index>(3 * (row.knot - first + 1))) = row.by_next;
+      by.tail(globals) = row.by_globals;
+      add(by, row.residual, 1.0);
+    }
+    for (const EchoPair& pair : pairs_.pairs) {
+      const std::size_t a = echoes_[pair.a].knot, b = second_knot(pair);
+      if (std::min(a, b) < first || std::max(a, b) >= last) continue;
+      const PairRow row = pair_row(echoes_[pair.a], ground[pair.a], echoes_[pair.b], ground[pair.b], unknowns_, pair);
+      Eigen::VectorXd by = Eigen::VectorXd::Zero(size);
+      by.segment<6>(static_cast<Eigen::Index>(3 * (a - first))) += row.by.segment<6>(0);
+      by.segment<6>(static_cast<Eigen::Index>(3 * (b - first))) += row.by.segment<6>(6);
+      by.segment<3>(leaving + 3 + Eigen::Index{global::kWall}) = row.by.tail<3>();
+      add(by, row.distance_m, pair.weight);
+    }
+    information = Eigen::MatrixXd(information.selfadjointView<Eigen::Lower>());
+    if (prior) {
+      const Eigen::VectorXd of_prior = gradient_at(*prior, unknowns_.knots[first], unknowns_.globals);
+      const Eigen::MatrixXd& known = prior->information;
+      information.topLeftCorner<3, 3>() += known.topLeftCorner<3, 3>();
+      information.topRightCorner(3, globals) += known.topRightCorner(3, globals);
+      information.bottomLeftCorner(globals, 3) += known.bottomLeftCorner(globals, 3);
+      information.bottomRightCorner(globals, globals) += known.bottomRightCorner(globals, globals);
+      gradient.head<3>() += of_prior.head<3>();
+      gradient.tail(globals) += of_prior.tail(globals);
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> factor(information.topLeftCorner(leaving, leaving));
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
+    const Eigen::Index staying = size - leaving;
+    const Eigen::MatrixXd across = information.bottomLeftCorner(staying, leaving);
+    const Eigen::MatrixXd left =
+        information.bottomRightCorner(staying, staying) - across * factor.solve(Eigen::MatrixXd(across.transpose()));
+    prior = WindowPrior{unknowns_.knots[last], unknowns_.globals, 0.5 * (left + left.transpose()),
+                        gradient.tail(staying) - across * factor.solve(Eigen::VectorXd(gradient.head(leaving)))};
+    if (!prior->information.allFinite() || !prior->gradient.allFinite()) return std::nullopt;
+    first = last;
+  }
+  return prior;
+}
+
+std::vector<HeldSweep> SlamSolver::hold(std::size_t sweeps) const {
+  const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
+  const std::vector<SweepPlace> places = sweep_places();
+  std::vector<HeldSweep> held;
+  for (std::size_t s = held_places_.size(); s < held_places_.size() + sweeps; ++s) {
+    HeldSweep sweep{places[s], {}};
+    sweep.place.is_held = true;
+    for (std::size_t i = sweeps_[s]; i < sweeps_[s + 1]; ++i) {
+      PlacedEcho echo = echoes_[i];
+      const EchoOnGround ground = place_echo(problem_, mount_, unknowns_, ways, echo);
+      echo.held = Pose2{ground.at - ground.arm, yaw_of(echo, unknowns_)};
+      sweep.echoes.push_back(echo);
+    }
+    held.push_back(std::move(sweep));
+  }
+  return held;
 }
 
 /// Sums up the pairs that join the same knots before they are added.
@@ -127,9 +244,9 @@ void SlamSolver::add_pairs(const std::vector<EchoOnGround>& ground, NormalEquati
   using Sum = Eigen::Matrix<double, 15, 16>;  // J'J, and J'r as its last column
   const auto& pairs = pairs_.pairs;
   for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
-    const std::size_t a = echoes_[pairs[first].a].knot, b = echoes_[pairs[first].b].knot;
+    const std::size_t a = echoes_[pairs[first].a].knot, b = second_knot(pairs[first]);
     Sum sum = Sum::Zero();
-    for (end = first; end < pairs.size() && echoes_[pairs[end].a].knot == a && echoes_[pairs[end].b].knot == b; ++end) {
+    for (end = first; end < pairs.size() && echoes_[pairs[end].a].knot == a && second_knot(pairs[end]) == b; ++end) {
       const EchoPair& pair = pairs[end];
       const PairRow row = pair_row(echoes_[pair.a], ground[pair.a], echoes_[pair.b], ground[pair.b], unknowns_, pair);
       Eigen::Matrix<double, 16, 1> wide;

@@ -11,6 +11,7 @@
 #include "pingvox/sonar/sweep.hpp"
 #include "slam/echo_pairs.hpp"
 #include "slam/echo_runs.hpp"
+#include "slam/held_sweeps.hpp"
 #include "slam/normal_equations.hpp"
 #include "slam/pose_graph.hpp"
 #include "slam/slam_problem.hpp"
@@ -27,11 +28,18 @@ struct HeardSweep {
 /// The range that nine of ten echoes are within; 0 without echoes.
 double reach_of(std::span<const HeardSweep> sweeps);
 
+/// What a problem that begins within a recording keeps of the time before.
+struct Before {
+  std::size_t sweeps = 0;            ///< that left the problem
+  std::optional<WindowPrior> prior;  ///< nullopt: no knot left
+  const HeldSweeps* held = nullptr;  ///< nullptr: none
+};
+
 /// The least-squares problem of sweeps, and its iterations.
 class SlamSolver {
  public:
   SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
-             Unknowns start);
+             Unknowns start, Before before = {});
 
   /// One Gauss-Newton step. False: the problem does not determine its unknowns, and they stay.
   /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs. Without a measured velocity it
@@ -46,19 +54,28 @@ class SlamSolver {
   Pose2 pose_of_knot(std::size_t knot) const;
   /// All echoes of the sweeps within the time of the knots.
   std::vector<EchoOnGround> ground() const;
-  /// Where the echoes of each sweep begin, and the end of the last.
+  /// Where the echoes of each sweep begin, those of held ones first, and the end of the last.
   const std::vector<std::size_t>& sweeps() const { return sweeps_; }
   /// The knots around the middle of each sweep, and the share of the way between them.
   const std::vector<std::pair<std::size_t, double>>& sweep_middles() const { return sweep_middles_; }
 
   const SlamProblem& problem() const { return problem_; }
+  const Before& before() const { return before_; }
   const Unknowns& unknowns() const { return unknowns_; }
   const Eigen::MatrixXd& global_covariance() const { return global_covariance_; }
   /// Of x, y [m] and yaw [rad] at each knot, with the pairs of the last step. nullopt: not determined.
   std::optional<std::vector<Eigen::Matrix3d>> knot_covariances() const;
   const EchoPairs& pairs() const { return pairs_; }
-  double reach_m() const { return reach_m_; }  ///< see reach_of
-  std::size_t echoes() const { return echoes_.size(); }
+  /// What the problem, as of the last step, tells of a knot and the globals when the knots before it leave. Pairs of
+  /// echoes before and after the knot are left out: they are made again with the sweeps that are held. nullopt: not
+  /// determined.
+  std::optional<WindowPrior> prior_at(std::size_t knot) const;
+  /// The first sweeps of those of the constructor as they are now. REQUIRES as many.
+  std::vector<HeldSweep> hold(std::size_t sweeps) const;
+
+  double reach_m() const { return reach_m_; }                           ///< see reach_of
+  std::size_t echoes() const { return echoes_.size() - held_echoes_; }  ///< but those that are held
+  std::size_t held_echoes() const { return held_echoes_; }
 
   /// Place of the velocity's source and yaw less the main heading, between a knot and the next.
   Eigen::Vector3d knot_at(std::size_t knot, double share) const {
@@ -67,6 +84,10 @@ class SlamSolver {
 
  private:
   NormalEquations equations(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) const;
+  /// In the order of sweeps().
+  std::vector<SweepPlace> sweep_places() const;
+  /// The knot before the second echo of a pair; the first one's where that is held, for then it moves with no knot.
+  std::size_t second_knot(const EchoPair& pair) const { return echoes_[echoes_[pair.b].held ? pair.a : pair.b].knot; }
   void add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
 
   SlamProblem problem_;
@@ -74,8 +95,11 @@ class SlamSolver {
   std::uint64_t seed_;
   Unknowns unknowns_;
   std::vector<PlacedEcho> echoes_;
-  std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, and the end
+  std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, those that are held first, and the end
   std::vector<std::pair<std::size_t, double>> sweep_middles_;
+  Before before_;
+  std::vector<SweepPlace> held_places_;
+  std::size_t held_echoes_ = 0;
   double reach_m_ = 0.0, scale_ = 1.0;
   EchoPairs pairs_;
   std::vector<PoseEdge> loops_;

@@ -209,7 +209,9 @@ TEST(Slam, CausalIsAnotherTrajectoryOfTheSameBeams) {
   const Workplace here;
   write_basin(here);
   ASSERT_EQ(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "all.tum"}).status, 0);
-  ASSERT_EQ(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "causal.tum", "--causal"}).status, 0);
+  const Outcome causal = here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "causal.tum", "--causal", "--json"});
+  ASSERT_EQ(causal.status, 0);
+  EXPECT_THAT(causal.out, HasSubstr(R"("largest": {"knots": )"));
   EXPECT_NE(here.read("all.tum"), here.read("causal.tum"));
   EXPECT_THAT(here.call({"info", "causal.tum"}).out, HasSubstr("1001"));
 }

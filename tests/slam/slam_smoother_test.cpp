@@ -192,6 +192,51 @@ TEST(SlamSmoother, CausalPosesAreBetterThanDeadReckoning) {
   EXPECT_GT(solved->report.loops_kept, 0U);
 }
 
+// Kills a window that does not move, sweeps that all stay partners, and numbers that are told of the window alone.
+TEST(SlamSmoother, CausalWorkDoesNotGrowWithTheLog) {
+  SlamOptions causal;
+  causal.estimation = Estimation::kCausal;
+  causal.causal_sweeps = 8;
+  constexpr std::size_t kKnots = 9 * (8 + 2) / 2 + 1;  // nine in two sweeps
+  for (const double duration_s : {200.0, 400.0}) {
+    SCOPED_TRACE(duration_s);
+    const auto solved = solve({.duration_s = duration_s}, causal);
+    ASSERT_TRUE(solved) << solved.error().message;
+    const SlamReport& report = solved->report;
+    EXPECT_LE(report.largest.knots, kKnots);
+    // Ten sweeps of a hundred beams; eight partners before them, and ten for each that is far enough in time.
+    EXPECT_LE(report.largest.echoes, 100U * (10 + 8 + 10 * 10));
+    EXPECT_LE(report.largest.pairs, 1000U * (5 + 5 + 10));
+    EXPECT_GT(report.largest.pairs, 1000U);
+    EXPECT_NEAR(static_cast<double>(report.knots), 9.0 * duration_s / 20.0, 2.0);
+    EXPECT_GT(static_cast<double>(report.echoes), 9.0 * duration_s);
+    EXPECT_EQ(solved->trajectory.poses().size(), static_cast<std::size_t>(10.0 * duration_s));
+  }
+}
+
+// Kills sweeps that are forgotten when they leave, a prior that is dropped, and one that is taken where it is not: the
+// second lap goes where the first one did.
+TEST(SlamSmoother, CausalWindowComesBackToWhatLeftIt) {
+  SlamOptions alone, causal;
+  alone.matching = Matching::kNone;
+  causal.estimation = Estimation::kCausal;
+  causal.causal_sweeps = 12;
+  const Basin basin{.duration_s = 600.0};
+  const auto reckoned = solve(basin, alone), solved = solve(basin, causal);
+  ASSERT_TRUE(reckoned && solved);
+  EXPECT_LT(error_m(solved->trajectory), 0.7 * error_m(reckoned->trajectory));
+  EXPECT_GT(solved->report.loops_kept, 0U);
+  EXPECT_NEAR(solved->calibration.velocity_yaw_rad.value, basin.velocity_yaw_rad, 0.02);
+}
+
+TEST(SlamSmoother, RefusesAWindowOfNoSweep) {
+  SlamOptions options;
+  options.causal_sweeps = 1;
+  const auto valid = options.validate();
+  ASSERT_FALSE(valid);
+  EXPECT_THAT(valid.error().message, HasSubstr("causal_sweeps"));
+}
+
 // Kills covariances of other unknowns, in another order, or without the pairs: they are what noise does.
 TEST(SlamSmoother, CovariancesAreThoseOfTheScatterOverSeeds) {
   PINGVOX_SKIP_UNDER_SANITIZERS();

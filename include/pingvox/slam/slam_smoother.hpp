@@ -36,6 +36,8 @@ enum class Estimation {
 struct SlamOptions {
   Matching matching = Matching::kPairs;
   Estimation estimation = Estimation::kBatch;
+  /// With Estimation::kCausal: how many sweeps are estimated at a time, at least 2; those before stay as they are.
+  std::size_t causal_sweeps = 80;
   std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
 
   Pose body_from_sonar = Pose::Identity();
@@ -78,6 +80,14 @@ struct SonarMotion {
   double drift_m = 0.0;         ///< standard deviation of the last position by this motion alone, without pairs
 };
 
+/// The greatest of each that a solution with Estimation::kCausal had: they do not grow with the log.
+struct LargestSolution {
+  std::size_t knots = 0;   ///< three unknowns each
+  std::size_t echoes = 0;  ///< with those of sweeps that stay as they are
+  std::size_t pairs = 0;
+};
+
+/// With Estimation::kCausal, pairs and loops are those of the last solution.
 struct SlamReport {
   std::size_t beams = 0;
   std::size_t sweeps = 0;
@@ -97,6 +107,7 @@ struct SlamReport {
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
   std::vector<std::string> not_observable;
+  LargestSolution largest;
   std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity, and longest_gap_s is between matches
 };
 
