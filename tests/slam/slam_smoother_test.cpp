@@ -220,7 +220,7 @@ TEST(SlamSmoother, CausalWindowComesBackToWhatLeftIt) {
   SlamOptions alone, causal;
   alone.matching = Matching::kNone;
   causal.estimation = Estimation::kCausal;
-  causal.causal_sweeps = 12;
+  causal.causal_sweeps = 8;  // all of them too near in time to be a loop
   const Basin basin{.duration_s = 600.0};
   const auto reckoned = solve(basin, alone), solved = solve(basin, causal);
   ASSERT_TRUE(reckoned && solved);
