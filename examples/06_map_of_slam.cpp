@@ -17,11 +17,12 @@ using namespace pingvox;
 Result<void> dive(BeamSource& sonar, const NavLog& nav, RebuiltMap& map) {
   SlamSmoother smoother({});
   if (const auto added = smoother.add(nav); !added) return added;
-  for (std::size_t beams = 1;; ++beams) {
+  for (std::size_t beams = 0;;) {
     const auto beam = sonar.next();
     if (!beam) return tl::unexpected(beam.error());
     const bool is_end = !*beam;
     if (!is_end) {
+      ++beams;
       smoother.add(**beam);
       if (const auto added = map.add(**beam, std::nullopt); !added)
         return added;  // its pose comes with the next solution
