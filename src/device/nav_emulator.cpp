@@ -49,7 +49,7 @@ class Payload {
   Payload& add(double number) { return add(std::bit_cast<std::uint32_t>(static_cast<float>(number))); }
   Payload& add(const Eigen::Vector3d& three) { return add(three.x()).add(three.y()).add(three.z()); }
   Payload& add_bytes(std::initializer_list<std::uint8_t> bytes) {
-    bytes_.insert(bytes_.end(), bytes);
+    for (const std::uint8_t byte : bytes) bytes_.push_back(byte);
     return *this;
   }
   const Message& bytes() const { return bytes_; }
