@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -14,6 +13,12 @@ namespace pingvox::detail {
 /// Bits of each axis in a place: cells are numbered in the tree's order, three bits a level, x lowest.
 inline constexpr std::array<std::uint64_t, 3> kPlaceBits{0x1249249249249249U, 0x1249249249249249U << 1,
                                                          0x1249249249249249U << 2};
+
+/// Gives memory back to the system.
+struct Unmap {
+  std::size_t bytes = 0;
+  void operator()(void* memory) const;
+};
 
 /// Two dense bit masks (missed, hit) over a cube of cells, so that a mark is one bit of one word. Memory that no ray
 /// comes near is never touched. Empty between scans.
@@ -31,12 +36,12 @@ class ScanWindow {
   void drop() { *this = ScanWindow(); }
 
   /// Cell c is bit c % 64 of word c / 64.
-  std::uint64_t* missed() { return missed_.get(); }
-  std::uint64_t* hit() { return hit_.get(); }
+  std::uint64_t* missed() { return missed_; }
+  std::uint64_t* hit() { return hit_; }
   /// A byte a page, not 0 where some of its cells may be marked.
-  std::uint8_t* touched() { return touched_.get(); }
+  std::uint8_t* touched() { return touched_; }
   /// The same for hits alone: few of the pages that rays cross have some.
-  std::uint8_t* with_hits() { return with_hits_.get(); }
+  std::uint8_t* with_hits() { return with_hits_; }
   std::size_t pages() const { return std::size_t{1} << (3 * bits_ - kPageCellBits); }
 
   /// Marks a cell as hit. @return whether it was not marked before
@@ -75,19 +80,12 @@ class ScanWindow {
   }
 
  private:
-  struct Free {
-    void operator()(void* memory) const { std::free(memory); }  // NOLINT(cppcoreguidelines-no-malloc)
-  };
-  /// Zeroed by calloc, which asks the system for pages that take memory once they are written.
-  template <class T>
-  using Zeroed = std::unique_ptr<T[], Free>;
-  template <class T>
-  static Zeroed<T> allocate_zeroed(std::size_t count);
-
   int bits_ = 0;
   int room_bits_ = 0;  ///< what there is memory for
-  Zeroed<std::uint64_t> missed_, hit_;
-  Zeroed<std::uint8_t> touched_, with_hits_;
+  /// Of all four, from the system and not from a heap: pages are zero, and take memory once they are written.
+  std::unique_ptr<void, Unmap> memory_;
+  std::uint64_t *missed_ = nullptr, *hit_ = nullptr;
+  std::uint8_t *touched_ = nullptr, *with_hits_ = nullptr;
 };
 
 }  // namespace pingvox::detail
