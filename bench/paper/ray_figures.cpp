@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "paper_dda.hpp"
-#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 #include "pingvox/viewer/render_ray.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
 

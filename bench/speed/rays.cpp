@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "bench/paired_timing.hpp"
-#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 #include "pingvox/sim/random.hpp"
 
 namespace pingvox::bench {

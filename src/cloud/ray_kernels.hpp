@@ -10,7 +10,7 @@
 #include "cloud/scan_window.hpp"
 
 /// Rays from one place into a ScanWindow, as many side by side as the machine's vectors have lanes. Their cells are
-/// those of FaceCrossings (map/ray_dda.hpp), to the last one: the same sums of the same whole numbers
+/// those of FaceCrossings (geometry/ray_dda.hpp), to the last one: the same sums of the same whole numbers
 /// (tests/cloud/ray_kernels_test.cpp).
 namespace pingvox::detail {
 

@@ -7,7 +7,7 @@
 
 #include "map/entry_walk.hpp"
 #include "map/map_access.hpp"
-#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 
 namespace pingvox {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "map/tree_order.hpp"
-#include "pingvox/map/ray_bresenham.hpp"
-#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/geometry/ray_bresenham.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 
 namespace pingvox {
 namespace {

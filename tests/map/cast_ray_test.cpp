@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "pingvox/map/ray_dda.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 #include "support/rounds.hpp"
 
 using namespace pingvox;

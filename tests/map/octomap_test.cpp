@@ -7,9 +7,9 @@
 #include <random>
 
 #include "pingvox/cloud/trace_points.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/occupancy_map.hpp"
-#include "pingvox/map/ray_dda.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "support/differences.hpp"
 #include "support/oracle_map.hpp"

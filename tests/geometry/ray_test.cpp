@@ -6,20 +6,19 @@
 #include <set>
 #include <tuple>
 
-#include "pingvox/map/ray_bresenham.hpp"
-#include "pingvox/map/ray_dda.hpp"
-#include "pingvox/map/scan_update.hpp"
-#include "pingvox/map/trace_ray.hpp"
+#include "pingvox/geometry/ray_bresenham.hpp"
+#include "pingvox/geometry/ray_dda.hpp"
 #include "support/cells_as_text.hpp"
 #include "support/differences.hpp"
 #include "support/exact_segment.hpp"
-#include "support/oracle_map.hpp"
+#include "support/random_segments.hpp"
 #include "support/rounds.hpp"
-#include "support/scan_cells.hpp"
 
 using namespace pingvox;
 using test::as_text;
 using test::ExactSegment;
+using test::metres;
+using test::RandomSegments;
 using Cell = ExactSegment::Cell;
 using Point = ExactSegment::Point;
 
@@ -29,11 +28,6 @@ static_assert(std::ranges::view<KeyRange<DdaStepper<std::uint16_t>>>);
 static_assert(std::ranges::input_range<KeyRange<BresenhamStepper<WideWord>>>);
 
 constexpr std::int64_t kUnit = ExactSegment::kUnit;
-
-Eigen::Vector3d metres(const Point& point, double resolution_m) {
-  const auto axis = [&](std::size_t i) { return std::ldexp(static_cast<double>(point[i]), -ExactSegment::kShift); };
-  return Eigen::Vector3d(axis(0), axis(1), axis(2)) * resolution_m;
-}
 
 /// A key counted from the centre of its lattice.
 template <KeyWord W>
@@ -56,72 +50,6 @@ std::vector<Cell> dda_cells(const Lattice& lattice, const Eigen::Vector3d& from_
 std::int64_t manhattan(const Cell& a, const Cell& b) {
   return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
 }
-
-/// Segments of many kinds, ends inside of +-reach cells (and a hair), all of them exact as doubles.
-class Segments {
- public:
-  Segments(std::uint64_t seed, std::int64_t reach) : random_(seed), reach_(reach) {
-    while (reach >> (52 - ExactSegment::kShift) > 0) {
-      reach /= 2;
-      grain_ *= 2;
-    }
-  }
-
-  std::pair<Point, Point> next() {
-    Point from = any(), to = any();
-    switch (random_() % 8) {
-      case 0:  // ends on corners
-        for (std::size_t i = 0; i < 3; ++i) from[i] = whole(from[i]), to[i] = whole(to[i]);
-        break;
-      case 1:  // on faces and edges
-        for (std::size_t i = 0; i < 3; ++i) (random_() % 2 == 0 ? from : to)[i] = whole(from[i]);
-        break;
-      case 2:  // parallel to one or two axes
-        to[random_() % 3] = from[0];
-        to[random_() % 3] = from[1];
-        for (std::size_t i = 0; i < 3; ++i) {
-          if (random_() % 2 == 0) to[i] = from[i];
-        }
-        break;
-      case 3: {  // an exact diagonal, through corners if the start is on one
-        if (random_() % 2 == 0) {
-          for (std::size_t i = 0; i < 3; ++i) from[i] = whole(from[i]);
-        }
-        const std::int64_t length = to[0] / 2;
-        for (std::size_t i = 0; i < 3; ++i) from[i] /= 2;
-        for (std::size_t i = 0; i < 3; ++i) to[i] = from[i] + (random_() % 2 == 0 ? length : -length);
-        break;
-      }
-      case 4:  // a hair around a corner
-        for (std::size_t i = 0; i < 3; ++i) {
-          const std::int64_t corner = whole(from[i]);
-          from[i] = corner + (static_cast<std::int64_t>(random_() % 5) - 2) * grain_;
-          to[i] = corner + (static_cast<std::int64_t>(random_() % 5) - 2) * grain_;
-        }
-        break;
-      case 5:  // whole slopes through the middle of cells
-        for (std::size_t i = 0; i < 3; ++i) from[i] = whole(from[i]) + kUnit / 2, to[i] = whole(to[i]) + kUnit / 2;
-        break;
-      default:
-        break;
-    }
-    return {from, to};
-  }
-
- private:
-  Point any() {
-    const auto axis = [&] {
-      const auto span = static_cast<std::uint64_t>(2 * reach_) << ExactSegment::kShift;
-      return static_cast<std::int64_t>(random_() % span & ~(2 * static_cast<std::uint64_t>(grain_) - 1)) -
-             (reach_ << ExactSegment::kShift);
-    };
-    return {axis(), axis(), axis()};
-  }
-  static std::int64_t whole(std::int64_t value) { return value & ~(kUnit - 1); }
-  std::mt19937_64 random_;
-  std::int64_t reach_;
-  std::int64_t grain_ = 1;
-};
 
 /// What the contract says of the cells of one traversal. @return cells that differ from those of exact arithmetic
 std::size_t check_traversal(const std::vector<Cell>& cells, const Point& from, const Point& to) {
@@ -157,7 +85,7 @@ std::size_t check_traversal(const std::vector<Cell>& cells, const Point& from, c
 TEST(Dda, CrossesTheCellsOfTheExactSegment) {
   std::size_t cells = 0, different = 0;
   const auto run = [&](const Lattice& lattice, std::int64_t reach, std::size_t count) {
-    Segments segments(static_cast<std::uint64_t>(reach), reach);
+    RandomSegments segments(static_cast<std::uint64_t>(reach), reach);
     for (std::size_t i = 0; i < test::rounds(count); ++i) {
       SCOPED_TRACE(testing::Message() << "reach " << reach << ", segment " << i);
       const auto [from, to] = segments.next();
@@ -213,7 +141,7 @@ TEST(Dda, OfAnyResolutionStaysWithinAHairOfTheSegment) {
 }
 
 TEST(Dda, WalksTheSameCellsOnEveryKeyWidth) {
-  Segments segments(11, 100);
+  RandomSegments segments(11, 100);
   std::size_t walked = 0;
   for (int i = 0; i < 500; ++i) {
     SCOPED_TRACE(i);
@@ -257,31 +185,6 @@ TEST(Dda, RefusesWalksThatWouldNeverEndAndEndsThatAreNoPoints) {
   EXPECT_FALSE(dda<WideWord>(deep, {0.0, 0.0, 0.0}, {1e30, 0.0, 0.0}));
   EXPECT_FALSE(dda<WideWord>(deep, {0.0, 0.0, 0.0}, {std::nan(""), 0.0, 0.0}));
   EXPECT_TRUE(dda<WideWord>(deep, {1e30, 0.0, 0.0}, {1e30, 0.0, 0.0}));
-}
-
-TEST(TraceRay, MarksTheCellsThatTheDdaWalksOver) {
-  std::size_t marked = 0;
-  // Up to 21 levels rays are walked by numbers in the tree's order; long ones and deeper lattices key by key.
-  for (const auto& [depth, reach, count] : std::vector<std::tuple<int, std::int64_t, int>>{
-           {3, 3, 2'000}, {8, 100, 2'000}, {16, 400, 500}, {16, 30'000, 3}, {21, 1'000, 100}, {22, 300, 100}}) {
-    const Lattice lattice(0.25, depth);
-    Segments segments(static_cast<std::uint64_t>(depth), reach);
-    ScanUpdate scan(lattice);
-    for (int i = 0; i < count; ++i) {
-      SCOPED_TRACE(testing::Message() << depth << " levels, reach " << reach << ", segment " << i);
-      const auto [from, to] = segments.next();
-      const Eigen::Vector3d from_m = metres(from, 0.25), to_m = metres(to, 0.25);
-      std::map<WideKey, bool> walked;
-      const auto ray = dda<WideWord>(lattice, from_m, to_m);
-      ASSERT_TRUE(ray);
-      for (const WideKey& key : *ray) walked.emplace(key, false);
-      scan.clear();
-      ASSERT_TRUE(trace_ray(from_m, to_m, RayAlgorithm::kDda, scan));
-      ASSERT_TRUE(test::cells_of(scan) == walked);
-      marked += walked.size();
-    }
-  }
-  EXPECT_GT(marked, 400'000U);
 }
 
 TEST(Bresenham, ShallowRayLeavesItsEndCellOut) {

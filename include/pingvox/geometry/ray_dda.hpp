@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "pingvox/geometry/key_range.hpp"
 #include "pingvox/geometry/lattice.hpp"
-#include "pingvox/map/key_range.hpp"
 
 namespace pingvox {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "pingvox/geometry/key.hpp"
-#include "pingvox/map/key_range.hpp"
+#include "pingvox/geometry/key_range.hpp"
 
 namespace pingvox {
 
