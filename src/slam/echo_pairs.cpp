@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "slam/pose2.hpp"
+#include "pingvox/geometry/pose2.hpp"
 
 namespace pingvox {
 namespace {

@@ -1,4 +1,4 @@
-#include "slam/loop_finder.hpp"
+#include "pingvox/slam/loop_finder.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <unordered_set>
 
 #include "slam/point_field.hpp"
@@ -245,6 +246,20 @@ std::vector<std::size_t> consistent_loops(std::span<const Loop> loops, std::span
 
 }  // namespace
 
+Result<void> LoopOptions::validate() const {
+  constexpr double kMaxWindow = 10.0;
+  std::string broken;
+  const auto check = [&](bool holds, const char* what) {
+    if (!holds) broken += (broken.empty() ? "" : ", ") + std::string(what);
+  };
+  check(reach_m > 0.0 && std::isfinite(reach_m), "reach_m: must be finite and above 0");
+  check(window_m >= 0.0 && window_m <= kMaxWindow * reach_m, "window_m: must be 0 to 10 reaches");
+  check(window_yaw_rad >= 0.0 && window_yaw_rad <= std::numbers::pi, "window_yaw_rad: must be 0 to pi");
+  check(points_within > 0.0, "points_within: must be above 0");
+  if (!broken.empty()) return fail(Error::Code::kBadOption, broken);
+  return {};
+}
+
 Eigen::Vector3d odometry_deviation(double moved_m, double turned_rad, double reach_m) {
   // Random, a tenth of a metre after one metre for a sensor of 50 m, and 2 % that go on; yaws 0.5 degrees in a metre.
   const double random_m = 0.014 * std::sqrt(reach_m * moved_m) + 0.02 * moved_m;
@@ -253,7 +268,7 @@ Eigen::Vector3d odometry_deviation(double moved_m, double turned_rad, double rea
 }
 
 Loops find_loops(std::span<const KeyFrame> frames, std::span<const Pose2> poses, const LoopOptions& options) {
-  assert(frames.size() == poses.size() && options.reach_m > 0.0);
+  assert(frames.size() == poses.size() && options.validate());
   const double cell_m = options.reach_m / kCellsOfReach;
   const Way way = way_along(frames);
   std::vector<std::vector<Eigen::Vector2d>> points_m(frames.size());

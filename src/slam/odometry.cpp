@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/heading_deviation.hpp"
 #include "slam/navigation.hpp"
-#include "slam/pose2.hpp"
 
 namespace pingvox {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "slam/pose2.hpp"
+#include "pingvox/geometry/pose2.hpp"
 
 namespace pingvox {
 

@@ -1,7 +1,12 @@
-#include "slam/pose_graph.hpp"
+#include "pingvox/slam/pose_graph.hpp"
 
 #include <cassert>
+#include <cstdint>
 #include <utility>
+
+#include "slam/normal_equations.hpp"
+#include "slam/pose_edges.hpp"
+
 namespace pingvox {
 namespace {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "slam/loop_finder.hpp"
+#include "pingvox/slam/loop_finder.hpp"
 
 namespace pingvox {
 namespace {

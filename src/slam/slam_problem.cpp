@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/heading_deviation.hpp"
-#include "slam/pose2.hpp"
 
 namespace pingvox {
 namespace {

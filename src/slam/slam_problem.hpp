@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/slam/slam_calibration.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/navigation.hpp"
-#include "slam/pose2.hpp"
 
 /// The least-squares problem of SlamSmoother: what is known, what is unknown, and the residuals with their derivatives
 /// (docs/slam.md).
@@ -34,6 +34,11 @@ struct Unknowns {
   /// x, y of the velocity's source [m], and the body's yaw less that of the main heading [rad].
   std::vector<Eigen::Vector3d> knots;
   Eigen::VectorXd globals;
+
+  /// Between a knot and the next.
+  Eigen::Vector3d at(std::size_t knot, double share) const {
+    return knots[knot] + share * (knots[knot + 1] - knots[knot]);
+  }
 };
 
 /// How a heading source is believed.

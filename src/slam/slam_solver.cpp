@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "slam/pose_edges.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -81,7 +83,7 @@ std::vector<SweepPlace> SlamSolver::sweep_places() const {
   std::vector<SweepPlace> places = held_places_;
   for (const auto& [knot, share] : sweep_middles_) {
     const std::size_t number = before_.sweeps + places.size() - held_places_.size();
-    places.push_back({number, knot_at(knot, share).head<2>()});
+    places.push_back({number, unknowns_.at(knot, share).head<2>()});
   }
   return places;
 }

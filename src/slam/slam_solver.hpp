@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/slam/pose_graph.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "slam/echo_pairs.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/held_sweeps.hpp"
 #include "slam/normal_equations.hpp"
-#include "slam/pose_graph.hpp"
 #include "slam/slam_problem.hpp"
 
 namespace pingvox {
@@ -76,11 +76,6 @@ class SlamSolver {
   double reach_m() const { return reach_m_; }                           ///< see reach_of
   std::size_t echoes() const { return echoes_.size() - held_echoes_; }  ///< but those that are held
   std::size_t held_echoes() const { return held_echoes_; }
-
-  /// Place of the velocity's source and yaw less the main heading, between a knot and the next.
-  Eigen::Vector3d knot_at(std::size_t knot, double share) const {
-    return unknowns_.knots[knot] + share * (unknowns_.knots[knot + 1] - unknowns_.knots[knot]);
-  }
 
  private:
   NormalEquations equations(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) const;

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/point_field.hpp"
-#include "slam/pose2.hpp"
 
 namespace pingvox {
 namespace {

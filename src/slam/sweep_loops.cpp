@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "slam/loop_finder.hpp"
+#include "pingvox/slam/loop_finder.hpp"
 
 namespace pingvox {
 namespace {

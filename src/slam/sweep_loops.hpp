@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "slam/pose_graph.hpp"
+#include "pingvox/slam/pose_graph.hpp"
 #include "slam/slam_solver.hpp"
 
 /// Loops of a scanning sonar that are beyond the reach of pairs of echoes.

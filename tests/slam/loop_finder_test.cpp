@@ -1,7 +1,7 @@
 // Places that are seen again, and places that only look as if they were: mirrored, turned about, repeated, along a
 // straight canal.
 
-#include "slam/loop_finder.hpp"
+#include "pingvox/slam/loop_finder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -83,6 +83,16 @@ struct Recorded {
 std::size_t joining(const Loops& loops, std::size_t end, std::size_t begin) {
   return static_cast<std::size_t>(
       std::ranges::count_if(loops.kept, [&](const PoseEdge& loop) { return loop.b < end && loop.a >= begin; }));
+}
+
+TEST(LoopFinder, OptionsNameEveryBrokenField) {
+  EXPECT_TRUE(LoopOptions{}.validate());
+  const auto valid = LoopOptions{30.0, 301.0, 4.0, 0.0}.validate();
+  ASSERT_FALSE(valid);
+  for (const char* field : {"window_m", "window_yaw_rad", "points_within"}) {
+    EXPECT_NE(valid.error().message.find(field), std::string::npos) << field;
+  }
+  EXPECT_FALSE((LoopOptions{.reach_m = 0.0, .window_m = 0.0}.validate()));
 }
 
 TEST(LoopFinder, FindsAPlaceThatIsSeenAgainWhereItIs) {

@@ -7,7 +7,7 @@
 #include <array>
 #include <random>
 
-#include "slam/pose_graph.hpp"
+#include "pingvox/slam/pose_graph.hpp"
 #include "tests/support/uniform.hpp"
 
 namespace pingvox::test {

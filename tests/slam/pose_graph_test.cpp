@@ -1,4 +1,4 @@
-#include "slam/pose_graph.hpp"
+#include "pingvox/slam/pose_graph.hpp"
 
 #include <gtest/gtest.h>
 

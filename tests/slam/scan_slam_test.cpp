@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/pose_graph.hpp"
+#include "pingvox/slam/pose_graph.hpp"
 #include "slam/scanned_drive.hpp"
 #include "support/rounds.hpp"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/basin.hpp"
-#include "slam/pose2.hpp"
 
 namespace pingvox::test {
 namespace {

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "slam/normal_equations.hpp"
-#include "slam/pose2.hpp"
+#include "pingvox/geometry/pose2.hpp"
 
 namespace pingvox {
 
@@ -20,14 +19,8 @@ struct PoseEdge {
 /// Difference between where the poses put b in the frame of a, and the edge: x, y [m], yaw [rad].
 Eigen::Vector3d residual_of(const PoseEdge& edge, const Pose2& a, const Pose2& b);
 
-/// How much a loop counts, by Cauchy's function: 0..1.
-double loop_weight(const PoseEdge& edge, const Pose2& a, const Pose2& b);
-
-/// Adds an edge between knots `a` and `b` with a weight. REQUIRES equations that were made with this pair.
-void add_edge(const PoseEdge& edge, const Pose2& a, const Pose2& b, double weight, NormalEquations& equations);
-
 /// Moves poses to the least sum of squares of the edges; loops count by Cauchy's function, so that a wrong one hardly
-/// pulls. The first pose stays.
+/// pulls. The first pose stays. REQUIRES edges between these poses.
 /// @param poses  where to begin; at least one
 /// @param odometry  from each pose to the next
 /// @return how loops count in the end, 0..1 each

@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "slam/pose2.hpp"
-#include "slam/pose_graph.hpp"
+#include "pingvox/geometry/pose2.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/pose_graph.hpp"
 
 namespace pingvox {
 
@@ -17,12 +18,14 @@ struct KeyFrame {
 };
 
 struct LoopOptions {
-  double reach_m = 0.0;         ///< of the sensor; cells, windows and distances are in proportion to it
-  double window_m = 0.0;        ///< largest error of the present poses along each axis
-  double window_yaw_rad = 0.0;  ///< ... of their yaws
+  double reach_m = 30.0;        ///< of the sensor, > 0; cells and distances are in proportion to it
+  double window_m = 12.0;       ///< largest error of the present poses along each axis, 0..10 reaches
+  double window_yaw_rad = 0.2;  ///< ... of their yaws, 0..pi
   /// Of one of two submaps, only what is within so many reaches of its key frame is looked for in the other: else where
   /// the submaps end would say where they are.
-  double points_within = 3.0;
+  double points_within = 3.0;  ///< > 0
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
 /// Standard deviations of odometry over a stretch of way.
@@ -35,8 +38,8 @@ struct Loops {
 
 /// Finds key frames that see the same surroundings although the way between them is long, by correlation of submaps
 /// of nine key frames each. Loops are kept that agree with each other, given the odometry between them, and
-/// that have another one near both of their ends: in doubt none.
-/// @param poses  where the key frames are now
+/// that have another one near both of their ends: in doubt none. REQUIRES valid options, and finite points and poses.
+/// @param poses  where each key frame is now
 Loops find_loops(std::span<const KeyFrame> frames, std::span<const Pose2> poses, const LoopOptions& options);
 
 }  // namespace pingvox

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "pingvox/slam/slam_smoother.hpp"
+
+namespace pingvox {
+
+/// Where a vehicle is, while its sonar and its navigation tell: SlamSmoother with Estimation::kCausal, on board. After
+/// every other sweep a window of the last ones is estimated anew (SlamOptions::causal_sweeps), so that the work for a
+/// sweep and the memory, apart from a pose for each beam, do not grow with time. In between, velocity and headings lead
+/// on from there.
+///
+///     CausalSlam slam(options);
+///     slam.add("dvl", NavQuantity::kVelocity, sample);  // as they come
+///     slam.add(beam);
+///     if (const auto pose = slam.pose()) steer_by(*pose);
+class CausalSlam {
+ public:
+  /// REQUIRES valid options. What they say of `estimation` does not matter.
+  explicit CausalSlam(SlamOptions options);
+  ~CausalSlam();
+  CausalSlam(CausalSlam&&) noexcept;
+  CausalSlam& operator=(CausalSlam&&) noexcept;
+
+  /// Takes the next beam, which must be valid; the last one of some sweeps leads to a solution. What is missing for one
+  /// may come later.
+  /// @return kCorrupt when its time is not after that of the last one, or their times jump; kUnsupported when what was
+  /// recorded does not determine the poses. No more beams can be added then
+  Result<void> add(Beam beam);
+  /// Takes a sample of a source; see SlamSmoother::add.
+  Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
+
+  /// The last pose that is known: where both velocity and heading were measured last, by the last solution and dead
+  /// reckoning since. The first pose is at 0, 0. nullopt: before the first solution.
+  std::optional<StampedPose> pose() const;
+
+  /// Ends the recording: the poses of all beams, each from what was known then. Nothing can be added afterwards.
+  /// @return errors of SlamSmoother::solve
+  Result<SlamSolution> finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,203 @@
+#include "slam/causal_estimator.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "slam/solution.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::array<double, 3> kGates_m = {3.0, 2.0, 1.5};
+/// For so long the compasses' deviations are found, and the frame of the poses turns with them.
+constexpr double kSettle_s = 600.0;
+/// Samples so long before the window tell noise and outliers at its beginning.
+constexpr double kBefore_s = 60.0;
+
+/// Samples until a time, from some time before another on: those that tell noise and outliers at that time.
+/// REQUIRES samples in order.
+std::vector<NavSource> sources_within(const std::vector<NavSource>& sources, double from_s, double to_s,
+                                      double before_s) {
+  constexpr std::ptrdiff_t kSamplesBefore = 16;  // at least: a source that falls silent stays known
+  std::vector<NavSource> within;
+  for (const NavSource& source : sources) {
+    const auto& samples = source.samples;
+    const auto end = std::ranges::upper_bound(samples, to_s, {}, &NavSample::time_s);
+    auto first = std::ranges::lower_bound(samples.begin(), end, from_s - before_s, {}, &NavSample::time_s);
+    first -= std::min(kSamplesBefore, first - samples.begin());
+    within.push_back({source.name, source.quantity, {first, end}});
+  }
+  return within;
+}
+
+/// The turn and move that brings places nearest to others, in the mean square.
+Pose2 align(const std::vector<Eigen::Vector3d>& places, const std::vector<Eigen::Vector3d>& to) {
+  const auto count = static_cast<double>(places.size());
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero(), mean_to = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    mean += places[k].head<2>() / count;
+    mean_to += to[k].head<2>() / count;
+  }
+  double cosine = 0.0, sine = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Eigen::Vector2d a = places[k].head<2>() - mean, b = to[k].head<2>() - mean_to;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const double yaw_rad = std::atan2(sine, cosine);
+  return {mean_to - rotation2(yaw_rad) * mean, yaw_rad};
+}
+
+/// The knots of the window, and new ones until the end of what was recorded.
+Result<std::vector<double>> window_knot_times(const CausalWindow& window, const Recording& recording) {
+  const bool is_first = window.times_s.empty();
+  const Span span{is_first ? recording.span.from_s : window.times_s.back(), recording.span.to_s};
+  Result<std::vector<double>> added = knot_times(span, recording.sweeps, recording.beam_times_s.size());
+  if (!added || is_first) return added;
+  std::vector<double> times_s = window.times_s;
+  times_s.insert(times_s.end(), added->begin() + 1, added->end());
+  return times_s;
+}
+
+}  // namespace
+
+CausalEstimator::CausalEstimator(SlamOptions options) : options_(std::move(options)), window_(options_.seed) {
+  options_.estimation = Estimation::kCausal;
+}
+
+void CausalEstimator::add_beam(double time_s) {
+  beam_times_s_.push_back(time_s);
+  ++beams_;
+}
+
+void CausalEstimator::add_sweep(HeardSweep sweep) {
+  if (sweep.extent != Sweep::Extent::kCut) ++complete_sweeps_;
+  sweeps_.push_back(std::move(sweep));
+}
+
+Result<void> CausalEstimator::add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample) {
+  Result<std::size_t> to = pingvox::add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
+  if (!to) return tl::unexpected(to.error());
+  // A late one goes to its place.
+  std::vector<NavSample>& samples = sources_[*to].samples;
+  const auto place =
+      std::ranges::upper_bound(samples.begin(), samples.end() - 1, samples.back().time_s, {}, &NavSample::time_s);
+  std::rotate(place, samples.end() - 1, samples.end());
+  return {};
+}
+
+Result<void> CausalEstimator::solve() {
+  return sweeps_.empty() ? Result<void>() : solve_until(sweeps_.back().to_s);
+}
+
+Result<void> CausalEstimator::solve_until(double nav_until_s) {
+  const double from_s = window_.times_s.empty() ? -kInfinity : window_.times_s.front();
+  const auto end = std::ranges::upper_bound(beam_times_s_, sweeps_.back().to_s) - beam_times_s_.begin();
+  const Result<Recording> recording =
+      recording_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)), sweeps_,
+                   sources_within(sources_, from_s, nav_until_s, kBefore_s), options_);
+  const bool goes_on = recording && (window_.times_s.empty() || recording->span.to_s > window_.times_s.back());
+  Result<std::vector<double>> times_s =
+      recording.and_then([&](const Recording& part) { return window_knot_times(window_, part); });
+  if (!goes_on || !times_s) {
+    // Too early for velocity and heading, or they are silent: these beams have no pose yet.
+    if (!times_s) missing_ = times_s.error();
+    return {};
+  }
+  window_.steps.push_back(times_s->size() - std::max<std::size_t>(window_.times_s.size(), 1));
+  SlamProblem problem(*times_s, recording->navigation.velocity, recording->navigation.headings, options_.calibration);
+  const bool is_first = !solver_;
+  const Unknowns start = is_first ? problem.dead_reckoning() : window_.continue_in(problem);
+  Before before{window_.first_sweep, window_.prior_in(problem, start), &window_.held};
+  window_.times_s = *std::move(times_s);
+  SlamSolver solver = solver_of(std::move(problem), *recording, options_, start, std::move(before));
+  add_poses(solver, *recording);
+  if (options_.matching == Matching::kPairs && window_.first_sweep + sweeps_.size() > 1) {
+    if (is_first) solver.step(std::nullopt);
+    for (const double gate_m : kGates_m) solver.step(gate_m);
+  }
+  if (!poses_.empty() && !window_.prior && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
+    frame_ = frame_ * align(solver.unknowns().knots, start.knots);
+  window_.echoes = solver.echoes();
+  window_.largest.knots = std::max(window_.largest.knots, solver.problem().knots());
+  window_.largest.echoes = std::max(window_.largest.echoes, solver.echoes() + solver.held_echoes());
+  window_.largest.pairs = std::max(window_.largest.pairs, solver.pairs().pairs.size());
+  const auto left = window_.keep(solver, sweeps_, options_.causal_sweeps);
+  if (!left) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
+  sweeps_.erase(sweeps_.begin(), sweeps_.begin() + static_cast<std::ptrdiff_t>(*left));
+  solver_.emplace(std::move(solver));
+  forget();
+  return {};
+}
+
+void CausalEstimator::add_poses(const SlamSolver& solver, const Recording& recording) {
+  const double after_s = poses_.empty() ? -kInfinity : poses_.back().time_s;
+  const auto first = std::ranges::upper_bound(recording.beam_times_s, after_s);
+  for (const StampedPose& pose : poses_at({first, recording.beam_times_s.end()}, solver.problem(), solver.unknowns(),
+                                          recording.navigation.depth, options_)) {
+    poses_.push_back({pose.time_s, in_frame(pose.map_from_body)});
+  }
+}
+
+/// What is before the window.
+void CausalEstimator::forget() {
+  const double from_s = window_.times_s.front();
+  sources_ = sources_within(sources_, from_s, kInfinity, kBefore_s);
+  beam_times_s_.erase(beam_times_s_.begin(), std::ranges::lower_bound(beam_times_s_, from_s));
+}
+
+Pose CausalEstimator::in_frame(const Pose& pose) const {
+  Pose moved = Eigen::AngleAxisd(frame_.yaw_rad, Eigen::Vector3d::UnitZ()) * pose;
+  moved.translation().head<2>() += frame_.place_m;
+  return moved;
+}
+
+std::optional<StampedPose> CausalEstimator::pose() const {
+  if (!solver_ || poses_.empty()) return std::nullopt;
+  const double from_s = window_.times_s.back();
+  Result<Navigation> navigation = navigation_of(sources_within(sources_, from_s, kInfinity, 0.0), options_);
+  if (!navigation) return std::nullopt;
+  // The window's last error of the heading is that of its main one.
+  std::vector<HeadingSource>& headings = navigation->headings;
+  const auto main = std::ranges::find(headings, window_.headings.front(), &HeadingSource::name);
+  if (main == headings.end()) return std::nullopt;
+  std::rotate(headings.begin(), main, main + 1);
+  const double to_s = std::min(navigation->velocity.ahead.to_s(), headings.front().yaw_rad.to_s());
+  StampedPose pose = poses_.back();
+  if (to_s > from_s) {
+    const SlamProblem problem({from_s, to_s}, std::move(navigation->velocity), std::move(headings),
+                              options_.calibration);
+    CausalWindow end(options_.seed);
+    end.times_s = {from_s};
+    end.poses = {window_.poses.back()};
+    end.headings = window_.headings;
+    end.globals = window_.globals;
+    const std::vector<StampedPose> poses =
+        poses_at(std::span(&to_s, 1), problem, end.continue_in(problem), navigation->depth, options_);
+    pose = {to_s, in_frame(poses.front().map_from_body)};
+  }
+  pose.map_from_body.translation().head<2>() -= poses_.front().map_from_body.translation().head<2>();
+  return pose;
+}
+
+Result<SlamSolution> CausalEstimator::finish() {
+  if (sweeps_.empty() && !solver_) return fail(Error::Code::kUnsupported, "there are no beams");
+  if (!sweeps_.empty()) {
+    if (const auto solved = solve_until(kInfinity); !solved) return tl::unexpected(solved.error());
+  }
+  if (!solver_) return tl::unexpected(*missing_);
+  Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(poses_));
+  if (!solution) return solution;
+  solution->report.beams = beams_;
+  solution->report.sweeps = complete_sweeps_;
+  solution->report.knots = window_.left_knots + window_.times_s.size();
+  solution->report.echoes = window_.left_echoes + window_.echoes;
+  solution->report.largest = window_.largest;
+  return solution;
+}
+
+}  // namespace pingvox

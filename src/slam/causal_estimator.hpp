@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "pingvox/geometry/pose2.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+#include "slam/causal_window.hpp"
+#include "slam/recording.hpp"
+
+namespace pingvox {
+
+/// Estimates each pose from what was recorded until then: after some sweeps the poses of their beams by dead reckoning
+/// from the last solution, then a new solution of a window of the last sweeps.
+class CausalEstimator {
+ public:
+  /// REQUIRES valid options.
+  explicit CausalEstimator(SlamOptions options);
+  // Solutions point to the window.
+  CausalEstimator(const CausalEstimator&) = delete;
+  CausalEstimator& operator=(const CausalEstimator&) = delete;
+
+  /// @param time_s  not before that of the last one
+  void add_beam(double time_s);
+  /// Takes a sweep whose beams were added.
+  void add_sweep(HeardSweep sweep);
+  /// Takes a sample on the clock of the navigation. @return kCorrupt when a number is not finite
+  Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample);
+
+  /// Solves with the sweeps until now, and navigation until the end of the last one. What is missing may come later.
+  /// @return kUnsupported when the recording does not determine the poses; kCorrupt when times jump
+  Result<void> solve();
+  /// @see CausalSlam::pose
+  std::optional<StampedPose> pose() const;
+  /// Solves with all navigation.
+  Result<SlamSolution> finish();
+
+ private:
+  Result<void> solve_until(double nav_until_s);
+  void add_poses(const SlamSolver& solver, const Recording& recording);
+  void forget();
+  Pose in_frame(const Pose& pose) const;
+
+  SlamOptions options_;
+  /// Of the window, and what waits.
+  std::vector<double> beam_times_s_;
+  std::vector<HeardSweep> sweeps_;
+  std::vector<NavSource> sources_;  ///< with some samples before, in order
+  std::size_t beams_ = 0, complete_sweeps_ = 0;
+
+  CausalWindow window_;
+  std::optional<SlamSolver> solver_;  ///< of the last solution
+  std::optional<Error> missing_;      ///< why there is no later one
+  std::vector<StampedPose> poses_;
+  /// Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
+  /// those before, or their map would bend. What left the window keeps its frame.
+  Pose2 frame_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,183 @@
+#include "slam/recording.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "slam/echo_runs.hpp"
+#include "slam/sonar_odometry.hpp"
+
+namespace pingvox {
+namespace {
+
+/// As many samples as around, but earlier ones.
+constexpr OutlierWindow kEarlier = {10, 0};
+
+/// The time that is common to all that is needed.
+Result<Span> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
+  const Span beams{beam_times_s.front(), beam_times_s.back()};
+  Span span = beams;
+  const auto cut = [&](const TimeSeries& series, const std::string& what) -> Result<void> {
+    if (!overlap(span, series)) return no_overlap(beams, series, what);
+    span = {std::max(span.from_s, series.from_s()), std::min(span.to_s, series.to_s())};
+    return {};
+  };
+  if (const auto done = cut(navigation.velocity.ahead, "velocity of " + navigation.velocity.name); !done) {
+    return tl::unexpected(done.error());
+  }
+  const HeadingSource& main = navigation.headings.front();
+  if (const auto done = cut(main.yaw_rad, "heading of " + main.name); !done) return tl::unexpected(done.error());
+  return span;
+}
+
+}  // namespace
+
+SonarMount sonar_mount(const Pose& pose) {
+  return {pose.translation().head<2>(), std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0))};
+}
+
+Pose mount_of(const SlamOptions& options, const std::string& source) {
+  const auto mount = options.body_from_source.find(source);
+  return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
+}
+
+HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
+  HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
+                   echo_runs(sweep, options.filter, options.echo)};
+  for (EchoRun& run : heard.runs) {
+    run.middle_m *= options.sound_speed_ratio;
+    run.half_length_m *= options.sound_speed_ratio;
+  }
+  return heard;
+}
+
+double sweep_duration_s(std::span<const HeardSweep> sweeps) {
+  std::vector<double> complete_s, all_s;
+  for (const HeardSweep& sweep : sweeps) {
+    const double duration_s = sweep.to_s - sweep.from_s;
+    if (sweep.extent != Sweep::Extent::kCut) complete_s.push_back(duration_s);
+    all_s.push_back(duration_s);
+  }
+  return median(complete_s.empty() ? std::move(all_s) : std::move(complete_s));
+}
+
+Result<std::size_t> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
+                               std::vector<NavSource>& sources) {
+  if (!std::isfinite(sample.time_s) || !sample.value.allFinite()) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{} of {}: a sample has a number that is not finite", name_of(quantity), source));
+  }
+  auto known =
+      std::ranges::find_if(sources, [&](const NavSource& s) { return s.quantity == quantity && s.name == source; });
+  if (known == sources.end()) {
+    sources.push_back({std::string(source), quantity, {}});
+    known = sources.end() - 1;
+  }
+  known->samples.push_back(sample);
+  known->samples.back().time_s += offset_s;
+  return static_cast<std::size_t>(known - sources.begin());
+}
+
+std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options) {
+  const NavSource* fastest = log.best(NavQuantity::kVelocity);
+  if (fastest == nullptr) return std::nullopt;
+  if (fastest->name == kSonarSource) return sonar_velocity(*fastest);
+  const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
+  return velocity_source(*fastest, mount_of(options, fastest->name), window);
+}
+
+std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options) {
+  std::vector<HeadingSource> headings, turns;
+  for (const NavSource& source : log.sources()) {
+    const Pose mount = mount_of(options, source.name);
+    if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
+      auto heading = heading_source(source, mount);
+      if (!heading) continue;
+      heading->drifts = source.name == kSonarSource;
+      headings.push_back(*std::move(heading));
+    } else if (source.quantity == NavQuantity::kTurnRate) {
+      if (auto heading = turned_heading(source, mount)) turns.push_back(*std::move(heading));
+    }
+  }
+  if (headings.empty()) headings = std::move(turns);
+  std::ranges::sort(headings, [](const HeadingSource& a, const HeadingSource& b) {
+    return std::tuple(b.yaw_rad.size(), a.name) < std::tuple(a.yaw_rad.size(), b.name);
+  });
+  return headings;
+}
+
+Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptions& options) {
+  const Result<NavLog> made = NavLog::make(std::move(sources), NavClock::kUnknown);
+  if (!made) return tl::unexpected(made.error());
+  const NavLog& log = *made;
+  for (const auto& [name, mount] : options.body_from_source) {
+    if (std::ranges::find(log.sources(), name, &NavSource::name) != log.sources().end()) continue;
+    std::string known;
+    for (const NavSource& source : log.sources()) known += (known.empty() ? "" : ", ") + source.name;
+    return fail(Error::Code::kBadOption,
+                fmt::format("'{}' has a mount, but is no source of the navigation: {}", name, known));
+  }
+  std::optional<VelocitySource> velocity = velocity_of(log, options);
+  std::vector<HeadingSource> headings = headings_of(log, options);
+  if (!velocity || headings.empty()) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
+                                                              : !velocity                   ? "velocity over ground"
+                                                                                            : "heading or attitude"));
+  }
+  if (options.calibration && options.calibration->velocity != velocity->name) {
+    return fail(Error::Code::kBadOption, fmt::format("the calibration is of the velocity of {}, not of {}",
+                                                     options.calibration->velocity, velocity->name));
+  }
+  Navigation navigation{*std::move(velocity), std::move(headings), std::nullopt};
+  if (const auto depth = depth_source(log)) navigation.depth = number_source(*depth);
+  return navigation;
+}
+
+bool overlap(const Span& span, const TimeSeries& series) {
+  return series.from_s() < span.to_s && series.to_s() > span.from_s;
+}
+
+tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, const std::string& what) {
+  return fail(Error::Code::kUnsupported,
+              fmt::format("beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, the "
+                          "{} is from {:.3f} to {:.3f} s",
+                          beams.from_s, beams.to_s, what, series.from_s(), series.to_s()));
+}
+
+Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                               std::vector<NavSource> sources, const SlamOptions& options) {
+  Result<Navigation> navigation = navigation_of(std::move(sources), options);
+  if (!navigation) return tl::unexpected(navigation.error());
+  const Result<Span> span = common_span(beam_times_s, *navigation);
+  if (!span) return tl::unexpected(span.error());
+  return Recording{beam_times_s, sweeps, *std::move(navigation), *span};
+}
+
+Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSweep> sweeps, std::size_t beams) {
+  const double step_s = sweep_duration_s(sweeps) / kKnotsOfSweep;
+  if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
+  const double steps = std::max(1.0, std::ceil((span.to_s - span.from_s) / step_s));
+  if (!(steps <= static_cast<double>(beams) + kKnotsOfSweep)) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{} beams over {:.6g} s: their times jump", beams, span.to_s - span.from_s));
+  }
+  std::vector<double> times_s;
+  for (double i = 0.0; i < steps; i += 1.0) times_s.push_back(span.from_s + (span.to_s - span.from_s) * i / steps);
+  times_s.push_back(span.to_s);
+  return times_s;
+}
+
+SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start,
+                     Before before) {
+  const Pose velocity_from_sonar =
+      Pose(Eigen::Translation3d(-mount_of(options, recording.navigation.velocity.name).translation())) *
+      options.body_from_sonar;
+  return SlamSolver(std::move(problem), sonar_mount(velocity_from_sonar), recording.sweeps, options.seed,
+                    std::move(start), std::move(before));
+}
+
+}  // namespace pingvox

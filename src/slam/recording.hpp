@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+#include "pingvox/sonar/sweep.hpp"
+#include "slam/navigation.hpp"
+#include "slam/slam_solver.hpp"
+
+/// What was recorded, prepared for the least-squares problem.
+namespace pingvox {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kKnotsOfSweep = 4.0;
+
+/// How the sonar is mounted in the plane.
+SonarMount sonar_mount(const Pose& body_from_sonar);
+/// How a source of navigation is mounted.
+Pose mount_of(const SlamOptions& options, const std::string& source);
+
+/// The echoes of a sweep, by the options.
+HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options);
+/// Usual time of a sweep: of complete ones, where there are any. REQUIRES a sweep.
+double sweep_duration_s(std::span<const HeardSweep> sweeps);
+
+/// Adds a sample to its source, on the clock of the beams.
+/// @return the place of the source; kCorrupt when a number is not finite
+Result<std::size_t> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
+                               std::vector<NavSource>& sources);
+
+/// What is used of the navigation, the heading with most samples first.
+struct Navigation {
+  VelocitySource velocity;
+  std::vector<HeadingSource> headings;
+  std::optional<TimeSeries> depth;
+};
+
+/// nullopt: no valid samples.
+std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options);
+/// All headings, the one with the most samples first. Without any, how the turn rates turn.
+std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options);
+/// @return kUnsupported without a velocity or a heading; kBadOption when a mounted source is not there, or the
+/// calibration is of another velocity
+Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptions& options);
+
+/// A stretch of time.
+struct Span {
+  double from_s, to_s;
+};
+bool overlap(const Span& span, const TimeSeries& series);
+tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, const std::string& what);
+
+/// What was recorded until some time.
+struct Recording {
+  std::span<const double> beam_times_s;
+  std::span<const HeardSweep> sweeps;
+  Navigation navigation;
+  Span span;  ///< common to all that is needed
+};
+
+/// @return kUnsupported when something is missing, or the times do not overlap; see navigation_of
+Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                               std::vector<NavSource> sources, const SlamOptions& options);
+
+/// Some four knots in the time of a sweep, both ends included.
+/// @param beams  in this time: bounds how many knots there may be
+/// @return kUnsupported when all beams have the same time; kCorrupt when their times jump
+Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSweep> sweeps, std::size_t beams);
+
+SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start,
+                     Before before = {});
+
+}  // namespace pingvox

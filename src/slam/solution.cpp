@@ -1,0 +1,131 @@
+#include "slam/solution.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "slam/recording.hpp"
+
+namespace pingvox {
+namespace {
+
+SlamCalibration calibration_of(const SlamSolver& solver) {
+  const auto estimate = [&](std::size_t unknown) {
+    const auto i = static_cast<Eigen::Index>(unknown);
+    return Estimate{solver.unknowns().globals[i], std::sqrt(solver.global_covariance()(i, i))};
+  };
+  SlamCalibration calibration{solver.problem().velocity().name,
+                              estimate(global::kVelocityYaw),
+                              estimate(global::kVelocityScale),
+                              estimate(global::kWall),
+                              estimate(global::kSonarX),
+                              estimate(global::kSonarY),
+                              {}};
+  for (std::size_t s = 0; s < solver.problem().headings().size(); ++s) {
+    const std::size_t first = global::heading(s);
+    calibration.headings.push_back({solver.problem().headings()[s].name, estimate(first), estimate(first + 1),
+                                    estimate(first + 2), estimate(first + 3), estimate(first + 4)});
+  }
+  return calibration;
+}
+
+/// In the order of the globals.
+std::vector<std::string> global_names(const SlamProblem& problem) {
+  std::vector<std::string> names = {"angle of the velocity", "scale of the velocity", "place of the wall in an echo",
+                                    "place of the sonar, ahead", "place of the sonar, to port"};
+  for (const HeadingSource& heading : problem.headings()) {
+    for (const char* part : {"constant", "sin1", "cos1", "sin2", "cos2"}) {
+      names.push_back(fmt::format("{} of heading {}", part, heading.name));
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> not_observable(const SlamSolver& solver) {
+  constexpr double kMostOfVariance = 0.5;
+  std::vector<std::string> unknown;
+  const std::vector<std::string> names = global_names(solver.problem());
+  const std::vector<Estimate> priors = solver.problem().global_priors();
+  for (std::size_t g = 0; g < priors.size(); ++g) {
+    const auto i = static_cast<Eigen::Index>(g);
+    if (priors[g].deviation <= kHeld) continue;
+    const double before = priors[g].deviation * priors[g].deviation;
+    if (solver.global_covariance()(i, i) > kMostOfVariance * before) unknown.push_back(names[g]);
+  }
+  return unknown;
+}
+
+SlamReport report_of(const SlamSolver& solver) {
+  const VelocitySource& velocity = solver.problem().velocity();
+  SlamReport report;
+  report.echoes = solver.echoes();
+  report.knots = solver.problem().knots();
+  report.pairs = solver.pairs().pairs.size();
+  std::vector<double> distances_m;
+  for (const EchoPair& pair : solver.pairs().pairs) distances_m.push_back(std::abs(pair.distance_m));
+  if (!distances_m.empty()) report.pair_median_m = median(std::move(distances_m));
+  report.loops_found = solver.pairs().loops_found;
+  report.loops_kept = solver.pairs().loops_kept;
+  report_velocity(velocity, report);
+  report.heading = solver.problem().headings().front().name;
+  if (velocity.by_sonar) {
+    double variance_m2 = 0.0;
+    for (const SlamProblem::Way& way : solver.problem().ways(solver.unknowns())) {
+      variance_m2 += way.deviation_m * way.deviation_m;
+    }
+    // The first and the last sample go on to the ends of the recording.
+    report.by_sonar = {velocity.ahead.size() - 2, velocity.density.values().front(), std::sqrt(variance_m2)};
+  }
+  return report;
+}
+
+}  // namespace
+
+void report_velocity(const VelocitySource& velocity, SlamReport& report) {
+  report.velocities = velocity.ahead.size();
+  report.velocities_clipped = velocity.clipped;
+  report.longest_gap_s = velocity.ahead.longest_step_s();
+  report.velocity = velocity.name;
+}
+
+std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamProblem& problem, const Unknowns& unknowns,
+                                  const std::optional<TimeSeries>& depth, const SlamOptions& options) {
+  const Eigen::Vector3d velocity_place = mount_of(options, problem.velocity().name).translation();
+  const HeadingSource& main = problem.headings().front();
+  const std::vector<SlamProblem::Way> ways = problem.ways(unknowns);
+  std::vector<StampedPose> poses;
+  for (const double time_s : times_s) {
+    const auto between = problem.between_knots(time_s);
+    if (!between || (!poses.empty() && time_s <= poses.back().time_s)) continue;
+    const auto [knot, share] = *between;
+    const Eigen::Vector3d state = unknowns.at(knot, share);
+    const Eigen::Vector2d place = state.head<2>() + problem.bulge(unknowns, ways[knot], knot, time_s);
+    Pose pose = pose_from_rpy({place.x(), place.y(), depth ? -depth->at(time_s) : 0.0},
+                              main.roll_rad ? main.roll_rad->at(time_s) : 0.0,
+                              main.pitch_rad ? main.pitch_rad->at(time_s) : 0.0, main.yaw_rad.at(time_s) + state.z());
+    // The knots are where the velocity is measured.
+    const Eigen::Vector3d offset = pose.rotation() * Eigen::Vector3d(velocity_place.x(), velocity_place.y(), 0.0);
+    pose.translation().head<2>() -= offset.head<2>();
+    poses.push_back({time_s, pose});
+  }
+  return poses;
+}
+
+Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses) {
+  if (poses.empty()) return fail(Error::Code::kUnsupported, "no beam is within the time of the navigation");
+  const Eigen::Vector2d origin = poses.front().map_from_body.translation().head<2>();
+  for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses));
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  SlamSolution solution{*std::move(trajectory), {}, {}, report_of(solver)};
+  if (options.matching == Matching::kPairs) {
+    solution.calibration = calibration_of(solver);
+    solution.report.not_observable = not_observable(solver);
+  }
+  return solution;
+}
+
+}  // namespace pingvox

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+#include "slam/navigation.hpp"
+#include "slam/slam_problem.hpp"
+#include "slam/slam_solver.hpp"
+
+/// What is read off a solution of the least-squares problem.
+namespace pingvox {
+
+/// The body's pose at those of the times that rise and are within the time of the knots.
+std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamProblem& problem, const Unknowns& unknowns,
+                                  const std::optional<TimeSeries>& depth, const SlamOptions& options);
+
+/// With all of the report but beams and sweeps, and without covariances.
+/// @param poses  of the beams; their first place becomes the origin
+/// @return kUnsupported without poses
+Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses);
+
+/// What the report says of the velocity.
+void report_velocity(const VelocitySource& velocity, SlamReport& report);
+
+}  // namespace pingvox

@@ -1,0 +1,137 @@
+// Estimation while beams and navigation come, in a basin whose truth is known.
+
+#include "pingvox/slam/causal_slam.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "slam/basin.hpp"
+
+namespace pingvox::test {
+namespace {
+
+using testing::HasSubstr;
+
+SlamOptions options_of(const Basin& basin) {
+  SlamOptions options;
+  options.body_from_sonar = pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, basin.sonar_yaw_rad);
+  options.causal_sweeps = 8;
+  return options;
+}
+
+Result<SlamSolution> solve_by_smoother(const Basin& basin) {
+  SlamOptions options = options_of(basin);
+  options.estimation = Estimation::kCausal;
+  SlamSmoother smoother(options);
+  for (const NavSource& source : basin.sources()) {
+    for (const NavSample& sample : source.samples) {
+      if (const auto added = smoother.add(source.name, source.quantity, sample); !added) {
+        return tl::unexpected(added.error());
+      }
+    }
+  }
+  for (const Beam& beam : basin.beams()) smoother.add(beam);
+  return smoother.solve();
+}
+
+void expect_same(const Trajectory& one, const Trajectory& other) {
+  ASSERT_EQ(one.poses().size(), other.poses().size());
+  for (std::size_t i = 0; i < one.poses().size(); ++i) {
+    ASSERT_EQ(one.poses()[i].map_from_body.matrix(), other.poses()[i].map_from_body.matrix()) << i;
+  }
+}
+
+// Kills a pose that is not carried on, is of another frame or heading, or has another origin, and a window that loses
+// what it needs: two thirds of the sweeps leave it.
+TEST(CausalSlam, TellsWhileItGoesWhatTheSmootherTellsOfTheLog) {
+  const Basin basin{.duration_s = 240.0};
+  const std::vector<NavSource> sources = basin.sources();
+  CausalSlam slam(options_of(basin));
+  std::vector<std::size_t> added(sources.size(), 0);
+  std::vector<StampedPose> told;
+  const auto add_until = [&](double time_s) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const auto& samples = sources[s].samples;
+      for (; added[s] < samples.size() && samples[added[s]].time_s <= time_s; ++added[s]) {
+        ASSERT_TRUE(slam.add(sources[s].name, sources[s].quantity, samples[added[s]]));
+      }
+    }
+  };
+  for (const Beam& beam : basin.beams()) {
+    add_until(beam.time_s);
+    ASSERT_TRUE(slam.add(beam));
+    const auto pose = slam.pose();
+    // Two sweeps of ten seconds have ended when the third begins.
+    ASSERT_EQ(pose.has_value(), beam.time_s > 19.95) << beam.time_s;
+    if (!pose) continue;
+    EXPECT_LE(pose->time_s, beam.time_s + 1e-9);
+    EXPECT_GT(pose->time_s, beam.time_s - 0.7);
+    told.push_back(*pose);
+  }
+  add_until(basin.duration_s);
+  const auto finished = slam.finish();
+  ASSERT_TRUE(finished) << finished.error().message;
+  const auto solved = solve_by_smoother(basin);
+  ASSERT_TRUE(solved) << solved.error().message;
+  expect_same(finished->trajectory, solved->trajectory);
+  EXPECT_EQ(finished->report.beams, 2400U);
+  EXPECT_EQ(finished->report.sweeps, solved->report.sweeps);
+  EXPECT_EQ(finished->report.echoes, solved->report.echoes);
+  for (const StampedPose& pose : told) {
+    const auto later = finished->trajectory.at(pose.time_s);
+    if (!later) continue;
+    const Pose off = later->inverse() * pose.map_from_body;
+    // The velocity's next sample was not known yet, in which the vehicle turns.
+    ASSERT_LT(off.translation().norm(), 0.05) << pose.time_s;
+    ASSERT_LT(Eigen::AngleAxisd(off.rotation()).angle(), 0.03) << pose.time_s;
+  }
+}
+
+// Kills samples that are kept as they came, and a use of those that are of later times.
+TEST(CausalSlam, NavigationMayComeEarlyAndInAnyOrder) {
+  const Basin basin{.duration_s = 160.0};
+  CausalSlam slam(options_of(basin));
+  for (const NavSource& source : basin.sources()) {
+    for (auto sample = source.samples.rbegin(); sample != source.samples.rend(); ++sample) {
+      ASSERT_TRUE(slam.add(source.name, source.quantity, *sample));
+    }
+  }
+  for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
+  const auto finished = slam.finish(), solved = solve_by_smoother(basin);
+  ASSERT_TRUE(finished && solved);
+  expect_same(finished->trajectory, solved->trajectory);
+}
+
+TEST(CausalSlam, RefusesBeamsThatGoBackInTime) {
+  const Basin basin{.duration_s = 1.0};
+  const std::vector<Beam> beams = basin.beams();
+  CausalSlam slam(options_of(basin));
+  ASSERT_TRUE(slam.add(beams[5]));
+  const auto added = slam.add(beams[4]);
+  ASSERT_FALSE(added);
+  EXPECT_EQ(added.error().code, Error::Code::kCorrupt);
+  EXPECT_THAT(added.error().message, HasSubstr("0.500 s, then 0.400 s"));
+}
+
+TEST(CausalSlam, SaysWhatIsMissing) {
+  const Basin basin{.duration_s = 50.0};
+  {
+    CausalSlam slam(options_of(basin));
+    const auto finished = slam.finish();
+    ASSERT_FALSE(finished);
+    EXPECT_EQ(finished.error().message, "there are no beams");
+  }
+  CausalSlam slam(options_of(basin));
+  for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
+  EXPECT_FALSE(slam.pose());
+  const auto finished = slam.finish();
+  ASSERT_FALSE(finished);
+  EXPECT_EQ(finished.error().code, Error::Code::kUnsupported);
+  EXPECT_THAT(finished.error().message, HasSubstr("no valid velocity and no heading"));
+}
+
+}  // namespace
+}  // namespace pingvox::test
