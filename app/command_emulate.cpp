@@ -5,12 +5,17 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "commands.hpp"
 #include "option_values.hpp"
 #include "pingvox/device/link.hpp"
+#include "pingvox/device/micron_emulator.hpp"
+#include "pingvox/device/ping360_emulator.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"
 
@@ -54,19 +59,20 @@ PoseAt pose_from_now(const Scene& scene, const EmulateCommand& command) {
   return [vehicle = Vehicle(scene, command), since_1970_s](double now_s) { return vehicle.at(since_1970_s + now_s); };
 }
 
-/// Beams of the simulator, one at a time: its first one of a turn, with the head mounted so that it looks there.
-Ping360Emulator::Hear hear_in(Scene scene, PoseAt pose_at, const Stopwatch& watch, std::uint64_t seed) {
-  return [scene = std::move(scene), pose_at = std::move(pose_at), &watch, seed](int angle_grad, std::size_t bins,
-                                                                                double bin_length_m) mutable {
-    constexpr double kAhead_grad = 200.0, kGradian_rad = std::numbers::pi / 200.0;
+/// Intensities that a head hears at a bearing: of the simulator's first beam of a turn, with the head mounted so that
+/// it looks there.
+using Hear = std::function<std::vector<std::uint8_t>(double bearing_rad, std::size_t bins, double bin_length_m)>;
+
+Hear hear_in(Scene scene, PoseAt pose_at, const Stopwatch& watch, std::uint64_t seed, const DeviceProfile& device) {
+  return [scene = std::move(scene), pose_at = std::move(pose_at), &watch, seed, &device](
+             double bearing_rad, std::size_t bins, double bin_length_m) mutable {
     SonarOptions sonar;
     sonar.seed = seed++;  // new noise for each ping
     sonar.bins = bins;
     sonar.bin_length_m = bin_length_m;
-    sonar.beam_width_rad = 2.0 * kDegree_rad;
-    sonar.beam_height_rad = 25.0 * kDegree_rad;
-    sonar.body_from_sensor =
-        pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, (kAhead_grad - angle_grad) * kGradian_rad);
+    sonar.beam_width_rad = device.beam_width_rad;
+    sonar.beam_height_rad = device.beam_height_rad;
+    sonar.body_from_sensor = pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, bearing_rad);
     SonarSimulator simulator(scene.world, Trajectory::still(pose_at(watch.seconds())), sonar, 1);
     const Result<std::optional<Beam>> beam = simulator.next();
     return beam && *beam ? (*beam)->intensities : std::vector<std::uint8_t>(bins);
@@ -80,11 +86,17 @@ void wait(const StopSignals& signals, const Link& link, double seconds) {
   ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kMaxWait_s) * 1000.0)));
 }
 
-Result<int> emulate_head(const EmulateCommand& command, StopSignals& signals, Link& link) {
+/// @param turn  angles of a turn, clockwise; half of them is ahead
+template <class Head>
+Result<int> emulate_head(const EmulateCommand& command, const char* device, int turn, StopSignals& signals,
+                         Link& link) {
   const Stopwatch watch;
   Scene scene = scene_of(command.world);
   PoseAt pose_at = pose_from_now(scene, command);
-  Ping360Emulator head(command.head, hear_in(std::move(scene), std::move(pose_at), watch, command.head.seed));
+  Hear hear = hear_in(std::move(scene), std::move(pose_at), watch, command.head.seed, *find_device(device));
+  Head head(command.head, [&](int angle, std::size_t bins, double bin_length_m) {
+    return hear((0.5 * turn - angle) * (2.0 * std::numbers::pi / turn), bins, bin_length_m);
+  });
   std::array<std::uint8_t, 65536> bytes;
   while (!signals.arrived() && (command.max_pings == 0 || head.pings() < command.max_pings)) {
     wait(signals, link, head.due_s() - watch.seconds());
@@ -121,8 +133,14 @@ Result<int> run(const EmulateCommand& command, Console& console) {
   Result<Link> link = sends ? Link::open(command.line) : Link::listen(command.line);
   if (!link) return tl::unexpected(link.error());
   if (const auto printed = console.print(link->address() + "\n"); !printed) return tl::unexpected(printed.error());
-  return command.device == EmulateCommand::Device::kPing360 ? emulate_head(command, *signals, *link)
-                                                            : emulate_navigation(command, *signals, *link);
+  switch (command.device) {
+    case EmulateCommand::Device::kPing360:
+      return emulate_head<Ping360Emulator>(command, "ping360", 400, *signals, *link);
+    case EmulateCommand::Device::kMicron:
+      return emulate_head<MicronEmulator>(command, "micron", 6400, *signals, *link);
+    default:
+      return emulate_navigation(command, *signals, *link);
+  }
 }
 
 }  // namespace pingvox::app

@@ -31,14 +31,14 @@
 namespace pingvox::app {
 namespace {
 
-/// Ping Viewer's name for a log that begins now, "20261123-175346123.bin", in local time.
+/// Ping Viewer's name for a log that begins now, "20261123-175346123", in local time.
 std::string name_by_time() {
   const auto now = std::chrono::system_clock::now();
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
   std::tm local = {};
   ::localtime_r(&seconds, &local);
-  return fmt::format("{:%Y%m%d-%H%M%S}{:03}.bin", local, ms);
+  return fmt::format("{:%Y%m%d-%H%M%S}{:03}", local, ms);
 }
 
 /// The file to record the sonar to; nullopt: none.
@@ -46,11 +46,19 @@ std::optional<std::filesystem::path> record_path(const LiveCommand& command) {
   if (!command.record) return std::nullopt;
   std::filesystem::path path = *command.record;
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) path /= name_by_time();
+  if (std::filesystem::is_directory(path, error)) {
+    path /= name_by_time() + (command.device.kind == LiveDevice::Kind::kMicron ? ".csv" : ".bin");
+  }
   return path;
 }
 
-/// @param record  empty: none
+template <class Recorder>
+Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record) {
+  if (!record) return std::nullopt;
+  return Recorder::create(record->string()).map([](Recorder created) { return std::optional(std::move(created)); });
+}
+
+/// @param record  nullopt: none
 Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
                                               const std::optional<std::filesystem::path>& record, double now_s) {
   const LiveDevice& device = command.device;
@@ -59,13 +67,14 @@ Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
         .and_then([](ByteStream stream) { return open_beams(std::move(stream)); })
         .map([&](std::unique_ptr<BeamSource> log) { return replay_source(std::move(log), device.speed); });
   }
-  std::optional<PingViewerRecorder> recorder;
-  if (record) {
-    Result<PingViewerRecorder> created = PingViewerRecorder::create(record->string());
-    if (!created) return tl::unexpected(created.error());
-    recorder = std::move(*created);
+  if (device.kind == LiveDevice::Kind::kMicron) {
+    return recorder_of<SeanetRecorder>(record).map([&](std::optional<SeanetRecorder> recorder) {
+      return micron_source(device.address, command.micron, std::move(recorder), now_s);
+    });
   }
-  return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
+  return recorder_of<PingViewerRecorder>(record).map([&](std::optional<PingViewerRecorder> recorder) {
+    return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
+  });
 }
 
 /// Tells an autopilot what is nearest to the vehicle.

@@ -11,9 +11,10 @@
 #include "option_table.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
+#include "pingvox/device/head_emulator.hpp"
+#include "pingvox/device/micron_driver.hpp"
 #include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/device/ping360_driver.hpp"
-#include "pingvox/device/ping360_emulator.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
@@ -234,7 +235,7 @@ struct LocateCommand {
 
 /// What `live` listens to.
 struct LiveDevice {
-  enum class Kind { kPing360, kReplay };
+  enum class Kind { kPing360, kMicron, kReplay };
   Kind kind = Kind::kReplay;
   std::string address;  ///< of the line, or the file
   double speed = 1.0;   ///< of a replay; infinity: as fast as it can be mapped
@@ -256,8 +257,9 @@ struct LiveCommand {
   std::optional<std::string> record;     ///< a file that does not exist, or a folder
   std::vector<LiveNavigation> nav;       ///< empty: the vehicle stands still
   std::optional<std::string> obstacles;  ///< address to send the nearest obstacles to
-  Ping360Settings ping360;
-  std::size_t max_beams = 0;  ///< stop after them; 0: never
+  Ping360Settings ping360;               ///< of this head
+  MicronSettings micron;                 ///< of a SeaNet head
+  std::size_t max_beams = 0;             ///< stop after them; 0: never
   double write_every_s = 10.0;
   MapOptions map;
   BuildOptions build;
@@ -266,14 +268,14 @@ struct LiveCommand {
 };
 
 struct EmulateCommand {
-  enum class Device { kPing360, kMavlink, kA50 };
+  enum class Device { kPing360, kMicron, kMavlink, kA50 };
   OutputOptions output_options;
   Device device = Device::kPing360;
   std::string line;  ///< to listen at; of kMavlink to send to
   std::string world = "tank";
   Motion motion = Motion::kStill;
   double speed_m_s = 0.25;
-  Ping360EmulatorOptions head;
+  HeadEmulatorOptions head;
   NavEmulatorOptions nav;
   std::size_t max_pings = 0;  ///< end after them; 0: never
 };

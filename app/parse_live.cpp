@@ -19,7 +19,7 @@
 namespace pingvox::app {
 namespace {
 
-using Gain = Ping360Settings::Gain;
+using Gain = ReceiverGain;
 
 constexpr std::array kGains = {Choice<Gain>{"low", Gain::kLow}, Choice<Gain>{"normal", Gain::kNormal},
                                Choice<Gain>{"high", Gain::kHigh}};
@@ -32,13 +32,20 @@ constexpr std::array kMotions = {Choice<Motion>{"still", Motion::kStill}, Choice
 constexpr double kGradian_deg = 0.9;
 
 Result<LiveDevice> device_from(const std::string& text) {
-  constexpr std::string_view kPing360 = "ping360:", kReplay = "replay:";
+  constexpr std::string_view kPing360 = "ping360:", kMicron = "micron:", kReplay = "replay:";
   LiveDevice device;
   device.text = text;
   if (text.starts_with(kPing360)) {
     device.kind = LiveDevice::Kind::kPing360;
     device.address = text.substr(kPing360.size());
     if (device.address.starts_with("udp://") || device.address.starts_with('/')) return device;
+  }
+  if (text.starts_with(kMicron)) {
+    device.kind = LiveDevice::Kind::kMicron;
+    device.address = text.substr(kMicron.size());
+    for (const std::string_view line : {"/", "udp://", "tcp://"}) {
+      if (device.address.starts_with(line)) return device;
+    }
   }
   if (text.starts_with(kReplay) && text.size() > kReplay.size()) {
     device.address = text.substr(kReplay.size());
@@ -57,8 +64,8 @@ Result<LiveDevice> device_from(const std::string& text) {
     return device;
   }
   return usage_error(
-      fmt::format("no such device '{}': must be ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD] or "
-                  "replay:FILE[@SPEED]",
+      fmt::format("no such device '{}': must be ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], "
+                  "micron:/dev/ttyUSB0[@BAUD], micron:tcp://HOST:PORT or replay:FILE[@SPEED]",
                   text));
 }
 
@@ -81,9 +88,14 @@ Result<LiveNavigation> navigation_from(const std::string& text) {
                   text));
 }
 
-/// Bearings in degrees, counter-clockwise from the first to the last, as a sector of the head.
-Take store_sector(std::optional<Ping360Settings::Sector>& sector) {
-  return [&sector](const std::string& text) -> Result<void> {
+/// How a head is asked to move, as typed.
+struct HeadMotion {
+  double step_deg = kGradian_deg;
+  std::optional<std::array<double, 2>> sector_deg;  ///< counter-clockwise from the first to the last
+};
+
+Take store_sector(HeadMotion& motion) {
+  return [&motion](const std::string& text) -> Result<void> {
     const auto bearings = numbers_from<2>(text);
     if (!bearings) return tl::unexpected(bearings.error());
     const auto& [from_deg, to_deg] = *bearings;
@@ -91,24 +103,46 @@ Take store_sector(std::optional<Ping360Settings::Sector>& sector) {
       return usage_error(
           fmt::format("'{}': must be two bearings in degrees, the smaller one first, less than a turn apart", text));
     }
-    const int width_grad = static_cast<int>(std::lround((to_deg - from_deg) / kGradian_deg));
-    const int left_grad = 200 - static_cast<int>(std::lround(to_deg / kGradian_deg));
-    sector = {.first_grad = (left_grad + 800) % 400, .width_grad = std::clamp(width_grad, 1, 399)};
+    motion.sector_deg = {from_deg, to_deg};
     return {};
   };
 }
 
-Take store_step(int& step_grad) {
-  return [&step_grad](const std::string& text) -> Result<void> {
-    const Result<double> degrees = number_from<double>(text);
-    if (!degrees) return tl::unexpected(degrees.error());
-    const double steps = *degrees / kGradian_deg;
-    if (!(steps > 0.5 && steps < 20.5 && std::abs(steps - std::round(steps)) < 1e-6)) {
-      return usage_error(fmt::format("must be a multiple of 0.9 up to 18, is {}", text));
-    }
-    step_grad = static_cast<int>(std::lround(steps));
-    return {};
+/// Steps of a motor in an angle; an error where they are no whole number of them.
+Result<int> steps_in(double angle_deg, double step_deg, int max_steps) {
+  const double steps = angle_deg / step_deg;
+  if (steps > 0.5 && steps < max_steps + 0.5 && std::abs(steps - std::round(steps)) < 1e-6) {
+    return static_cast<int>(std::lround(steps));
+  }
+  return usage_error(
+      fmt::format("--step: must be a multiple of {} up to {:.4g}, is {}", step_deg, step_deg * max_steps, angle_deg));
+}
+
+Result<void> apply(const HeadMotion& motion, Ping360Settings& head) {
+  const Result<int> step = steps_in(motion.step_deg, kGradian_deg, 20);
+  if (!step) return tl::unexpected(step.error());
+  head.step_grad = *step;
+  if (!motion.sector_deg) return {};
+  const auto& [from_deg, to_deg] = *motion.sector_deg;
+  const int width_grad = static_cast<int>(std::lround((to_deg - from_deg) / kGradian_deg));
+  const int left_grad = 200 - static_cast<int>(std::lround(to_deg / kGradian_deg));
+  head.sector = {.first_grad = (left_grad + 800) % 400, .width_grad = std::clamp(width_grad, 1, 399)};
+  return {};
+}
+
+Result<void> apply(const HeadMotion& motion, MicronSettings& head) {
+  constexpr int kTurn = 6400, kAhead = 3200;
+  constexpr double kStep_deg = 360.0 / kTurn;
+  const Result<int> step = steps_in(motion.step_deg, kStep_deg, 255);
+  if (!step) return tl::unexpected(step.error());
+  head.step = *step;
+  if (!motion.sector_deg) return {};
+  const auto angle = [](double bearing_deg) {
+    return (kAhead - static_cast<int>(std::lround(bearing_deg / kStep_deg)) + 2 * kTurn) % kTurn;
   };
+  const auto& [from_deg, to_deg] = *motion.sector_deg;
+  head.sector = {.left = angle(to_deg), .right = angle(from_deg)};
+  return {};
 }
 
 /// Without the options of logs, which are not there while a device runs.
@@ -125,7 +159,11 @@ Result<Command> live_command(const Args& args) {
   BuildArgs build;
   std::optional<Format> asked_format;
   std::string output, record;
-  Ping360Settings& head = command.ping360;
+  HeadMotion motion;
+  Ping360Settings& ping360 = command.ping360;
+  MicronSettings& micron = command.micron;
+  double range_m = ping360.range_m;
+  std::optional<double> timeout_s;
   const Take device = [&](const std::string& text) -> Result<void> {
     const Result<LiveDevice> taken = device_from(text);
     if (!taken) return tl::unexpected(taken.error());
@@ -155,17 +193,18 @@ Result<Command> live_command(const Args& args) {
       "and\n"
       "again. SIGINT or SIGTERM (Ctrl-C) finish recording and map; a second one ends at once.",
       {{"DEVICE", Positional::Count::kOne,
-        "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], or replay:FILE[@SPEED], a log in the rhythm of its "
-        "times "
-        "(SPEED max: as fast as it can be mapped)",
+        "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD] or micron:tcp://HOST:PORT (a "
+        "SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log in the rhythm of its times (SPEED max: as fast "
+        "as it can be mapped)",
         device}},
       {{"Output",
         {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
          {"--format", 0, choices_text(kMapFormats), "format of the map where its name has none of these suffixes",
           "by suffix, else bt", format},
          {"--record", 0, "FILE",
-          "record the bytes of the device as a log of Ping Viewer; in a folder named by the time", "none",
-          store(record)},
+          "record the bytes of the device: a Ping360's as a log of Ping Viewer, a Micron's as a capture of packets "
+          "with their times; in a folder named by the time",
+          "none", store(record)},
          {"--write-every", 0, "S", "seconds between two maps", number_text(command.write_every_s),
           within({0.1, 86'400.0}, store_number(command.write_every_s))},
          {"--beams", 0, "N", "stop after N beams", "never", store_number(command.max_beams)},
@@ -174,15 +213,16 @@ Result<Command> live_command(const Args& args) {
          choice("--progress", kProgress, "show the status on standard error; auto: on a terminal",
                 command.output_options.progress)}},
        {"Head",
-        {{"--range", 0, "M", "range that the head listens to", number_text(head.range_m),
-          within({0.5, 100.0}, store_number(head.range_m))},
+        {{"--range", 0, "M", "range that the head listens to", number_text(range_m),
+          within({0.5, 300.0}, store_number(range_m))},
          {"--sector", 0, "FROM,TO", "bearings in degrees to turn to and fro between, 0 ahead, counter-clockwise",
-          "full turns", store_sector(head.sector)},
-         {"--step", 0, "DEG", "angle from beam to beam, a multiple of 0.9", number_text(kGradian_deg),
-          store_step(head.step_grad)},
-         choice("--gain", kGains, "gain of the receiver", head.gain),
-         {"--timeout", 0, "S", "seconds to wait for an answer; the head may have to turn", number_text(head.timeout_s),
-          within({0.01, 60.0}, store_number(head.timeout_s))}}},
+          "full turns", store_sector(motion)},
+         {"--step", 0, "DEG", "angle from beam to beam, a multiple of 0.9, of a Micron of 0.05625",
+          number_text(motion.step_deg), store_number(motion.step_deg)},
+         choice("--gain", kGains, "gain of the receiver", ping360.gain),
+         {"--timeout", 0, "S", "seconds to wait for an answer; the head may have to turn",
+          fmt::format("{}, of a Micron {}", ping360.timeout_s, micron.timeout_s),
+          within({0.01, 60.0}, store_optional(timeout_s))}}},
        {"Navigation",
         {{"--nav", 0, "NAV",
           "where the vehicle is: mavlink:udp://:PORT, by what its autopilot sends to this port by MAVLink, or "
@@ -200,6 +240,7 @@ Result<Command> live_command(const Args& args) {
        "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",
        "pingvox live ping360:udp://192.168.2.2:9092 --nav mavlink:udp://:14550 -o dive.ot --record recordings",
        "pingvox live ping360:udp://192.168.2.2:9092 --nav a50:tcp://192.168.2.95 -o dive.ot --record recordings",
+       "pingvox live micron:/dev/ttyUSB0 -o dive.ot --record recordings --range 20 --step 1.8",
        "pingvox live replay:dive.bin@10 -o dive.bt"},
       "Without --nav the vehicle is taken to stand still; then the map of a recording, by 'pingvox map' with the same "
       "options,\nis the same.\n"
@@ -220,7 +261,16 @@ Result<Command> live_command(const Args& args) {
     if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
     if (const auto ranges = check_ranges(command.build); !ranges) return tl::unexpected(ranges.error());
-    if (const auto valid = head.validate(); !valid) return tl::unexpected(valid.error());
+    ping360.range_m = micron.range_m = range_m;
+    micron.gain = ping360.gain;
+    if (timeout_s) ping360.timeout_s = micron.timeout_s = *timeout_s;
+    const bool is_micron = command.device.kind == LiveDevice::Kind::kMicron;
+    if (const auto valid = is_micron ? apply(motion, micron) : apply(motion, ping360); !valid) {
+      return tl::unexpected(valid.error());
+    }
+    if (const auto valid = is_micron ? micron.validate() : ping360.validate(); !valid) {
+      return tl::unexpected(valid.error());
+    }
     if (output == "-") return usage_error("-o -: the map is written again and again: name a file");
     if (command.map.depth != Lattice::kDefaultDepth && *output_as != Format::kPvx) {
       return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", output,
@@ -248,8 +298,9 @@ Result<Command> live_command(const Args& args) {
 Result<Command> emulate_command(const Args& args) {
   using Device = EmulateCommand::Device;
   EmulateCommand command;
-  Ping360EmulatorOptions& head = command.head;
+  HeadEmulatorOptions& head = command.head;
   constexpr std::array kDevices = {Choice<Device>{"ping360", Device::kPing360},
+                                   Choice<Device>{"micron", Device::kMicron},
                                    Choice<Device>{"mavlink", Device::kMavlink}, Choice<Device>{"a50", Device::kA50}};
   std::string listen, send_to;
   double lost = 0.0, doubled = 0.0, damaged = 0.0;
@@ -257,7 +308,7 @@ Result<Command> emulate_command(const Args& args) {
   std::uint64_t seed = 1;
   const Take device = [&](const std::string& text) -> Result<void> {
     const Result<Device> value = choice_value(kDevices, text);
-    if (!value) return usage_error(fmt::format("no such device '{}': must be ping360, mavlink or a50", text));
+    if (!value) return usage_error(fmt::format("no such device '{}': must be ping360, micron, mavlink or a50", text));
     command.device = *value;
     return {};
   };
@@ -272,13 +323,14 @@ Result<Command> emulate_command(const Args& args) {
   const Limits fault{0.0, 0.5};
   const OptionTable table{
       "emulate",
-      "Answers like a device in a simulated world, to try 'pingvox live' without one: a sonar head (ping360), an\n"
-      "autopilot that sends MAVLink (mavlink), or a DVL (a50). Prints the address to connect to.",
-      {{"DEVICE", Positional::Count::kOne, "ping360, mavlink or a50", device}},
+      "Answers like a device in a simulated world, to try 'pingvox live' without one: a sonar head (ping360 or\n"
+      "micron), an autopilot that sends MAVLink (mavlink), or a DVL (a50). Prints the address to connect to.",
+      {{"DEVICE", Positional::Count::kOne, "ping360, micron, mavlink or a50", device}},
       {{"Line",
         {{"--listen", 0, "ADDRESS",
-          "ping360: udp://HOST:PORT (port 0: any that is free), or pty for a new pseudo terminal; a50: tcp://HOST:PORT",
-          "udp://127.0.0.1:9092 or tcp://127.0.0.1:16171", store(listen)},
+          "of a head: udp://HOST:PORT (port 0: any that is free), tcp://HOST:PORT, or pty for a new pseudo terminal; "
+          "a50: tcp://HOST:PORT",
+          "udp://127.0.0.1:9092, micron: pty, a50: tcp://127.0.0.1:16171", store(listen)},
          {"--to", 0, "ADDRESS", "mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
          {"--lost", 0, "S", "fraction of bytes (of a head) or messages that are lost", "0",
           within(fault, store_number(lost))},
@@ -298,17 +350,23 @@ Result<Command> emulate_command(const Args& args) {
           store_number(head.stall_every)},
          {"--stall", 0, "S", "how long, in seconds", number_text(head.stall_s),
           within({0.0, 3600.0}, store_number(head.stall_s))},
+         {"--lines", 0, "1|2", "micron: lines for each request, 2 as heads that send both ways at once",
+          number_text(head.lines_per_request), within({1.0, 2.0}, store_number(head.lines_per_request))},
          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(seed)}}}},
       {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001",
-       "pingvox emulate mavlink --trajectory loop", "pingvox emulate a50 --trajectory loop"},
+       "pingvox emulate micron", "pingvox emulate mavlink --trajectory loop", "pingvox emulate a50 --trajectory loop"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
-    const bool is_head = command.device == Device::kPing360, sends = command.device == Device::kMavlink;
+    const bool is_micron = command.device == Device::kMicron;
+    const bool is_head = command.device == Device::kPing360 || is_micron, sends = command.device == Device::kMavlink;
     if (sends && !listen.empty()) return usage_error("--listen: mavlink is sent, see --to");
     if (!sends && !send_to.empty()) return usage_error("--to: only for mavlink");
     command.line = sends ? send_to : listen;
     if (command.line.empty()) {
-      command.line = is_head ? "udp://127.0.0.1:9092" : sends ? "udp://127.0.0.1:14550" : "tcp://127.0.0.1:16171";
+      command.line = is_micron ? "pty"
+                     : is_head ? "udp://127.0.0.1:9092"
+                     : sends   ? "udp://127.0.0.1:14550"
+                               : "tcp://127.0.0.1:16171";
     }
     const std::string_view scheme = sends ? "udp://" : "tcp://";
     if (!is_head && !command.line.starts_with(scheme)) {

@@ -141,7 +141,7 @@ _pingvox() {
       # What begins no world's name is the file of a mesh.
       [[ -n $(compgen -W "$words" -- "$current") ]] || words=""
     elif [[ $command == emulate && $previous == emulate ]]; then
-      words="ping360 mavlink a50"
+      words="ping360 micron mavlink a50"
     fi
   fi
 

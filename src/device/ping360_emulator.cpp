@@ -1,7 +1,5 @@
 #include "pingvox/device/ping360_emulator.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -33,23 +31,8 @@ std::vector<std::uint8_t> reply_to(PingMessage asked, PingMessage reply, std::st
 
 }  // namespace
 
-Result<void> Ping360EmulatorOptions::validate() const {
-  std::string bad;
-  const auto check = [&bad](std::string_view name, double value, double min, double max) {
-    if (!(value >= min && value <= max)) bad += fmt::format(" {} must be in {}..{}, is {};", name, min, max, value);
-  };
-  check("pings_per_s", pings_per_s, 0.1, 100'000.0);
-  check("lost", lost, 0.0, 0.5);
-  check("doubled", doubled, 0.0, 0.5);
-  check("damaged", damaged, 0.0, 0.5);
-  check("stall_s", stall_s, 0.0, 3600.0);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "ping360 emulator:" + bad);
-}
-
-Ping360Emulator::Ping360Emulator(const Ping360EmulatorOptions& options, Hear hear)
-    : options_(options), hear_(std::move(hear)), finder_(check_ping_frame), random_(options.seed) {
+Ping360Emulator::Ping360Emulator(const HeadEmulatorOptions& options, Hear hear)
+    : options_(options), hear_(std::move(hear)), finder_(check_ping_frame), faults_(options) {
   assert(options.validate());
 }
 
@@ -111,18 +94,7 @@ std::vector<std::uint8_t> Ping360Emulator::send(double now_s) {
     silent_until_s_ = now_s + options_.stall_s;
     answers_.clear();
   }
-  return with_faults(answer.frame);
-}
-
-std::vector<std::uint8_t> Ping360Emulator::with_faults(const std::vector<std::uint8_t>& frame) {
-  std::vector<std::uint8_t> sent;
-  for (const std::uint8_t byte : frame) {
-    if (random_.uniform() < options_.lost) continue;
-    const bool is_damaged = random_.uniform() < options_.damaged;
-    sent.push_back(is_damaged ? static_cast<std::uint8_t>(byte ^ (1U << (random_.bits() % 8))) : byte);
-    if (random_.uniform() < options_.doubled) sent.push_back(sent.back());
-  }
-  return sent;
+  return faults_.pass(answer.frame);
 }
 
 }  // namespace pingvox

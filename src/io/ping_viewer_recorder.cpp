@@ -65,12 +65,4 @@ Result<void> PingViewerRecorder::append(std::uint64_t time_ms, std::span<const s
   return file_.append(record.bytes());
 }
 
-double PingViewerRecorder::time_s(std::uint64_t time_ms) {
-  // Added as readers do, to the last bit.
-  constexpr double kDay_s = 86'400.0;
-  const std::uint64_t days = time_ms / kDay_ms, of_day = time_ms % kDay_ms, seconds = of_day / 1000;
-  const double of_day_s = static_cast<double>(seconds) + static_cast<double>(of_day % 1000) / 1000.0;
-  return of_day_s + static_cast<double>(days) * kDay_s;
-}
-
 }  // namespace pingvox

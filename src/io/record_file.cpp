@@ -7,6 +7,15 @@
 
 namespace pingvox {
 
+double recorded_time_s(std::uint64_t time_ms) {
+  // Added as readers do, to the last bit.
+  constexpr double kDay_s = 86'400.0;
+  constexpr std::uint64_t kDay_ms = 86'400'000;
+  const std::uint64_t days = time_ms / kDay_ms, of_day = time_ms % kDay_ms, seconds = of_day / 1000;
+  const double of_day_s = static_cast<double>(seconds) + static_cast<double>(of_day % 1000) / 1000.0;
+  return of_day_s + static_cast<double>(days) * kDay_s;
+}
+
 Result<RecordFile> RecordFile::create(const std::string& path) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file.valid()) return os_error(path, errno);

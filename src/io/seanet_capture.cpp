@@ -31,6 +31,13 @@ bool holds_seanet_line(Bytes bytes) {
   return false;
 }
 
+/// Whether `bytes` hold a message of a head.
+bool holds_seanet_frame(Bytes bytes) {
+  FrameFinder finder(check_seanet_frame);
+  finder.push(bytes);
+  return finder.next().has_value();
+}
+
 /// A line "2017.11.02 08.58.46.723;10.3.0.40;4002;0F 11 0F".
 struct Packet {
   double time_s;
@@ -69,7 +76,7 @@ bool add_bytes_of(std::string_view hex, std::vector<std::uint8_t>& to) {
   return true;
 }
 
-/// Port whose packets hold lines of an imaging head.
+/// Port whose packets hold lines of an imaging head, or else other messages of one.
 std::optional<std::string> sonar_port(Bytes beginning) {
   std::vector<std::pair<std::string, std::vector<std::uint8_t>>> ports;
   Lines lines(text_of(beginning));
@@ -83,6 +90,10 @@ std::optional<std::string> sonar_port(Bytes beginning) {
   }
   for (const auto& [port, bytes] : ports) {
     if (holds_seanet_line(bytes)) return port;
+  }
+  // A head that does not scan yet.
+  for (const auto& [port, bytes] : ports) {
+    if (holds_seanet_frame(bytes)) return port;
   }
   return std::nullopt;
 }

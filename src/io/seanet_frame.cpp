@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cassert>
 #include <cstring>
 #include <numbers>
 #include <utility>
@@ -16,9 +17,9 @@ namespace {
 
 using Verdict = FrameCheck::Verdict;
 
-/// Of a frame: bytes that its length does not count, offset of the device block of mtHeadData, bytes around the
-/// samples.
-constexpr std::size_t kUncounted = 6, kDeviceBlock = 15, kAroundSamples = 45;
+/// Of a frame: bytes that its length does not count, offsets of the payload and of the device block of mtHeadData,
+/// bytes around the samples.
+constexpr std::size_t kUncounted = 6, kPayload = 13, kDeviceBlock = 15, kAroundSamples = 45;
 constexpr std::size_t kMinLength = 8, kMaxLength = 4090;
 constexpr std::size_t kBlockHeader = 29;  ///< bytes of the device block before its samples
 
@@ -75,6 +76,39 @@ FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes) {
   if (bytes[size - 1] != '\n') return {Verdict::kBroken, size, "no end of the frame where it should be"};
   if (!fits_message(bytes.first(size))) return {Verdict::kBroken, size, "impossible length"};
   return {Verdict::kFrame, size};
+}
+
+SeanetMessage seanet_message(std::span<const std::uint8_t> frame) {
+  return static_cast<SeanetMessage>(frame[10]);
+}
+
+SeanetSender seanet_sender(std::span<const std::uint8_t> frame) {
+  return static_cast<SeanetSender>(frame[7]);
+}
+
+std::span<const std::uint8_t> seanet_payload(std::span<const std::uint8_t> frame) {
+  return frame.subspan(kPayload, frame.size() - kPayload - 1);
+}
+
+std::vector<std::uint8_t> make_seanet_frame(SeanetMessage message, SeanetSender sender,
+                                            std::span<const std::uint8_t> payload) {
+  const std::size_t length = payload.size() + kPayload + 1 - kUncounted;
+  assert(length <= kMaxLength);
+  const auto low = static_cast<std::uint8_t>(length & 0xffU), high = static_cast<std::uint8_t>(length >> 8);
+  const auto head = static_cast<std::uint8_t>(SeanetSender::kHead);
+  const bool is_command = sender == SeanetSender::kHost;
+  std::vector<std::uint8_t> frame = {'@'};
+  for (const char digit : fmt::format("{:04X}", length)) frame.push_back(static_cast<std::uint8_t>(digit));
+  // The bytes behind the count, which is 0 in lines of an imaging head.
+  const auto counted = static_cast<std::uint8_t>(message == SeanetMessage::kHeadData ? 0 : (length - 5) & 0xffU);
+  for (const std::uint8_t byte : {low, high, static_cast<std::uint8_t>(sender),
+                                  is_command ? head : static_cast<std::uint8_t>(SeanetSender::kHost), counted,
+                                  static_cast<std::uint8_t>(message), kSinglePacket, head}) {
+    frame.push_back(byte);
+  }
+  frame.insert(frame.end(), payload.begin(), payload.end());
+  frame.push_back('\n');
+  return frame;
 }
 
 std::optional<SeanetLine> seanet_line(std::span<const std::uint8_t> frame) {

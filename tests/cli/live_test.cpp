@@ -40,14 +40,15 @@ bool wait_until(const Holds& holds) {
 /// An emulated head, which runs as long as it is in scope.
 class Head {
  public:
-  explicit Head(std::vector<std::string> options = {}, const char* pings_per_s = "1000") {
-    options.insert(options.begin(), {"emulate", "ping360", "--listen", "udp://127.0.0.1:0", "--rate", pings_per_s});
+  explicit Head(std::vector<std::string> options = {}, const char* pings_per_s = "1000",
+                const std::string& device = "ping360", const char* line = "udp://127.0.0.1:0") {
+    options.insert(options.begin(), {"emulate", device, "--listen", line, "--rate", pings_per_s});
     child_ = place_.start(options, {.out_path = place_.path("address")});
     const bool listens =
         wait_until([&] { return place_.has("address") && place_.read("address").find('\n') != std::string::npos; });
     if (!listens) ADD_FAILURE() << "the emulator says no address";
     address_ = place_.read("address");
-    address_ = "ping360:" + address_.substr(0, address_.find('\n'));
+    address_ = device + ":" + address_.substr(0, address_.find('\n'));
   }
   Head(const Head&) = delete;
   Head& operator=(const Head&) = delete;
@@ -86,6 +87,25 @@ TEST(Live, MapsTheSameAsItsRecordToTheBit) {
   EXPECT_THAT(outcome.out, HasSubstr(R"("not_mapped": 0)"));
   EXPECT_THAT(outcome.err, HasSubstr("connected"));
   expect_map_of_record(here);
+}
+
+// A head that sends two lines for a request, restarts, and has a line with faults.
+TEST(Live, MapsAMicronOverATerminalTheSameAsItsRecordToTheBit) {
+  const Head head(
+      {"--lines", "2", "--stall-every", "80", "--stall", "0.5", "--lost", "0.00002", "--damaged", "0.00002"}, "1000",
+      "micron", "pty");
+  const Workplace here;
+  const Outcome outcome =
+      here.call({"live", head.address(), "-o", "live.bt", "--record", "dive.csv", "--range", "4", "--step", "13.5",
+                 "--sector", "-175,170", "--timeout", "0.2", "--resolution", "0.1", "--beams", "120", "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(R"("not_mapped": 0)"));
+  EXPECT_THAT(outcome.err, HasSubstr("connected"));
+  const Outcome mapped = here.call({"map", "dive.csv", "-o", "map.bt", "--resolution", "0.1"});
+  EXPECT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("3 degrees wide, 35 high"));
+  EXPECT_EQ(here.read("live.bt"), here.read("map.bt"));
+  EXPECT_GT(here.read("live.bt").size(), 200U);
 }
 
 TEST(Live, FinishesRecordAndMapOnASignal) {
@@ -358,7 +378,10 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
                {"a50:tcp://HOST[:PORT]"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--obstacles", "tcp://a:1"}), 2,
                {"--obstacles", "udp://HOST:PORT"});
-  expect_error(here.call({"emulate", "micron"}), 2, {"no such device 'micron'"});
+  expect_error(here.call({"live", "micron:udp://127.0.0.1:9", "-o", "a.bt", "--step", "0.1"}), 2,
+               {"--step", "multiple of 0.05625"});
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--range", "200"}), 2, {"range_m", "100"});
+  expect_error(here.call({"emulate", "echoscope"}), 2, {"no such device 'echoscope'"});
   expect_error(here.call({"emulate", "mavlink", "--listen", "udp://127.0.0.1:9"}), 2, {"--listen", "--to"});
   expect_error(here.call({"emulate", "a50", "--to", "udp://127.0.0.1:9"}), 2, {"--to"});
   expect_error(here.call({"emulate", "a50", "--listen", "pty"}), 2, {"tcp://HOST:PORT"});

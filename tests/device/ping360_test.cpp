@@ -20,32 +20,14 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/ping_viewer_recorder.hpp"
+#include "tests/device/recording.hpp"
 
 namespace pingvox {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// A folder of its own, gone with the test.
-class Folder {
- public:
-  Folder() {
-    std::string path = (std::filesystem::temp_directory_path() / "pingvox-device-XXXXXX").string();
-    if (!::mkdtemp(path.data())) ADD_FAILURE() << "no folder for the test";
-    path_ = path;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+using namespace test;
 
 /// Intensities that tell the angle.
 std::vector<std::uint8_t> hear_angle(int angle_grad, std::size_t bins, double) {
@@ -54,27 +36,6 @@ std::vector<std::uint8_t> hear_angle(int angle_grad, std::size_t bins, double) {
   heard[1] = 'B';
   heard[2] = 'R';
   return heard;
-}
-
-std::vector<Beam> beams_in(const std::string& path) {
-  Result<ByteStream> stream = ByteStream::open(path);
-  if (!stream) return {};
-  Result<std::unique_ptr<BeamSource>> log = open_beams(std::move(*stream));
-  if (!log) {
-    ADD_FAILURE() << log.error().message;
-    return {};
-  }
-  return read_all(**log).value_or(std::vector<Beam>{});
-}
-
-void expect_equal(const std::vector<Beam>& a, const std::vector<Beam>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].time_s, b[i].time_s) << i;
-    EXPECT_EQ(a[i].bearing_rad, b[i].bearing_rad) << i;
-    EXPECT_EQ(a[i].bin_length_m, b[i].bin_length_m) << i;
-    EXPECT_EQ(a[i].intensities, b[i].intensities) << i;
-  }
 }
 
 /// The angle that a request is for; nullopt: it is for something else.
@@ -212,10 +173,10 @@ TEST(PingViewerRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   }
   const std::vector<Beam> beams = beams_in(path);
   ASSERT_EQ(beams.size(), 3U);
-  EXPECT_EQ(beams[0].time_s, PingViewerRecorder::time_s(2140));
+  EXPECT_EQ(beams[0].time_s, recorded_time_s(2140));
   EXPECT_EQ(beams[0].time_s, 2.14);
-  EXPECT_EQ(beams[1].time_s, PingViewerRecorder::time_s(kDay_ms - 1));
-  EXPECT_EQ(beams[2].time_s, PingViewerRecorder::time_s(kDay_ms + 59'999));
+  EXPECT_EQ(beams[1].time_s, recorded_time_s(kDay_ms - 1));
+  EXPECT_EQ(beams[2].time_s, recorded_time_s(kDay_ms + 59'999));
 
   const Result<PingViewerRecorder> again = PingViewerRecorder::create(path);
   ASSERT_FALSE(again);

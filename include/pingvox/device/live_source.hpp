@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/device/micron_driver.hpp"
 #include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/io/ping_viewer_recorder.hpp"
+#include "pingvox/io/seanet_recorder.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 
@@ -50,6 +52,10 @@ class LiveSource {
 /// REQUIRES valid settings.
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s);
+
+/// A SeaNet head, a Micron or MiniKing, the same way.
+std::unique_ptr<LiveSource> micron_source(const std::string& address, const MicronSettings& settings,
+                                          std::optional<SeanetRecorder> recorder, double now_s);
 
 /// A log, in the rhythm of its times.
 /// @param speed  > 0; 1: as it was; infinity: as fast as the caller asks

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "pingvox/device/receiver_gain.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -24,7 +25,7 @@ Ping360Sampling ping360_sampling(double range_m);
 
 /// How a head is driven. Its angles are of 400 a turn, clockwise; 200 is ahead.
 struct Ping360Settings {
-  enum class Gain : std::uint8_t { kLow, kNormal, kHigh };
+  using Gain = ReceiverGain;
   /// Turned to and fro, from the first angle clockwise.
   struct Sector {
     int first_grad = 0;  ///< 0..399

@@ -8,23 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "pingvox/geometry/random.hpp"
+#include "pingvox/device/head_emulator.hpp"
 #include "pingvox/io/frame_finder.hpp"
-#include "pingvox/result.hpp"
 
 namespace pingvox {
-
-struct Ping360EmulatorOptions {
-  double pings_per_s = 20.0;  ///< 0.1..100,000
-  // Faults of the line, as fractions of the bytes that the head sends.
-  double lost = 0.0, doubled = 0.0, damaged = 0.0;  ///< 0..0.5 each
-  // Faults of the head: after this many pings it hears and says nothing for a while, as one that restarts.
-  std::size_t stall_every = 0;  ///< pings; 0: never
-  double stall_s = 5.0;         ///< 0..3600
-  std::uint64_t seed = 1;       ///< of the faults
-
-  Result<void> validate() const;  ///< kBadOption names every broken field at once
-};
 
 /// A Ping360 at the other end of a line: answers requests for its information, pings and motor_off. It has no line and
 /// no clock of its own: the caller carries the bytes.
@@ -34,7 +21,7 @@ class Ping360Emulator {
   using Hear = std::function<std::vector<std::uint8_t>(int angle_grad, std::size_t bins, double bin_length_m)>;
 
   /// REQUIRES valid options.
-  Ping360Emulator(const Ping360EmulatorOptions& options, Hear hear);
+  Ping360Emulator(const HeadEmulatorOptions& options, Hear hear);
 
   /// Takes bytes from the line.
   void take(std::span<const std::uint8_t> bytes, double now_s);
@@ -54,15 +41,14 @@ class Ping360Emulator {
   };
   void answer(std::span<const std::uint8_t> frame, double now_s);
   std::vector<std::uint8_t> ping(std::span<const std::uint8_t> transducer);
-  std::vector<std::uint8_t> with_faults(const std::vector<std::uint8_t>& frame);
 
-  Ping360EmulatorOptions options_;
+  HeadEmulatorOptions options_;
   Hear hear_;
   FrameFinder finder_;
   std::deque<Answer> answers_;
   std::size_t pings_ = 0;
   double silent_until_s_ = -std::numeric_limits<double>::infinity();
-  Random random_;
+  LineFaults faults_;
 };
 
 }  // namespace pingvox

@@ -26,9 +26,6 @@ class PingViewerRecorder {
   /// Starts to write to the disk what is not there yet, without waiting for it.
   void start_sync() { file_.start_sync(); }
 
-  /// Time of a record as readers see it.
-  static double time_s(std::uint64_t time_ms);
-
  private:
   explicit PingViewerRecorder(RecordFile file) : file_(std::move(file)) {}
 

@@ -10,6 +10,10 @@
 
 namespace pingvox {
 
+/// Time of a record as readers of recordings have it, to the last bit.
+/// @param time_ms  since the start of the recording
+double recorded_time_s(std::uint64_t time_ms);
+
 /// A file that a recording is appended to, record by record.
 class RecordFile {
  public:

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/sonar/beam.hpp"
@@ -15,6 +16,30 @@ namespace pingvox {
 /// For FrameFinder: checks a frame, its two lengths, its end and the length of its message. The protocol has no
 /// checksum, so changed samples are not detected.
 FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes);
+
+/// Kind of a message between host and head.
+enum class SeanetMessage : std::uint8_t {
+  kVersionData = 1,
+  kHeadData = 2,
+  kAlive = 4,
+  kUserData = 6,
+  kReboot = 16,
+  kHeadCommand = 19,
+  kSendVersion = 23,
+  kSendUserData = 24,
+  kSendData = 25,
+};
+/// Who sends a message.
+enum class SeanetSender : std::uint8_t { kHead = 2, kHost = 0xff };
+
+/// The message of a frame, which may be one that has no name here. REQUIRES a valid frame.
+SeanetMessage seanet_message(std::span<const std::uint8_t> frame);
+SeanetSender seanet_sender(std::span<const std::uint8_t> frame);
+/// What is behind the head of a frame. REQUIRES a valid frame.
+std::span<const std::uint8_t> seanet_payload(std::span<const std::uint8_t> frame);
+/// A frame between a host and an imaging head. REQUIRES at most 4000 bytes.
+std::vector<std::uint8_t> make_seanet_frame(SeanetMessage message, SeanetSender sender,
+                                            std::span<const std::uint8_t> payload);
 
 /// One line of an imaging head (mtHeadData), in raw units.
 struct SeanetLine {

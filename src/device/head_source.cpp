@@ -2,26 +2,63 @@
 #include <array>
 #include <deque>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "pingvox/device/link.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/io/ping_frame.hpp"
+#include "pingvox/io/seanet_frame.hpp"
 
 namespace pingvox {
 namespace {
 
 constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kSync_s = 1.0;
 
-class Ping360Source final : public LiveSource {
+/// What HeadSource has to know of a head.
+struct Ping360Head {
+  using Settings = Ping360Settings;
+  using Driver = Ping360Driver;
+  using Recorder = PingViewerRecorder;
+  static constexpr const char* kDevice = "ping360";
+  static constexpr CheckFrame kCheck = check_ping_frame;
+
+  /// nullopt: another message; error: why it is not valid.
+  static tl::expected<std::optional<Beam>, std::string> beam_in(std::span<const std::uint8_t> frame, double time_s) {
+    const std::optional<Ping360Ping> ping = ping360_ping(frame);
+    if (!ping) return std::nullopt;
+    return beam_of(*ping, time_s);
+  }
+  /// Sent at the end; empty: nothing.
+  static std::vector<std::uint8_t> last_message() { return Ping360Driver::motor_off(); }
+};
+
+struct MicronHead {
+  using Settings = MicronSettings;
+  using Driver = MicronDriver;
+  using Recorder = SeanetRecorder;
+  static constexpr const char* kDevice = "micron";
+  static constexpr CheckFrame kCheck = check_seanet_frame;
+
+  static tl::expected<std::optional<Beam>, std::string> beam_in(std::span<const std::uint8_t> frame, double time_s) {
+    const std::optional<SeanetLine> line = seanet_line(frame);
+    if (!line) return std::nullopt;
+    return beam_of(*line, time_s);
+  }
+  // It stands still when it is not asked.
+  static std::vector<std::uint8_t> last_message() { return {}; }
+};
+
+template <class Head>
+class HeadSource final : public LiveSource {
  public:
-  Ping360Source(std::string address, const Ping360Settings& settings, std::optional<PingViewerRecorder> recorder,
-                double now_s)
+  HeadSource(std::string address, const typename Head::Settings& settings,
+             std::optional<typename Head::Recorder> recorder, double now_s)
       : address_(std::move(address)),
         driver_(settings),
         recorder_(std::move(recorder)),
-        finder_(check_ping_frame),
+        finder_(Head::kCheck),
         start_s_(now_s),
         open_at_s_(now_s),
         sync_at_s_(now_s + kSync_s) {}
@@ -45,7 +82,8 @@ class Ping360Source final : public LiveSource {
   }
 
   void finish(std::vector<Beam>& beams) override {
-    if (link_) static_cast<void>(link_->write(Ping360Driver::motor_off()));  // the head may be gone
+    const std::vector<std::uint8_t> last = Head::last_message();
+    if (link_ && !last.empty()) static_cast<void>(link_->write(last));  // the head may be gone
     finder_.end();
     take_frames(beams);
   }
@@ -59,7 +97,7 @@ class Ping360Source final : public LiveSource {
     return status;
   }
 
-  const DeviceProfile* device() const override { return find_device("ping360"); }
+  const DeviceProfile* device() const override { return find_device(Head::kDevice); }
 
  private:
   void open(double now_s) {
@@ -104,7 +142,7 @@ class Ping360Source final : public LiveSource {
       }
     }
     received_ += bytes.size();
-    pieces_.push_back({received_, PingViewerRecorder::time_s(time_ms)});
+    pieces_.push_back({received_, recorded_time_s(time_ms)});
     finder_.push(bytes);
     take_frames(beams);
   }
@@ -114,11 +152,10 @@ class Ping360Source final : public LiveSource {
       const bool was_connected = driver_.is_connected();
       driver_.take(frame->bytes);
       if (driver_.is_connected() && !was_connected) ++status_.connections;
-      const std::optional<Ping360Ping> ping = ping360_ping(frame->bytes);
-      if (!ping) continue;
+      tl::expected<std::optional<Beam>, std::string> beam = Head::beam_in(frame->bytes, time_of(*frame));
+      if (beam && !*beam) continue;
       delay_s_ = kFirstDelay_s;
-      tl::expected<Beam, std::string> beam = beam_of(*ping, time_of(*frame));
-      beam ? beams.push_back(std::move(*beam)) : void(++unusable_);
+      beam ? beams.push_back(*std::move(*beam)) : void(++unusable_);
     }
     while (pieces_.size() > 1 && pieces_.front().end <= finder_.position()) pieces_.pop_front();
   }
@@ -135,8 +172,8 @@ class Ping360Source final : public LiveSource {
   };
 
   std::string address_;
-  Ping360Driver driver_;
-  std::optional<PingViewerRecorder> recorder_;
+  typename Head::Driver driver_;
+  std::optional<typename Head::Recorder> recorder_;
   std::optional<Link> link_;
   FrameFinder finder_;
   std::deque<Piece> pieces_;  ///< that unprocessed bytes came with
@@ -150,7 +187,12 @@ class Ping360Source final : public LiveSource {
 
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s) {
-  return std::make_unique<Ping360Source>(address, settings, std::move(recorder), now_s);
+  return std::make_unique<HeadSource<Ping360Head>>(address, settings, std::move(recorder), now_s);
+}
+
+std::unique_ptr<LiveSource> micron_source(const std::string& address, const MicronSettings& settings,
+                                          std::optional<SeanetRecorder> recorder, double now_s) {
+  return std::make_unique<HeadSource<MicronHead>>(address, settings, std::move(recorder), now_s);
 }
 
 }  // namespace pingvox

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pingvox/device/receiver_gain.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Sampling of one line.
+struct MicronSampling {
+  std::uint16_t bins = 0;
+  std::uint16_t interval_640ns = 0;  ///< from bin to bin
+};
+
+/// Up to 400 bins, of which a line at 115,200 baud brings 25 a second. REQUIRES a range of 0.5 m to 300 m.
+MicronSampling micron_sampling(double range_m);
+
+/// How a head is driven. Its angles are of 6400 a turn, clockwise; 3200 is ahead.
+struct MicronSettings {
+  using Gain = ReceiverGain;
+  /// Turned to and fro, from `left` clockwise to `right`.
+  struct Sector {
+    int left = 0, right = 0;  ///< 0..6399
+  };
+
+  double range_m = 10.0;                        ///< 0.5..300; of a Micron 75
+  Gain gain = Gain::kNormal;                    ///< of the receiver
+  int step = 16;                                ///< from line to line, 1..255
+  std::optional<Sector> sector = std::nullopt;  ///< nullopt: full turns
+  double timeout_s = 2.0;                       ///< for an answer, 0.01..60
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// The host's side of the dialogue with a SeaNet head, a Micron or MiniKing: waits until the head says that it is
+/// there, asks whether it answers a request with one line or two, sends its parameters, and then asks for one line
+/// after the other. A head that restarts gets its parameters again. It has no line and no clock of its own: the caller
+/// carries the messages.
+class MicronDriver {
+ public:
+  /// REQUIRES valid settings.
+  explicit MicronDriver(const MicronSettings& settings);
+
+  /// Begins the dialogue on a new line.
+  void connect();
+  /// Takes a valid frame of the SeaNet protocol from the line.
+  void take(std::span<const std::uint8_t> frame);
+  /// The message to send now; nullopt while an answer may still come.
+  std::optional<std::vector<std::uint8_t>> message(double now_s);
+  /// When `message` has to be called again, unless a frame comes before.
+  double due_s() const { return is_waiting_ ? deadline_s_ : -std::numeric_limits<double>::infinity(); }
+
+  /// Whether the head has its parameters.
+  bool is_connected() const { return state_ == State::kScanning; }
+  /// Several messages in a row were not answered: the line has to be opened again.
+  bool is_lost() const;
+  /// Messages that were not answered in time.
+  std::size_t unanswered() const { return unanswered_; }
+
+ private:
+  enum class State { kLooking, kAsking, kConfiguring, kScanning };
+
+  void enter(State state);
+  std::vector<std::uint8_t> head_command() const;
+
+  MicronSettings settings_;
+  State state_ = State::kLooking;
+  bool is_dst_ = true;
+  int lines_of_request_ = 1, lines_left_ = 0;
+  bool is_waiting_ = false;
+  double deadline_s_ = 0.0;
+  int unanswered_in_a_row_ = 0;
+  std::size_t unanswered_ = 0;
+};
+
+}  // namespace pingvox

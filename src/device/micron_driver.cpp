@@ -1,0 +1,161 @@
+#include "pingvox/device/micron_driver.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "device/micron_command.hpp"
+#include "pingvox/io/seanet_frame.hpp"
+#include "pingvox/sonar/device_profile.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr int kTurn = 6400;
+constexpr double kMinRange_m = 0.5, kMaxRange_m = 300.0;
+
+std::vector<std::uint8_t> ask(SeanetMessage message) {
+  return make_seanet_frame(message, SeanetSender::kHost, {});
+}
+
+std::vector<std::uint8_t> ask_for_line() {
+  // The host's time, which heads do not use.
+  return make_seanet_frame(SeanetMessage::kSendData, SeanetSender::kHost, std::array<std::uint8_t, 4>{});
+}
+
+}  // namespace
+
+MicronSampling micron_sampling(double range_m) {
+  constexpr double kTick_s = 640e-9, kMaxBins = 400.0, kMinInterval = 5.0;
+  const double ticks = 2.0 * range_m / (kAssumedSoundSpeed_m_s * kTick_s);  // to the range and back
+  const double interval = std::max(kMinInterval, std::ceil(ticks / kMaxBins));
+  return {static_cast<std::uint16_t>(std::clamp(std::round(ticks / interval), 1.0, kMaxBins)),
+          static_cast<std::uint16_t>(interval)};
+}
+
+Result<void> MicronSettings::validate() const {
+  std::string bad;
+  const auto check = [&bad](std::string_view name, double value, double min, double max) {
+    if (!(value >= min && value <= max)) bad += fmt::format(" {} must be in {}..{}, is {};", name, min, max, value);
+  };
+  check("range_m", range_m, kMinRange_m, kMaxRange_m);
+  check("step", step, 1, 255);
+  check("timeout_s", timeout_s, 0.01, 60.0);
+  if (sector) {
+    check("left", sector->left, 0, kTurn - 1);
+    check("right", sector->right, 0, kTurn - 1);
+  }
+  if (bad.empty()) return {};
+  bad.pop_back();
+  return fail(Error::Code::kBadOption, "micron:" + bad);
+}
+
+MicronDriver::MicronDriver(const MicronSettings& settings) : settings_(settings) {
+  assert(settings.validate());
+}
+
+void MicronDriver::connect() {
+  enter(State::kLooking);
+}
+
+bool MicronDriver::is_lost() const {
+  constexpr int kMaxUnanswered = 3;
+  return unanswered_in_a_row_ >= kMaxUnanswered;
+}
+
+void MicronDriver::enter(State state) {
+  state_ = state;
+  is_waiting_ = false;
+  unanswered_in_a_row_ = 0;
+  lines_left_ = 0;
+}
+
+void MicronDriver::take(std::span<const std::uint8_t> frame) {
+  if (seanet_sender(frame) == SeanetSender::kHost) return;  // an echo of our own
+  const SeanetMessage message = seanet_message(frame);
+  if (message == SeanetMessage::kAlive) {
+    constexpr std::size_t kHeadInfo = 20;
+    constexpr std::uint8_t kNoParameters = 1U << 6U;
+    const bool wants_parameters = (frame[kHeadInfo] & kNoParameters) != 0;
+    if (state_ == State::kLooking) return enter(State::kAsking);
+    if (state_ == State::kConfiguring && !wants_parameters) return enter(State::kScanning);
+    // It restarted.
+    if (state_ == State::kScanning && wants_parameters) return enter(State::kConfiguring);
+  }
+  if (message == SeanetMessage::kVersionData && state_ == State::kLooking) return enter(State::kAsking);
+  if (message == SeanetMessage::kUserData && state_ == State::kAsking) {
+    constexpr std::size_t kDuplex = 146, kDstSize = 264;
+    lines_of_request_ = frame.size() > kDuplex && frame[kDuplex] == 0 ? 2 : 1;
+    is_dst_ = frame.size() >= kDstSize;
+    return enter(State::kConfiguring);
+  }
+  if (message == SeanetMessage::kHeadData && state_ == State::kScanning) {
+    constexpr std::uint8_t kNoPower = 1, kLostStep = 2;
+    const std::optional<SeanetLine> line = seanet_line(frame);
+    if (line && (line->status & (kNoPower | kLostStep)) != 0) return enter(State::kConfiguring);
+    unanswered_in_a_row_ = 0;
+    if (lines_left_ > 0 && --lines_left_ == 0) is_waiting_ = false;
+  }
+}
+
+std::optional<std::vector<std::uint8_t>> MicronDriver::message(double now_s) {
+  // A head says once a second that it is there; it finds its centre before it takes parameters.
+  constexpr double kAnswer_s = 1.0, kCentre_s = 10.0;
+  if (is_waiting_ && now_s < deadline_s_) return std::nullopt;
+  if (is_waiting_ && state_ == State::kAsking) {
+    enter(State::kConfiguring);  // not all heads answer
+  } else if (is_waiting_) {
+    ++unanswered_;
+    ++unanswered_in_a_row_;
+  }
+  is_waiting_ = true;
+  switch (state_) {
+    case State::kLooking:
+      // A converter of a serial line to packets learns here where to send what the head says.
+      deadline_s_ = now_s + std::max(settings_.timeout_s, kAnswer_s);
+      return ask(SeanetMessage::kSendVersion);
+    case State::kAsking:
+      deadline_s_ = now_s + kAnswer_s;
+      return ask(SeanetMessage::kSendUserData);
+    case State::kConfiguring:
+      deadline_s_ = now_s + kCentre_s;
+      return head_command();
+    case State::kScanning:
+      deadline_s_ = now_s + settings_.timeout_s;
+      lines_left_ = lines_of_request_;
+      return ask_for_line();
+  }
+  assert(false);
+  return std::nullopt;
+}
+
+std::vector<std::uint8_t> MicronDriver::head_command() const {
+  constexpr std::array<std::uint8_t, 3> kGains = {42, 84, 126};  // 20, 40 and 60 %
+  constexpr double kFrequency_hz = 675e3;
+  constexpr std::uint16_t kSlope = 125;
+  const auto [bins, interval_640ns] = micron_sampling(settings_.range_m);
+  MicronCommand command;
+  command.pulse_us = static_cast<std::uint16_t>(std::clamp((settings_.range_m + 10.0) * 2.5, 37.0, 350.0));
+  command.range_dm = static_cast<std::uint16_t>(std::lround(10.0 * settings_.range_m));
+  command.gain = kGains[static_cast<std::size_t>(settings_.gain)];
+  command.step = static_cast<std::uint8_t>(settings_.step);
+  command.bins = bins;
+  command.interval_640ns = interval_640ns;
+  if (!is_dst_) {
+    command.head_type = MicronCommand::kImaging;
+    command.frequency_hz = kFrequency_hz;
+    command.slope = kSlope;
+  }
+  if (settings_.sector) {
+    command.control = static_cast<std::uint16_t>(command.control & ~unsigned{MicronCommand::kContinuous});
+    command.left = static_cast<std::uint16_t>(settings_.sector->left);
+    command.right = static_cast<std::uint16_t>(settings_.sector->right);
+  }
+  return frame_of(command);
+}
+
+}  // namespace pingvox
