@@ -1,9 +1,12 @@
 #include "slam/causal_estimator.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -77,6 +80,7 @@ void CausalEstimator::add_beam(double time_s) {
 void CausalEstimator::add_sweep(HeardSweep sweep) {
   if (sweep.extent != Sweep::Extent::kCut) ++complete_sweeps_;
   sweeps_.push_back(std::move(sweep));
+  ++all_sweeps_;
 }
 
 Result<void> CausalEstimator::add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample) {
@@ -94,12 +98,23 @@ Result<void> CausalEstimator::solve() {
   return sweeps_.empty() ? Result<void>() : solve_until(sweeps_.back().to_s);
 }
 
-Result<void> CausalEstimator::solve_until(double nav_until_s) {
+std::vector<NavSource> CausalEstimator::sources_of_window(double nav_until_s) {
   const double from_s = window_.times_s.empty() ? -kInfinity : window_.times_s.front();
+  std::vector<NavSource> sources = sources_within(sources_, from_s, nav_until_s, kBefore_s);
+  if (options_.motion == MotionSource::kVelocity) return sources;
+  std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });
+  const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
+  if (!log) return sources;
+  const std::vector<HeadingSource> headings = headings_of(*log, options_);
+  odometry_.extend(sweeps_, sonar_mount(options_.body_from_sonar), headings.empty() ? nullptr : &headings.front());
+  if (odometry_.tells()) std::ranges::move(odometry_.sources(), std::back_inserter(sources));
+  return sources;
+}
+
+Result<void> CausalEstimator::solve_until(double nav_until_s) {
   const auto end = std::ranges::upper_bound(beam_times_s_, sweeps_.back().to_s) - beam_times_s_.begin();
-  const Result<Recording> recording =
-      recording_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)), sweeps_,
-                   sources_within(sources_, from_s, nav_until_s, kBefore_s), options_);
+  const Result<Recording> recording = recording_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)),
+                                                   sweeps_, sources_of_window(nav_until_s), options_);
   const bool goes_on = recording && (window_.times_s.empty() || recording->span.to_s > window_.times_s.back());
   Result<std::vector<double>> times_s =
       recording.and_then([&](const Recording& part) { return window_knot_times(window_, part); });
@@ -143,10 +158,15 @@ void CausalEstimator::add_poses(const SlamSolver& solver, const Recording& recor
   }
 }
 
+bool CausalEstimator::tells_enough() const {
+  return odometry_.matched() >= odometry_.min_matched(all_sweeps_ - 1);
+}
+
 /// What is before the window.
 void CausalEstimator::forget() {
   const double from_s = window_.times_s.front();
   sources_ = sources_within(sources_, from_s, kInfinity, kBefore_s);
+  odometry_.forget_before(from_s);
   beam_times_s_.erase(beam_times_s_.begin(), std::ranges::lower_bound(beam_times_s_, from_s));
 }
 
@@ -158,15 +178,23 @@ Pose CausalEstimator::in_frame(const Pose& pose) const {
 
 std::optional<StampedPose> CausalEstimator::pose() const {
   if (!solver_ || poses_.empty()) return std::nullopt;
+  if (odometry_.tells() && !(odometry_.tells_now() && tells_enough())) return std::nullopt;
   const double from_s = window_.times_s.back();
-  Result<Navigation> navigation = navigation_of(sources_within(sources_, from_s, kInfinity, 0.0), options_);
+  std::vector<NavSource> sources = sources_within(sources_, from_s, kInfinity, 0.0);
+  if (odometry_.tells()) {
+    std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });
+    std::ranges::move(odometry_.sources(), std::back_inserter(sources));
+  }
+  Result<Navigation> navigation = navigation_of(std::move(sources), options_);
   if (!navigation) return std::nullopt;
   // The window's last error of the heading is that of its main one.
   std::vector<HeadingSource>& headings = navigation->headings;
   const auto main = std::ranges::find(headings, window_.headings.front(), &HeadingSource::name);
   if (main == headings.end()) return std::nullopt;
   std::rotate(headings.begin(), main, main + 1);
-  const double to_s = std::min(navigation->velocity.ahead.to_s(), headings.front().yaw_rad.to_s());
+  // By the sonar the velocity is known at the end of a sweep, and goes on.
+  const double known_s = navigation->velocity.by_sonar ? kInfinity : navigation->velocity.ahead.to_s();
+  const double to_s = std::min(known_s, headings.front().yaw_rad.to_s());
   StampedPose pose = poses_.back();
   if (to_s > from_s) {
     const SlamProblem problem({from_s, to_s}, std::move(navigation->velocity), std::move(headings),
@@ -189,7 +217,18 @@ Result<SlamSolution> CausalEstimator::finish() {
   if (!sweeps_.empty()) {
     if (const auto solved = solve_until(kInfinity); !solved) return tl::unexpected(solved.error());
   }
-  if (!solver_) return tl::unexpected(*missing_);
+  if (!solver_) {
+    Error missing = *std::move(missing_);
+    if (options_.motion == MotionSource::kSonar)
+      missing.message += ", and the sonar does not tell how the vehicle moved";
+    return tl::unexpected(std::move(missing));
+  }
+  if (odometry_.tells() && !tells_enough()) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("the navigation has no velocity over ground, and the sonar does not tell how the vehicle "
+                            "moved: {} of {} sweeps match those before them",
+                            odometry_.matched(), all_sweeps_ - 1));
+  }
   Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(poses_));
   if (!solution) return solution;
   solution->report.beams = beams_;
@@ -197,6 +236,12 @@ Result<SlamSolution> CausalEstimator::finish() {
   solution->report.knots = window_.left_knots + window_.times_s.size();
   solution->report.echoes = window_.left_echoes + window_.echoes;
   solution->report.largest = window_.largest;
+  if (solution->report.by_sonar) {
+    SonarMotion& motion = *solution->report.by_sonar;
+    motion.matched = odometry_.matched();
+    const std::vector<StampedPose>& told = solution->trajectory.poses();
+    motion.drift_m = motion.noise_m_sqrt_s * std::sqrt(told.back().time_s - told.front().time_s);
+  }
   return solution;
 }
 

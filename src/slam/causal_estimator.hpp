@@ -11,6 +11,7 @@
 #include "pingvox/slam/slam_smoother.hpp"
 #include "slam/causal_window.hpp"
 #include "slam/recording.hpp"
+#include "slam/sonar_odometry.hpp"
 
 namespace pingvox {
 
@@ -41,8 +42,12 @@ class CausalEstimator {
 
  private:
   Result<void> solve_until(double nav_until_s);
+  /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle moved.
+  std::vector<NavSource> sources_of_window(double nav_until_s);
   void add_poses(const SlamSolver& solver, const Recording& recording);
   void forget();
+  /// Whether enough of all sweeps match, where the vehicle moves by its sonar.
+  bool tells_enough() const;
   Pose in_frame(const Pose& pose) const;
 
   SlamOptions options_;
@@ -50,7 +55,9 @@ class CausalEstimator {
   std::vector<double> beam_times_s_;
   std::vector<HeardSweep> sweeps_;
   std::vector<NavSource> sources_;  ///< with some samples before, in order
-  std::size_t beams_ = 0, complete_sweeps_ = 0;
+  std::size_t beams_ = 0, all_sweeps_ = 0, complete_sweeps_ = 0;
+
+  GrowingOdometry odometry_;
 
   CausalWindow window_;
   std::optional<SlamSolver> solver_;  ///< of the last solution

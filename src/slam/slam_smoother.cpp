@@ -145,12 +145,8 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
                                                    const SlamOptions& options) {
   const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
-  if (velocity_of(*log, options)) return sources;
+  if (options.motion == MotionSource::kVelocity && velocity_of(*log, options)) return sources;
   const std::vector<HeadingSource> headings = headings_of(*log, options);
-  if (options.estimation == Estimation::kCausal) {
-    return fail(Error::Code::kUnsupported,
-                "the navigation has no valid velocity over ground, which estimation as on board needs");
-  }
   if (!headings.empty()) {
     const Span beams{sweeps.front().from_s, sweeps.back().to_s};
     const HeadingSource& main = headings.front();
@@ -172,15 +168,18 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
 }
 
 /// All that was recorded, as it came.
-Result<SlamSolution> solve_causal(const Recording& recording, std::vector<NavSource> sources, SlamOptions options) {
+Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                                  std::vector<NavSource> sources, SlamOptions options) {
   const Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
   options.nav_offset_s = 0.0;  // the sources are on the clock of the beams
-  CausalEstimator estimator(std::move(options));
-  auto beam = recording.beam_times_s.begin();
+  const std::optional<VelocitySource> velocity = velocity_of(*log, options);
+  if (!velocity) options.motion = MotionSource::kSonar;
+  CausalEstimator estimator(options);
+  auto beam = beam_times_s.begin();
   std::vector<std::size_t> added(log->sources().size(), 0);
   const auto add_until = [&](double time_s) -> Result<void> {
-    for (; beam != recording.beam_times_s.end() && *beam <= time_s; ++beam) estimator.add_beam(*beam);
+    for (; beam != beam_times_s.end() && *beam <= time_s; ++beam) estimator.add_beam(*beam);
     for (std::size_t s = 0; s < added.size(); ++s) {
       const NavSource& source = log->sources()[s];
       for (; added[s] < source.samples.size() && source.samples[added[s]].time_s <= time_s; ++added[s]) {
@@ -190,17 +189,17 @@ Result<SlamSolution> solve_causal(const Recording& recording, std::vector<NavSou
     }
     return {};
   };
-  for (std::size_t end = 1; end < recording.sweeps.size(); ++end) {
-    if (const auto done = add_until(recording.sweeps[end - 1].to_s); !done) return tl::unexpected(done.error());
-    estimator.add_sweep(recording.sweeps[end - 1]);
+  for (std::size_t end = 1; end < sweeps.size(); ++end) {
+    if (const auto done = add_until(sweeps[end - 1].to_s); !done) return tl::unexpected(done.error());
+    estimator.add_sweep(sweeps[end - 1]);
     if (end % kSweepsOfStep != 0) continue;
     if (const auto solved = estimator.solve(); !solved) return tl::unexpected(solved.error());
   }
   if (const auto done = add_until(kInfinity); !done) return tl::unexpected(done.error());
-  estimator.add_sweep(recording.sweeps.back());
+  estimator.add_sweep(sweeps.back());
   Result<SlamSolution> solution = estimator.finish();
   // Of all, not of the window.
-  if (solution) report_velocity(recording.navigation.velocity, solution->report);
+  if (solution && !solution->report.by_sonar && velocity) report_velocity(*velocity, solution->report);
   return solution;
 }
 
@@ -218,15 +217,15 @@ Result<SlamSolution> SlamSmoother::solve() const {
   std::vector<HeardSweep> sweeps = state_->sweeps;
   SweepAssembler rest = state_->assembler;
   if (const auto sweep = rest.finish()) sweeps.push_back(heard_sweep(*sweep, options));
+  if (options.matching == Matching::kPairs && sweeps.size() < 2) {
+    return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
+  }
+  if (options.estimation == Estimation::kCausal) return solve_causal(times_s, sweeps, state_->sources, options);
   const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
   if (!sources) return tl::unexpected(sources.error());
   const Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
   if (!recording) return tl::unexpected(recording.error());
-  if (options.matching == Matching::kPairs && sweeps.size() < 2) {
-    return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
-  }
-  return options.estimation == Estimation::kCausal ? solve_causal(*recording, *sources, options)
-                                                   : solve_batch(*recording, options);
+  return solve_batch(*recording, options);
 }
 
 }  // namespace pingvox

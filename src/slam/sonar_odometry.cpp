@@ -192,6 +192,11 @@ Steps refine(const Steps& steps, std::span<const HeardSweep> sweeps, double cell
   return refined;
 }
 
+std::size_t least_matched(std::size_t steps, bool has_heading) {
+  const double share = has_heading ? kMinMatched : kMinMatchedAlone;
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(share * static_cast<double>(steps) - 1e-9)));
+}
+
 NavSample sample_at(double time_s, const Eigen::Vector3d& value) {
   NavSample sample;
   sample.time_s = time_s;
@@ -238,14 +243,68 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMoun
     const Eigen::Vector2d& velocity = steps[k]->velocity_m_s;
     velocities.push_back(sample_at(0.5 * (from_s + to_s), {velocity.x(), velocity.y(), 0.0}));
   }
-  const double least = heading != nullptr ? kMinMatched : kMinMatchedAlone;
-  odometry.tells = static_cast<double>(odometry.matched) >= std::max(1.0, least * static_cast<double>(steps.size()));
+  odometry.tells = odometry.matched >= least_matched(steps.size(), heading != nullptr);
   if (velocities.empty()) return odometry;
   // The first and the last motion go on to the ends.
   velocities.insert(velocities.begin(), sample_at(begin_s, velocities.front().value));
   velocities.push_back(sample_at(end_s, velocities.back().value));
   headings.push_back(sample_at(end_s, {yaw_rad + turn_rad_s * (end_s - since_s), 0.0, 0.0}));
   return odometry;
+}
+
+void GrowingOdometry::extend(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
+                             const HeadingSource* heading) {
+  // What these say of the first of them is known better from before.
+  constexpr std::size_t kLooked = 12;
+  const SonarOdometry odometry =
+      sonar_odometry(sweeps.last(std::min(kLooked, sweeps.size())), body_from_sonar, heading);
+  tells_now_ = odometry.tells;
+  has_heading_ = heading != nullptr;
+  const bool is_first = !tells();
+  if (odometry.matched == 0 || (is_first && !odometry.tells)) return;
+  // The first and the last samples go on to the ends.
+  const std::span<const NavSample> velocities(odometry.velocity.samples), turned(odometry.heading.samples);
+  for (const NavSample& sample : velocities.first(velocities.size() - 1)) {
+    if (!is_first && sample.time_s <= velocity_.samples.back().time_s) continue;
+    velocity_.samples.push_back(sample);
+    if (!is_first || sample.time_s > velocities.front().time_s) ++matched_;
+  }
+  last_velocity_ = sample_at(sweeps.back().to_s, velocity_.samples.back().value);
+  std::vector<double> times_s, yaws_rad;
+  for (const NavSample& sample : turned) {
+    if (!times_s.empty() && sample.time_s <= times_s.back()) continue;
+    times_s.push_back(sample.time_s);
+    yaws_rad.push_back(sample.value.x());
+  }
+  const TimeSeries yaw_rad(times_s, yaws_rad);
+  const double off_rad =
+      is_first ? 0.0 : heading_.samples.back().value.x() - yaw_rad.at(heading_.samples.back().time_s);
+  for (const NavSample& sample : turned.first(turned.size() - 1)) {
+    if (!is_first && sample.time_s <= heading_.samples.back().time_s) continue;
+    heading_.samples.push_back(sample_at(sample.time_s, {sample.value.x() + off_rad, 0.0, 0.0}));
+  }
+  last_heading_ = sample_at(turned.back().time_s, {turned.back().value.x() + off_rad, 0.0, 0.0});
+}
+
+void GrowingOdometry::forget_before(double time_s) {
+  for (NavSource* source : {&velocity_, &heading_}) {
+    std::vector<NavSample>& samples = source->samples;
+    const auto first = std::ranges::upper_bound(samples, time_s, {}, &NavSample::time_s);
+    if (first != samples.begin()) samples.erase(samples.begin(), first - 1);
+  }
+}
+
+std::size_t GrowingOdometry::min_matched(std::size_t steps) const {
+  return least_matched(steps, has_heading_);
+}
+
+std::vector<NavSource> GrowingOdometry::sources() const {
+  std::vector<NavSource> sources = {velocity_};
+  sources.front().samples.push_back(last_velocity_);
+  if (has_heading_) return sources;
+  sources.push_back(heading_);
+  sources.back().samples.push_back(last_heading_);
+  return sources;
 }
 
 }  // namespace pingvox

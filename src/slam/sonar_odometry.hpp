@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "pingvox/nav/nav_log.hpp"
 #include "slam/echo_pairs.hpp"
@@ -28,6 +30,37 @@ struct SonarOdometry {
 /// @param heading  of the body; nullptr: not known
 SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
                              const HeadingSource* heading);
+
+/// Such odometry of sweeps as they come: what it said of earlier ones stays.
+class GrowingOdometry {
+ public:
+  /// Takes what the last sweeps tell of the time since the last call, if they tell anything; the first ones have to
+  /// tell a trajectory.
+  /// @param sweeps  the last ones; the same as before and those that came since
+  void extend(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar, const HeadingSource* heading);
+  /// Forgets what is not needed from a time on.
+  void forget_before(double time_s);
+
+  bool tells() const { return !velocity_.samples.empty(); }
+  /// Whether the last sweeps still tell a trajectory.
+  bool tells_now() const { return tells_now_; }
+  /// They do not any more, and no heading says how the vehicle turned meanwhile.
+  bool is_lost() const { return tells() && !tells_now_ && !has_heading_; }
+  std::size_t matched() const { return matched_; }
+  /// Of how many steps from sweep to sweep at least so many have to match.
+  std::size_t min_matched(std::size_t steps) const;
+  /// The velocity, and what the vehicle turned where its heading is not known; until the end of the last sweep as at
+  /// the last match. REQUIRES that it tells.
+  std::vector<NavSource> sources() const;
+
+ private:
+  NavSource velocity_{std::string(kSonarSource), NavQuantity::kVelocity, {}};
+  NavSource heading_{std::string(kSonarSource), NavQuantity::kHeading, {}};
+  NavSample last_velocity_, last_heading_;  ///< at the end of the last sweep
+  std::size_t matched_ = 0;
+  bool has_heading_ = false;  ///< of the vehicle
+  bool tells_now_ = false;
+};
 
 /// The velocity of such odometry. REQUIRES a sample.
 VelocitySource sonar_velocity(const NavSource& source);

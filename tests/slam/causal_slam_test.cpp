@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "slam/basin.hpp"
@@ -90,6 +92,29 @@ TEST(CausalSlam, TellsWhileItGoesWhatTheSmootherTellsOfTheLog) {
   }
 }
 
+// Kills a pose that stays at the end of the last sweep that was matched.
+TEST(CausalSlam, GoesOnBySonarAndCompassBetweenTheSweeps) {
+  const Basin basin{.duration_s = 160.0, .compass_cos = 0.02};
+  const NavSource compass = basin.sources()[1];
+  SlamOptions options = options_of(basin);
+  options.motion = MotionSource::kSonar;
+  CausalSlam slam(options);
+  std::size_t added = 0, told = 0;
+  for (const Beam& beam : basin.beams()) {
+    for (; compass.samples[added].time_s <= beam.time_s; ++added) {
+      ASSERT_TRUE(slam.add(compass.name, compass.quantity, compass.samples[added]));
+    }
+    ASSERT_TRUE(slam.add(beam));
+    const auto pose = slam.pose();
+    if (!pose || beam.time_s < 60.0) continue;
+    ++told;
+    ASSERT_GT(pose->time_s, beam.time_s - 0.25);
+    const Eigen::Vector2d moved = Basin::at(pose->time_s).place - Basin::at(0.0).place;
+    ASSERT_LT((pose->map_from_body.translation().head<2>() - moved).norm(), 3.5) << pose->time_s;
+  }
+  EXPECT_GT(told, 900U);
+}
+
 // Kills samples that are kept as they came, and a use of those that are of later times.
 TEST(CausalSlam, NavigationMayComeEarlyAndInAnyOrder) {
   const Basin basin{.duration_s = 160.0};
@@ -103,6 +128,23 @@ TEST(CausalSlam, NavigationMayComeEarlyAndInAnyOrder) {
   const auto finished = slam.finish(), solved = solve_by_smoother(basin);
   ASSERT_TRUE(finished && solved);
   expect_same(finished->trajectory, solved->trajectory);
+}
+
+// Kills odometry by the sonar where a DVL is only late.
+TEST(CausalSlam, WaitsForAVelocity) {
+  const Basin basin{.duration_s = 100.0};
+  CausalSlam slam(options_of(basin));
+  for (const NavSource& source : basin.sources()) {
+    for (const NavSample& sample : source.samples) {
+      if (source.name == "dvl" && sample.time_s < 45.0) continue;
+      ASSERT_TRUE(slam.add(source.name, source.quantity, sample));
+    }
+  }
+  for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
+  const auto finished = slam.finish();
+  ASSERT_TRUE(finished) << finished.error().message;
+  EXPECT_FALSE(finished->report.by_sonar);
+  EXPECT_EQ(finished->trajectory.poses().front().time_s, 45.0);
 }
 
 TEST(CausalSlam, RefusesBeamsThatGoBackInTime) {
@@ -124,13 +166,22 @@ TEST(CausalSlam, SaysWhatIsMissing) {
     ASSERT_FALSE(finished);
     EXPECT_EQ(finished.error().message, "there are no beams");
   }
-  CausalSlam slam(options_of(basin));
-  for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
-  EXPECT_FALSE(slam.pose());
-  const auto finished = slam.finish();
-  ASSERT_FALSE(finished);
-  EXPECT_EQ(finished.error().code, Error::Code::kUnsupported);
-  EXPECT_THAT(finished.error().message, HasSubstr("no valid velocity and no heading"));
+  for (const MotionSource motion : {MotionSource::kVelocity, MotionSource::kSonar}) {
+    SlamOptions options = options_of(basin);
+    options.motion = motion;
+    CausalSlam slam(options);
+    for (Beam beam : basin.beams()) {
+      if (motion == MotionSource::kSonar) std::ranges::fill(beam.intensities, std::uint8_t{0});
+      ASSERT_TRUE(slam.add(std::move(beam)));
+    }
+    EXPECT_FALSE(slam.pose());
+    const auto finished = slam.finish();
+    ASSERT_FALSE(finished);
+    EXPECT_EQ(finished.error().code, Error::Code::kUnsupported);
+    EXPECT_THAT(finished.error().message, HasSubstr("no valid velocity and no heading"));
+    EXPECT_EQ(finished.error().message.ends_with("and the sonar does not tell how the vehicle moved"),
+              motion == MotionSource::kSonar);
+  }
 }
 
 }  // namespace

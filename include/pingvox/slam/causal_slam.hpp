@@ -12,7 +12,8 @@ namespace pingvox {
 /// Where a vehicle is, while its sonar and its navigation tell: SlamSmoother with Estimation::kCausal, on board. After
 /// every other sweep a window of the last ones is estimated anew (SlamOptions::causal_sweeps), so that the work for a
 /// sweep and the memory, apart from a pose for each beam, do not grow with time. In between, velocity and headings lead
-/// on from there.
+/// on from there. Where no source of a velocity speaks before the first solution, the sonar tells how the vehicle
+/// moved.
 ///
 ///     CausalSlam slam(options);
 ///     slam.add("dvl", NavQuantity::kVelocity, sample);  // as they come
@@ -28,14 +29,15 @@ class CausalSlam {
 
   /// Takes the next beam, which must be valid; the last one of some sweeps leads to a solution. What is missing for one
   /// may come later.
-  /// @return kCorrupt when its time is not after that of the last one, or their times jump; kUnsupported when what was
-  /// recorded does not determine the poses. No more beams can be added then
+  /// @return kCorrupt when its time is before that of the last one, or their times jump; kUnsupported when what was
+  /// recorded does not determine the poses (any more). No more beams can be added then
   Result<void> add(Beam beam);
   /// Takes a sample of a source; see SlamSmoother::add.
   Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
 
   /// The last pose that is known: where both velocity and heading were measured last, by the last solution and dead
-  /// reckoning since. The first pose is at 0, 0. nullopt: before the first solution.
+  /// reckoning since; without a velocity, by how the sonar says that the vehicle moved, which goes on from the last
+  /// sweep. The first pose is at 0, 0. nullopt: before the first solution, and while the sonar alone tells too little.
   std::optional<StampedPose> pose() const;
 
   /// Ends the recording: the poses of all beams, each from what was known then. Nothing can be added afterwards.

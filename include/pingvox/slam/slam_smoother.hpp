@@ -33,9 +33,16 @@ enum class Estimation {
   kCausal,  ///< what was recorded until then, as on board; navigation until its next sample
 };
 
+/// What says how the vehicle moved from sweep to sweep.
+enum class MotionSource {
+  kVelocity,  ///< a velocity of the navigation; to SlamSmoother the sonar where there is none, while CausalSlam waits
+  kSonar,     ///< the sonar: each sweep is matched with those before it
+};
+
 struct SlamOptions {
   Matching matching = Matching::kPairs;
   Estimation estimation = Estimation::kBatch;
+  MotionSource motion = MotionSource::kVelocity;
   /// With Estimation::kCausal: how many sweeps are estimated at a time, at least 2; those before stay as they are.
   std::size_t causal_sweeps = 80;
   std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
