@@ -42,7 +42,8 @@ class CausalEstimator {
 
  private:
   Result<void> solve_until(double nav_until_s);
-  /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle moved.
+  /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
+  /// moved.
   std::vector<NavSource> sources_of_window(double nav_until_s);
   void add_poses(const SlamSolver& solver, const Recording& recording);
   void forget();
