@@ -123,7 +123,7 @@ std::string count_text(const std::optional<std::uint64_t>& count) {
   return count ? fmt::format("{}", *count) : "-";
 }
 
-/// A judged by what could be seen of B.
+/// Report on A, counting only what could be seen of B.
 std::string text_of(const MapAgreement& agreement) {
   return fmt::format("precision {}, recall {}, free {}\n", share_text(agreement.precision()),
                      share_text(agreement.recall()), share_text(agreement.free_true())) +
@@ -155,7 +155,7 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
                                              agreement.occupied_both)) +
          report_line("free", fmt::format("{} in A, {} in B, {} in both", agreement.free_a, agreement.free_b,
                                          agreement.free_both)) +
-         report_line("B as truth", fmt::format("occupied: precision {}, recall {} (within one cell); free: {} right",
+         report_line("B as truth", fmt::format("occupied: precision {}, recall {} (within one cell); free: {} correct",
                                                share_text(agreement.precision()), share_text(agreement.recall()),
                                                share_text(agreement.free_true())));
 }
@@ -253,6 +253,9 @@ Result<int> run(const CompareCommand& command, Console& console) {
     if (auto kept = keep_layer(*b, command.b, *command.layer_z_m); !kept) return tl::unexpected(kept.error());
   }
   if (command.occupied_probability) {
+    if (const auto used = OccupancyArgs{.occupied_from = command.occupied_probability}.check(a->format); !used) {
+      return fail(used.error().code, fmt::format("compare: {}: {}", command.a, used.error().message));
+    }
     a->map = with_thresholds(a->map, thresholds_at(*command.occupied_probability, a->map.options().thresholds));
   }
 

@@ -112,7 +112,7 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
                      skipped > 0 ? fmt::format("; {} damaged records skipped", skipped) : "");
 }
 
-/// Writes where the vehicle was. @return what was written
+/// Writes the poses of a navigation log. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command) {
   const Result<VehiclePath> path = vehicle_positions(std::move(stream), command.damage);
   if (!path) return tl::unexpected(path.error());
@@ -202,6 +202,9 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
     return convert_nav_to_poses(std::move(stream), command);
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
   if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return conversion_error(stream.name(), format, command.format);
+  if (const auto used = command.occupancy.check(format); !used) {
+    return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
+  }
   const Result<FileBytes> file = ByteStream::whole(std::move(stream));
   if (!file) return tl::unexpected(file.error());
   Result<MapFile> map = is_map ? read_map(*file) : map_of_mesh(*file, command);

@@ -98,7 +98,7 @@ Result<int> emulate_head(const EmulateCommand& command, const char* device, int 
     return hear((0.5 * turn - angle) * (2.0 * std::numbers::pi / turn), bins, bin_length_m);
   });
   std::array<std::uint8_t, 65536> bytes;
-  while (!signals.arrived() && (command.max_pings == 0 || head.pings() < command.max_pings)) {
+  while (!signals.has_arrived() && (command.max_pings == 0 || head.pings() < command.max_pings)) {
     wait(signals, link, head.due_s() - watch.seconds());
     const Result<std::size_t> got = link.read(bytes);
     if (!got) return tl::unexpected(got.error());
@@ -115,9 +115,9 @@ Result<int> emulate_navigation(const EmulateCommand& command, StopSignals& signa
   NavEmulator device(command.nav,
                      is_dvl ? NavEmulator::a50(std::move(pose_at)) : NavEmulator::mavlink(std::move(pose_at)));
   std::array<std::uint8_t, 65536> bytes;
-  while (!signals.arrived()) {
+  while (!signals.has_arrived()) {
     wait(signals, link, device.due_s() - watch.seconds());
-    // A vehicle sends whether or not anybody listens; what hosts say is not for it.
+    // A vehicle sends whether or not anybody listens, and ignores messages from hosts.
     static_cast<void>(link.read(bytes));
     for (const NavEmulator::Message& message : device.send(watch.seconds())) static_cast<void>(link.write(message));
   }

@@ -119,8 +119,7 @@ std::string numbers_text(const std::vector<std::size_t>& numbers) {
 
 template <typename Source>
 std::string skipped_line(const Source& source) {
-  return report_line("skipped",
-                     fmt::format("{} damaged, the first: {}", source.skipped(), on_one_line(source.first_damage())));
+  return report_line("skipped", damage_text(source.skipped(), source.first_damage()));
 }
 
 class BeamSurvey {
@@ -170,8 +169,8 @@ class BeamSurvey {
     summary.text =
         headline(name, format) + report_line("beams", fmt::format("{}", beams_)) + report_line("sweeps", sweeps_text());
     if (beams_ > 0) {
-      summary.text += report_line("bins", fewest == most_bins_ ? fmt::format("{} a beam", fewest)
-                                                               : fmt::format("{} to {} a beam", fewest, most_bins_)) +
+      summary.text += report_line("bins", fewest == most_bins_ ? fmt::format("{} per beam", fewest)
+                                                               : fmt::format("{} to {} per beam", fewest, most_bins_)) +
                       report_line("bin length", lengths_text(lengths)) +
                       report_line("range", fmt::format("{:.6g} m", longest_m_)) +
                       report_line("sector", fmt::format("{:.6g} degrees", sector)) +

@@ -30,18 +30,18 @@ struct CommandName {
 
 /// `view` of later versions is known but not listed, so that it is not reported as misspelt.
 constexpr std::array kCommands = {
-    CommandName{"map", "logs to a map", &map_command},
-    CommandName{"info", "what a log, a cloud, a map or a mesh holds", &info_command},
-    CommandName{"compare", "two maps cell by cell, two trajectories by their error", &compare_command},
-    CommandName{"convert", "a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
+    CommandName{"map", "build a map from logs", &map_command},
+    CommandName{"info", "show what a file holds: a log, navigation, a cloud, a map or a mesh", &info_command},
+    CommandName{"compare", "compare two maps cell by cell, or two trajectories", &compare_command},
+    CommandName{"convert", "convert a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
                 &convert_command},
-    CommandName{"render", "a picture of a log with its echoes, or of a map", &render_command},
-    CommandName{"simulate", "the log of a sonar in a world of your choice", &simulate_command},
-    CommandName{"slam", "where the vehicle was, from beams and navigation, and the map", &slam_command},
-    CommandName{"locate", "where the vehicle was, in a map that is known", &locate_command},
-    CommandName{"live", "a device, recorded and mapped while it runs", &live_command},
-    CommandName{"emulate", "a device that is not there, driven by the simulator", &emulate_command},
-    CommandName{"bench", "measurements, when pingvox-bench is installed", &bench_command},
+    CommandName{"render", "draw a log with its echoes, or a map", &render_command},
+    CommandName{"simulate", "simulate the log of a sonar in a known world", &simulate_command},
+    CommandName{"slam", "estimate the trajectory of the vehicle from beams and navigation, and map", &slam_command},
+    CommandName{"locate", "find the vehicle in a known map", &locate_command},
+    CommandName{"live", "record and map with a sonar while it runs", &live_command},
+    CommandName{"emulate", "stand in for a sonar or navigation device, by simulation", &emulate_command},
+    CommandName{"bench", "measure speed and accuracy, where pingvox-bench is installed", &bench_command},
     CommandName{"view", "", &view_command},
 };
 

@@ -77,7 +77,7 @@ Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
   });
 }
 
-/// Tells an autopilot what is nearest to the vehicle.
+/// Sends the nearest obstacles to an autopilot.
 class ObstacleSender {
  public:
   static Result<ObstacleSender> open(const std::string& address, const ObstacleOptions& options) {
@@ -153,7 +153,7 @@ class MapWriter {
   std::future<Result<void>> written_;
 };
 
-/// One run: beams come in, wait, and are mapped.
+/// One run: receives beams, queues and maps them.
 class LiveRun {
  public:
   LiveRun(const LiveCommand& command, Console& console, std::unique_ptr<LiveSource> source,
@@ -172,7 +172,7 @@ class LiveRun {
   Result<int> run(StopSignals& signals, const Stopwatch& watch) {
     double tell_at_s = watch.seconds() + kTell_s, write_at_s = watch.seconds() + command_.write_every_s;
     bool has_ended = false;
-    while (!has_ended && !signals.arrived() && (command_.max_beams == 0 || beams_ < command_.max_beams)) {
+    while (!has_ended && !signals.has_arrived() && (command_.max_beams == 0 || beams_ < command_.max_beams)) {
       const double next_s =
           std::min({tell_at_s, write_at_s, source_->due_s(), obstacles_ ? obstacles_->due_s() : tell_at_s});
       wait(signals, can_map_one() ? 0.0 : next_s - watch.seconds());
@@ -308,7 +308,7 @@ class LiveRun {
     note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
   }
 
-  /// What was said of a device of navigation.
+  /// The state of a navigation device that was printed last.
   struct Told {
     bool recording_error = false, is_connected = false;
     std::string problem;
@@ -326,7 +326,7 @@ class LiveRun {
     told.problem = status.problem;
   }
 
-  /// When it is decided what the poses are made of, and when that takes long.
+  /// Prints which sources give the poses once they are chosen, or that they are missing for long.
   void tell_sources() {
     const LivePoses& poses = nav_->poses();
     if (poses.position().empty() && nav_->now_s() > kLong_s && !was_silence_told_) {

@@ -30,7 +30,7 @@ struct Seconds {
   double read = 0.0, field = 0.0, locate = 0.0, total = 0.0;
 };
 
-/// How the vehicle moved, as far as it is known.
+/// Motion of the vehicle, as far as it is known.
 struct Motion {
   std::optional<Trajectory> odometry;
   std::string text = "none: the vehicle is assumed to move little";

@@ -31,7 +31,8 @@ struct Totals {
   std::size_t scans = 0, points = 0;  ///< scans of points, and their points
   std::size_t damaged = 0;
   bool has_beams = false;
-  BeamModelOptions beam;  ///< of the first log of beams
+  BeamModelOptions beam;      ///< of the first log of beams
+  bool assumes_beam = false;  ///< its size is a default
   double write_s = 0.0, total_s = 0.0;
 
   void add(const MappedLog& mapped, const Log& source) {
@@ -41,7 +42,10 @@ struct Totals {
       report.min_threshold = std::min(report.min_threshold.value_or(*log.min_threshold), *log.min_threshold);
       report.max_threshold = std::max(report.max_threshold.value_or(*log.max_threshold), *log.max_threshold);
     }
-    if (!has_beams) beam = mapped.beam;
+    if (!has_beams) {
+      beam = mapped.beam;
+      assumes_beam = mapped.assumes_beam;
+    }
     has_beams = has_beams || std::holds_alternative<std::unique_ptr<BeamSource>>(source);
     if (std::holds_alternative<std::unique_ptr<ScanSource>>(source)) {
       scans += log.sweeps;
@@ -75,13 +79,14 @@ double degrees(double angle_rad) {
   return std::round(angle_rad / kDegree_rad * 1e6) / 1e6;
 }
 
-/// "cone, 3 x 35 degrees"
-std::string beam_text(const BeamModelOptions& model) {
+/// "cone, 3 degrees wide, 35 high"
+std::string beam_text(const BeamModelOptions& model, bool is_assumed) {
   std::string text(name_of(model.shape));
   if (model.shape == BeamShape::kFan) text += fmt::format(", {:.6g} degrees wide", degrees(model.width_rad));
   if (model.shape == BeamShape::kCone) {
     text += fmt::format(", {:.6g} degrees wide, {:.6g} high", degrees(model.width_rad), degrees(model.height_rad));
   }
+  if (is_assumed && model.shape != BeamShape::kRay) text += ", assumed (the log names no sonar: see --device)";
   return text;
 }
 
@@ -170,7 +175,7 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   std::string beams;
   if (totals.has_beams) {
     const ThresholdRange thresholds{report.min_threshold, report.max_threshold};
-    beams = report_line("beam", beam_text(totals.beam)) +
+    beams = report_line("beam", beam_text(totals.beam, totals.assumes_beam)) +
             report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
   return name + "\n" + report_line("read", read) +
@@ -240,12 +245,12 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.clear();
         console.say(fmt::format("{}: {}", *command.path.poses, odd));
       }
-      const bool has_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*log);
-      if (const auto beside = trajectory_beside(name);
-          beside && has_beams && !command.path.poses && command.path.navs.empty()) {
-        bar.clear();
-        console.say(fmt::format("{}: mapped as if the vehicle did not move; its trajectory may be --poses {}", name,
-                                quote_for_shell(*beside)));
+      if (std::holds_alternative<std::unique_ptr<BeamSource>>(*log) && !command.path.poses &&
+          command.path.navs.empty()) {
+        if (const std::string hint = hint_at_path(name, *format); !hint.empty()) {
+          bar.clear();
+          console.say(fmt::format("{}: mapped as if the vehicle did not move; {}", name, hint));
+        }
       }
     }
   }

@@ -277,6 +277,9 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
     return std::move(drawn).map([](Drawn done) { return Prepared(std::move(done)); });
   }
   if (kind == FormatKind::kMap) {
+    if (const auto used = panel.occupancy.check(*format); !used) {
+      return fail(used.error().code, fmt::format("render: {}: {}", file.name, used.error().message));
+    }
     return read_map(file).and_then([&](MapFile read) { return to_draw(std::move(read.map)); });
   }
   return map_of_log(std::move(file), panel, command).and_then(to_draw);

@@ -125,7 +125,7 @@ Result<OccupancyMap> true_map(const Scene& scene, const Trajectory& way, double 
   return world_map(scene.world, water, way.poses().front().map_from_body.translation(), resolution_m);
 }
 
-/// What navigation says while the sonar is on.
+/// Navigation measurements while the sonar is on.
 Result<SimulatedNav> navigation_of(const Journey& journey, const SonarOptions& sonar, const NavSensorOptions& sensors) {
   const std::vector<StampedPose>& poses = journey.way.poses();
   const double from_s = poses.front().time_s;

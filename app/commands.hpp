@@ -49,6 +49,10 @@ struct HeadArgs {
   const DeviceProfile* device = nullptr;  ///< nullptr: that of the log
   std::optional<double> beam_width_rad, beam_height_rad;
 
+  /// Whether neither the options nor the log tell the size of the beam.
+  bool assumes_beam(const DeviceProfile* of_log) const {
+    return device == nullptr && of_log == nullptr && !(beam_width_rad && beam_height_rad);
+  }
   /// Sets width and height of the beam: as given, else of the device, else unchanged.
   BuildOptions apply_to(BuildOptions options, const DeviceProfile* of_log) const {
     if (const DeviceProfile* head = device != nullptr ? device : of_log; head != nullptr) {
@@ -61,12 +65,14 @@ struct HeadArgs {
   }
 };
 
-/// How a map is looked at: what counts as occupied and as free, and down to which level.
+/// Interpretation of a map: thresholds for occupied and free, and the deepest level.
 struct OccupancyArgs {
-  std::optional<double> occupied_from;  ///< probability from which on a cell is occupied; nullopt: as the map says
-  std::optional<double> free_below;     ///< probability below which a cell is free; nullopt: as the map says
-  std::optional<int> cut_depth;         ///< levels that are kept; nullopt: all
+  std::optional<double> occupied_from = std::nullopt;  ///< lowest probability of an occupied cell; nullopt: of the map
+  std::optional<double> free_below = std::nullopt;     ///< a cell is free below this probability; nullopt: of the map
+  std::optional<int> cut_depth = std::nullopt;         ///< levels that are kept; nullopt: all
 
+  /// kBadOption for thresholds on a .bt, which holds no probabilities.
+  Result<void> check(Format format) const;
   /// kBadOption when they contradict each other.
   Result<void> validate() const;
   /// The thresholds that are given; of the others those of `usual`, as far as they fit.
@@ -190,7 +196,7 @@ struct SimulateCommand {
   TravelOptions travel;
   DriftOptions drift;
   std::optional<std::size_t> turns;  ///< nullopt: for the whole route
-  std::optional<std::string> nav;    ///< file for what navigation sensors say
+  std::optional<std::string> nav;    ///< file for the navigation measurements
   NavSensorOptions nav_sensors;
   std::optional<std::string> truth;          ///< folder for the ground truth
   std::optional<double> truth_resolution_m;  ///< else by the world
@@ -242,7 +248,7 @@ struct LiveDevice {
   std::string text;     ///< as typed
 };
 
-/// Who tells `live` where the vehicle is.
+/// A source of poses for `live`.
 struct LiveNavigation {
   enum class Kind { kMavlink, kA50 };
   Kind kind = Kind::kMavlink;

@@ -16,7 +16,7 @@
 
 namespace pingvox::app {
 
-/// An autopilot or a DVL that tells where the vehicle is.
+/// An autopilot or a DVL that reports the pose of the vehicle.
 class NavDevice {
  public:
   struct Status {
@@ -48,7 +48,7 @@ class NavDevice {
   Receiver receiver_;
 };
 
-/// Where the vehicle is, by what all devices of navigation say.
+/// Pose of the vehicle by all navigation devices.
 class Navigation {
  public:
   /// @param record   the sonar's log, beside which they are recorded; nullopt: nothing is recorded

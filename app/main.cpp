@@ -17,7 +17,7 @@ namespace {
 
 using namespace pingvox;
 
-constexpr int kDone = 0, kCouldNotBeDone = 1, kWordsAreOff = 2;
+constexpr int kDone = 0, kFailed = 1, kInvalidUsage = 2;
 
 Result<int> run_any(const app::Command& command) {
   return std::visit(
@@ -43,7 +43,7 @@ Result<int> run_command_line(const std::vector<std::string>& args) {
 int status_of(const Error& error, const std::vector<std::string>& args) {
   // For compare, 1 means different.
   const bool compares = !args.empty() && args.front() == "compare";
-  return error.code == Error::Code::kBadOption || compares ? kWordsAreOff : kCouldNotBeDone;
+  return error.code == Error::Code::kBadOption || compares ? kInvalidUsage : kFailed;
 }
 
 /// Opens closed standard streams, so that no file gets their descriptor.

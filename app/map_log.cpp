@@ -11,6 +11,7 @@
 
 #include "calibration_file.hpp"
 #include "console.hpp"
+#include "map_report.hpp"
 #include "nav_report.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -18,6 +19,7 @@
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/slam/odometry.hpp"
+#include "shell_words.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -32,27 +34,28 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
 }
 
-/// "3036 outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log,
+/// "3036 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log,
 /// with times in seconds of the same clock)"
 std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, const Lattice& lattice) {
   std::string text;
-  const auto add = [&text](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
+  const auto add = [&text](const LeftOut& left_out, std::string_view unit, const std::string& reason,
+                           std::string_view advice) {
     if (left_out.count == 0) return;
-    text += fmt::format("{}{} {}", text.empty() ? "" : "; ", left_out.count, reason);
+    text += fmt::format("{}{} {}{} {}", text.empty() ? "" : "; ", left_out.count, unit, left_out.count == 1 ? "" : "s",
+                        reason);
     if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
     text += fmt::format(" ({})", advice);
   };
-  add({mapped.damaged, std::nullopt}, fmt::format("damaged, the first: {}", on_one_line(mapped.first_damage)),
-      "--strict stops there");
+  if (mapped.damaged > 0) text = damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
   const auto& poses = path.trajectory.poses();
-  add(mapped.report.no_pose,
+  add(mapped.report.no_pose, "beam",
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
                   path.trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
       path.nav ? "--nav must cover the log; --nav-offset corrects its clock"
                : "--poses must cover the log, with times in seconds of the same clock");
-  add(mapped.report.blocked, "before an obstacle of the map that is nearer than --min-range",
-      "all that is heard then are its second echo and what goes round it");
-  add(mapped.report.outside,
+  add(mapped.report.blocked, "beam", "towards an obstacle of the map that is nearer than --min-range",
+      "they would record its second echo, or what lies around it");
+  add(mapped.report.outside, mapped.report.outside.first_s ? "beam" : "point",
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
       "lengths are in metres; a larger --resolution reaches farther");
@@ -159,7 +162,8 @@ Result<void> check_ranges(const BuildOptions& options) {
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress) {
   const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
-  BuildOptions of_head = head.apply_to(options, beams != nullptr ? (*beams)->device() : nullptr);
+  const DeviceProfile* device = beams != nullptr ? (*beams)->device() : nullptr;
+  BuildOptions of_head = head.apply_to(options, device);
   of_head.body_from_sensor.pretranslate(path.sonar_moved_m);
   Result<BuildReport> report = build(log, path.trajectory, of_head, map, progress);
   if (!report) {
@@ -171,6 +175,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   MappedLog mapped;
   mapped.report = *report;
   mapped.beam = of_head.model;
+  mapped.assumes_beam = beams != nullptr && head.assumes_beam(device);
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
   mapped.first_damage = std::visit([](const auto& source) { return source->first_damage(); }, log);
   mapped.skipped_text = text_of_skipped(mapped, path, map.lattice());
@@ -191,12 +196,14 @@ std::string odd_times_text(const Trajectory& trajectory, const BuildReport& repo
   return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", poses_s, log_s);
 }
 
-std::optional<std::string> trajectory_beside(const std::string& log) {
-  if (log == "-") return std::nullopt;
-  std::string path = std::filesystem::path(log).replace_extension(".tum").string();
+std::string hint_at_path(const std::string& log, Format format) {
+  if (log == "-") return {};
+  const std::string beside = std::filesystem::path(log).replace_extension(".tum").string();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  return path;
+  if (std::filesystem::is_regular_file(beside, error)) {
+    return "its trajectory may be --poses " + quote_for_shell(beside);
+  }
+  return is_bag(format) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
 }
 
 }  // namespace pingvox::app

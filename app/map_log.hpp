@@ -7,6 +7,7 @@
 #include "nav_clock.hpp"
 #include "open_log.hpp"
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -15,7 +16,7 @@ namespace pingvox::app {
 /// The trajectory in a file of TUM lines; without one the vehicle stays at the origin.
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses);
 
-/// Where the vehicle was, and what a navigation log said of it.
+/// Trajectory of the vehicle, and the navigation that it was made from.
 struct VehiclePath {
   Trajectory trajectory;
   struct Nav {
@@ -31,7 +32,7 @@ struct VehiclePath {
 /// reckoning.
 /// @param sonar  the log whose clock its times are to be on
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage);
-/// What one navigation log says; one that has positions but no attitude gives poses that are not turned.
+/// Trajectory of one navigation log; positions without an attitude give poses without rotation.
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
@@ -42,22 +43,24 @@ Result<void> check_ranges(const BuildOptions& options);
 /// Result of mapping a log.
 struct MappedLog {
   BuildReport report;
-  BeamModelOptions beam;     ///< as used: width and height may be those of the log's device
-  std::size_t damaged = 0;   ///< records that could not be read
-  std::string first_damage;  ///< place and reason of the first one
-  std::string skipped_text;  ///< skipped beams by reason, and what to do; empty: none
+  BeamModelOptions beam;      ///< as used: width and height may be those of the log's device
+  bool assumes_beam = false;  ///< width or height are defaults: neither options nor log tell them
+  std::size_t damaged = 0;    ///< records that could not be read
+  std::string first_damage;   ///< place and reason of the first one
+  std::string skipped_text;   ///< skipped beams by reason, and what to do; empty: none
 };
 
 /// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
 /// @param name  of the log, for messages
-/// @param head  what the command line says of it
+/// @param head  of the command line
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress = {});
 
 /// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
 
-/// Trajectory file of the same name beside a log: "dive.tum" of "dive.csv".
-std::optional<std::string> trajectory_beside(const std::string& log);
+/// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum"
+/// (a file beside it), or "navigation in the bag is used with --nav dive.db3"; empty: nowhere.
+std::string hint_at_path(const std::string& log, Format format);
 
 }  // namespace pingvox::app

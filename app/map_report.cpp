@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "console.hpp"
+
 namespace pingvox::app {
 
 JsonObject bounds_json(const std::optional<Box>& bounds) {
@@ -24,6 +26,10 @@ std::string bytes_text(std::size_t bytes) {
   if (size < kKilo * kKilo) return fmt::format("{:.1f} kB", size / kKilo);
   if (size < kKilo * kKilo * kKilo) return fmt::format("{:.1f} MB", size / (kKilo * kKilo));
   return fmt::format("{:.1f} GB", size / (kKilo * kKilo * kKilo));
+}
+
+std::string damage_text(std::size_t records, std::string_view first) {
+  return fmt::format("{} damaged record{}, the first: {}", records, records == 1 ? "" : "s", on_one_line(first));
 }
 
 std::string report_line(std::string_view label, std::string_view value) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "json.hpp"
 #include "pingvox/map/occupancy_map.hpp"
@@ -16,6 +17,9 @@ std::string bounds_text(const std::optional<Box>& bounds);
 
 /// A number of bytes as text: "12.3 MB".
 std::string bytes_text(std::size_t bytes);
+
+/// "2 damaged records, the first: line 43: range 20000 m is longer than 10000 m"
+std::string damage_text(std::size_t records, std::string_view first);
 
 /// A line of a report, with the values aligned.
 std::string report_line(std::string_view label, std::string_view value);

@@ -213,13 +213,13 @@ OptionTable::Group echo_group(EchoArgs& args) {
               args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",
         store_kernel(args.kernel)},
-       {"--sigma", 0, "S", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
+       {"--sigma", 0, "SIGMA", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
         within({0.0, 1000.0, Limits::Ends::kLowOut}, store_optional(args.sigma))},
        choice("--detect", kDetectors,
               "what an echo is: the first rise, the first bin above a level, the strongest bin, the first edge of the "
               "picture (canny), or the first bin above the noise around it (cfar)",
               echo.detector),
-       {"--threshold", 0, "T|auto", "rise, level or gradient (canny) of the intensity from which on a bin is an echo",
+       {"--threshold", 0, "T|auto", "lowest rise, level or gradient (canny) of the intensity of an echo",
         "automatic, from the contrast of nearby beams", store_or_auto(echo.threshold)},
        choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
               echo.cfar.noise),
@@ -235,6 +235,12 @@ OptionTable::Group echo_group(EchoArgs& args) {
     if (option.name == "--cfar") option.only_with = {{"--detect", {"cfar"}}};
   }
   return group;
+}
+
+Result<void> OccupancyArgs::check(Format format) const {
+  if (format != Format::kBt || (!occupied_from && !free_below)) return {};
+  return usage_error(fmt::format("{}: has no effect on a .bt, which holds no probabilities, only on .ot and .pvx",
+                                 occupied_from ? "--occupied" : "--free"));
 }
 
 Result<void> OccupancyArgs::validate() const {
@@ -266,9 +272,9 @@ Result<OccupancyMap> OccupancyArgs::apply_to(OccupancyMap map) const {
 
 std::vector<Option> occupancy_options(OccupancyArgs& args) {
   const Limits probability{0.0, 1.0, Limits::Ends::kBothOut};
-  return {{"--occupied", 0, "P", "probability from which on a cell is occupied", "0.5; .pvx: its own",
+  return {{"--occupied", 0, "P", "lowest probability of an occupied cell", "0.5; .pvx: its own",
            within(probability, store_optional(args.occupied_from))},
-          {"--free", 0, "P", "probability below which a cell is free; unknown between the two", "0.5; .pvx: its own",
+          {"--free", 0, "P", "a cell is free below this probability, and unknown between the two", "0.5; .pvx: its own",
            within(probability, store_optional(args.free_below))},
           {"--cut-depth", 0, "N", "keep only the upper N levels of the octree: one less doubles the edge of a cell",
            "all", within({1.0, static_cast<double>(kMaxDepth)}, store_optional(args.cut_depth))}};
@@ -304,7 +310,7 @@ OptionTable::Group map_group(BuildArgs& args) {
        choice("--vote", kVotes,
               "update a cell once per sweep (a hit beats a miss), when it ends, or once per beam, as it comes",
               args.build.vote),
-       {"--memory-limit", 0, "BYTES", "stop before the map grows larger; also 512M, 2G", "none",
+       {"--memory-limit", 0, "BYTES", "fail before the map takes more memory; also 512M, 2G", "none",
         store_bytes(map.memory_limit_bytes)}}};
   for (Option& option : group.options) {
     if (option.name == "--vote") option.only_for = {std::string(kBeamLogs)};
@@ -321,9 +327,10 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        {"--nav", 0, "FILE",
         "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of --poses",
         "", store_each(args.navs), Repeats::kEachCounts},
-       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
+       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "estimated",
         within({-1e10, 1e10}, store_optional(args.nav_offset_s))},
-       use_calibration_option(args.calibration, "correct dead reckoning by --nav by what 'slam --calibration' wrote"),
+       use_calibration_option(args.calibration,
+                              "correct the dead reckoning of --nav with a file of 'slam --calibration'"),
        mount_option(args.build.body_from_sensor),
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
               model.shape),
@@ -334,7 +341,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        {"--device", 0, fmt::format("{}", fmt::join(device_names(), "|")),
         "sonar head, which gives the width and height of its beam in degrees: " + beam_sizes(), "as the log says",
         store_device(args.head.device)},
-       {"--free-share", 0, "S", "central fraction of the beam's width and height (0..1) that marks cells free",
+       {"--free-share", 0, "F", "central fraction of the beam's width and height (0..1) that marks cells free",
         number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, store_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),
        choice("--hit-from", kHitsFrom, "evidence of an echo: --hit for all, or half to all of it by its intensity",

@@ -37,7 +37,7 @@ bool overlap(const TimeSpan& a, const TimeSpan& b) {
   return a.from_s <= b.to_s && b.from_s <= a.to_s;
 }
 
-/// What one reading of the sonar log says.
+/// Times and turns of the sonar log, from one pass over it.
 struct SonarTimes {
   TimeSpan span;
   std::vector<YawChange> changes;
@@ -95,7 +95,7 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
   const std::optional<TimeSpan> nav_span = span_of(nav);
   if (sonar.name == "-" || !nav_span) return one_clock;  // a pipe is read once
   const Result<std::optional<SonarTimes>> times = times_of(sonar, damage, Want::kSpan, nav_span);
-  if (!times || !*times) return one_clock;  // whoever maps the log says what is wrong with it
+  if (!times || !*times) return one_clock;  // mapping the log reports the error
   const TimeSpan& span = (*times)->span;
 
   const bool nav_has_dates = nav.clock() == NavClock::kUnix;

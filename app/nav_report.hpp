@@ -22,7 +22,7 @@ struct NavFiles {
 /// @param names  - is standard input; an empty log without any
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage);
 
-/// What `info` says of a navigation log: the members of its JSON object after "kind" and "format", but for the kinds of
+/// Report of `info` on a navigation log: the members of its JSON object after "kind" and "format", but for the kinds of
 /// damage.
 void add_nav(JsonObject& json, const NavFile& nav);
 /// The same as lines for persons.

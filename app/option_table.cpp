@@ -312,6 +312,11 @@ std::string help_of(const OptionTable& table) {
     }
   }
   out += help_entry("-h, --help", "show this help");
+  const auto is_length = [](const Option& option) { return option.value == "M"; };
+  if (std::ranges::any_of(table.groups,
+                          [&](const auto& group) { return std::ranges::any_of(group.options, is_length); })) {
+    out += "\nUnits: M metres, DEG degrees, S seconds; F is a fraction, P a probability, N a whole number.\n";
+  }
   if (!table.notes.empty()) out += "\n" + table.notes + "\n";
   if (!table.examples.empty()) out += "\nExamples:\n";
   for (const std::string& example : table.examples) out += "  " + example + "\n";

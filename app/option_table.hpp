@@ -38,7 +38,7 @@ struct Option {
   std::vector<Condition> only_with = {};
   /// Kinds of input or output on which the option has an effect, checked after opening the files; empty: all.
   std::vector<std::string> only_for = {};
-  /// Whether the usage line shows it; who reads the value says when it is missing.
+  /// Whether the usage line shows it; the code that reads the value reports when it is missing.
   bool is_required = false;
 };
 

@@ -13,7 +13,7 @@ namespace pingvox::app {
 
 namespace {
 
-/// An option of what could be seen.
+/// An option that needs --visible-from.
 Option seen(Option option) {
   option.only_with = {{"--visible-from"}};
   return option;
@@ -39,17 +39,17 @@ Result<Command> compare_command(const Args& args) {
       "B.\n"
       "Two trajectories (TUM): the horizontal error of A at the times of B, after aligning the first fix, the mean "
       "and\n"
-      "the best rigid fit, and the relative error per metre. Headings of B are not used: it may be of GPS fixes.",
+      "the best rigid fit, and the relative error per metre. Headings of B are not used: B may be GPS fixes.",
       {{"A", Positional::Count::kOne, "a map or trajectory; - is standard input", store(command.a)},
        {"B", Positional::Count::kOne,
         "one of the same kind, such as ground truth: maps of the same resolution and depth", store(command.b)}},
       {{"Options",
-        {for_maps({"--layer", 0, "M", "compare only the layer of cells that holds this height", "all layers",
+        {for_maps({"--layer", 0, "M", "compare only the layer of cells at this height", "all layers",
                    within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(command.layer_z_m))}),
-         for_maps({"--occupied", 0, "P", "probability from which on a cell of A is occupied", "0.5",
+         for_maps({"--occupied", 0, "P", "lowest probability of an occupied cell of A", "0.5",
                    within({0.0, 1.0, Limits::Ends::kBothOut}, store_optional(command.occupied_probability))}),
          json_option(command.output_options), quiet_option(command.output_options)}},
-       {"What could be seen",
+       {"Only cells that could be seen",
         {for_maps(
              {"--visible-from", 0, "POSES",
               "compare only what could be seen of B from these poses (TUM), and leave out what lies beyond a side of B "

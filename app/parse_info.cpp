@@ -12,7 +12,7 @@ Result<Command> info_command(const Args& args) {
       "Says what a file holds: a log of beams, of point scans or of navigation, a cloud, a map, a mesh, or a "
       "trajectory.\n"
       "Files are recognised by their content, not by their name.",
-      {{"FILE", Positional::Count::kOne, "what to look at; - is standard input", store(command.file)}},
+      {{"FILE", Positional::Count::kOne, "the file; - is standard input", store(command.file)}},
       {{"Options", {json_option(command.output_options), strict_option(command.damage), topic_option(command.topic)}}},
       {"pingvox info tank.mat", "pingvox info tank.bt --json"},
       ""};

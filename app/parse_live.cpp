@@ -189,13 +189,12 @@ Result<Command> live_command(const Args& args) {
   };
   OptionTable table{
       "live",
-      "Maps what a scanning sonar hears while it runs: drives the head, records its bytes, and writes the map again "
-      "and\n"
-      "again. SIGINT or SIGTERM (Ctrl-C) finish recording and map; a second one ends at once.",
+      "Maps with a scanning sonar while it runs: drives the head, records its bytes, and writes the map periodically.\n"
+      "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; a second one ends at once.",
       {{"DEVICE", Positional::Count::kOne,
         "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD] or micron:tcp://HOST:PORT (a "
-        "SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log in the rhythm of its times (SPEED max: as fast "
-        "as it can be mapped)",
+        "SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log at the pace of its times (SPEED max: as fast "
+        "as possible)",
         device}},
       {{"Output",
         {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
@@ -205,7 +204,7 @@ Result<Command> live_command(const Args& args) {
           "record the bytes of the device: a Ping360's as a log of Ping Viewer, a Micron's as a capture of packets "
           "with their times; in a folder named by the time",
           "none", store(record)},
-         {"--write-every", 0, "S", "seconds between two maps", number_text(command.write_every_s),
+         {"--write-every", 0, "S", "seconds from one written map to the next", number_text(command.write_every_s),
           within({0.1, 86'400.0}, store_number(command.write_every_s))},
          {"--beams", 0, "N", "stop after N beams", "never", store_number(command.max_beams)},
          json_option(command.output_options),
@@ -213,14 +212,13 @@ Result<Command> live_command(const Args& args) {
          choice("--progress", kProgress, "show the status on standard error; auto: on a terminal",
                 command.output_options.progress)}},
        {"Head",
-        {{"--range", 0, "M", "range that the head listens to", number_text(range_m),
-          within({0.5, 300.0}, store_number(range_m))},
-         {"--sector", 0, "FROM,TO", "bearings in degrees to turn to and fro between, 0 ahead, counter-clockwise",
-          "full turns", store_sector(motion)},
-         {"--step", 0, "DEG", "angle from beam to beam, a multiple of 0.9, of a Micron of 0.05625",
+        {{"--range", 0, "M", "range of a ping", number_text(range_m), within({0.5, 300.0}, store_number(range_m))},
+         {"--sector", 0, "FROM,TO", "sector to scan, in degrees from ahead, counter-clockwise", "full turns",
+          store_sector(motion)},
+         {"--step", 0, "DEG", "angle from beam to beam: a multiple of 0.9 (Ping360) or 0.05625 (Micron)",
           number_text(motion.step_deg), store_number(motion.step_deg)},
          choice("--gain", kGains, "gain of the receiver", ping360.gain),
-         {"--timeout", 0, "S", "seconds to wait for an answer; the head may have to turn",
+         {"--timeout", 0, "S", "seconds to wait for an answer, in which the head may have to turn",
           fmt::format("{}, of a Micron {}", ping360.timeout_s, micron.timeout_s),
           within({0.01, 60.0}, store_optional(timeout_s))}}},
        {"Navigation",
@@ -230,7 +228,7 @@ Result<Command> live_command(const Args& args) {
           ".jsonl; several may be given",
           "the vehicle stands still", nav, Repeats::kEachCounts},
          {"--obstacles", 0, "udp://HOST:PORT",
-          "send what is nearest in 72 sectors, by MAVLink (OBSTACLE_DISTANCE) five times a second", "none",
+          "send the nearest obstacle in each of 72 sectors by MAVLink (OBSTACLE_DISTANCE), five times a second", "none",
           obstacles}}},
        map_group(build),
        without(sensor_group(build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
@@ -332,25 +330,26 @@ Result<Command> emulate_command(const Args& args) {
           "a50: tcp://HOST:PORT",
           "udp://127.0.0.1:9092, micron: pty, a50: tcp://127.0.0.1:16171", store(listen)},
          {"--to", 0, "ADDRESS", "mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
-         {"--lost", 0, "S", "fraction of bytes (of a head) or messages that are lost", "0",
+         {"--lost", 0, "F", "fraction of bytes (of a head) or messages that are lost", "0",
           within(fault, store_number(lost))},
-         {"--doubled", 0, "S", "fraction of bytes or messages that come twice", "0",
+         {"--doubled", 0, "F", "fraction of bytes or messages that come twice", "0",
           within(fault, store_number(doubled))},
-         {"--damaged", 0, "S", "fraction of bytes or messages with a wrong bit", "0",
+         {"--damaged", 0, "F", "fraction of bytes or messages with a wrong bit", "0",
           within(fault, store_number(damaged))}}},
        {"Vehicle",
         {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},
-         choice("--trajectory", kMotions, "of the vehicle; emulators that run at once with the same options agree",
+         choice("--trajectory", kMotions, "path of the vehicle; emulators with the same options agree on it",
                 command.motion),
-         {"--speed", 0, "M/S", "of the vehicle", number_text(command.speed_m_s),
+         {"--speed", 0, "M/S", "speed of the vehicle", number_text(command.speed_m_s),
           within({0.01, 100.0}, store_number(command.speed_m_s))},
-         {"--rate", 0, "HZ", "pings or reports a second", "20 or 10", within({0.1, 100'000.0}, store_number(rate))},
+         {"--rate", 0, "HZ", "pings (of a head) or reports (of navigation) per second", "20 or 10",
+          within({0.1, 100'000.0}, store_number(rate))},
          {"--pings", 0, "N", "end after N pings", "never", store_number(command.max_pings)},
          {"--stall-every", 0, "N", "be silent after each N pings, as a head that restarts", "never",
           store_number(head.stall_every)},
-         {"--stall", 0, "S", "how long, in seconds", number_text(head.stall_s),
+         {"--stall", 0, "S", "length of this silence in seconds", number_text(head.stall_s),
           within({0.0, 3600.0}, store_number(head.stall_s))},
-         {"--lines", 0, "1|2", "micron: lines for each request, 2 as heads that send both ways at once",
+         {"--lines", 0, "1|2", "micron: scan lines per request; 2 as full-duplex heads send them",
           number_text(head.lines_per_request), within({1.0, 2.0}, store_number(head.lines_per_request))},
          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(seed)}}}},
       {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001",
@@ -359,8 +358,8 @@ Result<Command> emulate_command(const Args& args) {
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
     const bool is_micron = command.device == Device::kMicron;
     const bool is_head = command.device == Device::kPing360 || is_micron, sends = command.device == Device::kMavlink;
-    if (sends && !listen.empty()) return usage_error("--listen: mavlink is sent, see --to");
-    if (!sends && !send_to.empty()) return usage_error("--to: only for mavlink");
+    if (sends && !listen.empty()) return usage_error("--listen: has no effect on mavlink, which sends to an address (--to)");
+    if (!sends && !send_to.empty()) return usage_error("--to: has an effect only on mavlink");
     command.line = sends ? send_to : listen;
     if (command.line.empty()) {
       command.line = is_micron ? "pty"

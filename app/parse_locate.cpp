@@ -61,17 +61,20 @@ Result<Command> locate_command(const Args& args) {
                     0,
                     "S",
                     "seconds to add to the times of --nav to get those of the sonar log",
-                    "found",
+                    "estimated",
                     within({-1e10, 1e10}, store_optional(command.nav_offset_s))};
   nav_offset.only_with = {{"--nav"}};
   Option nav_mount{
-      "--nav-mount",        0,
-      "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation (named as 'pingvox info' does) on the vehicle, as --mount",
-      "0,0,0,0,0,0",        store_nav_mounts(command.nav.body_from_source)};
+      "--nav-mount",
+      0,
+      "SOURCE=X,Y,Z,R,P,Y",
+      "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
+      "0,0,0,0,0,0",
+      store_nav_mounts(command.nav.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
   nav_mount.only_with = {{"--nav"}};
   std::string calibration;
-  Option use_calibration = use_calibration_option(calibration, "correct --nav by what 'slam --calibration' wrote");
+  Option use_calibration = use_calibration_option(calibration, "correct --nav with a file of 'slam --calibration'");
   use_calibration.only_with = {{"--nav"}};
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
@@ -80,8 +83,8 @@ Result<Command> locate_command(const Args& args) {
   map.is_required = true;
   const OptionTable table{
       "locate",
-      "Finds where the vehicle was in a map that is known, from the echoes of a scanning sonar, and from navigation\n"
-      "where there is any. If several places fit equally well, all are reported.",
+      "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
+      "several places fit equally well, all are reported.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
       {{"Output",
         {output_option(output,
@@ -98,13 +101,13 @@ Result<Command> locate_command(const Args& args) {
          std::move(nav_offset),
          std::move(nav_mount),
          std::move(use_calibration),
-         {"--odometry", 0, "FILE", "poses in a frame that may drift, as TUM lines, instead of --nav", "",
-          store(odometry)},
+         {"--odometry", 0, "FILE", "odometry of the vehicle as TUM lines, in a frame that may drift, instead of --nav",
+          "", store(odometry)},
          mount_option(localizer.body_from_sonar)}},
        {"Estimation",
         {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
-          "where the vehicle was at first, in metres and degrees, with standard deviations (0.5,10); or anywhere",
-          "anywhere", store_start(command.start)},
+          "first pose of the vehicle in metres and degrees, with standard deviations (0.5,10); or anywhere", "anywhere",
+          store_start(command.start)},
          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}}},
        std::move(echo_options),
        {"Input", {strict_option(command.damage), config_option()}}},
@@ -122,7 +125,7 @@ Result<Command> locate_command(const Args& args) {
       return usage_error("-o - and --json: both write to standard output");
     }
     if (!odometry.empty()) {
-      if (!command.navs.empty()) return usage_error("--nav and --odometry: only one of them can say how it moved");
+      if (!command.navs.empty()) return usage_error("--nav and --odometry: exclude each other");
       command.odometry = odometry;
     }
     if (!calibration.empty()) command.calibration = calibration;

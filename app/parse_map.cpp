@@ -54,7 +54,7 @@ Result<Command> map_command(const Args& args) {
 
   OptionTable::Group map_options = map_group(build);
   map_options.options.push_back(
-      choice("--parents", kParents, "parent value: maximum or mean of its children", map.parents));
+      choice("--parents", kParents, "value of an inner node: maximum or mean of its children", map.parents));
   map_options.options.push_back(
       {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count});
   for (Option& option : occupancy_options(command.occupancy)) map_options.options.push_back(std::move(option));
@@ -67,7 +67,7 @@ Result<Command> map_command(const Args& args) {
   const OptionTable table{
       "map",
       "Builds a 3D occupancy map from sonar logs, in the order given: detects the echo of each beam, marks the cells\n"
-      "before it free and those at it occupied.",
+      "up to it free and those at its range occupied.",
       {{"LOG", Positional::Count::kMany,
         "beams (Ping Viewer's .bin, SonarView's .svlog, SeaNet, ROS bags, MATLAB 5, CSV), point scans (OctoMap's "
         ".graph and .log, .xtf of a multibeam) or "
@@ -88,7 +88,7 @@ Result<Command> map_command(const Args& args) {
        echo_group(build.echoes),
        {"Input", {strict_option(command.damage), topic_option(command.topic), config_option()}}},
       {"pingvox map tank.csv -o tank.bt",
-       "pingvox map dive1.csv dive2.csv -o reef.ot --poses nav.txt --mount 0.4,0,-0.2,180,0,0",
+       "pingvox map dive1.csv dive2.csv -o reef.ot --poses dive.tum --mount 0.4,0,-0.2,180,0,0",
        "pingvox map dive.csv -o reef.ot --nav dive.tlog --nav-offset -1712333808.974",
        "pingvox map dive.db3 -o net.bt --nav dive.db3", "pingvox map scans.graph -o scans.bt --resolution 0.1",
        "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},

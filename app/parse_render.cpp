@@ -76,16 +76,18 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   std::vector<OptionTable::Group> groups = {
       {"Picture",
        {{"--view", 0, choices_text(kPictureViews),
-         "a log as recorded (polar, cartesian); or a map, also that of a log, from above or a side, or one layer of it",
+         "a log as recorded (polar, cartesian), or a map, also that of a log, from above, from a side, or one layer of "
+         "it",
          "polar of a log, above of a map", view},
         choice("--from", kSides, "side from which --view side looks, seen from the vehicle", args.from),
-        {"--z", 0, "M", "a height in the layer that --view slice draws", "none",
+        {"--z", 0, "M", "height of the layer that --view slice draws", "none",
          within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(args.slice_z_m))},
-        {"--min-z", 0, "M", "draw nothing of a map below", "none", store_optional(panel.map_picture.min_z_m)},
-        {"--max-z", 0, "M", "draw nothing of a map above", "none", store_optional(panel.map_picture.max_z_m)},
+        {"--min-z", 0, "M", "lowest height of a map that is drawn", "none", store_optional(panel.map_picture.min_z_m)},
+        {"--max-z", 0, "M", "greatest height of a map that is drawn", "none",
+         store_optional(panel.map_picture.max_z_m)},
         {"--path", 0, "FILE", "draw a trajectory (TUM lines) over a map, in its frame; repeatable, at most 5", "none",
          store_each(panel.drawn_paths), Repeats::kEachCounts},
-        {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as by 'info'",
+        {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as in 'pingvox info'",
          "all; cartesian: the fullest one", store_optional(panel.sweep)},
         choice("--show", kShownImages,
                "intensities as recorded, smoothed by --filter, or the background that is subtracted", panel.image),
@@ -179,7 +181,7 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
         fmt::format("--min-z must be below --max-z, they are {} and {}", number_text(*low_m), number_text(*high_m)));
   }
   if (panel.view == PictureView::kSlice && (low_m || high_m)) {
-    return usage_error("--view slice: draws one layer, that at --z: no --min-z, no --max-z");
+    return usage_error("--min-z and --max-z: have no effect on --view slice, which draws the layer at --z");
   }
   if (const auto valid = panel.occupancy.validate(); !valid) return tl::unexpected(valid.error());
   panel.map.thresholds = panel.occupancy.apply_to(panel.map.thresholds);
@@ -221,8 +223,9 @@ Result<Command> render_command(const Args& args) {
   PanelArgs first;
   OptionTable table{
       "render",
-      "Draws a PNG: of a log of beams what was heard, with a mark on each echo; of a map (or a log, mapped as by\n"
-      "'pingvox map') what is where. Several FILEs, and several settings of one, stand side by side.",
+      "Draws a PNG picture: the intensities of a log of beams and the echoes detected in it, or a map. A log is drawn\n"
+      "as a map, too, built as by 'pingvox map'. Several FILEs, or several settings of one (--beside), are drawn side\n"
+      "by side.",
       {{"FILE", Positional::Count::kMany, "a log or a map, recognised by content; - is standard input",
         store_each(inputs)}},
       panel_groups(first),
@@ -232,12 +235,14 @@ Result<Command> render_command(const Args& args) {
        "pingvox render world.bt -o paths.png --path true.tum --path slam.tum",
        "pingvox render before.bt after.bt -o both.png --view side --from behind",
        "pingvox render tank.mat -o thresholds.png --view above --threshold 20 --beside '--threshold 70'"},
-      "Colours differ in lightness, too, for readers who do not see colours.\n"
+      "In maps, a pixel shows the most occupied cell in the line of sight; its shade shows how certain it is. "
+      "Pictures\n"
+      "are readable in shades of grey, too.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   auto& options = table.groups.front().options;
   options.insert(options.begin(), output_option(command.output, "the picture, .png; - is standard output"));
   options.push_back({"--beside", 0, "OPTIONS",
-                     "draw the same again beside it with these options changed, as in '--filter none'; repeatable",
+                     "draw the same again beside it with these options changed, such as '--filter none'; repeatable",
                      "none", store_each(beside), Repeats::kEachCounts});
   options.push_back({"--title", 0, "TEXT", "text above the picture", "none", store(command.title)});
   options.push_back(strict_option(command.damage));
@@ -254,7 +259,7 @@ Result<Command> render_command(const Args& args) {
       if (!changed) return usage_error("--beside: " + changed.error().message);
       PanelArgs next = first;
       next.panel.caption.clear();
-      // What is given again replaces what the other panel has.
+      // Repeated options replace those of the first panel.
       std::vector<std::string> navs = std::exchange(next.build.navs, {});
       std::vector<std::string> paths = std::exchange(next.panel.drawn_paths, {});
       const Result<Parsed> taken = parse({"render: --beside", "", {}, panel_groups(next), {}, ""}, *changed);

@@ -40,9 +40,12 @@ Result<Command> slam_command(const Args& args) {
              "",      store_each(command.navs)};
   nav.repeats = Repeats::kEachCounts;
   Option nav_mount{
-      "--nav-mount",        0,
-      "SOURCE=X,Y,Z,R,P,Y", "pose of a source of navigation (named as 'pingvox info' does) on the vehicle, as --mount",
-      "0,0,0,0,0,0",        store_nav_mounts(slam.body_from_source)};
+      "--nav-mount",
+      0,
+      "SOURCE=X,Y,Z,R,P,Y",
+      "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
+      "0,0,0,0,0,0",
+      store_nav_mounts(slam.body_from_source)};
   nav_mount.repeats = Repeats::kEachCounts;
   Option seed{"--seed", 0,
               "N",      "seed of the random choice of sweeps that a sweep is matched with",
@@ -51,15 +54,16 @@ Result<Command> slam_command(const Args& args) {
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
-  Option calibration_option{"--calibration",   0, "FILE", "what was estimated of the sensors, as TOML", "",
-                            store(calibration)};
+  Option calibration_option{
+      "--calibration",   0, "FILE", "write the estimated calibration of the sensors, as TOML for --use-calibration", "",
+      store(calibration)};
   calibration_option.only_for = beams;
   calibration_option.only_with = {{"--matching", {"pairs"}}};
   Option covariance_option{
       "--covariance",
       0,
       "FILE",
-      "covariances of the poses, some four a sweep, as CSV: time, x x, x y, y y, x yaw, y yaw, yaw yaw [m, "
+      "covariances of the poses, about four per sweep, as CSV: time, x x, x y, y y, x yaw, y yaw, yaw yaw [m, "
       "rad]",
       "",
       store(covariance)};
@@ -71,17 +75,17 @@ Result<Command> slam_command(const Args& args) {
   OptionTable::Group navigation{
       "Navigation",
       {std::move(nav),
-       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "found",
+       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "estimated",
         within({-1e10, 1e10}, store_optional(command.nav_offset_s))},
        mount_option(slam.body_from_sonar),
        std::move(nav_mount),
        use_calibration_option(known_calibration,
-                              "what an earlier --calibration found of the same sensors: the start of this one")}};
+                              "calibration of the same sensors by an earlier run, taken as a prior")}};
   OptionTable::Group estimation{
       "Estimation",
       {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none is dead reckoning",
               slam.matching),
-       flag("--causal", "estimate each pose from what was recorded until then, as on board", slam.estimation,
+       flag("--causal", "estimate each pose only from what was recorded before it, as on board", slam.estimation,
             Estimation::kCausal),
        std::move(seed)}};
   for (OptionTable::Group* group : {&navigation, &estimation}) {
@@ -89,9 +93,10 @@ Result<Command> slam_command(const Args& args) {
   }
   const OptionTable table{
       "slam",
-      "Estimates where the vehicle was, from beams and navigation: velocity over ground and at least one heading. The\n"
-      "mounting angles of the sensors and the deviation of the headings are estimated, too. Without a velocity, how\n"
-      "the vehicle moved is estimated from the sonar; this needs a heading or turn rates, unless the vehicle hardly\n"
+      "Estimates the trajectory of the vehicle from beams and navigation: velocity over ground and at least one\n"
+      "heading. The mounting angles of the sensors and the deviation of the headings are estimated, too. Without a\n"
+      "velocity, the motion is estimated from the sonar; this needs a heading or turn rates, unless the vehicle "
+      "hardly\n"
       "turns. For point scans, whose poses are taken as odometry, the drift is corrected where a place is seen again.",
       {{"LOG", Positional::Count::kMany,
         "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
@@ -113,8 +118,8 @@ Result<Command> slam_command(const Args& args) {
       {"pingvox slam dive.csv --nav nav.csv -o dive.tum --map dive.bt",
        "pingvox slam dive.csv --nav dive.tlog --nav dvl.csv --nav-mount A50=0,0,0,0,0,-45 -o dive.tum",
        "pingvox slam scans.graph -o scans.tum --map scans.bt"},
-      "In a log whose beams have only one intensity besides 0, the echoes are taken as already detected. Trajectories\n"
-      "of point scans have the number of the scan, from 0, as time.\n"
+      "A log with only one intensity besides 0 is taken to hold detected echoes. Trajectories of point scans have the\n"
+      "number of the scan, from 0, as time.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     command.limited = parsed.limited;
@@ -138,7 +143,7 @@ Result<Command> slam_command(const Args& args) {
       command.map_format = *format;
       outputs.push_back(map);
       if (std::ranges::find(command.logs, "-") != command.logs.end()) {
-        return usage_error("--map reads each log twice, which standard input cannot be");
+        return usage_error("--map: reads each log twice, and standard input can be read only once");
       }
     }
     if (!known_calibration.empty()) command.known_calibration = known_calibration;
@@ -148,7 +153,7 @@ Result<Command> slam_command(const Args& args) {
     }
     if (!covariance.empty()) {
       if (slam.estimation == Estimation::kCausal) {
-        return usage_error("--covariance and --causal: covariances are those of all that was recorded");
+        return usage_error("--covariance and --causal: exclude each other: covariances need the whole log");
       }
       command.covariance = covariance;
       outputs.push_back(covariance);

@@ -44,8 +44,7 @@ Option strict_option(Damage& damage) {
 }
 
 Option topic_option(std::string& topic) {
-  Option option{"--topic",   0, "NAME", "the topic of a ROS bag whose beams are read", "the only one with beams",
-                store(topic)};
+  Option option{"--topic", 0, "NAME", "topic of a ROS bag to read beams from", "the only one with beams", store(topic)};
   option.only_for = {std::string(kBeamLogs)};
   return option;
 }

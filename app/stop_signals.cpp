@@ -17,7 +17,7 @@ Result<StopSignals> StopSignals::make() {
   return StopSignals(signals, std::move(file));
 }
 
-bool StopSignals::arrived() {
+bool StopSignals::has_arrived() {
   signalfd_siginfo signal = {};
   if (::read(file_.get(), &signal, sizeof signal) != sizeof signal) return false;
   ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);

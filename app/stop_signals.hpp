@@ -15,8 +15,8 @@ class StopSignals {
 
   /// For poll().
   int descriptor() const { return file_.get(); }
-  /// Whether one came. After that, another one ends the process at once.
-  bool arrived();
+  /// Whether a signal has arrived. After that, another one ends the process at once.
+  bool has_arrived();
 
  private:
   StopSignals(const sigset_t& signals, Descriptor file) : signals_(signals), file_(std::move(file)) {}

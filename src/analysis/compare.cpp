@@ -18,8 +18,8 @@ class Comparison {
   Comparison(const OccupancyMap& a, const OccupancyMap& b, Sameness sameness)
       : a_(a.options().thresholds), b_(b.options().thresholds), sameness_(sameness), levels_(a.lattice().depth()) {}
 
-  /// Compares what two nodes say of the same cube at `depth`. A node that is a leaf above it says the same of each of
-  /// its parts; one that is nullopt knows nothing there.
+  /// Compares two nodes for the same cube at `depth`. A leaf above it has the same value for each of its parts; nullopt
+  /// is unknown space.
   void compare(const std::optional<NodeView>& a, const std::optional<NodeView>& b, int depth) {
     if (!a && !b) return;
     if ((!a || a->is_leaf()) && (!b || b->is_leaf())) {

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr std::uint64_t kMaxCells = 20'000'000;
 constexpr std::size_t kMaxViews = 1000;
 
-/// Poses that see something else than the one before.
+/// Poses without those that are nearly equal to the one before.
 std::vector<Pose> distinct(std::span<const Pose> poses, double cell_m) {
   constexpr double kSameUp = 0.99985;  // cosine of 1 degree
   std::vector<Pose> views;

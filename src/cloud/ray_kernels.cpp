@@ -146,7 +146,7 @@ void for_each_vector(std::span<const Point> points_m, F&& f) {
   f(whole, padded.data());
 }
 
-/// What the axes of rays have in common.
+/// State that the axes of rays share.
 struct Preparing {
   IntVec left, ahead;
   // The last face that is crossed, and the first one beyond an end, along the axes so far.
@@ -249,7 +249,7 @@ struct MarksToSet {
   }
 };
 
-/// Where rays are along one axis.
+/// Positions of rays along one axis.
 struct Axis {
   /// @param rays   which ones, as many as there are lanes
   Axis(const PreparedRays& all, IntVec rays, IntVec ahead, std::size_t a, std::uint64_t start)
@@ -265,13 +265,13 @@ struct Axis {
   }
   /// Crosses a face where `is` is set.
   void cross(IntMask is) {
-    // What the next face is of a ray that has ended means nothing.
+    // For a ray that has ended the next face is meaningless.
     const auto is_word = hn::RebindMask(kUints, is);
 #if HWY_TARGET == HWY_AVX3
     next = hn::IfThenElse(is, next + apart, next);
     place = hn::IfThenElse(is_word, hn::And(place + step, bits), place);
 #else
-    // To choose between two takes longer than to choose one or none.
+    // Selecting between two values is slower than masking one.
     next = next + hn::IfThenElseZero(is, apart);
     place = hn::And(place + hn::IfThenElseZero(is_word, step), bits);
 #endif

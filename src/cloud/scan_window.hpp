@@ -14,7 +14,7 @@ namespace pingvox::detail {
 inline constexpr std::array<std::uint64_t, 3> kPlaceBits{0x1249249249249249U, 0x1249249249249249U << 1,
                                                          0x1249249249249249U << 2};
 
-/// Gives memory back to the system.
+/// Returns memory to the system.
 struct Unmap {
   std::size_t bytes = 0;
   void operator()(void* memory) const;
@@ -32,7 +32,7 @@ class ScanWindow {
   /// Makes room for a cube of 2^bits cells along each axis. Throws std::bad_alloc. REQUIRES 4 <= bits <= kMaxBits, and
   /// that it is empty.
   void open(int bits);
-  /// Gives all memory back: where it cannot be emptied.
+  /// Returns all memory: for when it cannot be emptied.
   void drop() { *this = ScanWindow(); }
 
   /// Cell c is bit c % 64 of word c / 64.

@@ -40,7 +40,7 @@ WideWord gather_bits(std::uint64_t word) {
 
 }  // namespace
 
-/// Rays that fit into a window are walked side by side, the others one by one.
+/// Rays that fit into a window are traced several at a time, the others one by one.
 class PointTracer::Tracer {
  public:
   explicit Tracer(const PointScanOptions& options) : options_(options) {}

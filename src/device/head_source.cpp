@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kSync_s = 1.0;
 
-/// What HeadSource has to know of a head.
+/// Properties of a head that HeadSource needs.
 struct Ping360Head {
   using Settings = Ping360Settings;
   using Driver = Ping360Driver;

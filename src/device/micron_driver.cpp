@@ -103,7 +103,7 @@ void MicronDriver::take(std::span<const std::uint8_t> frame) {
 }
 
 std::optional<std::vector<std::uint8_t>> MicronDriver::message(double now_s) {
-  // A head says once a second that it is there; it finds its centre before it takes parameters.
+  // A head sends mtAlive once a second; it finds its centre before it takes parameters.
   constexpr double kAnswer_s = 1.0, kCentre_s = 10.0;
   if (is_waiting_ && now_s < deadline_s_) return std::nullopt;
   if (is_waiting_ && state_ == State::kAsking) {
@@ -115,7 +115,7 @@ std::optional<std::vector<std::uint8_t>> MicronDriver::message(double now_s) {
   is_waiting_ = true;
   switch (state_) {
     case State::kLooking:
-      // A converter of a serial line to packets learns here where to send what the head says.
+      // A serial-to-UDP converter learns here where to send the bytes of the head.
       deadline_s_ = now_s + std::max(settings_.timeout_s, kAnswer_s);
       return ask(SeanetMessage::kSendVersion);
     case State::kAsking:

@@ -11,7 +11,7 @@
 namespace pingvox {
 
 struct A50Nav::State {
-  /// When a report was true, by its own words: it says how late it was sent. Positions do not, but they have a time of
+  /// Time at which a report was measured: it contains its delay. Positions do not, but they have a time of
   /// the device: delays only add, so the smallest difference of the two clocks is the nearest; one that jumps means
   /// that the device's clock was set.
   double time_of(const A50Report& report, double received_s) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// What a message of settings says for the beams behind it.
+/// Settings from a message, valid for the beams after it.
 struct SonarSettings {
   std::optional<double> period_25ns;
 };
@@ -61,7 +61,7 @@ Beams echo_beam(const RosFields& message, SonarSettings&) {
 
 Beams ping_beam(const RosFields& message, SonarSettings& settings) {
   const std::vector<std::uint8_t> samples = message.bytes(2);
-  if (samples.size() < 2) return NoBeam(kNoSamples);  // what is recorded when the head did not answer
+  if (samples.size() < 2) return NoBeam(kNoSamples);  // recorded when the head did not answer
   const auto angle_grad = whole<std::uint16_t>(message.number(0));
   const auto period_25ns = whole<std::uint16_t>(settings.period_25ns.value_or(message.number(1)));
   if (!angle_grad || !period_25ns) return NoBeam(kImpossible);

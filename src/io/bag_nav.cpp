@@ -36,7 +36,7 @@ class Samples {
     add(NavQuantity::kAttitude, attitude, valid);
   }
 
-  /// What a DVL said in its own words; the message is as late as they say.
+  /// A report of a DVL in its own format, which contains the delay of the message.
   void add(const A50Report& report) { add_a50_report(sources_, name_, time_s_ - report.latency_s, report, frame_); }
 
   void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {

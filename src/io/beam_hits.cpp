@@ -99,7 +99,7 @@ class HitSource : public BeamSource {
   HitSource(std::map<std::size_t, std::vector<std::uint16_t>> hits, std::vector<double> times_s, SkippedRecords skipped)
       : hits_(std::move(hits)), times_s_(std::move(times_s)), skipped_(std::move(skipped)) {
     if (hits_.empty()) return;
-    // Turns are whole: a beam that is not in the file was heard, and hit nothing.
+    // Turns are complete: a beam that is not in the file has no hits.
     begin_ = next_ = hits_.begin()->first / kBeamsPerTurn * kBeamsPerTurn;
     end_ = (hits_.rbegin()->first / kBeamsPerTurn + 1) * kBeamsPerTurn;
   }
@@ -146,7 +146,7 @@ Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage
   while (const auto line = lines.next_with_content()) {
     tl::expected<HitBeam, std::string> beam = hits_in(*line, times_s->size());
     if (beam) {
-      // Of a beam that is there twice, the first counts.
+      // Of a duplicate beam, the first counts.
       hits.emplace(beam->index, std::move(beam->bins));
       continue;
     }

@@ -77,7 +77,7 @@ DataflashType type_in(std::span<const std::uint8_t> body) {
 class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes), types_(256) {
-    // Only this one is known beforehand, and what some logs say of it themselves is wrong.
+    // Only this one is known beforehand; the definition of it in some logs is wrong.
     types_[kFormatType].name = "FMT";
     types_[kFormatType].length = kFormatLength;
   }

@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// How the records of one type are laid out, as the log itself says.
+/// Layout of the records of one type, as defined in the log.
 struct DataflashType {
   struct Field {
     std::string label;

@@ -26,7 +26,7 @@ class JsonText {
     return true;
   }
 
-  /// What stands between quotation marks, escapes as they are.
+  /// The text between quotation marks, escapes unchanged.
   std::optional<std::string_view> string() {
     if (!eat('"')) return std::nullopt;
     for (std::size_t i = 0; i < rest_.size(); ++i) {
@@ -58,7 +58,7 @@ class JsonText {
   /// An object or list, up to the bracket that ends it.
   std::optional<std::string_view> parts() {
     const std::string_view from = rest_;
-    std::string open;  // the brackets that are still to come
+    std::string open;  // the brackets that are open
     do {
       if (rest_.empty()) return std::nullopt;
       const char c = rest_.front();
@@ -201,7 +201,7 @@ A50Reading a50_serial_report(std::string_view line) {
   }
   const std::string_view name = fields.front();
   const auto has = [&](std::string_view wanted, std::size_t count) { return name == wanted && fields.size() == count; };
-  // Velocity over ground; that through the water (wrs) tells nothing of the way.
+  // Velocity over ground; that through the water (wrs) is no displacement.
   if (has("wrz", 12)) {
     return velocity_report(
         {fields[1], fields[2], fields[3], fields[6], fields[5], fields[10], fields[8], fields[9], fields[4] == "y"});

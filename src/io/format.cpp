@@ -24,7 +24,7 @@ bool looks_like_oldest_bt(std::span<const std::uint8_t> bytes) {
   const auto resolution_m = reader.read<double>();
   const auto nodes = reader.read<std::uint32_t>();
   if (!version || !resolution_m || !nodes || *version != 3) return false;
-  // Whatever begins with a 3 by chance has no such number here.
+  // Other files that begin with a 3 by chance do not have this number here.
   return std::isfinite(*resolution_m) && *resolution_m >= 1e-6 && *resolution_m <= 1e6 &&
          reader.left() / 2 <= std::uint64_t{*nodes};
 }
@@ -199,7 +199,7 @@ std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning
   if (looks_like_dumplog(beginning)) return Format::kDumplog;
   if (looks_like_udp_capture(beginning)) return Format::kUdpCapture;
   if (looks_like_ping_text(beginning)) return Format::kPingText;
-  // These have no mark of their own: other files may have such bytes in them, but not at their beginning.
+  // These have no magic number: other files may contain such bytes, but not at their beginning.
   if (looks_like_sonarview(beginning)) return Format::kSonarView;
   if (looks_like_seanet_capture(beginning)) return Format::kSeanetCapture;
   return std::nullopt;

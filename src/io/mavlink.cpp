@@ -102,7 +102,7 @@ MavlinkRead read_mavlink(std::span<const std::uint8_t> bytes) {
   const std::size_t header = is_version_2 ? kHeader2 : kHeader1;
   if (bytes.size() < 3) return cut();
   const std::size_t payload = bytes[1];
-  // A flag that we do not know may mean another layout: such frames have to be dropped.
+  // An unknown flag may change the layout: such frames have to be dropped.
   if (is_version_2 && (bytes[2] & ~kSigned) != 0) return read;
   const std::size_t length =
       header + payload + kChecksum + (is_version_2 && (bytes[2] & kSigned) != 0 ? kSignature : 0);

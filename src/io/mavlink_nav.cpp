@@ -42,14 +42,14 @@ NavSample sample_of(const Eigen::Vector3d& value) {
   return sample;
 }
 
-/// A position of the autopilot's filter, which says 0, 0 as long as nothing tells it where it is.
+/// A position of the autopilot's filter, which is 0, 0 until it is known.
 NavSample position_of(const Eigen::Vector3d& north_east_down) {
   NavSample sample = sample_of(from_ned::world(north_east_down));
   sample.valid = north_east_down.x() != 0.0 || north_east_down.y() != 0.0;
   return sample;
 }
 
-/// A fix of integers of 1e-7 degrees; 0, 0 is what a receiver without satellites says.
+/// A fix of integers of 1e-7 degrees; 0, 0 comes from a receiver without satellites.
 NavSample fix_of(std::int32_t latitude, std::int32_t longitude, double altitude_m) {
   NavSample sample = sample_of({latitude * 1e-7 * kRadPerDeg, longitude * 1e-7 * kRadPerDeg, altitude_m});
   sample.valid = latitude != 0 || longitude != 0;

@@ -25,7 +25,7 @@ class DataflashNav {
     if (!time_s) return;
     time_s_ = *time_s;
     name_ = name;
-    // Of what there are several, the records say which; older logs have a name for each instead.
+    // Records of repeated sensors have an index; older logs have a type for each instead.
     for (const std::string_view label : {"I", "C", "Instance"}) {
       if (const auto instance = record.number_of(label)) name_ = fmt::format("{}[{:.0f}]", name, *instance);
     }
@@ -79,7 +79,7 @@ class DataflashNav {
     }
   }
 
-  /// The filter says 0, 0 as long as nothing tells it where it is.
+  /// The filter gives 0, 0 until it has a position.
   void put_position(const DataflashRecord& record) {
     const auto ned = three(record, "PN", "PE", "PD");
     if (!ned) return;
@@ -120,7 +120,7 @@ class DataflashNav {
 }  // namespace
 
 bool looks_like_dataflash(std::span<const std::uint8_t> bytes) {
-  // It begins with what defines its types.
+  // A log begins with the definitions of its types.
   constexpr std::array<std::uint8_t, 3> kFirst = {0xa3, 0x95, 128};
   return bytes.size() >= 89 && std::equal(kFirst.begin(), kFirst.end(), bytes.begin());
 }

@@ -62,7 +62,7 @@ NavSample sample_at(double time_s, const Eigen::Vector3d& value, NavSample sampl
 }
 
 void add_dvl(NavSources& sources, const std::vector<double>& row) {
-  // Ahead, left and up of the instrument, in cm/s; a velocity of 327 m/s says that there is none.
+  // Ahead, left and up of the instrument, in cm/s; a velocity of 327 m/s marks an invalid one.
   const Eigen::Vector3d velocity_cm_s(row[11], row[12], row[13]);
   NavSample velocity;
   velocity.valid = row[14] != 0.0 && velocity_cm_s.cwiseAbs().maxCoeff() < 32767.0;

@@ -14,7 +14,7 @@ namespace pingvox {
 /// The sources of a log that is being read, in the order in which they first spoke.
 class NavSources {
  public:
-  /// Adds a sample; one with a number that is not finite says nothing and is left out.
+  /// Adds a sample; one with a number that is not finite is left out.
   /// @return where the sample is; nullptr when it was left out
   NavSample* add(const std::string& name, NavQuantity quantity, const NavSample& sample);
 
@@ -25,7 +25,7 @@ class NavSources {
   std::map<std::pair<std::string, NavQuantity>, std::size_t> places_;
 };
 
-/// Tells when a dead reckoning was set to zero while it was recorded: what follows is in another frame.
+/// Detects when a dead reckoning was reset to zero during the recording: later positions are in another frame.
 class DeadReckoningFrame {
  public:
   /// Whether the next position is still in the frame of the first one: no step was faster than 10 m/s.

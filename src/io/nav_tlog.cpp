@@ -22,7 +22,7 @@ class TlogNav {
     }
   }
 
-  /// Times are those that the whole log tells.
+  /// Times are estimated from the whole log.
   std::vector<NavSource> finish() {
     std::vector<NavSource> sources = sources_.take();
     for (NavSource& source : sources) {
@@ -42,7 +42,7 @@ class TlogNav {
 }  // namespace
 
 bool looks_like_tlog(std::span<const std::uint8_t> bytes) {
-  // A log may begin in mid-record: what counts is that there is a record near its beginning.
+  // A log may begin in the middle of a record, so a record near its beginning suffices.
   constexpr std::size_t kNear = 2048;
   std::vector<DamageKind> damage;
   bool found = false;

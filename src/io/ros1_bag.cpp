@@ -22,7 +22,7 @@ constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint8_t kMessage = 2, kBagHeader = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7;
 constexpr std::size_t kMaxHeader = 65'536;
 
-/// The header of a record: what we need of it.
+/// The fields of a record header that are needed.
 struct RecordHeader {
   std::uint8_t op = 0;
   std::uint32_t connection = 0, size = 0, count = 0;

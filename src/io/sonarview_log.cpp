@@ -15,7 +15,7 @@ namespace pingvox {
 
 namespace {
 
-/// Whether a description of the session begins, which may be longer than what is looked at.
+/// Whether a description of the session begins, which may be longer than the bytes at hand.
 bool begins_with_session(std::span<const std::uint8_t> bytes) {
   constexpr std::uint8_t kJsonWrapper = 10;
   return bytes.size() > 8 && bytes[0] == 'B' && bytes[1] == 'R' && bytes[4] == kJsonWrapper && bytes[5] == 0 &&

@@ -146,7 +146,7 @@ class SqliteBag final : public Bag {
   }
 
  private:
-  /// Whether a query gives one more row; what is damaged ends it.
+  /// Whether a query gives one more row; damage ends it.
   bool has_row(sqlite3_stmt* query) {
     const int result = sqlite3_step(query);
     if (result == SQLITE_ROW) return true;

@@ -13,7 +13,7 @@ constexpr std::size_t kTime = 8;
 constexpr std::uint64_t kYear2005_us = 1'104'537'600'000'000, kYear2100_us = 4'102'444'800'000'000;
 constexpr std::uint64_t kMinute_us = 60'000'000;
 
-/// The time in front of what may be a record.
+/// The time in front of a possible record.
 std::optional<std::uint64_t> time_at(std::span<const std::uint8_t> bytes) {
   if (bytes.size() <= kTime || (bytes[kTime] != 0xfe && bytes[kTime] != 0xfd)) return std::nullopt;
   const auto time_us = value_from<std::uint64_t>(bytes.first(kTime), std::endian::big);
@@ -47,7 +47,7 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
     const std::optional<std::uint64_t> time_us = time_at(rest);
     const MavlinkRead read = time_us ? read_mavlink(rest.subspan(kTime)) : MavlinkRead{};
     const std::size_t length = kTime + read.length;
-    // Without a right checksum, what follows has to say that this was a record.
+    // Without a correct checksum, the bytes that follow decide whether this was a record.
     const bool is_right =
         read.frame && (read.frame->check == Check::kRight || read.frame->check == Check::kRightPadded);
     if (!is_right && !(read.frame && may_follow(rest.subspan(length), *time_us))) {

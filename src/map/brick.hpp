@@ -19,8 +19,8 @@ struct BrickRef {
   CellValues& value;
 };
 
-/// Bricks by index. Which of their cells are known lies apart, close together: that alone answers much, and the values
-/// fill whole cache lines.
+/// Bricks by index. The masks of known cells are stored apart from the values: many queries read only the masks, and
+/// the values fill whole cache lines.
 class BrickPool {
  public:
   BrickRef operator[](std::uint32_t index) { return {known_[index], value_[index]}; }
@@ -50,7 +50,7 @@ class BrickPool {
   std::size_t bytes() const { return known_.bytes() + value_.bytes(); }
 
  private:
-  // Both hear of the same calls in the same order, and so give the same indices.
+  // Both get the same calls in the same order, and so return the same indices.
   Pool<std::uint64_t> known_;
   Pool<CellValues> value_;
 };

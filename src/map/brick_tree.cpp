@@ -280,7 +280,7 @@ Entry merge(BrickTree& tree, Entry a, const BrickTree& other, Entry b, int depth
 Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry) {
   assert(!entry.is_inner() && rules.pruning != Pruning::kNever);
   if (const auto evidence = evidence_for_all(updates)) {
-    // The same for the whole of a leaf: what becomes of it is a leaf.
+    // The same for a whole leaf: the result is a leaf.
     return *evidence == LogOdds(0.0F) ? entry : Entry::leaf(add_evidence(entry.value, *evidence, rules.clamp));
   }
   Brick made = brick_of(entry);
@@ -389,12 +389,12 @@ void Cursor<W>::synchronize_group(int depth) {
   mark_stale_above(depth);
 }
 
-// Makes right all entries of the path from its end up to `depth`; the path stays, as far as it is still there.
+// Updates all entries of the path from its end up to `depth`; the path is kept as far as its nodes still exist.
 template <KeyWord W>
 void Cursor<W>::synchronize_up_to(int depth) {
   if (reach_ == tree_.brick_depth()) synchronize_brick();
   for (int d = reach_ - 1; d >= std::max(depth, 0); --d) {
-    // With all parents right after each update, nothing is stale above what is not.
+    // If all parents are updated after each update, the ancestors of a valid node are valid.
     if (rules_.pruning == Pruning::kEachUpdate && !stale_[static_cast<std::size_t>(d)]) break;
     synchronize_group(d);
   }
@@ -405,7 +405,7 @@ void Cursor<W>::mark_stale_above(int depth) {
   if (depth > 0) stale_[static_cast<std::size_t>(depth - 1)] = true;
 }
 
-// For an entry with another link: the shortcut may lead to what was there before.
+// For an entry whose link changed: the shortcut may point to the old node.
 template <KeyWord W>
 void Cursor<W>::drop_shortcut_at(int depth) {
   if (tree_.shortcut && tree_.levels - depth >= tree_.shortcut->level) tree_.shortcut.reset();
@@ -458,7 +458,7 @@ void Cursor<W>::update(const BasicKey<W>& key, LogOdds evidence) {
   const bool known = in_brick ? (tree_.bricks[brick_].known & bit) != 0 : end.is_leaf();
   const float before = in_brick ? tree_.bricks[brick_].value[cell] : end.value;
   const float after = add_evidence(before, evidence, rules_.clamp);
-  // What changes nothing is dropped before anything is made or marked. Evidence of nothing makes no cell known.
+  // An update without effect is dropped before any node is created or marked. Evidence of 0 makes no cell known.
   const bool changes = known ? after != before : evidence != LogOdds(0.0F);
   if (!changes && (rules_.early_drop == EarlyDrop::kOn || !in_brick || !known)) return;
   const BrickRef brick = make_brick();
@@ -497,7 +497,7 @@ void Cursor<W>::set(const BasicKey<W>& key, int depth, float value) {
   move_to(key);
   const int at = std::min(depth, tree_.brick_depth());
   if (reach_ > at) {
-    // What lies below is thrown away, so there is nothing to synchronize.
+    // The nodes below are discarded, so there is nothing to synchronize.
     reach_ = at;
     leave_brick();
   }

@@ -22,14 +22,14 @@ enum class EarlyDrop { kOn, kOff };
 
 namespace detail {
 
-/// Where look-ups start: eight nodes of one size, side by side, that hold all that is known. A map fits into eight that
-/// are as wide as it is or wider, wherever it lies, and hardly anything forks between the root and them.
+/// Lookup cache: the 2 x 2 x 2 block of equal nodes that covers all known space. Nodes as wide as the map suffice for
+/// such a block, wherever the map lies, and the tree hardly branches between the root and the block.
 struct Shortcut {
   int level;                       ///< the nodes are 2^level cells wide
   BasicKey<std::uint64_t> lowest;  ///< the lowest node: its cells' keys, shifted right by `level`
   std::array<Entry, 8> node;       ///< from there bit 0 x, bit 1 y, bit 2 z; values of inner ones may be out of date
 
-  /// The one that holds a key; nullptr: none of them does.
+  /// The node that holds a key; nullptr: none of them does.
   template <KeyWord W>
   const Entry* node_of(const BasicKey<W>& key) const {
     const std::uint64_t x = (static_cast<std::uint64_t>(key.x) >> level) - lowest.x;
@@ -77,7 +77,7 @@ struct BrickTree {
   bool pruned = true;
   EarlyDrop early_drop = EarlyDrop::kOn;
   Entry root;
-  /// Always right: it is dropped when a link at or above its nodes changes, and made again when their parents are.
+  /// Always valid: dropped when a link at or above its nodes changes, and found again when their parents are updated.
   std::optional<Shortcut> shortcut;
   Pool<Group> groups;
   BrickPool bricks;
@@ -93,9 +93,9 @@ struct BrickTree {
   }
 };
 
-/// What a group says of its children. REQUIRES at least one known child.
+/// Value of a group (Parents). REQUIRES at least one known child.
 float summary_of(const Group& group, Parents parents);
-/// What a brick says of its octants. REQUIRES a known cell.
+/// Value of a brick (Parents). REQUIRES a known cell.
 float summary_of(BrickView brick, Parents parents);
 /// All eight leaves, and equal.
 bool is_uniform(const Group& group);
@@ -124,16 +124,16 @@ Group group_of(Entry entry);
 /// For readers that build a tree from below: the entry for what they put together, which is stored unless that is
 /// uniform, or nothing is known in it. Throws std::bad_alloc.
 Entry store(BrickTree& tree, const Group& group, Parents parents);
-/// The same for a brick of cells that are as sure as can be. REQUIRES masks without a common bit.
+/// The same for a brick whose cells are at their clamp. REQUIRES masks without a common bit.
 Entry store(BrickTree& tree, const CellStates& cells, const Clamp& clamp, Parents parents);
 
 /// The shortcut that leads farthest down, though not below pages. None where it would lead nowhere, nor in a tree of
 /// more than 64 levels.
 std::optional<Shortcut> shortcut_of(const BrickTree& tree);
 
-/// What a brick that changed became: itself, or less when it is uniform.
+/// New entry of a brick that changed: its link, or a leaf when it is uniform.
 Entry synchronize_brick(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
-/// The same for a group whose children are right.
+/// The same for a group whose children are up to date.
 Entry synchronize_group(BrickTree& tree, std::uint32_t index, Parents parents, Pruning pruning);
 
 /// Frees all that hangs below an entry of `depth`.
@@ -151,13 +151,13 @@ struct CursorRules {
   Clamp clamp{};
 };
 
-/// What becomes of an entry at brick level that has no brick, of an unknown or a joined cell. A brick is made only
-/// where something changes that no leaf can say. Throws std::bad_alloc. REQUIRES !entry.is_inner(), and pruning
+/// New entry at brick level for one without a brick (unknown, or a leaf). A brick is created only for a change that no
+/// leaf can hold. Throws std::bad_alloc. REQUIRES !entry.is_inner(), and pruning
 Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const CellUpdates& updates, Entry entry);
 
-/// A place in a tree and the path to it: what changes trees (below pages so does `update_page`, map/page_updates.hpp).
-/// Moving on synchronizes what it leaves, so that keys in the tree's order (or near it) cost a few steps each and every
-/// parent is recomputed once. Two widths are compiled: 64 bits, and wide for lattices that are deeper.
+/// A position in a tree and the path to it. All changes go through it, except below pages (`update_page`,
+/// map/page_updates.hpp). Moving synchronizes the nodes that it leaves, so keys in the tree's order (or near it) cost a
+/// few steps each, and every parent is recomputed once. Two widths are compiled: 64 bits, and wide for deeper lattices.
 template <KeyWord W>
 class Cursor {
  public:
@@ -173,7 +173,7 @@ class Cursor {
   /// Makes the whole node of `depth` (in the tree's levels) that holds `key` a leaf.
   void set(const BasicKey<W>& key, int depth, float value);
 
-  /// Settles the path up to the root and lets go of it.
+  /// Synchronizes the path up to the root and leaves it.
   void flush();
 
   /// Where the path to the brick of `key` ends: used to foresee growth. Moves there.
@@ -185,7 +185,7 @@ class Cursor {
   /// The entry of the node of `depth` that holds `key`, or of the leaf (or what is not known) that this is part of.
   /// Moves there; what hangs below may be changed before the next move. REQUIRES that the cursor was nowhere deeper.
   Entry seek(const BasicKey<W>& key, int depth);
-  /// Puts what became of the node sought last there.
+  /// Stores the new entry of the node that was sought last.
   void put(int depth, Entry entry);
 
  private:

@@ -35,7 +35,7 @@ bool stops(Occupancy what, UnknownCells unknown) {
   return what == Occupancy::kOccupied || (what == Occupancy::kUnknown && unknown == UnknownCells::kBlock);
 }
 
-/// Cell by cell, each from the root: how far it is does not matter.
+/// Cell by cell, each from the root, for rays of any length.
 template <KeyWord W>
 RayEnd cast_far(const OccupancyMap& map, BasicKey<W> key, FaceCrossings crossings, double range_m,
                 UnknownCells unknown) {

@@ -7,7 +7,7 @@
 
 namespace pingvox::detail {
 
-/// Goes from cell to cell of a const tree: remembers the way down, so that a neighbour costs a step or two.
+/// Looks up cells of a const tree; it keeps the path from the root, so that a neighbour costs a step or two.
 template <KeyWord W>
 class EntryWalk {
  public:

@@ -5,7 +5,7 @@
 
 namespace pingvox::detail {
 
-/// What is inside of a map, for the engine itself and for tests and measurements of it.
+/// Access to the storage of a map, for the engine, its tests and benchmarks.
 struct MapAccess {
   static const BrickTree& tree(const OccupancyMap& map) { return *map.tree_; }
   /// By default on: the map is the same either way.

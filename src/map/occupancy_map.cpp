@@ -88,8 +88,8 @@ BasicKey<W> lowest_in(const ScanUpdate::Page& page, std::size_t brick) {
   return {lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
 }
 
-/// Foresees what the tree's storage grows by, brick by brick: an upper bound. Bricks that stay as they are need
-/// nothing: a map at its limit still takes in what it knows already.
+/// Upper bound for the growth of the tree's storage, brick by brick. Unchanged bricks need nothing, so a map at its
+/// limit still accepts scans of known cells.
 template <KeyWord W>
 class Growth {
  public:

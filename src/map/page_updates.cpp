@@ -15,11 +15,11 @@ class PageUpdater {
         rules_(rules),
         scan_(scan),
         page_(page),
-        // Only a maximum tells of each cell.
+        // Only a maximum bounds the value of each cell.
         may_stay_(rules.early_drop == EarlyDrop::kOn && rules.parents == Parents::kMax && scan.miss() < LogOdds(0.0F)) {
   }
 
-  /// What becomes of the page.
+  /// New entry of the page.
   Entry page(Entry entry) {
     return children(entry, bytes_in_use(page_.bricks), [this](std::size_t o, Entry octant) {
       if (is_unchanged(octant, o)) return octant;
@@ -29,9 +29,9 @@ class PageUpdater {
   }
 
  private:
-  /// What becomes of a node.
+  /// New entry of a node.
   /// @param which  of its children have updates: a bit each
-  /// @param f      f(number, entry) is what becomes of one of them
+  /// @param f      f(number, entry): new entry of one of them
   template <class F>
   Entry children(Entry entry, std::uint64_t which, F&& f) {
     bool changed = rules_.early_drop == EarlyDrop::kOff;
@@ -61,8 +61,8 @@ class PageUpdater {
     return changed ? synchronize_brick(tree_, entry.link, rules_.parents, rules_.pruning) : entry;
   }
 
-  /// Whether an octant stays as it is because there are misses only, and all that is known there is as free as can be.
-  /// That asks for one word of each brick: after some scans from one place that is nearly all there is to do.
+  /// Whether an octant is unchanged because it has misses only and its known cells are at the lower clamp. That reads
+  /// one word of each brick: after some scans from one place that is nearly all there is to do.
   bool is_unchanged(Entry octant, std::size_t o) const {
     const std::uint64_t hit = page_.bricks_hit >> (8 * o) & 0xFF;
     if (!may_stay_ || hit != 0 || LogOdds(octant.value) > rules_.clamp.lowest) return false;

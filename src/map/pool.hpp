@@ -11,14 +11,14 @@
 
 namespace pingvox::detail {
 
-/// Room for a growing array of bytes, page-aligned and zeroed. Growing keeps the content and may move it; room that was
-/// never touched costs no memory, but for a step of 64 KB that is made ready. On Linux it asks for huge pages and grows
-/// without copying.
+/// A growing array of bytes, page-aligned and zeroed. Growing keeps the content and may move it; reserved bytes that
+/// were never touched take no memory, except a step of 64 KB that is populated in advance. On Linux it asks for huge
+/// pages and grows without copying.
 class Arena {
  public:
   enum class Pages {
-    kHuge,   ///< asked for: what is filled from end to end
-    kSmall,  ///< of what is touched here and there
+    kHuge,   ///< for arrays that are filled from end to end
+    kSmall,  ///< for arrays that are touched sparsely
   };
 
   explicit Arena(Pages pages = Pages::kHuge) : pages_(pages) {}
@@ -50,8 +50,8 @@ class Arena {
   Pages pages_;
 };
 
-/// Fixed-size records addressed by 32-bit index from 2 on (0 and 1 mean something else to Entry). Freed ones are used
-/// again. References last until the next allocate().
+/// Fixed-size records addressed by 32-bit index from 2 on (0 and 1 mean something else to Entry). Freed ones are
+/// reused. References last until the next allocate().
 template <class T>
 class Pool {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) >= sizeof(std::uint32_t));
@@ -115,7 +115,7 @@ class Pool {
 
   /// Records that `allocate` would hand out without growing.
   std::size_t spare() const { return free_count_; }
-  /// Bytes of records that were ever handed out: what the pool really takes.
+  /// Bytes of records that were ever handed out: the memory that the pool really takes.
   std::size_t bytes() const { return (used_ - kFirst) * sizeof(T); }
 
  private:

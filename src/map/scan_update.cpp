@@ -107,7 +107,7 @@ void ScanUpdate::mark_missed_in(std::uint32_t page, std::span<const std::uint64_
 }
 
 void ScanUpdate::clear() {
-  // Of a scan that was moved from there are no pages left.
+  // A scan that was moved from has no pages.
   for (std::size_t i = 0; i < std::min(used_, pages_.size()); ++i) {
     Page& page = pages_[i];
     const std::uint64_t bricks = std::exchange(page.bricks, 0);

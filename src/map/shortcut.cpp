@@ -25,7 +25,7 @@ void for_each_child(const BrickTree& tree, const Shortcut& nodes, F&& f) {
   }
 }
 
-/// Eight nodes one level below with all that is known; nullopt: it is wider than two of them, or nothing is.
+/// Eight nodes one level below that cover all known space; nullopt: it is wider than two of them, or empty.
 std::optional<Shortcut> one_below(const BrickTree& tree, const Shortcut& above) {
   std::array<unsigned, 3> known{};  ///< of each axis a bit for each place where something is
   for_each_child(tree, above, [&](const Entry&, const auto& place) {

@@ -20,7 +20,7 @@ constexpr std::uint64_t kBitsOfX = detail::spread_bits(0x1FFFFF);
 /// Deeper lattices have more bits than such a number.
 constexpr int kMaxDepth = 21;
 
-/// Where a ray is along one axis.
+/// Position of a ray along one axis.
 class Axis {
  public:
   /// @param start  number of the first cell in the tree's order
@@ -46,7 +46,7 @@ class Axis {
     next_ += apart_;
     place_ = (place_ + step_) & bits_;
   }
-  /// Without a branch: no processor foresees which face comes next.
+  /// Without a branch: the next face cannot be predicted.
   void cross_if(bool is_due) {
     const std::uint64_t mask = ~std::uint64_t{is_due} + 1;
     next_ += apart_ & mask;

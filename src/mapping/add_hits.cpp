@@ -26,11 +26,11 @@ RayEnds ends_of(const Lattice& lattice, const Pose& map_from_sensor, double rang
     const auto axis = static_cast<Eigen::Index>(a);
     for (std::size_t i = 0; i < 4; ++i)
       ends.map_from_sensor[a][i] = map_from_sensor(axis, static_cast<Eigen::Index>(i));
-    // Farther out, doubles have gaps.
+    // Farther out, doubles cannot hold all integers.
     const double lowest = (map_from_sensor(axis, 3) - range_m) * ends.cells_per_m - 1.0;
     if (!(std::abs(lowest) < 0x1p50)) continue;
     const auto from = static_cast<std::int64_t>(std::floor(lowest));
-    // Unsigned, as what is below zero wraps around; only the lowest bits are looked at.
+    // Unsigned, so that negative numbers wrap around; only the lowest bits are used.
     const std::uint64_t word = static_cast<std::uint64_t>(centre_of(lattice)) + static_cast<std::uint64_t>(from);
     ends.lowest[a] = from - static_cast<std::int64_t>(word % kPage);
     const auto base = static_cast<double>(ends.lowest[a]);
@@ -44,7 +44,7 @@ RayEnds ends_of(const Lattice& lattice, const Pose& map_from_sensor, double rang
 WideKey page_key(const Lattice& lattice, const RayEnds& ends, std::uint64_t page) {
   const auto word = [&](std::size_t a) {
     const std::uint64_t number = page >> (a * kPlaceBits) & ((std::uint64_t{1} << kPlaceBits) - 1);
-    // Unsigned sums wrap: what is below zero is taken away.
+    // Unsigned sums wrap, so negative numbers are subtracted.
     return centre_of(lattice) + static_cast<WideWord>(ends.lowest[a] + static_cast<std::int64_t>(number * kPage));
   };
   return {word(0), word(1), word(2)};

@@ -11,7 +11,7 @@
 
 namespace pingvox {
 
-/// Beams go through detection, and then with their poses into the map.
+/// Passes beams to echo detection, and then with their poses to the map.
 class BeamMapper::Stages {
  public:
   Stages(const BuildOptions& options, OccupancyMap& map)
@@ -32,7 +32,7 @@ class BeamMapper::Stages {
     return take(stream_.finish());
   }
 
-  /// After an error: what waits is not whole any more.
+  /// After an error, when the waiting beams are incomplete.
   void restart() {
     stream_ = empty_stream_;
     mapper_.restart();
@@ -59,7 +59,7 @@ class BeamMapper::Stages {
   EchoStream stream_;
   detail::HeardMapper mapper_;
   std::map<std::uint64_t, std::optional<Pose>> poses_;  ///< map_from_body of the beams that wait, by their numbers
-  std::uint64_t beams_ = 0;                             ///< that the stream was given
+  std::uint64_t beams_ = 0;                             ///< passed to the stream so far
   BuildReport report_;
   detail::Stopwatch watch_;
 };

@@ -15,9 +15,9 @@ struct WalkOrder {
   int layer = 0, row = 1, cell = 2;
 };
 
-/// Marks four by four rows of cells at once: a column of bricks. Where a row begins, and behind its end, a bit is
-/// turned over; going along the column, a cell belongs to its row when an odd number of bits up to it were. So a row
-/// costs two bits, however long it is, and a brick is written once.
+/// Marks four by four rows of cells at once: a column of bricks. A bit is flipped where a row begins and behind its
+/// end; a cell belongs to its row when an odd number of bits up to it are set. So a row costs two bits, however long it
+/// is, and a brick is written once.
 class BrickColumn {
  public:
   /// @param cells  length of the column; places of cells in it are 4..cells-1
@@ -32,7 +32,7 @@ class BrickColumn {
     }
   }
 
-  /// What stands for the begin of a row without cells; 0 stands for its end.
+  /// Begin of a row without cells; its end is 0.
   std::int64_t no_place() const { return static_cast<std::int64_t>(turned_.size() - 1) * 4; }
 
   /// Marks the cells of the rows as missed.

@@ -8,7 +8,7 @@
 namespace pingvox {
 namespace {
 
-/// What beams and points have in common.
+/// Checks what beams and points have in common.
 std::string common_errors(const BuildOptions& options) {
   std::string bad;
   const auto say = [&bad](const std::string& what) { bad += (bad.empty() ? "" : "; ") + what; };

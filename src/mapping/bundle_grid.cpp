@@ -7,7 +7,7 @@
 namespace pingvox {
 namespace {
 
-/// What evidence is divided by that may come from so many cells.
+/// Divisor of the evidence of an arc of so many cells.
 double divisor_on_arc(double cells_on_arc) {
   return std::pow(std::max(1.0, cells_on_arc), 0.25);
 }

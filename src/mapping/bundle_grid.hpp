@@ -8,13 +8,13 @@
 
 namespace pingvox::detail {
 
-/// The rays of a beam by what they are made of: each elevation with each azimuth. `beam_bundle` spells them out.
+/// The rays of a beam as a grid: each elevation with each azimuth. `beam_bundle` lists them.
 struct BundleGrid {
   struct Level {
     double x, y;  ///< unit, in the plane of the head
   };
   std::vector<Level> azimuths;
-  const Elevations& elevations;  ///< as long as the tables that it came from are not asked again
+  const Elevations& elevations;  ///< valid until the tables that it came from are used again
   double divisor;                ///< see share_on_arc
 
   Eigen::Vector3d direction(std::size_t elevation, const Level& azimuth) const {

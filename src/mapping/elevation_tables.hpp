@@ -6,16 +6,15 @@
 
 namespace pingvox::detail {
 
-/// How many angles spread over a width so that none is farther than `apart` from the next leave between them; 0 when
-/// there is no width.
+/// Number of gaps between angles that divide a width into steps of at most `apart`; 0 for a width of 0.
 std::size_t gaps_between(double width_rad, double apart_rad);
 /// Angle i of 0..gaps, from -width / 2 to width / 2; 0 when there are no gaps.
 double spread_angle(double width_rad, std::size_t gaps, std::size_t i);
 
-/// How loud a beam is off its axis: half at its edges. @see share_on_arc
+/// Sensitivity of a beam off its axis: half at its edges. @see share_on_arc
 double vertical_pattern(double elevation_rad, double height_rad);
 
-/// Angles up and down that a beam's rays have, evenly apart from its lower edge to its upper one.
+/// Elevations of a beam's rays, evenly spaced from its lower edge to its upper one.
 struct Elevations {
   /// @param gaps  between them
   Elevations(double height_rad, std::size_t gaps);

@@ -28,14 +28,14 @@ struct Run {
   std::int64_t first, last;
 };
 
-/// An angle, by what is asked of it.
+/// An angle with its sine and cosine.
 struct Angle {
   double cos, sin;
   explicit Angle(double rad) : cos(std::cos(rad)), sin(std::sin(rad)) {}
 };
 
-/// A convex piece of the volume. Its rows of cells run along the map axis nearest to the head's own up, because a beam
-/// is tall and thin: so there are few of them.
+/// A convex piece of the volume. Its rows of cells run along the map axis nearest to the head's up direction: a beam is
+/// tall and thin, so there are few rows.
 class Piece {
  public:
   Piece(const Pose& map_from_sensor, double bearing_rad, double width_rad, double height_rad, double range,
@@ -166,7 +166,7 @@ class Piece {
     cell[static_cast<std::size_t>(order_.layer)] = column.first_layer;
     cell[static_cast<std::size_t>(order_.row)] = column.first_row;
     cell[static_cast<std::size_t>(order_.cell)] = column.lowest_cell;
-    // Unsigned sums wrap: what is below zero is taken away.
+    // Unsigned sums wrap, so negative numbers are subtracted.
     return {origin.x + static_cast<WideWord>(cell[0]), origin.y + static_cast<WideWord>(cell[1]),
             origin.z + static_cast<WideWord>(cell[2])};
   }

@@ -16,16 +16,16 @@
 namespace pingvox {
 namespace {
 
-/// Where the vehicle was when a beam was heard.
+/// Pose of the vehicle at the time of a beam.
 struct BeamPose {
   double time_s;
   std::optional<Pose> map_from_body;
 };
 
-/// What came out of the stream of echoes, in order. It never changes, so threads may share it.
+/// Beams from the stream of echoes, in order. They never change, so threads may share them.
 using Heard = std::shared_ptr<const detail::HeardBeams>;
 
-/// A map, and what brings beams into it.
+/// A map with its mapper.
 class MapBuild {
  public:
   MapBuild(const BuildOptions& build, OccupancyMap map) : map_(std::move(map)), mapper_(build, map_) {}
@@ -81,7 +81,7 @@ class Rebuild {
       : build_(build), map_(map), heard_(std::move(heard)), poses_(std::move(poses)) {
     try {
       thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-    } catch (const std::system_error&) {  // there is no thread left: the caller waits
+    } catch (const std::system_error&) {  // no thread could be started: the caller waits
       run({});
     }
   }
@@ -173,7 +173,7 @@ class RebuiltMap::State {
   const MapBuild& made() const { return *made_; }
 
  private:
-  /// Calls f. After an error what waits for its echo is not whole any more.
+  /// Calls f. After an error the beams that wait for their echo are incomplete, and dropped.
   template <class F>
   Result<void> or_restart(const F& f) {
     Result<void> done = detail::without_exceptions(f);

@@ -13,10 +13,10 @@
 namespace pingvox::detail {
 
 /// Threads that each trace a part of a scan into a scan update of their own, which then go into one. The result does
-/// not depend on how many there are: a cell is marked or not, and of several hits the surest counts.
+/// not depend on their number: a cell is marked or not, and of several hits the one with most evidence counts.
 class ScanParts {
  public:
-  /// Fewer rays or beams than this for each thread are not worth starting it.
+  /// Minimum number of rays or beams that is worth a thread.
   static constexpr std::size_t kMinPerThread = 16;
 
   explicit ScanParts(std::size_t threads) : threads_(threads) {}

@@ -36,7 +36,7 @@ std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity, st
   return valid;
 }
 
-/// What a source says, as poses. Of samples with the same time the first counts.
+/// The samples of a source as poses. Of samples with the same time the first counts.
 template <class PoseOf>
 Result<Trajectory> trajectory_of(const NavSource& source, double offset_s, PoseOf pose_of) {
   std::vector<StampedPose> poses;
@@ -61,7 +61,7 @@ void make_positions(NavSource& fixes) {
   for (NavSample& sample : fixes.samples) sample.value = position_of_fix(sample.value, origin);
 }
 
-/// Puts positions at the depth of their time; those of which it is not known are left out.
+/// Sets the height of positions by the depth at their time; those without a depth are left out.
 Result<void> set_depths(NavSource& positions, const NavSource& depth) {
   const Result<Trajectory> depths =
       trajectory_of(depth, 0.0, [](const Eigen::Vector3d& value) { return translation({0.0, 0.0, -value.x()}); });
@@ -71,7 +71,7 @@ Result<void> set_depths(NavSource& positions, const NavSource& depth) {
   return {};
 }
 
-/// nullopt: nothing says where the vehicle was.
+/// nullopt: the log has no position.
 Result<std::optional<NavSource>> position_source(const NavLog& log) {
   if (auto position = main_source(log, NavQuantity::kPosition)) return position;
   std::optional<NavSource> fixes = main_source(log, NavQuantity::kFix);

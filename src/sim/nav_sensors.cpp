@@ -56,7 +56,7 @@ struct Moving {
   Vector3d velocity_m_s, turn_rate_rad_s;
 };
 
-/// nullopt: the trajectory does not say.
+/// nullopt: outside of the trajectory.
 std::optional<Moving> moving_at(const Trajectory& trajectory, double time_s) {
   const std::optional<Pose> now = trajectory.at(time_s);
   if (!now) return std::nullopt;

@@ -96,7 +96,8 @@ class Sway {
   double first_ = 0.0, value_ = 0.0;
 };
 
-/// What a driver wants for some seconds: a share of the usual speed, 0 to hover, and a heading beside the way's.
+/// Command of a driver for some seconds: a fraction of the usual speed (0 to hover), and a heading relative to the
+/// path.
 struct Wish {
   double until_s = 0.0;
   double share = 1.0;

@@ -74,7 +74,7 @@ int contrast_of(std::vector<int>& rises, std::vector<double>& noises) {
   const int rise = nth_smallest(rises, rises.size() * 3 / 4);
   const double noise = nth_smallest(noises, noises.size() / 2);
   const int half = std::max(kMinRise, (rise + 1) / 2);
-  // Most beams hear an echo: half of the usual rise. Else noise only: well above the noise.
+  // If most beams have an echo: half of the usual rise; else well above the noise.
   if (rise >= kQuartileNoiseRatio * noise && nth_smallest(rises, rises.size() / 2) >= kMedianNoiseRatio * noise)
     return half;
   return std::max(half, static_cast<int>(std::ceil(kEchoNoiseRatio * noise)));

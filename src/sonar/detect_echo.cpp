@@ -26,7 +26,7 @@ bool has_ended(Bins bins, std::size_t top, std::size_t i, int contrast) {
 }
 
 /// Lag of the centre of a crest behind the wall [bins]: the pulse rises before its maximum, and the parts of a wall
-/// beside its nearest point are heard later. 1.4 to 1.5 bins in the simulated tank and harbour, 0.9 in the tank
+/// beside its nearest point arrive later. 1.4 to 1.5 bins in the simulated tank and harbour, 0.9 in the tank
 /// recording.
 constexpr double kCrestLag_bins = 1.0;
 

@@ -20,6 +20,7 @@ namespace pingvox::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// A bag of 6 lines of a Micron, with depths and poses.
 const std::string kBag = PINGVOX_SOURCE_DIR "/fuzz/corpus/bag/none";
@@ -48,6 +49,13 @@ TEST(Bags, OneFileIsTheLogAndItsNavigation) {
   EXPECT_THAT(outcome.out, HasSubstr(R"("attitude": "/pose", "position": "/pose", "poses": 6)"));
   ASSERT_EQ(here.call({"convert", kBag, "-o", "poses.tum"}).status, 0);
   EXPECT_THAT(here.read("poses.tum"), HasSubstr("1005.000000000 5 2 3 0 0 0 1"));
+}
+
+TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
+  const Workplace here;
+  EXPECT_THAT(here.call({"map", kBag, "-o", "net.bt"}).err,
+              HasSubstr("did not move; navigation in the bag is used with --nav"));
+  EXPECT_THAT(here.call({"map", kBag, "--nav", kBag, "-o", "net.bt"}).err, Not(HasSubstr("did not move")));
 }
 
 TEST(Bags, ATopicIsChosenByName) {

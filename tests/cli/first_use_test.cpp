@@ -38,15 +38,16 @@ TEST(FirstUse, BeamsThatAreSkippedHaveAReason) {
   here.write("poses.txt", "0 0 0 0 0 0 0 1\n20 0 0 0 0 0 0 1\n");
   const Outcome outcome = here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("a.csv: skipped 1 damaged, the first: line 82: "));
+  EXPECT_THAT(outcome.err, HasSubstr("a.csv: skipped 1 damaged record, the first: line 82: "));
   EXPECT_THAT(outcome.err,
-              HasSubstr("59 outside the time of the poses, 0.000 s to 20.000 s, the first at 21.000 s (--poses"));
+              HasSubstr("59 beams outside the time of the poses, 0.000 s to 20.000 s, the first at 21.000 s (--poses"));
   FlatJson json = json_of(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt", "--json"}));
   EXPECT_EQ(json["skipped_for.damage"], "1");
   EXPECT_EQ(json["skipped_for.no_pose"], "59");
   here.write("late.txt", "900 0 0 0 0 0 0 1\n901 0 0 0 0 0 0 1\n");
-  expect_error(here.call({"map", "a.csv", "-o", "b.bt", "--poses", "late.txt"}), 1,
-               {"a.csv: nothing could be mapped: 1 damaged", "80 outside the time of the poses, 900.000 s"});
+  expect_error(
+      here.call({"map", "a.csv", "-o", "b.bt", "--poses", "late.txt"}), 1,
+      {"a.csv: nothing could be mapped: 1 damaged record", "80 beams outside the time of the poses, 900.000 s"});
 }
 
 TEST(FirstUse, ATrajectoryBesideALogIsNamedWhenItIsNotUsed) {
@@ -57,10 +58,30 @@ TEST(FirstUse, ATrajectoryBesideALogIsNamedWhenItIsNotUsed) {
   EXPECT_EQ(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "a.tum"}).err, "");
 }
 
+TEST(FirstUse, AnAssumedBeamIsReported) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).out, HasSubstr("35 high, assumed (the log names no sonar"));
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt", "--device", "ping360"}).out, Not(HasSubstr("assumed")));
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt", "--beam-width", "2", "--beam-height", "25"}).out,
+              Not(HasSubstr("assumed")));
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt", "--beam", "ray"}).out, Not(HasSubstr("assumed")));
+}
+
+TEST(FirstUse, ThresholdsOnAMapWithoutProbabilitiesAreRefused) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.bt"}).status, 0);
+  const std::string why = "has no effect on a .bt";
+  expect_error(here.call({"compare", "a.bt", "a.bt", "--occupied", "0.7"}), 2, {"a.bt: --occupied: " + why});
+  expect_error(here.call({"convert", "a.bt", "-o", "a.ply", "--occupied", "0.7"}), 2, {"a.bt: --occupied: " + why});
+  expect_error(here.call({"render", "a.bt", "-o", "a.png", "--free", "0.2"}), 2, {"a.bt: --free: " + why});
+}
+
 TEST(FirstUse, TheFirstDamagedRecordIsNamedByEachCommand) {
   const Workplace here;
   here.write("a.csv", turns_csv(40) + "40,0,0.1,5\n41,0,20000,1\n42,0,1,-\n");
-  const std::string where = "damaged, the first: line 43: range 20000 m is longer than 10000 m";
+  const std::string where = "damaged records, the first: line 43: range 20000 m is longer than 10000 m";
   EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).err, HasSubstr(where + " (--strict stops there)"));
   EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("2 " + where));
   EXPECT_THAT(here.call({"convert", "a.csv", "-o", "b.csv"}).out, HasSubstr("skipped, the first: line 43"));

@@ -105,7 +105,7 @@ TEST(Usage, InvalidArgumentsAreRefusedWithTheNearestValidOneBeforeAnyWork) {
       {{"render", "a.csv", "-o", "a.png", "--z", "1"}, {"--z", "--view slice"}},
       {{"render", "a.csv", "-o", "a.png", "--from", "left"}, {"--from", "--view side"}},
       {{"render", "a.csv", "-o", "a.png", "--view", "slice", "--z", "1", "--min-z", "0"},
-       {"--view slice", "no --min-z"}},
+       {"--view slice", "--min-z"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--thresold 40"}, {"--beside", "did you mean '--threshold'?"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--threshold x"}, {"--beside", "--threshold", "'x'"}},
       {{"render", "a.csv", "-o", "a.png", "--beside", "--caption 'x"}, {"--beside", "quotation mark"}},

@@ -10,11 +10,11 @@ namespace pingvox {
 /// Which cells an agreement counts.
 struct AgreementOptions {
   std::optional<Box> box;                 ///< only cells with their middle in it; nullopt: all
-  const OccupancyMap* visible = nullptr;  ///< only its occupied cells are to be found; nullptr: all that B has
+  const OccupancyMap* visible = nullptr;  ///< recall counts only its occupied cells; nullptr: all of B
   std::uint32_t near_cells = 1;           ///< cells at most so many apart along each axis are near each other
 };
 
-/// Where two maps agree on what is occupied and what is free, each by its own thresholds. Cells are of the finest
+/// Agreement of two maps on occupied and free cells, each by its own thresholds. Cells are of the finest
 /// resolution; sums that pass 2^64 - 1 stay there. `near` means within AgreementOptions::near_cells, usually in the
 /// same place or touching it (by a face, an edge or a corner); these counts are nullopt where there are too many cells
 /// to look around each.
@@ -38,12 +38,12 @@ struct MapAgreement {
 /// REQUIRES maps of the same lattice, `options.visible` too.
 MapAgreement agreement_of(const OccupancyMap& a, const OccupancyMap& b, const AgreementOptions& options = {});
 
-/// The same beliefs with other thresholds for what is occupied and what is free.
+/// The same map with other thresholds for occupied and free.
 OccupancyMap with_thresholds(const OccupancyMap& map, const Thresholds& thresholds);
 
-/// The box in which ground truth can judge a map: around all that it knows, and `behind_m` of what lies behind its
-/// walls. A side without a wall (the surface above, the mouth of a harbour), where the farthest free cells have no
-/// occupied ones behind them, ends with these: what lies beyond is neither right nor wrong. nullopt: nothing is known.
+/// The box in which ground truth can judge a map: all of its known cells, and `behind_m` more behind its walls. A side
+/// without a wall (the surface above, the mouth of a harbour), where the farthest free cells have no occupied ones
+/// behind them, ends with these: beyond, ground truth is unknown. nullopt: the map is empty.
 std::optional<Box> judged_box(const OccupancyMap& truth, double behind_m = 3.0);
 
 }  // namespace pingvox

@@ -10,12 +10,12 @@
 
 namespace pingvox {
 
-/// Which layers of cells: those that the range of heights reaches into by more than a face, and at least the one that
-/// holds the lower end.
+/// Layers of cells: those that overlap the range of heights by more than a face, and at least the one that holds the
+/// lower end.
 struct SliceOptions {
   std::optional<double> min_z_m, max_z_m;  ///< map frame [m]; nullopt: all that is known
 
-  Result<void> validate() const;  ///< kBadOption when one is not finite, or they are the wrong way round
+  Result<void> validate() const;  ///< kBadOption when one is not finite, or min_z_m > max_z_m
 };
 
 /// A map seen from above: one value for each column of cells of the finest resolution, around all columns in which

@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// How far and how high a scanning sonar sees; it turns all the way round its z axis.
+/// Field of view of a scanning sonar, which makes full turns about its z axis.
 struct ViewOptions {
   double min_range_m = 0.0;
   double max_range_m = std::numeric_limits<double>::infinity();

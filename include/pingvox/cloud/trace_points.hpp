@@ -22,12 +22,12 @@ enum class EndPoints {
 struct PointScanOptions {
   RayAlgorithm ray = RayAlgorithm::kDda;
   LogOdds hit = LogOdds::from_probability(0.7);
-  double max_range_m = std::numeric_limits<double>::infinity();  ///< rays farther than this free, and hit nothing
+  double max_range_m = std::numeric_limits<double>::infinity();  ///< longer rays free cells up to here and hit nothing
   EndPoints ends = EndPoints::kExact;
 };
 
-/// Traces point scans into scan updates. It keeps its memory from scan to scan, which is a quarter of the time of
-/// tracing a small one. Not for several threads at once: each needs its own.
+/// Traces point scans into scan updates. It reuses its memory from scan to scan, which saves a quarter of the time of a
+/// small one. Not thread-safe: each thread needs its own.
 class PointTracer {
  public:
   explicit PointTracer(const PointScanOptions& options = {});
@@ -48,7 +48,7 @@ class PointTracer {
   std::unique_ptr<Tracer> tracer_;
 };
 
-/// What a PointTracer does, for a single scan.
+/// The same for a single scan.
 std::size_t trace_points(const PointScan& points, const PointScanOptions& options, ScanUpdate& scan);
 
 }  // namespace pingvox

@@ -14,8 +14,8 @@
 namespace pingvox {
 
 /// Navigation of a Water Linked DVL, whose TCP port this host connects to. A connection that fails or falls silent is
-/// made again after half a second, then ever later up to ten seconds, without end. It does not wait and has no clock of
-/// its own: the caller polls it, at least once a second. What comes is recorded before anything else is done with it.
+/// opened again after half a second, then at growing intervals up to ten seconds. It never blocks and has no clock of
+/// its own: the caller polls it, at least once a second. Bytes are recorded before they are parsed.
 class A50Receiver {
  public:
   struct Status {
@@ -56,7 +56,7 @@ class A50Receiver {
   std::optional<RecordFile> recorder_;
   double since_1970_s_;
   std::optional<Link> link_;
-  std::string line_;  ///< as far as it has come
+  std::string line_;  ///< the part that has arrived
   A50Nav nav_;
   Status status_;
   std::optional<double> open_at_s_;  ///< nullopt: now

@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// Of the emulator of a sonar head.
+/// Options of the emulator of a sonar head.
 struct HeadEmulatorOptions {
   double pings_per_s = 20.0;  ///< 0.1..100,000
   // Faults of the line, as fractions of the bytes that the head sends.
@@ -19,7 +19,7 @@ struct HeadEmulatorOptions {
   std::size_t stall_every = 0;  ///< pings; 0: never
   double stall_s = 5.0;         ///< 0..3600
   std::uint64_t seed = 1;       ///< of the faults
-  /// Of a SeaNet head: 2 as those that send both ways at once.
+  /// Of a SeaNet head: 2 as full-duplex ones send.
   int lines_per_request = 1;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
@@ -31,7 +31,7 @@ class LineFaults {
   /// REQUIRES valid options.
   explicit LineFaults(const HeadEmulatorOptions& options) : options_(options), random_(options.seed) {}
 
-  /// What of these bytes arrives.
+  /// The bytes of these that arrive.
   std::vector<std::uint8_t> pass(std::span<const std::uint8_t> bytes);
 
  private:

@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// A line to a device, or its end at the device. Only opening it may block, to look up a host's name.
+/// A connection to a device, or the end of the device. Only opening it may block, to look up a host's name.
 class Link {
  public:
   /// Opens the host's end.
@@ -36,8 +36,8 @@ class Link {
   /// Reads what has arrived, of datagrams one.
   /// @return 0: nothing; kIo when the line is lost
   Result<std::size_t> read(std::span<std::uint8_t> to);
-  /// Sends bytes; what the line does not take now is lost. A listening end sends nothing before the host sent anything
-  /// (UDP) or connected (TCP). @return kIo when the line is lost
+  /// Sends bytes; those that the line does not accept now are lost. A listening end sends nothing before the host sent
+  /// anything (UDP) or connected (TCP). @return kIo when the line is lost
   Result<void> write(std::span<const std::uint8_t> bytes);
 
  private:

@@ -26,7 +26,7 @@ struct LiveStatus {
   std::optional<Error> recording_error;  ///< why the recording ended; the beams go on
 };
 
-/// A source of beams that does not wait: the caller polls it. It has no clock of its own.
+/// A non-blocking source of beams: the caller polls it. It has no clock of its own.
 class LiveSource {
  public:
   virtual ~LiveSource() = default;
@@ -38,7 +38,7 @@ class LiveSource {
   /// @param now_s  seconds of a clock that never goes back
   /// @return false at the end (a device has none); an error when nothing more can be read
   virtual Result<bool> step(double now_s, std::vector<Beam>& beams) = 0;
-  /// Ends the work: stops the head, and appends the beams that waited for more bytes.
+  /// Stops the head, and appends the beams that waited for more bytes.
   virtual void finish(std::vector<Beam>& beams) = 0;
 
   virtual LiveStatus status() const = 0;
@@ -47,8 +47,8 @@ class LiveSource {
 };
 
 /// A Ping360 at a line that `Link::open` opens. A line that fails or falls silent is opened again after half a second,
-/// then ever later up to ten seconds, without end. What comes is recorded before anything else is done with it; reading
-/// the recording gives the same beams.
+/// then at growing intervals up to ten seconds. Bytes are recorded before they are parsed; reading the recording gives
+/// the same beams.
 /// REQUIRES valid settings.
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s);
@@ -57,7 +57,7 @@ std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Pin
 std::unique_ptr<LiveSource> micron_source(const std::string& address, const MicronSettings& settings,
                                           std::optional<SeanetRecorder> recorder, double now_s);
 
-/// A log, in the rhythm of its times.
+/// A log, at the pace of its times.
 /// @param speed  > 0; 1: as it was; infinity: as fast as the caller asks
 std::unique_ptr<LiveSource> replay_source(std::unique_ptr<BeamSource> log, double speed);
 

@@ -14,8 +14,8 @@
 
 namespace pingvox {
 
-/// Navigation that a vehicle sends by MAVLink to this host over UDP, as to a ground station. It does not wait and has
-/// no clock of its own: the caller polls it. What comes is recorded before anything else is done with it.
+/// Navigation that a vehicle sends by MAVLink to this host over UDP, as to a ground station. It never blocks and
+/// has no clock of its own: the caller polls it. Bytes are recorded before they are parsed.
 class MavlinkReceiver {
  public:
   struct Status {

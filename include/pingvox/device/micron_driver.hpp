@@ -47,7 +47,7 @@ class MicronDriver {
   /// REQUIRES valid settings.
   explicit MicronDriver(const MicronSettings& settings);
 
-  /// Begins the dialogue on a new line.
+  /// Begins the dialogue on a new connection.
   void connect();
   /// Takes a valid frame of the SeaNet protocol from the line.
   void take(std::span<const std::uint8_t> frame);

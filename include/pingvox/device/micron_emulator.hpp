@@ -16,12 +16,12 @@ namespace pingvox {
 
 struct MicronCommand;
 
-/// A Tritech Micron at the other end of a line: says once a second that it is there, takes parameters, finds its
+/// A Tritech Micron at the other end of a line: sends mtAlive once a second, takes parameters, finds its
 /// centre, and answers each request with a line at the next bearing. After a stall it has lost its parameters. It has
 /// no line and no clock of its own: the caller carries the bytes.
 class MicronEmulator {
  public:
-  /// What the head hears at a bearing (of 6400 a turn, clockwise, 3200 ahead): the intensities of some bins of a
+  /// Returns of the world at a bearing (of 6400 a turn, clockwise, 3200 ahead): the intensities of some bins of a
   /// length.
   using Hear = std::function<std::vector<std::uint8_t>(int bearing, std::size_t bins, double bin_length_m)>;
 

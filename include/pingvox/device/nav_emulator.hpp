@@ -20,14 +20,14 @@ struct NavEmulatorOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// A device that says again and again where a vehicle is. It has no line and no clock of its own: the caller carries
+/// A device that periodically reports the pose of a vehicle. It has no line and no clock of its own: the caller carries
 /// the messages.
 class NavEmulator {
  public:
   using Message = std::vector<std::uint8_t>;
   /// map_from_body at a time [s].
   using PoseAt = std::function<Pose(double)>;
-  /// What is said at a time [s].
+  /// The reports at a time [s].
   using Say = std::function<std::vector<Message>(double)>;
 
   /// An autopilot (system 1, component 1) that sends MAVLink 2: HEARTBEAT, ATTITUDE, LOCAL_POSITION_NED and, of the

@@ -17,7 +17,7 @@ namespace pingvox {
 /// no clock of its own: the caller carries the bytes.
 class Ping360Emulator {
  public:
-  /// What the head hears at an angle (of 400 a turn, clockwise, 200 ahead): the intensities of some bins of a length.
+  /// Returns of the world at an angle (of 400 a turn, clockwise, 200 ahead): the intensities of some bins of a length.
   using Hear = std::function<std::vector<std::uint8_t>(int angle_grad, std::size_t bins, double bin_length_m)>;
 
   /// REQUIRES valid options.

@@ -41,7 +41,7 @@ struct BasicKey {
            (static_cast<int>((z >> bit) & 1) << 2);
   }
 
-  /// The same cell in another width. REQUIRES that its components fit (an `assert` holds you to it).
+  /// The same cell in another width. REQUIRES that its components fit.
   template <KeyWord V>
   constexpr BasicKey<V> as() const {
     assert(static_cast<W>(static_cast<V>(x)) == x && static_cast<W>(static_cast<V>(y)) == y &&

@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// Something that walks from cell to cell. `key` and `step` REQUIRE !done().
+/// Walks from cell to cell. `key` and `step` REQUIRE !done().
 template <class S>
 concept KeyStepper = std::copyable<S> && requires(S s, const S c) {
   { c.key() };

@@ -29,8 +29,8 @@ class Lattice {
   double resolution_m() const { return resolution_m_; }
   int depth() const { return depth_; }
 
-  /// What metres are multiplied by to get cells, everywhere: dividing by the resolution rounds differently, and a point
-  /// on a face would be in one cell here and in its neighbour there.
+  /// Factor from metres to cells, used everywhere: dividing by the resolution rounds differently, and could put a point
+  /// on a face into the neighbouring cell.
   double cells_per_m() const { return cells_per_m_; }
   /// A point [m, map frame] in cells, counted from the centre of the lattice. Its cell's key is the floor of it.
   Eigen::Vector3d in_cells(const Eigen::Vector3d& point_m) const { return point_m * cells_per_m_; }

@@ -7,7 +7,7 @@
 
 namespace pingvox {
 
-/// Triangles that share their corners. Nothing is said about holes, or about which side is which.
+/// Triangles that share their corners. The mesh may have holes, and its faces any orientation.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< each index is below vertices_m.size()

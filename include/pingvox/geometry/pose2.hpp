@@ -6,7 +6,7 @@
 
 namespace pingvox {
 
-/// An angle in (-pi, pi] or thereabouts.
+/// An angle [rad] wrapped to (-pi, pi], within rounding.
 inline double wrap_angle(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * std::numbers::pi);
 }

@@ -21,7 +21,7 @@ constexpr std::size_t axis_of_min(const std::array<Number, 3>& next) {
 
 /// The order in which a segment crosses the faces between cells (Amanatides & Woo 1987), on integers: crossings of an
 /// axis lie at first + n * apart along the segment, and each axis has a known number of them. So no rounding can miss
-/// the end or run past it, which is what goes wrong in the paper's figures 11 and 12. They are compared in units of
+/// the end or run past it, as happens in the paper's figures 11 and 12. Crossings are compared in units of
 /// 2^-62 of the segment's length. Up to kMaxFacesIn64Bits they are added up in these units, too; beyond in units of
 /// 2^-126, or a long ray would drift.
 class FaceCrossings {
@@ -65,7 +65,7 @@ class FaceCrossings {
   /// Where the next face lies along the segment, 0..1. REQUIRES left() > 0.
   double share_at_next() const { return std::ldexp(static_cast<double>(next_[next_axis()]), -62); }
 
-  /// What is ahead along one axis, for walkers that count by themselves.
+  /// The remaining crossings along one axis, for tracers that count by themselves.
   struct OneAxis {
     static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t next = kNever;  ///< the next face, in units of 2^-62 of the segment; kNever: none left

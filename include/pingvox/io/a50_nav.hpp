@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// What a Water Linked DVL A50 or A125 says in lines of JSON on its TCP port, one by one (docs/formats.md).
+/// Parses the JSON lines that a Water Linked DVL A50 or A125 sends on its TCP port (docs/formats.md).
 class A50Nav {
  public:
   A50Nav();
@@ -19,7 +19,7 @@ class A50Nav {
   ~A50Nav();
 
   /// @param received_s  on the clock that times are wanted on
-  /// @return one sample of each quantity that the line tells; nullopt: the line is damaged
+  /// @return one sample of each quantity in the line; nullopt: the line is damaged
   std::optional<std::vector<NavSource>> add(std::string_view line, double received_s);
 
  private:

@@ -15,8 +15,8 @@ struct TimeSpan {
   double from_s = 0.0, to_s = 0.0;
 };
 
-/// What must be added to UTC to get local time: the quarter hours, 14 hours at most, with which the two overlap.
-/// nullopt: there are none, or several.
+/// Offset of local time from UTC: the multiple of a quarter of an hour, at most 14 hours, with which the two spans
+/// overlap. nullopt: there is none, or several.
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc);
 
 }  // namespace pingvox

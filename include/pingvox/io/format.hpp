@@ -62,8 +62,8 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
 /// The same for logs that are read as streams, by ByteStream::beginning() alone. nullopt: another format, or unknown.
 std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning);
 
-/// What a file that is to be written is by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .tum .pgm .yaml .asc .png);
-/// nullopt: none that we write.
+/// Format of a file to write, by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .tum .pgm .yaml .asc .png);
+/// nullopt: none that can be written.
 std::optional<Format> format_for_writing(std::string_view path);
 
 }  // namespace pingvox

@@ -15,7 +15,7 @@ struct MavlinkFrame {
   enum class Check {
     kRight,           ///< the checksum is right
     kRightPadded,     ///< right for the payload before its zeros at the end were cut off: what BlueOS sent until 2023
-    kUnknownMessage,  ///< a message that we have no definition of, so its checksum tells nothing
+    kUnknownMessage,  ///< a message without a known definition, so its checksum cannot be verified
     kWrong,
   };
 
@@ -23,7 +23,7 @@ struct MavlinkFrame {
   std::uint8_t system = 0, component = 0, sequence = 0;
   Check check = Check::kWrong;
   std::size_t payload_bytes = 0;            ///< as sent
-  std::array<std::uint8_t, 255> payload{};  ///< and zeros behind them, as fields that were not sent are
+  std::array<std::uint8_t, 255> payload{};  ///< followed by zeros for fields that were not sent
 };
 
 /// The frame that `bytes` begin with, and its length. `frame` is empty when they begin with none, or with less than a
@@ -42,8 +42,8 @@ struct MavlinkSender {
 std::vector<std::uint8_t> make_mavlink_frame(std::uint32_t message, std::span<const std::uint8_t> payload,
                                              const MavlinkSender& sender);
 
-/// Finds frames in bytes that come piece by piece, as from a serial line. Only frames whose checksum is right come out:
-/// without one nothing tells a frame from bytes that look like it.
+/// Finds frames in bytes that arrive in pieces, as from a serial line. Only frames with a correct checksum are
+/// returned: others cannot be distinguished from bytes that look like a frame.
 class MavlinkStream {
  public:
   /// Calls `take` for each frame that these bytes complete.

@@ -13,14 +13,14 @@
 
 namespace pingvox {
 
-/// What a navigation log holds.
+/// Contents of a navigation log.
 struct NavFile {
   NavLog log;
-  std::size_t records = 0;         ///< frames, records or lines that were read, also those without navigation in them
+  std::size_t records = 0;         ///< frames, records or lines that were read, with or without navigation
   std::vector<DamageKind> damage;  ///< in the order in which the kinds were met
 };
 
-/// Any navigation log, told by content. Frames are converted: whatever the device counts in, the log is in ours.
+/// Reads any navigation log; its content tells the format. Units and frames are converted to those of NavQuantity.
 /// @return kUnsupported when the file is none; with Damage::kFail, kCorrupt naming the first damage
 Result<NavFile> read_nav(const FileBytes& file, Damage damage = Damage::kSkip);
 /// The same. ROS bags are read as streams, other logs as a whole.

@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// Records what a Ping360 sends as a log of Ping Viewer (docs/formats.md), which `open_beams` reads.
+/// Records the bytes of a Ping360 as a log of Ping Viewer (docs/formats.md), which `open_beams` reads.
 class PingViewerRecorder {
  public:
   /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
@@ -18,12 +18,12 @@ class PingViewerRecorder {
 
   const std::string& path() const { return file_.path(); }
 
-  /// Appends the bytes of one read. They are with the operating system when it returns and outlive this process.
+  /// Appends the bytes of one read. They are passed to the operating system first, and outlive this process.
   /// @param time_ms  since the start of the log
   /// @return kIo: the file ends with the last whole record
   Result<void> append(std::uint64_t time_ms, std::span<const std::uint8_t> bytes);
 
-  /// Starts to write to the disk what is not there yet, without waiting for it.
+  /// Starts to flush the file to the disk, without waiting for it.
   void start_sync() { file_.start_sync(); }
 
  private:

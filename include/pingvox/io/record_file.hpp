@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// Time of a record as readers of recordings have it, to the last bit.
+/// Time of a record [s], to the last bit as readers of recordings give it.
 /// @param time_ms  since the start of the recording
 double recorded_time_s(std::uint64_t time_ms);
 
@@ -21,10 +21,10 @@ class RecordFile {
   static Result<RecordFile> create(const std::string& path);
 
   const std::string& path() const { return path_; }
-  /// Appends a record. It is with the operating system when this returns and outlives this process.
+  /// Appends a record. It is passed to the operating system before this returns, and outlives this process.
   /// @return kIo: the file ends with the last whole record
   Result<void> append(std::span<const std::uint8_t> record);
-  /// Starts to write to the disk what is not there yet, without waiting for it.
+  /// Starts to flush the file to the disk, without waiting for it.
   void start_sync();
 
  private:

@@ -18,12 +18,12 @@ class TlogRecorder {
 
   const std::string& path() const { return file_.path(); }
 
-  /// Appends a frame. It is with the operating system when this returns and outlives this process.
+  /// Appends a frame. It is passed to the operating system before this returns, and outlives this process.
   /// @param time_us  when it was received, since 1970
   /// @return kIo: the file ends with the last whole record
   Result<void> append(std::uint64_t time_us, std::span<const std::uint8_t> frame);
 
-  /// Starts to write to the disk what is not there yet, without waiting for it.
+  /// Starts to flush the file to the disk, without waiting for it.
   void start_sync() { file_.start_sync(); }
 
  private:

@@ -6,10 +6,10 @@
 
 namespace pingvox {
 
-/// What unknown cells do to a ray that is sent through a map.
+/// Effect of unknown cells on a ray through a map.
 enum class UnknownCells {
   kBlock,  ///< the ray ends at the first one
-  kPass,   ///< they are gone through like free ones
+  kPass,   ///< treated like free ones
 };
 
 /// Where a ray ended.

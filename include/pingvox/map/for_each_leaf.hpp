@@ -25,8 +25,8 @@ struct Leaf {
 };
 
 struct LeafQuery {
-  /// Deepest level to look at: inner nodes there are given as leaves, with what they say of their children (a coarser
-  /// map of the same space). nullopt: the leaves themselves.
+  /// Deepest level to visit: inner nodes there are visited as leaves with their own value (a coarser map of the same
+  /// space). nullopt: the leaves themselves.
   std::optional<int> max_depth;
   /// Only leaves that overlap this box [m] by more than a face.
   std::optional<Box> box;
@@ -34,7 +34,7 @@ struct LeafQuery {
 
 namespace detail {
 
-/// Where the cells of a brick lie in it.
+/// Positions of the cells of a brick.
 inline constexpr auto kPlaces = [] {
   std::array<BasicKey<std::uint8_t>, 64> places{};
   for (std::size_t cell = 0; cell < places.size(); ++cell) {
@@ -46,7 +46,7 @@ inline constexpr auto kPlaces = [] {
   return places;
 }();
 
-/// Which nodes a walk looks into. Types of their own, so that a walk over the whole map does nothing for it.
+/// Which nodes a walk enters. Separate types, so that a walk over the whole map pays nothing for the test.
 struct Everywhere {
   template <KeyWord W>
   bool overlaps(const BasicKey<W>&, int) const {

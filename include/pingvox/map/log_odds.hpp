@@ -35,7 +35,7 @@ struct Clamp {
   LogOdds highest = LogOdds::from_probability(0.971);
 };
 
-/// Where `belief` already is as sure as the clamp allows in the direction of `evidence`, or `evidence` says nothing.
+/// Whether `evidence` cannot change `belief`: it is at its clamp in that direction, or the evidence is 0.
 constexpr bool is_unchanged_by(LogOdds belief, LogOdds evidence, const Clamp& clamp) {
   return (evidence >= LogOdds(0.0F) && belief >= clamp.highest) ||
          (evidence <= LogOdds(0.0F) && belief <= clamp.lowest) || evidence == LogOdds(0.0F);

@@ -26,7 +26,7 @@ struct MapOptions {
   double resolution_m = 0.05;  ///< edge of a cell of the finest resolution, > 0
   int depth = Lattice::kDefaultDepth;
   Clamp clamp{};
-  Thresholds thresholds{};  ///< what counts as occupied and as free
+  Thresholds thresholds{};  ///< for classify()
   Parents parents = Parents::kMax;
   std::size_t memory_limit_bytes = 0;  ///< for what `memory_bytes` counts; 0: none
 
@@ -38,19 +38,19 @@ struct Box {
   Eigen::Vector3d min, max;
 };
 
-/// How much a map holds. Cells are of the finest resolution, whatever was pruned; sums that pass 2^64 - 1 stay there.
+/// Size of a map. Cells are of the finest resolution, whatever was pruned; sums saturate at 2^64 - 1.
 struct MapCounts {
   std::uint64_t leaves = 0, inner = 0;
   std::uint64_t occupied_cells = 0, free_cells = 0, undecided_cells = 0;
   std::uint64_t nodes() const { return leaves + inner; }
 };
 
-/// What a scan did: cells of the finest resolution that it updated.
+/// Effect of a scan: cells of the finest resolution that it updated.
 struct ApplyReport {
   std::uint64_t cells_freed = 0, cells_hit = 0;
 };
 
-/// Where space is occupied, free, or not yet seen: an octree of log-odds over a Lattice, after OctoMap (Hornung et al.
+/// A map of occupied, free and unknown space: an octree of log-odds over a Lattice, after OctoMap (Hornung et al.
 /// 2013). Given the same freed and hit cells it holds what liboctomap's OcTree holds, bit for bit. Its nodes live in
 /// pools over bricks of 4 x 4 x 4 cells (docs/architecture.md). Const functions may run in many threads at once.
 class OccupancyMap {
@@ -94,10 +94,10 @@ class OccupancyMap {
   /// Bytes of the tree's storage, free room in its pools included.
   std::size_t memory_bytes() const;
 
-  /// Takes one scan in: each cell it freed or hit gets its evidence once, clamped; then parents are right and the tree
-  /// is pruned. @return kLimit when memory_limit_bytes would be passed, kBadOption for a scan made for another lattice:
-  /// the map is as before then. kNoMemory when memory ran out: some of the scan's cells have got their evidence then,
-  /// and the map is as good as any.
+  /// Applies one scan: each cell it missed or hit gets its evidence once, clamped; then parents are up to date and the
+  /// tree is pruned. @return kLimit when memory_limit_bytes would be passed, kBadOption for a scan made for another
+  /// lattice: the map is as before then. kNoMemory when memory ran out: some of the scan's cells have got their
+  /// evidence then, and the map is as good as any.
   Result<ApplyReport> apply(const ScanUpdate& scan);
 
   /// A batch of updates (paper, section 5.5): each key's cell gets the evidence as often as the key is named, in the
@@ -114,7 +114,7 @@ class OccupancyMap {
   /// For many single updates. REQUIRES no other editor of this map alive.
   [[nodiscard]] Editor edit(Pruning pruning = Pruning::kLazy);
 
-  /// Forgets everything and gives the storage back.
+  /// Removes all cells and frees the storage.
   void clear();
 
  private:
@@ -143,12 +143,12 @@ class Editor {
   template <KeyWord W>
   void update(const BasicKey<W>& key, LogOdds evidence);
 
-  /// Makes the whole cell at `depth` that holds `key` have this belief, not clamped. For readers.
+  /// Sets the belief of the whole cell at `depth` that holds `key`, without clamping. For readers.
   /// REQUIRES a finite belief.
   template <KeyWord W>
   void set(const BasicKey<W>& key, int depth, LogOdds belief);
 
-  /// Makes all inner nodes right and, unless Pruning::kNever, joins equal leaves.
+  /// Updates all inner nodes and, unless Pruning::kNever, joins equal leaves.
   void synchronize();
 
  private:

@@ -15,7 +15,7 @@ namespace pingvox {
 struct PointScan {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< map frame
   std::vector<Eigen::Vector3d> points_m;               ///< map frame
-  /// How the sensor was turned: map_from_sensor. The identity where the log does not tell.
+  /// Rotation of the sensor: map_from_sensor. The identity where the log has none.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   std::size_t number = 0;  ///< of the scan in its log, counted from 0, with those that were left out
 };
@@ -30,7 +30,7 @@ class ScanSource {
   virtual std::size_t skipped() const { return 0; }
   /// Place and reason of the first one, as in "line 23: is not a point of three finite numbers"; empty: none.
   virtual std::string first_damage() const { return {}; }
-  /// How much of all there is was read so far, 0..1, for a progress bar; nullopt: not known.
+  /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };
 

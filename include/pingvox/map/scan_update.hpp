@@ -14,9 +14,9 @@
 
 namespace pingvox {
 
-/// What one scan (a sweep, a beam, a cloud) says: which cells sound passed through and which it came back from. Each
-/// cell is updated once: a hit beats a miss, and of several hits the surest counts. Marks go into bit masks, so
-/// overlapping rays cost nothing and nothing is hashed but one page in 4096 cells.
+/// Cell updates of one scan (a sweep, a beam, a cloud): the cells that sound passed through and those it came back
+/// from. Each cell is updated once: a hit beats a miss, and of several hits the one with the most evidence counts.
+/// Marks go into bit masks, so overlapping rays cost nothing and nothing is hashed but one page in 4096 cells.
 class ScanUpdate {
  public:
   /// A cube of 16^3 cells: 4^3 bricks of 4^3 cells. Brick o * 8 + i, like cells in a brick, is in the tree's order.
@@ -35,7 +35,7 @@ class ScanUpdate {
     LogOdds all{};
   };
 
-  /// @param lattice  of the map that it is for: other maps refuse it
+  /// @param lattice  of the map to update: other maps refuse the scan
   /// @param miss     evidence for a cell that sound passed through
   explicit ScanUpdate(const Lattice& lattice, LogOdds miss = LogOdds::from_probability(0.4))
       : lattice_(lattice), miss_(miss) {}
@@ -55,7 +55,7 @@ class ScanUpdate {
     mark_hit(page_of(key.template as<WideWord>()), cell_in_page(key), evidence);
   }
 
-  /// For tracers that stay in a page for many cells: its index, made if it is not there.
+  /// Index of a page, which is created if needed: for tracers that stay in it for many cells.
   std::uint32_t page_of(const WideKey& key) {
     const auto page = [](WideWord word) { return static_cast<std::size_t>(word >> kPageBits); };
     const std::size_t x = page(key.x) ^ page(key.z) << 2, y = page(key.y) ^ page(key.z);
@@ -72,7 +72,7 @@ class ScanUpdate {
     in.bricks |= std::uint64_t{1} << brick;
     in.missed[brick] |= cells;
   }
-  /// The same for all bricks of a page, a word each: what tracers of many rays hand over.
+  /// The same for all bricks of a page, a word each, for tracers of many rays.
   void mark_missed_in(std::uint32_t page, std::span<const std::uint64_t, 64> cells_of_bricks);
   void mark_hit(std::uint32_t page, std::size_t cell, LogOdds evidence) {
     mark_hit_in(page, cell / 64, std::uint64_t{1} << (cell % 64), evidence);
@@ -97,10 +97,10 @@ class ScanUpdate {
   const Lattice& lattice() const { return lattice_; }
   LogOdds miss() const { return miss_; }
   bool empty() const { return used_ == 0; }
-  /// Forgets all marks and keeps the memory for the next scan.
+  /// Removes all marks and keeps the memory for the next scan.
   void clear();
 
-  /// Takes over all marks of another scan, of which several threads may each have traced a part.
+  /// Adds all marks of another scan, such as the part that another thread has traced.
   /// REQUIRES the same lattice and evidence of misses.
   void add(const ScanUpdate& other);
 

@@ -15,9 +15,9 @@ namespace pingvox {
 class OccupancyMap;
 struct MapOptions;
 
-/// What an inner node says of its children (paper, section 5.3.1).
+/// Value of an inner node (paper, section 5.3.1).
 enum class Parents {
-  kMax,   ///< the largest log-odds below: careful, a planner that looks at inner nodes misses no obstacle
+  kMax,   ///< the largest log-odds below it: a planner that reads inner nodes misses no obstacle
   kMean,  ///< the mean log-odds of the children that are known: the least error
 };
 
@@ -37,7 +37,7 @@ struct Entry {
   static constexpr std::uint32_t kNone = 0;  ///< nothing is known below; value is 0
   static constexpr std::uint32_t kLeaf = 1;  ///< value holds for the whole cell
   std::uint32_t link = kNone;                ///< else: index of its Group, or at brick level of its Brick
-  /// Of an inner node: what it says of its children. At brick level, whenever a map can be read, a maximum is never
+  /// Of an inner node: its value by Parents. At brick level, whenever a map can be read, a maximum is never
   /// less than the values below, also where an editor has not brought it up to date yet: writers rely on that.
   float value = 0.0F;
 
@@ -53,7 +53,7 @@ struct alignas(64) Group {
   std::array<Entry, 8> child;
 };
 
-/// What is believed of the cells of a brick, as log-odds. That of an unknown cell is 0.
+/// Log-odds of the cells of a brick; 0 for unknown cells.
 using CellValues = std::array<float, 64>;
 
 /// The bottom two levels: 4 x 4 x 4 cells. Cell o * 8 + i is child i of octant o, so that each octant is a byte of the
@@ -92,7 +92,7 @@ float summary_of_octant(BrickView brick, int octant, Parents parents);
 /// The cells of those octants of which all cells are known, and equal.
 std::uint64_t cells_of_uniform_octants(BrickView brick);
 
-/// Which cells of a brick are what. Those in neither mask are unknown, or in between the thresholds.
+/// Occupied and free cells of a brick. Those in neither mask are unknown, or between the thresholds.
 struct CellStates {
   std::uint64_t free = 0, occupied = 0;
 };
@@ -110,7 +110,7 @@ class TreeBuilder {
   TreeBuilder& operator=(const TreeBuilder&) = delete;
   ~TreeBuilder();
 
-  /// The entry for a brick of cells that are as sure as can be. It is stored unless it is uniform, or nothing is known
+  /// The entry for a brick whose cells are at their clamp. It is stored unless it is uniform, or nothing is known
   /// in it. Throws std::bad_alloc. REQUIRES masks without a common bit.
   Entry add(const CellStates& cells);
   /// The same for a group of what was added before.
@@ -132,7 +132,7 @@ class NodeView {
  public:
   /// Depth below the root of the lattice.
   int depth() const { return depth_ - extra_levels_; }
-  /// Of an inner node: what it says of its children (Parents).
+  /// Of an inner node: its value by Parents.
   LogOdds belief() const { return LogOdds(value_); }
   bool is_leaf() const { return kind_ == Kind::kLeaf; }
   /// Child in octant 0..7 (bit 0 x, bit 1 y, bit 2 z); nullopt: nothing is known there, or this is a leaf.

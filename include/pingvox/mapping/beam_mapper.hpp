@@ -12,14 +12,14 @@
 
 namespace pingvox {
 
-/// Maps beams as they come: a live device's, or a log's (build_map). A beam's echo depends on its neighbours, so it
-/// goes into the map later than it came:
+/// Maps beams as they arrive from a live device, or from a log (build_map). A beam's echo depends on its neighbours, so
+/// the beam is mapped with a delay:
 ///
-/// - Timing::kBySweep: with its sweep, when the first beam behind that comes.
-/// - Timing::kByBeam: when delay_beams() more of its sweep have come. The first and the last delay_beams() of a sweep
-///   come with its end: only then it is known whether they are neighbours, as in a full turn.
+/// - Timing::kBySweep: with its sweep, when the first beam of the next one arrives.
+/// - Timing::kByBeam: after delay_beams() more of its sweep. The first and the last delay_beams() of a sweep are mapped
+///   at its end: only then is it known whether they are neighbours, as in a full turn.
 ///
-/// Between two calls the map may be read: its parents are right and it is pruned.
+/// Between two calls the map may be read: its parents are up to date and it is pruned.
 class BeamMapper {
  public:
   /// @param map  has to outlive the mapper
@@ -30,19 +30,19 @@ class BeamMapper {
   ~BeamMapper();
 
   /// Takes the next beam, which must be valid, and maps those that are due.
-  /// @param map_from_body  where the vehicle was when it was heard; nullopt: not known. Such a beam is left out and
-  ///        counted, though what it heard still counts for its neighbours' echoes.
-  /// @return kLimit when the map or a beam would grow too large, kNoMemory when memory ran out. The map keeps what it
-  ///         had got; the beams that wait are lost, and the next one begins a new sweep.
+  /// @param map_from_body  pose of the vehicle at its time; nullopt: not known. Such a beam is left out and
+  ///        counted, but still used for the echoes of its neighbours.
+  /// @return kLimit when the map or a beam would grow too large, kNoMemory when memory ran out. The map keeps the
+  ///         beams before; the waiting ones are lost, and the next one begins a new sweep.
   Result<void> add(Beam beam, const std::optional<Pose>& map_from_body);
 
   /// Maps the beams that still wait. The next one begins a new sweep. @return as for `add`
   Result<void> finish();
 
-  /// What became of the beams so far; those that wait are not in it.
+  /// Report of the beams so far, without those that wait.
   const BuildReport& report() const;
 
-  /// For how many more beams of its sweep one waits; nullopt: for the end of its sweep.
+  /// Number of later beams of its sweep that a beam waits for; nullopt: for the end of its sweep.
   std::optional<std::size_t> delay_beams() const;
 
  private:

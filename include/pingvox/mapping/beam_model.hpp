@@ -17,26 +17,26 @@
 
 namespace pingvox {
 
-/// What a beam is taken to have insonified.
+/// Volume that a beam is assumed to insonify.
 enum class BeamShape {
   kRay,   ///< its axis only: the paper's 2D map
   kFan,   ///< its horizontal width, in the plane of the head
   kCone,  ///< width and height, on the sphere: the echo may come from anywhere on an arc
 };
 
-/// Where a hit's evidence comes from.
+/// Evidence of a hit.
 enum class HitFrom {
   kFixed,      ///< `hit` for each echo
-  kIntensity,  ///< as sure as the echo was strong, see `evidence_of_intensity`
+  kIntensity,  ///< by the intensity of the echo, see `evidence_of_intensity`
 };
 
-/// What a beam without an echo says.
+/// Meaning of a beam without an echo.
 enum class Silent {
   kNothing,  ///< nothing: the sound may have been absorbed, or reflected away
   kFree,     ///< its cells are free up to the end of its bins
 };
 
-/// How fan and cone find the cells that they filled with sound.
+/// How fan and cone find the cells in their volume.
 enum class Tracing {
   kGeometry,  ///< from the volume's closed form (insonified_volume.hpp)
   kBundle,    ///< by rays as dense as the far end needs: slower, to check the first
@@ -47,9 +47,9 @@ struct BeamModelOptions {
   Tracing tracing = Tracing::kGeometry;
   double width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontal, full angle; Micron data sheet
   double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, full angle; Micron data sheet
-  /// Of width and height, about the axis: where an echo's silence before it frees cells. They are those of half power
-  /// one way; within 0.72 of them (sin(u) / u again) it is half power both ways. What stands farther out answers with
-  /// less than half and may not be heard. An echo may come from all of the beam nevertheless.
+  /// Central fraction of width and height that frees cells. Width and height are those of half power one way; within
+  /// 0.72 of them (of sin(u) / u) it is half power both ways. Objects farther out return less than half and may not be
+  /// detected. Hits use the whole beam nevertheless.
   double free_share = 0.72;
   RayAlgorithm ray = RayAlgorithm::kDda;
   HitFrom hit_from = HitFrom::kIntensity;
@@ -63,10 +63,10 @@ struct BeamModelOptions {
 /// linear in between. Monotone, and never more than `hit`.
 LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit);
 
-/// Share of an echo's evidence for a cell of its arc. The arc is `cells_on_arc` cells long and sound came back from at
-/// least one of them, so the evidence is thinned by the fourth root of their number (between 1, as if it came from all,
-/// and 1/n, as if from one; judged by simulated truth, docs/decisions.md), and by the vertical beam pattern: half at
-/// the edge, where the beam is 3 dB weaker. A cell that lies on the edge may have its middle beyond it.
+/// Share of an echo's evidence for a cell of its arc. The arc is `cells_on_arc` cells long and the echo came from at
+/// least one of them, so the evidence is divided by the fourth root of their number (a compromise between 1, as if it
+/// came from all, and n, as if from one; docs/decisions.md), and weighted by the vertical beam pattern: half at the
+/// edge, where the beam is 3 dB weaker. A cell on the edge may have its middle beyond it.
 double share_on_arc(double elevation_rad, double height_rad, double cells_on_arc);
 
 /// Directions (unit, sensor frame) that fill the beam so densely that each cell whose centre lies in the insonified
@@ -78,15 +78,15 @@ struct BundleRay {
 std::vector<BundleRay> beam_bundle(const BeamModelOptions& options, double bearing_rad, double range_m,
                                    double resolution_m);
 
-/// About how many cells a beam fills with sound up to a range [m].
+/// Approximate number of cells in a beam up to a range [m].
 double cells_in_beam(const BeamModelOptions& options, double range_m, double resolution_m);
 
-/// The most that `build_map` takes for one beam: such a scan needs some hundred megabytes.
+/// Maximum for one beam in `build_map`: such a scan needs some hundred megabytes.
 inline constexpr double kMaxCellsInBeam = 3e8;
 
-/// Adds to `scan` what one beam says: cells freed up to the first bin of the echo (from there on sound came back),
-/// cells hit at its range with their share of the evidence. What lies between the two stays as it was.
-/// @param map_from_sensor  the head's pose when the beam was heard
+/// Adds one beam to `scan`: cells missed up to the first bin of the echo, and cells hit at its range with their share
+/// of the evidence. Cells between the two are not updated.
+/// @param map_from_sensor  pose of the head at the beam's time
 /// @return the number of rays left out because an end of them lies outside of the scan's lattice
 std::size_t trace_beam(const Pose& map_from_sensor, const Beam& beam, const std::optional<Echo>& echo,
                        const BeamModelOptions& options, ScanUpdate& scan);

@@ -12,14 +12,14 @@
 
 namespace pingvox {
 
-/// Called after each scan with the beams so far, so that a caller can show how far it is.
+/// Called after each scan with the report so far, to show the progress.
 using Progress = std::function<void(const BuildReport&)>;
 
-/// From the beams of a source to a map: a BeamMapper, fed to the end. A beam that heard only what is beyond
-/// echo.max_range_m frees its cells up to there.
+/// Maps all beams of a source by a BeamMapper. A beam whose only echo is beyond echo.max_range_m frees cells up to
+/// there.
 /// @param map_from_body  where the vehicle was; beams outside of its time are left out and counted
 /// @return kBadOption when the options do not validate, the source's error when it fails, kLimit when the map would
-///         grow too large, kNoMemory when memory ran out. The map keeps what it had got.
+///         grow too large, kNoMemory when memory ran out. The map keeps the beams before.
 Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_body, const BuildOptions& options,
                               OccupancyMap& map, const Progress& progress = {});
 

@@ -21,15 +21,15 @@ enum class Vote {
 
 /// When a beam goes into the map.
 enum class Timing {
-  kBySweep,  ///< with its sweep, when that is finished: the least work, and beams in the order in which they were heard
-  kByBeam,   ///< as soon as the beams around it that decide about its echo are heard; wants Vote::kPerBeam
+  kBySweep,  ///< with its sweep, when that is complete: the least work, and beams in the order of recording
+  kByBeam,   ///< as soon as the neighbours that affect its echo are there; needs Vote::kPerBeam
 };
 
 struct BuildOptions {
   FilterOptions filter;
   EchoOptions echo;  ///< its max_range_m: no cell farther away is touched, by rays of points neither
   BeamModelOptions model;
-  LogOdds miss = LogOdds::from_probability(0.4);  ///< evidence of sound having passed
+  LogOdds miss = LogOdds::from_probability(0.4);  ///< evidence of a beam that passed through a cell
   Vote vote = Vote::kPerSweep;
   Timing timing = Timing::kBySweep;
   Pose body_from_sensor = Pose::Identity();  ///< the mount
@@ -44,22 +44,22 @@ struct BuildOptions {
 /// Beams (or points) that were left out for one reason.
 struct LeftOut {
   std::size_t count = 0;
-  std::optional<double> first_s;  ///< when the first of them was heard; not known of points
+  std::optional<double> first_s;  ///< time of the first one; unknown for points
 
   void add(double time_s) {
     if (count++ == 0) first_s = time_s;
   }
 };
 
-/// What was read and what became of it.
+/// Counts of what was read and mapped.
 struct BuildReport {
   std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
   std::size_t sweeps = 0;   ///< complete ones whose beams were all mapped (or point scans)
   std::size_t echoes = 0;   ///< within max_range_m; of point scans all points
   std::size_t skipped = 0;  ///< damaged, without a pose, blocked, or outside
-  LeftOut no_pose;          ///< of those skipped, those heard when the pose is not known
+  LeftOut no_pose;          ///< of those skipped, those at times without a pose
   LeftOut blocked;          ///< of those skipped, those with an obstacle of the map nearer than the blanking range
-  LeftOut outside;          ///< of those skipped, the ones that a part of lies outside of the lattice
+  LeftOut outside;          ///< of those skipped, those that are partly outside of the lattice
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
   std::optional<double> first_s, last_s;            ///< least and greatest time of a beam, mapped or not
   std::uint64_t cells_freed = 0, cells_hit = 0;     ///< cell updates, summed over scans

@@ -6,7 +6,7 @@
 
 namespace pingvox {
 
-/// What a beam filled with sound until its echo: a wedge of `width` and `height` about its axis, on the sphere.
+/// Volume of a beam up to its echo: a wedge of `width` and `height` about its axis, on the sphere.
 struct InsonifiedVolume {
   Pose map_from_sensor = Pose::Identity();
   double bearing_rad = 0.0;

@@ -18,8 +18,8 @@ struct ObstacleOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// What is nearest to a vehicle on the horizontal plane, in sectors of 5 degrees: the first one in the middle ahead,
-/// the others clockwise seen from above.
+/// Nearest obstacles around a vehicle in the horizontal plane, in sectors of 5 degrees: the first one is centred ahead,
+/// the others follow clockwise seen from above.
 struct ObstacleSectors {
   static constexpr std::size_t kSectors = 72;
   enum class What {

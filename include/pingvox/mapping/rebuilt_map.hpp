@@ -12,11 +12,11 @@
 
 namespace pingvox {
 
-/// A map of beams as they come, whose poses may be corrected later, as by SLAM that closes a loop. It keeps of each
-/// beam what its echo said and where it was heard (some 250 bytes). A corrected trajectory starts a thread that builds
-/// the map anew; meanwhile beams go on into the old map, and into the new one too as soon as that is ready and takes
-/// its place. Without a correction under way it is, to the bit, the map that a BeamMapper makes of all beams at their
-/// last poses. Of one caller: its functions may not be called from several threads at once.
+/// A map of beams as they arrive, whose poses may be corrected later, for instance when SLAM closes a loop. It keeps
+/// the echo and the pose of each beam (some 250 bytes). A corrected trajectory starts a thread that builds the map
+/// anew; meanwhile beams are added to the old map, and also to the new one before that replaces it. When no correction
+/// is under way it is, to the bit, the map that a BeamMapper makes of all beams at their last poses. Not thread-safe:
+/// its functions must not be called from several threads at once.
 class RebuiltMap {
  public:
   /// @return kBadOption when options do not validate, kNoMemory when memory ran out
@@ -37,8 +37,8 @@ class RebuiltMap {
   /// Maps the beams that still wait; the next one begins a new sweep. @return as for `add`
   Result<void> finish();
 
-  /// Says where the vehicle was. All beams so far get the pose at their time; those after the end of the trajectory are
-  /// moved as the last one before it; others have none. The map is rebuilt in the background, or, if that is under way,
+  /// Corrects the trajectory. All beams so far get the pose at their time; those after its end are moved like the last
+  /// one before it; others have none. The map is rebuilt in the background, or, if that is under way,
   /// as soon as it is done: of several trajectories that came meanwhile, for the last one. For that time there are two
   /// maps.
   /// @return kNoMemory when memory ran out: poses and map are as before
@@ -53,10 +53,10 @@ class RebuiltMap {
   /// Waits until no corrected map is under way any more. @return as for `add`
   Result<void> wait();
 
-  /// The newest whole map. Any other call may change or replace it.
+  /// The newest complete map. Any other call may change or replace it.
   const OccupancyMap& map() const;
 
-  /// What became of the beams in `map`; `seconds` are those of the map's own making, without detection.
+  /// Report of the beams in `map`; `seconds` are those of building it, without detection.
   const BuildReport& report() const;
 
  private:

@@ -12,20 +12,20 @@
 
 namespace pingvox {
 
-/// Poses of a vehicle while it moves, by samples of navigation as they come. Which sources are taken is decided once a
-/// second of an attitude and of a position has come, as nav_trajectory does for a log; they are kept from then on.
+/// Poses of a moving vehicle from navigation samples as they arrive. The sources are chosen as by nav_trajectory, after
+/// one second of an attitude and of a position, and kept from then on.
 /// Fixes become positions relative to the first one, at the last known depth. The samples of the last minute are kept.
 class LivePoses {
  public:
   /// Takes a sample; those that are not valid, not finite or not later than the last one of their source are left out.
   void add(const std::string& source, NavQuantity quantity, const NavSample& sample);
 
-  /// map_from_body; nullopt: not known, or not yet: a pose is between two samples of each source, with no gap between.
+  /// map_from_body; nullopt: not known (yet): a pose needs samples of each source before and after it, without a gap.
   std::optional<Pose> at(double time_s) const;
   /// Later poses may become known by further samples; earlier ones do not. nullopt: none is known so far.
   std::optional<double> known_until_s() const;
 
-  /// Names of the sources; empty: not decided yet.
+  /// Names of the sources; empty: not chosen yet.
   const std::string& attitude() const { return attitude_; }
   const std::string& position() const { return position_; }
 

@@ -30,34 +30,34 @@ enum class NavQuantity {
 std::string_view name_of(NavQuantity quantity);
 /// The quantity of a name that `name_of` gives; nullopt: none has it.
 std::optional<NavQuantity> nav_quantity_of(std::string_view name);
-/// How many of a sample's numbers mean something: 1 or 3.
+/// Number of values that a sample of this quantity uses: 1 or 3.
 int numbers_of(NavQuantity quantity);
 
 /// One measurement. Numbers that the quantity does not use are 0.
 struct NavSample {
   double time_s = 0.0;  ///< on the log's clock
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  /// Standard deviation of each number, in its unit; NaN where nobody says.
+  /// Standard deviation of each number, in its unit; NaN: unknown.
   Eigen::Vector3d deviation = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  bool valid = true;  ///< false: the device itself says that it is not to be used
+  bool valid = true;  ///< false: marked as invalid by the device
 };
 
-/// What one sensor said of one quantity, in order of time.
+/// The samples of one quantity by one sensor, in order of time.
 struct NavSource {
   std::string name;  ///< as the log names it: "ATTITUDE", "DISTANCE_SENSOR 1/194"
   NavQuantity quantity = NavQuantity::kVelocity;
   std::vector<NavSample> samples;
 };
 
-/// What the times of a log count from.
+/// Origin of the times of a log.
 enum class NavClock {
   kUnix,    ///< 1970-01-01 UTC
   kBoot,    ///< the start of the device
-  kUnknown  ///< nobody says
+  kUnknown  ///< not known
 };
 std::string_view name_of(NavClock clock);
 
-/// Everything that a log says of where a vehicle was and how it moved.
+/// All navigation of a log: where a vehicle was and how it moved.
 class NavLog {
  public:
   /// Takes samples in any order; those of a source are put in order of time, equal times as they came. Sources without
@@ -81,7 +81,7 @@ class NavLog {
 /// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.
 std::optional<NavSource> depth_source(const NavLog& log);
 
-/// A source at a glance.
+/// Summary of a source.
 struct NavSummary {
   std::size_t samples = 0;
   std::size_t invalid = 0;  ///< of these, how many are not valid

@@ -13,7 +13,7 @@ namespace pingvox {
 /// some kilometres.
 Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3d& origin);
 
-/// Where a vehicle was, as its log says.
+/// Trajectory of a vehicle by its navigation log.
 struct NavTrajectory {
   /// From the body to the frame of the position: x east, y north, z up [m]. It has a pose at each time of either source
   /// at which both are known, and a gap where one of them has one.
@@ -21,16 +21,16 @@ struct NavTrajectory {
   std::string attitude, position;  ///< the names of the sources
 };
 
-/// Of each quantity the estimate of the autopilot's main filter, else the source with most valid samples; before that,
-/// an attitude that comes with the position. A position in metres is taken as it is; a log without one gives fixes as
-/// metres east and north of the first fix, at the depth where the log has it, else at the altitude relative to that
-/// fix.
+/// Sources: of the attitude the one that comes with the position, if any; else of each quantity the estimate of the
+/// autopilot's main filter, else the source with most valid samples. A position in metres is used unchanged; without
+/// one, fixes become metres east and north of the first fix, at the depth if the log has it, else at the altitude
+/// relative to that fix.
 /// @param offset_s  added to all times
 /// @return kUnsupported when the log has no valid attitude or position, or never both at a time
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
 
-/// The positions alone, as poses that are not turned: the reference that fixes are for another trajectory. `attitude`
-/// is empty.
+/// The positions alone, as poses without rotation: a reference of fixes for another trajectory.
+/// The result's `attitude` is empty.
 /// @return kUnsupported when the log has no valid position
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s = 0.0);
 

@@ -12,16 +12,16 @@ struct ErrorStatistics {
   double mean_m = 0.0, sd_m = 0.0, rmse_m = 0.0, max_m = 0.0;
 };
 
-/// How far a trajectory is from a reference in the horizontal plane (x, y), as it is and after three alignments: one
-/// alone may flatter or blame the wrong part.
+/// Error of a trajectory against a reference in the horizontal plane (x, y), unaligned and after three alignments,
+/// since a single one may hide an error or charge it to the wrong part.
 struct TrajectoryScore {
   std::size_t poses = 0;    ///< of the reference at whose times the trajectory is known
   std::size_t outside = 0;  ///< the others
-  /// Between positions as they are, also in z [m].
+  /// Between unaligned positions, also in z [m].
   double max_difference_m = 0.0;
 
-  ErrorStatistics none;         ///< as they are, for trajectories in the same frame
-  ErrorStatistics first_fix;    ///< shifted so that the first matched positions are one
+  ErrorStatistics none;         ///< unaligned, for trajectories in the same frame
+  ErrorStatistics first_fix;    ///< shifted so that the first matched positions coincide
   ErrorStatistics translation;  ///< shifted by the mean difference
   ErrorStatistics se2;          ///< turned and shifted so that the sum of squares is least
   double se2_turn_rad = 0.0;    ///< by which that alignment turns the trajectory, counter-clockwise

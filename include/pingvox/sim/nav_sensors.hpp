@@ -43,11 +43,11 @@ struct NavSensorOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Errors that were drawn: what a calibration should find. Signs as in SlamCalibration.
+/// The errors that were drawn, which a calibration should find. Signs as in SlamCalibration.
 struct NavSensorErrors {
   double dvl_yaw_rad = 0.0;  ///< by which the DVL is turned on the vehicle, counter-clockwise
   double dvl_scale = 0.0;    ///< true over measured velocity, less 1
-  /// The compass says yaw + constant + sin1 sin(yaw) + cos1 cos(yaw) + sin2 sin(2 yaw) + cos2 cos(2 yaw).
+  /// The compass measures yaw + constant + sin1 sin(yaw) + cos1 cos(yaw) + sin2 sin(2 yaw) + cos2 cos(2 yaw).
   double constant_rad = 0.0, sin1_rad = 0.0, cos1_rad = 0.0, sin2_rad = 0.0, cos2_rad = 0.0;
   double gyro_bias_start_rad_s = 0.0, gyro_bias_end_rad_s = 0.0;  ///< about the vertical axis
 };
@@ -59,7 +59,7 @@ struct SimulatedNav {
   NavSensorErrors errors;
 };
 
-/// What the sensors say along a true trajectory. The same options give the same numbers. REQUIRES valid options,
+/// Measurements of the sensors along a true trajectory. The same options give the same numbers. REQUIRES valid options,
 /// from_s <= to_s and at most 100,000 s.
 SimulatedNav simulate_nav(const Trajectory& map_from_body, double from_s, double to_s, const NavSensorOptions& options);
 

@@ -13,16 +13,16 @@
 namespace pingvox {
 
 struct BackgroundOptions {
-  /// How far the vehicle reaches [m], in (0, kMaxRange_m]: bins beyond it are no background. What stands nearer than
-  /// this in most beams of a direction is taken for the vehicle, also a wall that a still sonar looks at.
+  /// Range of the vehicle's outermost part [m], in (0, kMaxRange_m]: bins beyond it are no background. Whatever is
+  /// nearer in most beams of a direction counts as the vehicle, even a wall in front of a still sonar.
   double range_m = 1.5;
   static constexpr double kMaxRange_m = 10.0;
 
   Result<void> validate() const;  ///< kBadOption
 };
 
-/// What a sonar hears of its own vehicle, by direction and range: the median intensity of all beams of a log, in
-/// directions of one degree and cells of kCell_m. Where fewer than kMinBeams were heard there is none.
+/// Echoes of the sonar's own vehicle, by direction and range: the median intensity of all beams of a log, in directions
+/// of one degree and cells of kCell_m. Directions with fewer than kMinBeams beams have none.
 class Background {
  public:
   /// Learns from the rest of a log.

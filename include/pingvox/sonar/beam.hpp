@@ -13,7 +13,7 @@
 
 namespace pingvox {
 
-/// What the sonar heard of one ping in one direction.
+/// Intensities that the sonar received from one ping in one direction.
 struct Beam {
   double time_s = 0.0;        ///< on the log's own clock; finite
   double bearing_rad = 0.0;   ///< sensor frame: 0 ahead (x), counter-clockwise seen from above; in [0, 2 pi)
@@ -44,7 +44,7 @@ struct DamageKind {
 /// Place and reason of the first one, as in "byte 23: wrong checksum".
 std::string first_damage_text(const DamageKind& kind);
 
-/// Beams in the order in which they were heard: a log, a simulator, later a live device.
+/// Beams in the order of recording: a log, a simulator, or a live device.
 class BeamSource {
  public:
   virtual ~BeamSource() = default;

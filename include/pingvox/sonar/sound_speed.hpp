@@ -4,7 +4,7 @@
 
 namespace pingvox {
 
-/// What the speed of sound in water depends on.
+/// Properties of water that determine the speed of sound.
 struct Water {
   double temperature_c = 0.0;  ///< 0..35
   double salinity = 0.0;       ///< practical salinity (about grams of salt in a kilogram), 0..45: 0 fresh, 35 the ocean

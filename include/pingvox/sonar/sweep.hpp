@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// The beams of one turn of the head, or of one pass over its sector, in the order in which they were heard.
+/// The beams of one turn of the head, or of one pass over its sector, in the order of recording.
 struct Sweep {
   enum class Extent {
     kTurn,    ///< 360 degrees: the last beam is a neighbour of the first
@@ -36,7 +36,7 @@ struct Sweep {
 /// - kMaxBeams beams, or an image of kMaxPixels, end it as kCut: a head that stands still must not fill the memory.
 class SweepAssembler {
  public:
-  /// Twice what the finest head (1/16 gradian) hears in a turn.
+  /// Twice the beams in a turn of the finest head (1/16 gradian).
   static constexpr std::size_t kMaxBeams = 12'800;
   /// Beams times bins of the longest one; a single longer beam is a sweep of its own.
   static constexpr std::size_t kMaxPixels = std::size_t{1} << 25;

@@ -21,8 +21,8 @@ struct CartesianPictureOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// One sweep seen from above (paper, figures 2 and 4): ahead (x) is up, left (y) is left, brighter is louder, with
-/// markers at the echoes, range rings, and bearings counter-clockwise from ahead.
+/// One sweep seen from above (paper, figures 2 and 4): ahead (x) is up, left (y) is left, brighter is more intense,
+/// with markers at the echoes, range rings, and bearings counter-clockwise from ahead.
 /// @param image   the sweep's image, filtered or not
 /// @param echoes  one for each beam, or empty
 /// REQUIRES valid options, image.rows() == sweep.beams.size(), echoes.size() the same or 0

@@ -21,8 +21,8 @@ struct EchoPictureOptions {
 };
 
 /// Beams in polar coordinates (paper, figure 3): a row for each beam, the first on top, range to the right, brighter is
-/// louder, with a marker at each echo. With few beams, rows are several pixels high; with many, several beams share a
-/// row, which shows the maximum and all echoes. Beam numbers at the left, bearings at the right.
+/// more intense, with a marker at each echo. With few beams, rows are several pixels high; with many, several beams
+/// share a row, which shows the maximum and all echoes. Beam numbers at the left, bearings at the right.
 /// @param beams   a log or one sweep
 /// @param echoes  one for each beam, or empty
 /// REQUIRES valid options, beams that validate, echoes.size() == beams.size() or 0

@@ -73,7 +73,7 @@ void rows_of_layers(const ConvexBody& body, std::int64_t first_layer, RowsOfLaye
       const DoubleVec needed = set(-face.reach) - set(face.normal.layer) * layer;
       narrow(face.normal.row, face.row_way, needed - set(face.max_along_row), low, high);
     }
-    // Outside of the box nothing is meant, and huge numbers are no cells.
+    // Places outside of the box are unused, and huge numbers do not fit a cell index.
     const Mask some = low <= high;
     const DoubleVec first = hn::Ceil(low - set(0.5) + set(body.in_cell.row));
     const DoubleVec last = hn::Floor(high - set(0.5) + set(body.in_cell.row));

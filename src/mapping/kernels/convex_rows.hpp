@@ -18,10 +18,10 @@ struct Face {
   WalkAxes normal;
   double row_way = 0.0, cell_way = 0.0;  ///< 1 / normal.row, 1 / normal.cell
   double reach = 0.0;
-  double max_along_row = 0.0;  ///< the most that normal.cell times a place within the box can be
+  double max_along_row = 0.0;  ///< maximum of normal.cell times a place within the box
 };
 
-/// What five half-spaces through the origin, a sphere around it and a box have in common.
+/// Intersection of five half-spaces through the origin, a sphere around it and a box.
 struct ConvexBody {
   std::array<Face, 5> faces;
   double range = 0.0;  ///< radius of the sphere
