@@ -30,9 +30,9 @@ struct Totals {
   BuildReport report;
   std::size_t scans = 0, points = 0;  ///< scans of points, and their points
   std::size_t damaged = 0;
+  bool assumes_beam = false;  ///< the size of the first log's beams is a default
   bool has_beams = false;
-  BeamModelOptions beam;      ///< of the first log of beams
-  bool assumes_beam = false;  ///< its size is a default
+  BeamModelOptions beam;  ///< of the first log of beams
   double write_s = 0.0, total_s = 0.0;
 
   void add(const MappedLog& mapped, const Log& source) {

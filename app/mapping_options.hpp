@@ -32,7 +32,7 @@ struct EchoArgs {
   std::optional<Water> water;
 
   double sound_speed_ratio() const;
-  /// kBadOption when both set the speed of sound.
+  /// kBadOption when both say what the speed of sound is.
   Result<void> validate() const;
 
   FilterOptions filter_options() const {

@@ -81,7 +81,7 @@ class NavLog {
 /// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.
 std::optional<NavSource> depth_source(const NavLog& log);
 
-/// Summary of a source.
+/// A source at a glance.
 struct NavSummary {
   std::size_t samples = 0;
   std::size_t invalid = 0;  ///< of these, how many are not valid
