@@ -224,8 +224,9 @@ OptionTable::Group echo_group(EchoArgs& args) {
        choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
               echo.cfar.noise),
        {"--background", 0, "M",
-        "subtract what is heard at the same bearing and range in all sweeps, up to M: the vehicle itself, and all that "
-        "stands still if the vehicle does; reads the log twice",
+        "subtract echoes up to M that are the same in all sweeps: those of the vehicle itself, and all others if it "
+        "stands "
+        "still; reads the log twice",
         "off",
         within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, store_optional(args.background_m))}}};
   for (Option& option : group.options) {
