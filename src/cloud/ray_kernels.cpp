@@ -100,7 +100,7 @@ void compress_store(UintVec words, hn::Mask<DU> mask, std::uint64_t* to) {
 #endif
 }
 
-/// Points in cells; those outside of the window become the place where rays begin.
+/// Points in cells; those outside of the window are moved to its lowest corner.
 struct Points {
   DoubleVec x, y, z;
   DoubleMask is_inside;
@@ -119,10 +119,11 @@ Points load_points(const RayGrid& grid, const Real* points_m) {
   y = y * cells_per_m;
   z = z * cells_per_m;
   const DoubleMask is_inside = hn::And(is_inside_along(x, 0), hn::And(is_inside_along(y, 1), is_inside_along(z, 2)));
+  const auto moved_along = [&](DoubleVec at, std::size_t a) HWY_ATTR {
+    return hn::IfThenElse(is_inside, at, hn::Set(kDoubles, static_cast<double>(grid.lowest[a])));
+  };
   // As one list: for ARM64, g++ 12 cannot compile Points' default constructor, which no target attribute reaches.
-  return {hn::IfThenElse(is_inside, x, hn::Set(kDoubles, grid.from[0])),
-          hn::IfThenElse(is_inside, y, hn::Set(kDoubles, grid.from[1])),
-          hn::IfThenElse(is_inside, z, hn::Set(kDoubles, grid.from[2])), is_inside};
+  return {moved_along(x, 0), moved_along(y, 1), moved_along(z, 2), is_inside};
 }
 
 /// The bits of one axis of the places of cells.
@@ -131,36 +132,34 @@ UintVec axis_of_place(const RayGrid& grid, DoubleVec cell, std::size_t a) {
   return spread(hn::BitCast(kUints, to_integers(in_window)));
 }
 
-/// Calls f(first, points) for as many points as there are lanes; the last ones stand together with some that are no
+/// As many points as there are lanes, from the one with the number `first` on; those behind the last one are no
 /// numbers.
-template <class Point, class F>
-void for_each_vector(std::span<const Point> points_m, F&& f) {
-  using Real = typename Point::Scalar;
-  const std::size_t whole = points_m.size() / lanes() * lanes();
-  for (std::size_t first = 0; first < whole; first += lanes()) f(first, points_m[first].data());
-  if (whole == points_m.size()) return;
-  std::array<Real, 3 * HWY_MAX_BYTES / sizeof(double)> padded;
-  padded.fill(std::numeric_limits<Real>::quiet_NaN());
-  Real* to = padded.data();
-  for (std::size_t i = whole; i < points_m.size(); ++i) to = std::copy_n(points_m[i].data(), 3, to);
-  f(whole, padded.data());
+/// @param room  where they stand if they are fewer
+template <class Point>
+const typename Point::Scalar* points_from(std::span<const Point> points_m, std::size_t first,
+                                          std::span<typename Point::Scalar> room) {
+  if (first + lanes() <= points_m.size()) return points_m[first].data();
+  std::fill(room.begin(), room.end(), std::numeric_limits<typename Point::Scalar>::quiet_NaN());
+  for (std::size_t i = first; i < points_m.size(); ++i) {
+    std::copy_n(points_m[i].data(), 3, room.data() + 3 * (i - first));
+  }
+  return room.data();
 }
+constexpr std::size_t kPointRoom = 3 * HWY_MAX_BYTES / sizeof(double);
 
 /// State that the axes of rays share.
 struct Preparing {
   IntVec left, ahead;
   // The last face that is crossed, and the first one beyond an end, along the axes so far.
   IntVec last_crossing, beyond_end;
-  UintVec end;
+  UintVec start, end;
 };
 
-/// What FaceCrossings counts along one axis, for rays that end at these coordinates [cells].
-void prepare_axis(const RayGrid& grid, std::size_t a, DoubleVec to, std::size_t first, Preparing& all,
+/// What FaceCrossings counts along one axis, for rays between these coordinates [cells].
+void prepare_axis(const RayGrid& grid, std::size_t a, DoubleVec from, DoubleVec to, std::size_t first, Preparing& all,
                   PreparedRays& rays) {
   const DoubleVec kOne = hn::Set(kDoubles, 1.0), kUnits = hn::Set(kDoubles, 0x1p62);
-  const double from_axis = grid.from[static_cast<Eigen::Index>(a)];
-  const DoubleVec from = hn::Set(kDoubles, from_axis), first_cell = hn::Set(kDoubles, std::floor(from_axis));
-  const DoubleVec last_cell = hn::Floor(to);
+  const DoubleVec first_cell = hn::Floor(from), last_cell = hn::Floor(to);
   const DoubleMask is_ahead = hn::Ge(last_cell, first_cell);
   const DoubleVec faces = hn::Abs(last_cell - first_cell);
   const DoubleMask some = hn::Gt(faces, hn::Zero(kDoubles)), several = hn::Gt(faces, kOne);
@@ -185,50 +184,57 @@ void prepare_axis(const RayGrid& grid, std::size_t a, DoubleVec to, std::size_t 
   all.left = all.left + face_count;
   all.ahead =
       hn::Or(all.ahead, hn::IfThenElseZero(hn::RebindMask(kInts, is_ahead), hn::Set(kInts, std::int64_t{1} << a)));
-  // Shifted by the axis.
-  all.end = hn::Or(all.end, hn::ShiftLeftSame(axis_of_place(grid, last_cell, a), static_cast<int>(a)));
+  const auto shift = static_cast<int>(a);
+  all.start = hn::Or(all.start, hn::ShiftLeftSame(axis_of_place(grid, first_cell, a), shift));
+  all.end = hn::Or(all.end, hn::ShiftLeftSame(axis_of_place(grid, last_cell, a), shift));
 }
 
 template <class Point>
-void prepare(const RayGrid& grid, std::span<const Point> ends_m, PreparedRays& rays) {
-  // Behind the last one stands a ray that is not ready, for lanes without one.
-  const std::size_t room = (ends_m.size() / lanes() + 1) * lanes();
+void prepare(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m, std::span<const Point> to_m,
+             PreparedRays& rays) {
+  const std::size_t room = (to_m.size() + lanes() - 1) / lanes() * lanes();
   for (auto* all : {&rays.next[0], &rays.next[1], &rays.next[2], &rays.apart[0], &rays.apart[1], &rays.apart[2],
                     &rays.left, &rays.ahead}) {
     all->resize(room);
   }
+  rays.start.resize(room);
   rays.end.resize(room);
-  rays.count = ends_m.size();
-  for (std::size_t i = room - lanes(); i < room; ++i) rays.left[i] = 0;
-  for_each_vector(ends_m, [&](std::size_t first, const auto* some_m) HWY_ATTR {
-    const Points ends = load_points(grid, some_m);
-    Preparing all{hn::Zero(kInts), hn::Zero(kInts), hn::Set(kInts, std::numeric_limits<std::int64_t>::min()),
-                  hn::Set(kInts, kNever), hn::Zero(kUints)};
-    prepare_axis(grid, 0, ends.x, first, all, rays);
-    prepare_axis(grid, 1, ends.y, first, all, rays);
-    prepare_axis(grid, 2, ends.z, first, all, rays);
+  rays.count = to_m.size();
+  std::array<double, kPointRoom> from_room{};
+  std::array<typename Point::Scalar, kPointRoom> to_room{};
+  for (std::size_t first = 0; first < to_m.size(); first += lanes()) {
+    const Points from = load_points(grid, points_from(from_m, first, std::span(from_room)));
+    const Points to = load_points(grid, points_from(to_m, first, std::span(to_room)));
+    Preparing all{hn::Zero(kInts),        hn::Zero(kInts),  hn::Set(kInts, std::numeric_limits<std::int64_t>::min()),
+                  hn::Set(kInts, kNever), hn::Zero(kUints), hn::Zero(kUints)};
+    prepare_axis(grid, 0, from.x, to.x, first, all, rays);
+    prepare_axis(grid, 1, from.y, to.y, first, all, rays);
+    prepare_axis(grid, 2, from.z, to.z, first, all, rays);
     // Whether sums of these units give the order of faces that FaceCrossings gives.
     const auto kMaxFaces = static_cast<std::int64_t>(FaceCrossings::kMaxFacesIn64Bits);
-    const IntMask is_ready = hn::And(hn::And(hn::RebindMask(kInts, ends.is_inside), all.beyond_end > all.last_crossing),
-                                     all.left < hn::Set(kInts, kMaxFaces + 1));
+    const IntMask is_inside = hn::RebindMask(kInts, hn::And(from.is_inside, to.is_inside));
+    const IntMask is_ready =
+        hn::And(hn::And(is_inside, all.beyond_end > all.last_crossing), all.left < hn::Set(kInts, kMaxFaces + 1));
     hn::StoreU(hn::IfThenElseZero(is_ready, all.left), kInts, rays.left.data() + first);
     hn::StoreU(all.ahead, kInts, rays.ahead.data() + first);
+    hn::StoreU(all.start, kUints, rays.start.data() + first);
     hn::StoreU(hn::IfThenElse(hn::RebindMask(kUints, is_ready), all.end, hn::Set(kUints, kNoPlace)), kUints,
                rays.end.data() + first);
-  });
+  }
 }
 
 template <class Point>
 void find_each_place(const RayGrid& grid, std::span<const Point> points_m, std::vector<std::uint64_t>& places) {
   places.resize((points_m.size() + lanes() - 1) / lanes() * lanes());
-  for_each_vector(points_m, [&](std::size_t first, const auto* some_m) HWY_ATTR {
-    const Points points = load_points(grid, some_m);
+  std::array<typename Point::Scalar, kPointRoom> room{};
+  for (std::size_t first = 0; first < points_m.size(); first += lanes()) {
+    const Points points = load_points(grid, points_from(points_m, first, std::span(room)));
     const UintVec x = axis_of_place(grid, hn::Floor(points.x), 0), y = axis_of_place(grid, hn::Floor(points.y), 1),
                   z = axis_of_place(grid, hn::Floor(points.z), 2);
     const UintVec place = hn::Or(x, hn::Or(hn::ShiftLeft<1>(y), hn::ShiftLeft<2>(z)));
     const auto is_inside = hn::RebindMask(kUints, points.is_inside);
     hn::StoreU(hn::IfThenElse(is_inside, place, hn::Set(kUints, kNoPlace)), kUints, places.data() + first);
-  });
+  }
   places.resize(points_m.size());
 }
 
@@ -252,11 +258,12 @@ struct MarksToSet {
 /// Positions of rays along one axis.
 struct Axis {
   /// @param rays   which ones, as many as there are lanes
-  Axis(const PreparedRays& all, IntVec rays, IntVec ahead, std::size_t a, std::uint64_t start)
+  /// @param start  places where they begin
+  Axis(const PreparedRays& all, IntVec rays, IntVec ahead, std::size_t a, UintVec start)
       : next(hn::GatherIndex(kInts, all.next[a].data(), rays)),
         apart(hn::GatherIndex(kInts, all.apart[a].data(), rays)),
         bits(hn::Set(kUints, kPlaceBits[a])),
-        place(hn::Set(kUints, start & kPlaceBits[a])) {
+        place(hn::And(start, hn::Set(kUints, kPlaceBits[a]))) {
     // Added before the bits are masked: a carry must run through the bits of the other axes.
     const std::uint64_t axis_bits = kPlaceBits[a], lowest = axis_bits & (~axis_bits + 1);
     const IntVec flag = hn::Set(kInts, std::int64_t{1} << a);
@@ -282,15 +289,15 @@ struct Axis {
 
 /// Walks rays of about the same length, face by face.
 /// @param numbers  of as many as there are lanes, the one with most faces first
-void mark_vector(const PreparedRays& all, const std::int64_t* numbers, std::uint64_t start, MarksToSet& to_set,
-                 ScanWindow& window) {
+void mark_vector(const PreparedRays& all, const std::int64_t* numbers, MarksToSet& to_set, ScanWindow& window) {
   const IntVec rays = hn::LoadU(kInts, numbers);
   const IntVec left = hn::GatherIndex(kInts, all.left.data(), rays);
   const IntVec ahead = hn::GatherIndex(kInts, all.ahead.data(), rays);
   const std::int64_t longest = all.left[static_cast<std::size_t>(numbers[0])];
   const std::int64_t shortest = all.left[static_cast<std::size_t>(numbers[lanes() - 1])];
-  Axis x(all, rays, ahead, 0, start), y(all, rays, ahead, 1, start), z(all, rays, ahead, 2, start);
-  const UintVec begin = hn::Set(kUints, start), one = hn::Set(kUints, 1), cell_bits = hn::Set(kUints, 63);
+  const UintVec begin = hn::GatherIndex(kUints, all.start.data(), rays);
+  Axis x(all, rays, ahead, 0, begin), y(all, rays, ahead, 1, begin), z(all, rays, ahead, 2, begin);
+  const UintVec one = hn::Set(kUints, 1), cell_bits = hn::Set(kUints, 63);
   UintVec word = hn::ShiftRight<6>(begin), marks = hn::Zero(kUints);
   std::size_t count = to_set.count;
   for (std::int64_t n = 0; n < longest; ++n) {
@@ -324,7 +331,7 @@ void mark_vector(const PreparedRays& all, const std::int64_t* numbers, std::uint
 }
 
 /// Numbers of the rays that are ready, those that cross most faces first, so that neighbours end nearly together; then
-/// numbers of one that is not ready, up to whole vectors.
+/// the last of them again, up to whole vectors.
 std::vector<std::int64_t> order_by_length(const PreparedRays& rays) {
   const auto first = rays.left.begin(), last = first + static_cast<std::ptrdiff_t>(rays.count);
   const std::int64_t most = rays.count == 0 ? 0 : *std::max_element(first, last);
@@ -332,29 +339,30 @@ std::vector<std::int64_t> order_by_length(const PreparedRays& rays) {
   const auto slot = [&](std::size_t i) { return static_cast<std::size_t>(most - rays.left[i]); };
   for (std::size_t i = 0; i < rays.count; ++i) ++place[slot(i) + 1];
   for (std::size_t i = 1; i < place.size(); ++i) place[i] += place[i - 1];
-  const std::size_t ready = place[static_cast<std::size_t>(most)];
-  std::vector<std::int64_t> order(rays.count + lanes(), static_cast<std::int64_t>(rays.left.size() - 1));
+  std::vector<std::int64_t> order(place[static_cast<std::size_t>(most)]);
   for (std::size_t i = 0; i < rays.count; ++i) {
     if (rays.left[i] > 0) order[place[slot(i)]++] = static_cast<std::int64_t>(i);
   }
-  order.resize((ready + lanes() - 1) / lanes() * lanes(), static_cast<std::int64_t>(rays.left.size() - 1));
+  if (!order.empty()) order.resize((order.size() + lanes() - 1) / lanes() * lanes(), order.back());
   return order;
 }
 
-void mark(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
+void mark(const PreparedRays& rays, ScanWindow& window) {
   const std::vector<std::int64_t> order = order_by_length(rays);
   MarksToSet to_set;
-  for (std::size_t i = 0; i < order.size(); i += lanes()) mark_vector(rays, order.data() + i, start, to_set, window);
+  for (std::size_t i = 0; i < order.size(); i += lanes()) mark_vector(rays, order.data() + i, to_set, window);
   to_set.set(window);
 }
 
 }  // namespace
 
-void prepare_doubles_here(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays) {
-  prepare(grid, ends_m, rays);
+void prepare_doubles_here(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m,
+                          std::span<const Eigen::Vector3d> to_m, PreparedRays& rays) {
+  prepare(grid, from_m, to_m, rays);
 }
-void prepare_floats_here(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays) {
-  prepare(grid, ends_m, rays);
+void prepare_floats_here(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m,
+                         std::span<const Eigen::Vector3f> to_m, PreparedRays& rays) {
+  prepare(grid, from_m, to_m, rays);
 }
 void find_places_of_doubles(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m,
                             std::vector<std::uint64_t>& places) {
@@ -364,8 +372,8 @@ void find_places_of_floats(const RayGrid& grid, std::span<const Eigen::Vector3f>
                            std::vector<std::uint64_t>& places) {
   find_each_place(grid, points_m, places);
 }
-void mark_rays_here(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
-  mark(rays, start, window);
+void mark_rays_here(const PreparedRays& rays, ScanWindow& window) {
+  mark(rays, window);
 }
 
 }  // namespace pingvox::detail::HWY_NAMESPACE
@@ -381,11 +389,13 @@ HWY_EXPORT(find_places_of_floats);
 HWY_EXPORT(mark_rays_here);
 }  // namespace
 
-void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays) {
-  HWY_DYNAMIC_DISPATCH(prepare_doubles_here)(grid, ends_m, rays);
+void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m, std::span<const Eigen::Vector3d> to_m,
+                  PreparedRays& rays) {
+  HWY_DYNAMIC_DISPATCH(prepare_doubles_here)(grid, from_m, to_m, rays);
 }
-void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays) {
-  HWY_DYNAMIC_DISPATCH(prepare_floats_here)(grid, ends_m, rays);
+void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m, std::span<const Eigen::Vector3f> to_m,
+                  PreparedRays& rays) {
+  HWY_DYNAMIC_DISPATCH(prepare_floats_here)(grid, from_m, to_m, rays);
 }
 void find_places(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m, std::vector<std::uint64_t>& places) {
   HWY_DYNAMIC_DISPATCH(find_places_of_doubles)(grid, points_m, places);
@@ -393,8 +403,8 @@ void find_places(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m,
 void find_places(const RayGrid& grid, std::span<const Eigen::Vector3f> points_m, std::vector<std::uint64_t>& places) {
   HWY_DYNAMIC_DISPATCH(find_places_of_floats)(grid, points_m, places);
 }
-void mark_rays(const PreparedRays& rays, std::uint64_t start, ScanWindow& window) {
-  HWY_DYNAMIC_DISPATCH(mark_rays_here)(rays, start, window);
+void mark_rays(const PreparedRays& rays, ScanWindow& window) {
+  HWY_DYNAMIC_DISPATCH(mark_rays_here)(rays, window);
 }
 
 }  // namespace pingvox::detail

@@ -9,15 +9,13 @@
 
 #include "cloud/scan_window.hpp"
 
-/// Rays from one place into a ScanWindow, as many side by side as the machine's vectors have lanes. Their cells are
+/// Rays into a ScanWindow, as many side by side as the machine's vectors have lanes. Their cells are
 /// those of FaceCrossings (geometry/ray_dda.hpp), to the last one: the same sums of the same whole numbers
 /// (tests/cloud/ray_kernels_test.cpp).
 namespace pingvox::detail {
 
-/// Where the window lies and where rays begin, in cells as the lattice counts them: cell 0 has its lowest corner at the
-/// origin of the map.
+/// Where the window lies, in cells as the lattice counts them: cell 0 has its lowest corner at the origin of the map.
 struct RayGrid {
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< metres times cells per metre
   double cells_per_m = 1.0;
   std::array<std::int64_t, 3> lowest{};  ///< lowest cell of the window
   /// Coordinates that are in the window and in the lattice: inside_from <= coordinate < inside_to.
@@ -33,22 +31,24 @@ struct PreparedRays {
   std::array<std::vector<std::int64_t>, 3> apart;  ///< from face to face
   std::vector<std::int64_t> left;                  ///< faces to cross; 0 where the ray is not ready, too
   std::vector<std::int64_t> ahead;                 ///< bit a is set when the key grows along axis a
-  std::vector<std::uint64_t> end;                  ///< place of the last cell; kNoPlace: the ray is not ready
+  std::vector<std::uint64_t> start;                ///< place of the first cell
+  std::vector<std::uint64_t> end;                  ///< of the last one; kNoPlace: the ray is not ready
   std::size_t count = 0;
 };
 
-/// Prepares a ray to each of `ends_m` [m, map frame]. Not ready are those that end outside of the window or in no
-/// number, that cross too many faces, or that end so close to a corner that only exact counting tells which face comes
-/// last.
-void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> ends_m, PreparedRays& rays);
-void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3f> ends_m, PreparedRays& rays);
+/// Prepares the rays from `from_m[i]` to `to_m[i]` [m, map frame]. Not ready are those with an end outside of the
+/// window or in no number, that cross too many faces, or that end so close to a corner that only exact counting tells
+/// which face comes last. REQUIRES as many beginnings as ends
+void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m, std::span<const Eigen::Vector3d> to_m,
+                  PreparedRays& rays);
+void prepare_rays(const RayGrid& grid, std::span<const Eigen::Vector3d> from_m, std::span<const Eigen::Vector3f> to_m,
+                  PreparedRays& rays);
 
 /// Finds the places of the cells that hold points [m, map frame]; kNoPlace outside of the window.
 void find_places(const RayGrid& grid, std::span<const Eigen::Vector3d> points_m, std::vector<std::uint64_t>& places);
 void find_places(const RayGrid& grid, std::span<const Eigen::Vector3f> points_m, std::vector<std::uint64_t>& places);
 
 /// Marks the cells of each ray that is ready as missed, its first one included, its last one not.
-/// @param start  place of the cell where all of them begin
-void mark_rays(const PreparedRays& rays, std::uint64_t start, ScanWindow& window);
+void mark_rays(const PreparedRays& rays, ScanWindow& window);
 
 }  // namespace pingvox::detail

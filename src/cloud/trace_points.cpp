@@ -1,42 +1,17 @@
 #include "pingvox/cloud/trace_points.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <set>
-#include <utility>
 #include <vector>
 
-#include "cloud/ray_kernels.hpp"
-#include "cloud/scan_window.hpp"
+#include "cloud/window_tracer.hpp"
 
 namespace pingvox {
 namespace {
 
-using detail::ScanWindow;
-
 /// What the last cells of rays say.
 enum class RayEnds { kHit, kNothing };
-
-/// Below, opening and emptying a window costs more than it saves.
-constexpr std::size_t kMinRays = 16;
-/// Rays that are walked together.
-constexpr std::size_t kBlock = 1024;
-constexpr int kPageBits = ScanUpdate::kPageBits;
-
-/// A number of up to 21 bits with two zero bits between its bits, and back.
-std::uint64_t spread_bits(std::uint64_t word) {
-  std::uint64_t spread = 0;
-  for (int bit = 0; bit < 21; ++bit) spread |= (word >> bit & 1) << (3 * bit);
-  return spread;
-}
-WideWord gather_bits(std::uint64_t word) {
-  std::uint64_t gathered = 0;
-  for (int bit = 0; bit < 21; ++bit) gathered |= (word >> (3 * bit) & 1) << bit;
-  return gathered;
-}
 
 }  // namespace
 
@@ -51,13 +26,13 @@ class PointTracer::Tracer {
     scan_ = &scan;
     lattice_ = scan.lattice();
     try {
-      open_window(points_m);
+      has_window_ = window_.open(lattice_, options_.ray, points_m.size(), origin_m, reach_of(points_m));
       const std::size_t outside =
           options_.ends == EndPoints::kCells ? trace_in_range(cells_of(points_m)) : trace_in_range(points_m);
-      if (has_window_) hand_over();
+      if (has_window_) window_.hand_over(options_.hit, scan);
       return outside;
     } catch (...) {
-      window_.drop();  // or its marks would become those of the next scan, at another place
+      window_.drop();
       throw;
     }
   }
@@ -98,32 +73,27 @@ class PointTracer::Tracer {
     }
     // The window's hits tell which cells were found before.
     found_.clear();
-    for_each_block(points_m, [&](std::span<const Point> block) {
-      find_places(grid_, block, places_);
+    constexpr std::size_t kBlock = 1024;
+    for (std::size_t first = 0; first < points_m.size(); first += kBlock) {
+      const std::span<const Point> block = points_m.subspan(first, std::min(kBlock, points_m.size() - first));
+      find_places(window_.grid(), block, places_);
       for (std::size_t i = 0; i < block.size(); ++i) {
         const std::uint64_t place = places_[i];
         if (place == detail::kNoPlace) {
           add_one(block[i].template cast<double>());
-        } else if (window_.mark_hit(place)) {
+        } else if (window_.window().mark_hit(place)) {
           found_.push_back(place);
           middles_m_.push_back(middle_of(block[i].template cast<double>()));
         }
       }
-    });
-    window_.clear_hits(found_);
+    }
+    window_.window().clear_hits(found_);
     return middles_m_;
   }
 
   /// The middle of the cell that holds a point in the window, as Lattice::centre_of has it.
   Eigen::Vector3d middle_of(const Eigen::Vector3d& point_m) const {
     return lattice_.centre_of(*lattice_.key_of<WideWord>(point_m));
-  }
-
-  template <class Point, class F>
-  static void for_each_block(std::span<const Point> all, F&& f) {
-    for (std::size_t first = 0; first < all.size(); first += kBlock) {
-      f(all.subspan(first, std::min(kBlock, all.size() - first)));
-    }
   }
 
   template <class Point>
@@ -133,16 +103,12 @@ class PointTracer::Tracer {
       for (const Point& point : ends_m) outside += trace_one(point.template cast<double>(), ends);
       return outside;
     }
-    for_each_block(ends_m, [&](std::span<const Point> block) {
-      prepare_rays(grid_, block, rays_);
-      for (std::size_t i = 0; i < block.size(); ++i) {
-        if (rays_.end[i] == detail::kNoPlace) {
-          outside += trace_one(block[i].template cast<double>(), ends);
-        } else if (ends == RayEnds::kHit) {
-          window_.mark_hit(rays_.end[i]);
-        }
+    window_.trace(std::span(&origin_m_, 1), ends_m, [&](std::size_t i, std::uint64_t end) {
+      if (end == detail::kNoPlace) {
+        outside += trace_one(ends_m[i].template cast<double>(), ends);
+      } else if (ends == RayEnds::kHit) {
+        window_.window().mark_hit(end);
       }
-      mark_rays(rays_, start_, window_);
     });
     return outside;
   }
@@ -155,7 +121,7 @@ class PointTracer::Tracer {
     return trace_ray(origin_m_, end_m, options_.ray, *scan_) ? 0 : 1;
   }
 
-  /// How far rays go along any axis [cells]: a guess from some of them.
+  /// How far rays go along any axis [m]: a guess from some of them.
   template <class Point>
   double reach_of(std::span<const Point> ends_m) const {
     constexpr std::size_t kLooked = 1024;
@@ -164,77 +130,17 @@ class PointTracer::Tracer {
     for (std::size_t i = 0; i < ends_m.size(); i += apart) {
       farthest_m = std::max(farthest_m, (ends_m[i].template cast<double>() - origin_m_).cwiseAbs().maxCoeff());
     }
-    return std::min(farthest_m, options_.max_range_m) / lattice_.resolution_m();
-  }
-
-  /// Of a window that holds rays of such a reach. More than there may be where it is of no use.
-  int window_bits(double reach) const {
-    const double cells = 2.0 * (reach + 1.0 + (1 << kPageBits));
-    // Farther out, doubles have gaps, and keys of deep lattices are no whole numbers of 64 bits.
-    const double farthest_cell = origin_m_.cwiseAbs().maxCoeff() / lattice_.resolution_m() + cells;
-    if (!(farthest_cell < 0x1p40)) return ScanWindow::kMaxBits + 1;
-    return std::max(kPageBits, std::ilogb(cells) + 1);
-  }
-
-  template <class Point>
-  void open_window(std::span<const Point> points_m) {
-    const int bits = window_bits(reach_of(points_m));
-    has_window_ = options_.ray == RayAlgorithm::kDda && points_m.size() >= kMinRays && lattice_.depth() > kPageBits &&
-                  bits <= ScanWindow::kMaxBits;
-    if (!has_window_) return;
-    window_.open(bits);
-    grid_.cells_per_m = lattice_.cells_per_m();
-    grid_.from = lattice_.in_cells(origin_m_);
-    const double edge = std::ldexp(1.0, bits), border = std::ldexp(1.0, lattice_.depth() - 1);
-    start_ = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto cell = static_cast<std::int64_t>(std::floor(grid_.from[static_cast<Eigen::Index>(a)]));
-      const std::int64_t lowest = cell - (std::int64_t{1} << (bits - 1));
-      // Pages begin at multiples of their size, counted from the centre of the lattice.
-      grid_.lowest[a] = (lowest >> kPageBits) * (1 << kPageBits);
-      const auto base = static_cast<double>(grid_.lowest[a]);
-      grid_.inside_from[a] = std::max(base, -border);
-      grid_.inside_to[a] = std::min(base + edge, border);
-      start_ |= spread_bits(static_cast<std::uint64_t>(cell - grid_.lowest[a])) << a;
-    }
-    // From outside of the lattice nothing is traced.
-    if (!lattice_.key_of<WideWord>(origin_m_)) grid_.inside_to.fill(-std::numeric_limits<double>::infinity());
-  }
-
-  /// Hands what is marked in the window to the scan, page by page, and empties it.
-  void hand_over() {
-    const WideWord centre = WideWord{1} << (lattice_.depth() - 1);
-    const auto lowest = [&](std::size_t a) {
-      const std::int64_t n = grid_.lowest[a];
-      return n < 0 ? centre - static_cast<WideWord>(-n) : centre + static_cast<WideWord>(n);
-    };
-    const WideKey corner{lowest(0), lowest(1), lowest(2)};
-    window_.take_touched([&](std::uint64_t number, bool has_hits) {
-      const std::uint32_t page = scan_->page_of(WideKey{corner.x + (gather_bits(number) << kPageBits),
-                                                        corner.y + (gather_bits(number >> 1) << kPageBits),
-                                                        corner.z + (gather_bits(number >> 2) << kPageBits)});
-      const std::span<std::uint64_t, 64> missed(window_.missed() + number * 64, 64);
-      scan_->mark_missed_in(page, missed);
-      std::fill(missed.begin(), missed.end(), 0);
-      if (!has_hits) return;
-      for (std::size_t brick = 0; brick < 64; ++brick) {
-        const std::uint64_t cells = std::exchange(window_.hit()[number * 64 + brick], 0);
-        if (cells != 0) scan_->mark_hit_in(page, brick, cells, options_.hit);
-      }
-    });
+    return std::min(farthest_m, options_.max_range_m);
   }
 
   Lattice lattice_{1.0};
   PointScanOptions options_;
-  ScanWindow window_;
+  detail::WindowTracer window_;
   // Of the scan that is traced.
   ScanUpdate* scan_ = nullptr;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   bool has_window_ = false;
-  detail::RayGrid grid_;
-  std::uint64_t start_ = 0;  ///< place of the cell where the rays begin
   // Kept for the next one.
-  detail::PreparedRays rays_;
   std::vector<std::uint64_t> places_, found_;
   std::vector<Eigen::Vector3d> middles_m_, near_m_, cut_m_;
 };

@@ -35,17 +35,15 @@ EchoStream echo_stream(const BuildOptions& options) {
 }
 
 HeardMapper::HeardMapper(const BuildOptions& options, OccupancyMap& map)
-    : options_(options),
-      map_(&map),
-      tracer_(options.model, options.echo.max_range_m),
-      scan_(map.lattice(), options.miss),
-      parts_(options.threads) {}
+    : options_(options), map_(&map), scan_(map.lattice(), options.miss), parts_(options.threads) {
+  for (std::size_t i = 0; i < options.threads; ++i) tracers_.emplace_back(options.model, options.echo.max_range_m);
+}
 
 Result<void> HeardMapper::add(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
                               BuildReport& report) {
   watch_.skip();
   if (options_.timing == Timing::kBySweep) no_pose_before_ = report.no_pose.count;  // these beams are one sweep
-  const Result<std::vector<Placed>> placed = place(heard, map_from_body, report);
+  const Result<Placed> placed = place(heard, map_from_body, report);
   if (!placed) return tl::unexpected(placed.error());
   Result<void> mapped =
       options_.vote == Vote::kPerSweep ? map_as_one_scan(*placed, report) : map_one_by_one(*placed, report);
@@ -65,43 +63,45 @@ void HeardMapper::restart() {
 }
 
 /// Each beam where it was heard: de-skew. Those without a pose are left out.
-Result<std::vector<HeardMapper::Placed>> HeardMapper::place(const HeardBeams& heard,
-                                                            std::span<const std::optional<Pose>> map_from_body,
-                                                            BuildReport& report) const {
-  std::vector<Placed> placed;
-  placed.reserve(heard.beams.size());
+Result<HeardMapper::Placed> HeardMapper::place(const HeardBeams& heard,
+                                               std::span<const std::optional<Pose>> map_from_body,
+                                               BuildReport& report) const {
+  Placed placed;
+  placed.beams.reserve(heard.beams.size());
+  placed.heard.reserve(heard.beams.size());
   for (std::size_t n = 0; n < heard.beams.size(); ++n) {
-    const HeardBeam& beam = heard.beams[n];
+    const HeardBeam& one = heard.beams[n];
     if (!map_from_body[n]) {
-      report.no_pose.add(beam.time_s);
+      report.no_pose.add(one.time_s);
       continue;
     }
-    placed.push_back({&beam, *map_from_body[n] * options_.body_from_sensor});
-    if (is_blocked(placed.back())) {
-      report.blocked.add(beam.time_s);
-      placed.pop_back();
+    const PlacedBeam beam{*map_from_body[n] * options_.body_from_sensor, one.bearing_rad, one.bin_length_m, one.bins,
+                          one.echo};
+    if (is_blocked(beam)) {
+      report.blocked.add(one.time_s);
       continue;
     }
-    if (const auto fits = check_size(beam); !fits) return tl::unexpected(fits.error());
+    if (const auto fits = check_size(one); !fits) return tl::unexpected(fits.error());
+    placed.beams.push_back(beam);
+    placed.heard.push_back(&one);
   }
-  for (const Placed& beam : placed) {
-    if (!beam.heard->echo || beam.heard->where == HeardBeam::Where::kBeyond) continue;
-    const int threshold = beam.heard->echo->threshold;
+  for (const HeardBeam* const one : placed.heard) {
+    if (!one->echo || one->where == HeardBeam::Where::kBeyond) continue;
+    const int threshold = one->echo->threshold;
     ++report.echoes;
     report.min_threshold = std::min(report.min_threshold.value_or(threshold), threshold);
     report.max_threshold = std::max(report.max_threshold.value_or(threshold), threshold);
   }
-  report.beams += placed.size();
+  report.beams += placed.beams.size();
   return placed;
 }
 
 /// Whether the map has an obstacle on the beam's axis within the blanking range. Its own echo is not heard; what is
 /// heard are its second echo, or sound that went round it.
-bool HeardMapper::is_blocked(const Placed& beam) const {
+bool HeardMapper::is_blocked(const PlacedBeam& beam) const {
   const double blanking_m = options_.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
   if (map_->empty() || !(blanking_m > 0.0)) return false;
-  const double bearing_rad = beam.heard->bearing_rad;
-  const Eigen::Vector3d axis{std::cos(bearing_rad), std::sin(bearing_rad), 0.0};
+  const Eigen::Vector3d axis{std::cos(beam.bearing_rad), std::sin(beam.bearing_rad), 0.0};
   const Pose& pose = beam.map_from_sensor;
   return cast_ray(*map_, pose.translation(), pose.linear() * axis, blanking_m).what == Occupancy::kOccupied;
 }
@@ -119,34 +119,25 @@ Result<void> HeardMapper::check_size(const HeardBeam& beam) const {
                   range_m, beam.time_s, cells, resolution_m, kMaxCellsInBeam));
 }
 
-HeardMapper::Fit HeardMapper::trace(const Placed& placed, Beam& beam, BeamTracer& tracer, ScanUpdate& scan) {
-  const HeardBeam& heard = *placed.heard;
-  beam.time_s = heard.time_s;
-  beam.bearing_rad = heard.bearing_rad;
-  beam.bin_length_m = heard.bin_length_m;
-  beam.intensities.resize(heard.bins);  // of which only the number counts
-  const std::size_t left_out = tracer.trace(placed.map_from_sensor, beam, heard.echo, scan);
-  return left_out == 0 ? Fit::kInside : Fit::kPartlyOutside;
-}
-
 /// All beams in one scan.
-Result<void> HeardMapper::map_as_one_scan(const std::vector<Placed>& beams, BuildReport& report) {
-  std::vector<Fit> fits(beams.size());
-  parts_.run(beams.size(), scan_, [&](std::size_t, std::size_t first, std::size_t last, ScanUpdate& part) {
-    BeamTracer tracer(options_.model, options_.echo.max_range_m);
-    Beam beam;
-    for (std::size_t i = first; i < last; ++i) fits[i] = trace(beams[i], beam, tracer, part);
+Result<void> HeardMapper::map_as_one_scan(const Placed& placed, BuildReport& report) {
+  const std::span<const PlacedBeam> beams = placed.beams;
+  std::vector<std::size_t> left_out(beams.size());
+  parts_.run(beams.size(), scan_, [&](std::size_t part, std::size_t first, std::size_t last, ScanUpdate& scan) {
+    std::ranges::copy(tracers_[part].trace(beams.subspan(first, last - first), scan),
+                      left_out.begin() + static_cast<std::ptrdiff_t>(first));
   });
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (fits[i] == Fit::kPartlyOutside) report.outside.add(beams[i].heard->time_s);
+    if (left_out[i] > 0) report.outside.add(placed.heard[i]->time_s);
   }
   return apply(report);
 }
 
 /// Each beam as a scan of its own.
-Result<void> HeardMapper::map_one_by_one(const std::vector<Placed>& beams, BuildReport& report) {
-  for (const Placed& placed : beams) {
-    if (trace(placed, beam_, tracer_, scan_) == Fit::kPartlyOutside) report.outside.add(placed.heard->time_s);
+Result<void> HeardMapper::map_one_by_one(const Placed& placed, BuildReport& report) {
+  const std::span<const PlacedBeam> beams = placed.beams;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (tracers_.front().trace(beams.subspan(i, 1), scan_).front() > 0) report.outside.add(placed.heard[i]->time_s);
     if (const auto applied = apply(report); !applied) return applied;
   }
   return {};

@@ -52,26 +52,23 @@ class HeardMapper {
   void restart();
 
  private:
-  /// A beam, and where the head was when it was heard.
+  /// Beams that are to be mapped.
   struct Placed {
-    const HeardBeam* heard;
-    Pose map_from_sensor;
+    std::vector<PlacedBeam> beams;
+    std::vector<const HeardBeam*> heard;
   };
-  enum class Fit { kInside, kPartlyOutside };
 
-  Result<std::vector<Placed>> place(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
-                                    BuildReport& report) const;
-  bool is_blocked(const Placed& beam) const;
+  Result<Placed> place(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
+                       BuildReport& report) const;
+  bool is_blocked(const PlacedBeam& beam) const;
   Result<void> check_size(const HeardBeam& beam) const;
-  static Fit trace(const Placed& placed, Beam& beam, BeamTracer& tracer, ScanUpdate& scan);
-  Result<void> map_as_one_scan(const std::vector<Placed>& beams, BuildReport& report);
-  Result<void> map_one_by_one(const std::vector<Placed>& beams, BuildReport& report);
+  Result<void> map_as_one_scan(const Placed& placed, BuildReport& report);
+  Result<void> map_one_by_one(const Placed& placed, BuildReport& report);
   Result<void> apply(BuildReport& report);
 
   BuildOptions options_;
   OccupancyMap* map_;
-  BeamTracer tracer_;
-  Beam beam_;  ///< that is traced
+  std::vector<BeamTracer> tracers_;  ///< one for each thread
   ScanUpdate scan_;
   ScanParts parts_;
   std::size_t sweeps_ = 0;          ///< complete ones that were counted

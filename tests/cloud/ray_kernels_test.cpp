@@ -22,10 +22,9 @@ using Cell = std::array<std::int64_t, 3>;
 constexpr int kWindowBits = 7;  ///< 128 cells along each axis, from -64 to 63
 constexpr std::int64_t kHalf = 64;
 
-/// A window about the origin of the map, and rays that begin there.
-RayGrid grid_from(const Eigen::Vector3d& from_m, double cells_per_m = 1.0) {
+/// A window about the origin of the map.
+RayGrid grid_around_origin(double cells_per_m = 1.0) {
   RayGrid grid;
-  grid.from = from_m * cells_per_m;
   grid.cells_per_m = cells_per_m;
   grid.lowest.fill(-kHalf);
   grid.inside_from.fill(-static_cast<double>(kHalf));
@@ -89,6 +88,22 @@ std::vector<Eigen::Vector3d> ends_around(const Eigen::Vector3d& from_m, std::mt1
   return ends;
 }
 
+/// Where a moving head may be: some beyond the window, some in no number.
+std::vector<Eigen::Vector3d> beginnings_around(const Eigen::Vector3d& from_m, std::mt19937_64& random,
+                                               std::size_t count) {
+  std::vector<Eigen::Vector3d> beginnings;
+  const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d begin = from_m + Eigen::Vector3d(uniform(), uniform(), uniform());
+    const auto kind = random() % 16;
+    if (kind == 0) begin = begin.array().round();
+    if (kind == 1) begin *= 1e4;
+    if (kind == 2) begin.y() = std::nan("");
+    beginnings.push_back(begin);
+  }
+  return beginnings;
+}
+
 template <class Point>
 std::vector<Point> as(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Point> same;
@@ -102,7 +117,7 @@ void expect_places() {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    RayGrid grid = grid_from({0.3, -0.1, 0.2}, seed % 3 == 0 ? 20.0 / 3.0 : 1.3);
+    RayGrid grid = grid_around_origin(seed % 3 == 0 ? 20.0 / 3.0 : 1.3);
     if (seed % 5 == 0) grid.inside_to[1] = 20.0;  // the lattice's border
     const std::vector<Point> points = as<Point>(ends_around({0.3, -0.1, 0.2}, random, random() % 30));
     std::vector<std::uint64_t> expected;
@@ -136,25 +151,27 @@ void expect_marks() {
     const double cells_per_m = seed % 3 == 0 ? 1.0 : 1.7;
     Eigen::Vector3d from(0.1 * static_cast<double>(random() % 37), -0.2, 0.05 * static_cast<double>(random() % 100));
     if (seed % 4 == 0) from = Eigen::Vector3d::Zero();
-    const RayGrid grid = grid_from(from, cells_per_m);
-    const std::uint64_t start = place_of(cell_of(grid.from));
+    const RayGrid grid = grid_around_origin(cells_per_m);
     const std::vector<Point> ends = as<Point>(ends_around(from, random, 1 + random() % 100));
+    const std::vector<Eigen::Vector3d> beginnings =
+        seed % 2 == 0 ? std::vector(ends.size(), from) : beginnings_around(from, random, ends.size());
     for_each_kernel([&] {
       PreparedRays rays;
-      prepare_rays(grid, std::span<const Point>(ends), rays);
+      prepare_rays(grid, beginnings, std::span<const Point>(ends), rays);
       ASSERT_EQ(rays.count, ends.size());
       std::set<std::uint64_t> expected;
       for (std::size_t i = 0; i < ends.size(); ++i) {
-        const Eigen::Vector3d to = ends[i].template cast<double>() * cells_per_m;
+        const Eigen::Vector3d begin = beginnings[i] * cells_per_m, to = ends[i].template cast<double>() * cells_per_m;
         if (rays.end[i] == kNoPlace) {
           ++left_out;
           ASSERT_EQ(rays.left[i], 0);
           continue;
         }
         ++taken;
+        ASSERT_EQ(rays.start[i], place_or_none(grid, begin));
         ASSERT_EQ(rays.end[i], place_or_none(grid, to));
-        FaceCrossings crossings(grid.from, to);
-        Cell cell = cell_of(grid.from);
+        FaceCrossings crossings(begin, to);
+        Cell cell = cell_of(begin);
         while (crossings.left() > 0) {
           expected.insert(place_of(cell));
           const std::size_t axis = crossings.next_axis();
@@ -165,7 +182,7 @@ void expect_marks() {
       }
       ScanWindow window;
       window.open(kWindowBits);
-      mark_rays(rays, start, window);
+      mark_rays(rays, window);
       ASSERT_EQ(missed_cells(window), expected);
       marked += expected.size();
     });
@@ -177,7 +194,7 @@ void expect_marks() {
 
 // Kills a lane that takes another face than the plain stepper (ties, backward steps, ends on faces), a carry that does
 // not reach the next bit of its axis, a ray that marks its end, lanes that go on marking when their ray has ended, rays
-// that change places when they are sorted by length.
+// that change places when they are sorted by length, a ray that begins where its neighbour does.
 TEST(RayKernels, MarkedCellsAreThoseOfFaceCrossings) {
   expect_marks<Eigen::Vector3d>();
   expect_marks<Eigen::Vector3f>();
@@ -200,15 +217,15 @@ TEST(RayKernels, MarkedCellsAreThoseOfExactArithmetic) {
     const ExactSegment::Point from{coordinate(), coordinate(), coordinate()},
         to{coordinate(), coordinate(), coordinate()};
     const ExactSegment segment(from, to);
-    const std::array<Eigen::Vector3d, 1> end{point(to)};
-    const RayGrid grid = grid_from(point(from));
+    const std::array<Eigen::Vector3d, 1> begin{point(from)}, end{point(to)};
+    const RayGrid grid = grid_around_origin();
     for_each_kernel([&] {
       PreparedRays rays;
-      prepare_rays(grid, std::span<const Eigen::Vector3d>(end), rays);
+      prepare_rays(grid, begin, std::span<const Eigen::Vector3d>(end), rays);
       if (rays.end[0] == kNoPlace) return;
       ScanWindow window;
       window.open(kWindowBits);
-      mark_rays(rays, place_of(cell_of(grid.from)), window);
+      mark_rays(rays, window);
       const std::set<std::uint64_t> found = missed_cells(window);
       std::set<std::uint64_t> expected;
       for (const Cell& cell : segment.cells()) expected.insert(place_of(cell));

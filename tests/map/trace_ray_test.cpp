@@ -18,7 +18,7 @@ namespace {
 
 TEST(TraceRay, MarksTheCellsThatTheDdaWalksOver) {
   std::size_t marked = 0;
-  // Up to 21 levels rays are walked by numbers in the tree's order; long ones and deeper lattices key by key.
+  // Short and long rays, shallow and deep lattices.
   for (const auto& [depth, reach, count] : std::vector<std::tuple<int, std::int64_t, int>>{
            {3, 3, 2'000}, {8, 100, 2'000}, {16, 400, 500}, {16, 30'000, 3}, {21, 1'000, 100}, {22, 300, 100}}) {
     const Lattice lattice(0.25, depth);

@@ -97,7 +97,6 @@ class DdaStepper {
   DdaStepper(const BasicKey<W>& start, const FaceCrossings& crossings) : key_(start), crossings_(crossings) {}
   BasicKey<W> key() const { return key_; }
   bool done() const { return crossings_.left() == 0; }
-  const FaceCrossings& crossings() const { return crossings_; }  ///< those ahead
   void step() {
     const std::size_t axis = crossings_.next_axis();
     W& word = component(key_, axis);
@@ -110,28 +109,18 @@ class DdaStepper {
   FaceCrossings crossings_;
 };
 
-/// At the start of the segment from `from_m` to `to_m` [m, map frame].
+/// The cells that the segment from `from_m` to `to_m` [m, map frame] crosses, the start cell included, the end cell
+/// not. Against exact arithmetic only cells that it touches within 1e-9 of a cell of a face, edge or corner may differ.
 /// @return nullopt when an end lies outside of the lattice
 template <KeyWord W>
-std::optional<DdaStepper<W>> dda_stepper(const Lattice& lattice, const Eigen::Vector3d& from_m,
-                                         const Eigen::Vector3d& to_m) {
+std::optional<KeyRange<DdaStepper<W>>> dda(const Lattice& lattice, const Eigen::Vector3d& from_m,
+                                           const Eigen::Vector3d& to_m) {
   const auto start = lattice.key_of<W>(from_m);
   if (!start || !lattice.key_of<W>(to_m)) return std::nullopt;
   const Eigen::Vector3d from = lattice.in_cells(from_m), to = lattice.in_cells(to_m);
   // Farther than 2^62 cells no walk ends; such an end is as good as outside.
   if (!((to - from).cwiseAbs().maxCoeff() < std::ldexp(1.0, 61))) return std::nullopt;
-  return DdaStepper<W>(*start, FaceCrossings(from, to));
-}
-
-/// The cells that the segment crosses, the start cell included, the end cell not. Against exact arithmetic only cells
-/// that it touches within 1e-9 of a cell of a face, edge or corner may differ.
-/// @see dda_stepper
-template <KeyWord W>
-std::optional<KeyRange<DdaStepper<W>>> dda(const Lattice& lattice, const Eigen::Vector3d& from_m,
-                                           const Eigen::Vector3d& to_m) {
-  const auto stepper = dda_stepper<W>(lattice, from_m, to_m);
-  if (!stepper) return std::nullopt;
-  return KeyRange(*stepper);
+  return KeyRange(DdaStepper<W>(*start, FaceCrossings(from, to)));
 }
 
 }  // namespace pingvox
