@@ -10,6 +10,7 @@
 #include "paper/echoes.hpp"
 #include "paper/figures.hpp"
 #include "paper/key_width.hpp"
+#include "paper/maps.hpp"
 #include "paper/paper.hpp"
 #include "paper/parents.hpp"
 #include "paper/rays.hpp"
@@ -69,6 +70,8 @@ std::span<const Bench> benches() {
       Bench{"locate", "where locate finds a vehicle in a map, compared with where it was", Family::kAccuracy, &locate},
       Bench{"paper", "what the paper says and what we get, all of it; with --pictures its figures", Family::kPaper,
             &paper},
+      Bench{"paper-maps", "section 3: grid, lines and octree, and how well a vehicle is followed in each",
+            Family::kPaper, &paper_maps},
       Bench{"paper-keys", "section 5.1: keys of 8 to 128 bits", Family::kPaper, &paper_key_width},
       Bench{"paper-drop", "figure 8: updates dropped early, by density", Family::kPaper, &paper_early_drop},
       Bench{"paper-parents", "section 5.3.1: max and mean, seen by a planner", Family::kPaper, &paper_parents},

@@ -8,6 +8,7 @@
 
 #include "claim.hpp"
 #include "early_drop.hpp"
+#include "maps.hpp"
 #include "pingvox/io/file.hpp"
 #include "ray_figures.hpp"
 #include "tank_figures.hpp"
@@ -62,6 +63,9 @@ Result<std::vector<Row>> paper_figures(const BenchOptions& options) {
       const auto added = folder.add(figure.name + "-" + log.name, figure.section, figure.says, figure.picture);
       if (!added) return tl::unexpected(added.error());
     }
+  }
+  if (const auto added = folder.add("section-3", "3", "grid, features, octree", harbour_and_its_lines()); !added) {
+    return tl::unexpected(added.error());
   }
   if (const auto added = folder.add("figure-8", "5.3", "slower, slightly faster, much faster", early_drop_chart());
       !added) {

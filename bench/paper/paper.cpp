@@ -8,6 +8,7 @@
 #include "echoes.hpp"
 #include "figures.hpp"
 #include "key_width.hpp"
+#include "maps.hpp"
 #include "parents.hpp"
 #include "rays.hpp"
 #include "table_1.hpp"
@@ -15,9 +16,9 @@
 namespace pingvox::bench {
 
 Result<std::vector<Row>> paper(const BenchOptions& options) {
-  constexpr std::array kSections = {&paper_key_width,  &paper_early_drop, &paper_parents, &paper_table_1,
-                                    &paper_bytes,      &paper_rays,       &paper_bits,    &paper_smoothing,
-                                    &paper_thresholds, &paper_canny};
+  constexpr std::array kSections = {&paper_maps,      &paper_key_width,  &paper_early_drop, &paper_parents,
+                                    &paper_table_1,   &paper_bytes,      &paper_rays,       &paper_bits,
+                                    &paper_smoothing, &paper_thresholds, &paper_canny};
   std::vector<Row> rows;
   for (const auto section : kSections) {
     Result<std::vector<Row>> found = section(options);
