@@ -6,6 +6,9 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <vector>
+
+#include "tests/support/scan_cells.hpp"
 
 namespace pingvox {
 namespace {
@@ -82,6 +85,49 @@ TEST(BeamTracer, HitsAreTheSurestOfTheRaysThatEndInACell) {
   }
   EXPECT_GT(hits, 10'000U);
   EXPECT_GT(outside, 1000U);
+}
+
+// Kills a ray that begins at another beam's pose, a beam that is left out under another one's number, silent beams that
+// shift the numbers of those behind them, and marks that stay for the next scan.
+TEST(BeamTracer, BeamsOfAScanAreTracedAsEachByItself) {
+  std::size_t cells = 0, outside = 0;
+  for (const BeamShape shape : {BeamShape::kRay, BeamShape::kFan, BeamShape::kCone}) {
+    BeamModelOptions options;
+    options.shape = shape;
+    BeamTracer tracer(options);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", shape " << static_cast<int>(shape));
+      std::mt19937_64 random(seed);
+      const Lattice lattice(0.1, seed % 2 == 0 ? 6 : 16);  // the smaller one ends at 3.2 m
+      std::vector<PlacedBeam> beams(40);
+      for (PlacedBeam& beam : beams) {
+        beam.map_from_sensor =
+            pose_from_rpy({uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)},
+                          uniform(random, -3, 3), uniform(random, -1.5, 1.5), uniform(random, -3, 3));
+        beam.bearing_rad = uniform(random, -3, 3);
+        beam.bin_length_m = 0.05;
+        beam.bins = 80;
+        if (random() % 4 == 0) continue;  // silent
+        beam.echo.emplace();
+        beam.echo->first = random() % 80;
+        beam.echo->range_m = 0.05 * static_cast<double>(beam.echo->first) + 0.02;
+        beam.echo->intensity = static_cast<std::uint8_t>(random());
+      }
+      ScanUpdate together(lattice), one_by_one(lattice);
+      std::vector<std::size_t> expected;
+      for (const PlacedBeam& beam : beams) {
+        const Beam alone{0.0, beam.bearing_rad, beam.bin_length_m, std::vector<std::uint8_t>(beam.bins)};
+        expected.push_back(trace_beam(beam.map_from_sensor, alone, beam.echo, options, one_by_one));
+        outside += expected.back() > 0;
+      }
+      EXPECT_EQ(tracer.trace(beams, together), expected);
+      EXPECT_EQ(test::cells_of(together), test::cells_of(one_by_one));
+      EXPECT_EQ(hits_in(together), hits_in(one_by_one));
+      cells += test::cells_of(together).size();
+    }
+  }
+  EXPECT_GT(cells, 50'000U);
+  EXPECT_GT(outside, 200U);
 }
 
 }  // namespace
