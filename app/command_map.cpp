@@ -17,6 +17,7 @@
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
 #include "shell_words.hpp"
 #include "stopwatch.hpp"
@@ -33,6 +34,8 @@ struct Totals {
   bool assumes_beam = false;  ///< the size of the first log's beams is a default
   bool has_beams = false;
   BeamModelOptions beam;  ///< of the first log of beams
+  double sound_speed_m_s = kAssumedSoundSpeed_m_s;
+  std::optional<Water> nav_water;  ///< by the navigation log, where it was asked
   double write_s = 0.0, total_s = 0.0;
 
   void add(const MappedLog& mapped, const Log& source) {
@@ -147,6 +150,7 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("skipped_for", skipped_for)
       .add("beam", beam_json(totals.beam))
       .add("threshold", threshold_json(report))
+      .add("sound_speed_m_s", totals.sound_speed_m_s)
       .add("cells_freed", report.cells_freed)
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
@@ -178,6 +182,12 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
     beams = report_line("beam", beam_text(totals.beam, totals.assumes_beam)) +
             report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
+  if (totals.nav_water) {
+    const auto& [temperature_c, salinity, depth_m] = *totals.nav_water;
+    beams +=
+        report_line("water", fmt::format("{:.1f} degrees C at {:.1f} m by --nav, salinity {:.6g}: sound {:.1f} m/s",
+                                         temperature_c, depth_m, salinity, totals.sound_speed_m_s));
+  }
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path)) + report_line("nav clock", text_of(path.nav->offset)) : "") +
          beams + map_text(map, map.counts()) +
@@ -195,8 +205,16 @@ Result<int> run(const MapCommand& command, Console& console) {
   if (!map) return tl::unexpected(map.error());
   const Result<VehiclePath> path = vehicle_path(command.path, {command.logs.front(), command.topic}, command.damage);
   if (!path) return tl::unexpected(path.error());
-
+  BuildOptions build = command.build;
   Totals totals;
+  if (command.nav_salinity) {
+    const Result<Water> water = water_of(*path, *command.nav_salinity);
+    if (!water) return tl::unexpected(water.error());
+    totals.nav_water = *water;
+    build.sound_speed_ratio = sound_speed_m_s(*water) / kAssumedSoundSpeed_m_s;
+  }
+  totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
+
   std::vector<std::string> kinds;
   {
     ProgressBar bar(command.output_options);
@@ -233,7 +251,7 @@ Result<int> run(const MapCommand& command, Console& console) {
         bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
                                     bytes_text(map->memory_bytes())));
       };
-      const Result<MappedLog> mapped = map_log(*log, name, *path, command.build, command.head, *map, progress);
+      const Result<MappedLog> mapped = map_log(*log, name, *path, build, command.head, *map, progress);
       if (!mapped) return tl::unexpected(mapped.error());
       totals.add(*mapped, *log);
       if (!mapped->skipped_text.empty()) {

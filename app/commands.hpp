@@ -103,6 +103,7 @@ struct MapCommand {
   BuildOptions build;
   HeadArgs head;
   std::optional<double> background_m;  ///< range of the background to subtract
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the file
 };

@@ -86,6 +86,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Da
   if (!nav) return tl::unexpected(nav.error());
   const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, sonar, damage);
   if (!offset) return tl::unexpected(offset.error());
+  const std::optional<WaterAround> water = water_around(nav->log);
   const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
   const auto name_files = [&](Error error) {
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
@@ -102,7 +103,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Da
     return odometry_of(nav->log, options)
         .map([&](Odometry odometry) {
           return VehiclePath{std::move(odometry.odometry_from_body),
-                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset},
+                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water},
                              sonar_moved_m};
         })
         .map_error(name_files);
@@ -115,7 +116,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Da
   return nav_trajectory(nav->log, offset->offset_s)
       .map([&](NavTrajectory made) {
         return VehiclePath{std::move(made.trajectory),
-                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset}};
+                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water}};
       })
       .map_error(name_files);
 }
@@ -128,12 +129,21 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
   Result<NavTrajectory> made = has_attitude ? nav_trajectory(read->log) : nav_positions(read->log);
   if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
   return VehiclePath{std::move(made->trajectory),
-                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read), {}}};
+                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read), {}, {}}};
+}
+
+Result<Water> water_of(const VehiclePath& path, double salinity) {
+  if (!path.nav || !path.nav->water) {
+    return fail(Error::Code::kUnsupported, "--water nav,S: --nav tells no temperature of water: give it as T,S");
+  }
+  const Water water{path.nav->water->temperature_c, salinity, path.nav->water->depth_m};
+  if (const auto valid = water.validate(); !valid) return tl::unexpected(valid.error());
+  return water;
 }
 
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
-  const auto& [attitude, position, velocity, damaged, offset] = *path.nav;
+  const auto& [attitude, position, velocity, damaged, offset, water] = *path.nav;
   std::string sources = on_one_line(attitude.empty() ? position : attitude);
   if (!velocity.empty()) {
     sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));

@@ -9,7 +9,9 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/mapping/build_map.hpp"
+#include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/sonar/sound_speed.hpp"
 
 namespace pingvox::app {
 
@@ -24,6 +26,7 @@ struct VehiclePath {
     std::string velocity;            ///< dead reckoning: its source; there is no position then
     std::size_t damaged = 0;         ///< records that could not be read
     NavOffset offset;                ///< that was added to its times
+    std::optional<WaterAround> water;
   };
   std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
@@ -34,6 +37,8 @@ struct VehiclePath {
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage);
 /// Trajectory of one navigation log; positions without an attitude give poses without rotation.
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
+/// The water of a navigation log. kUnsupported when it does not tell the temperature.
+Result<Water> water_of(const VehiclePath& path, double salinity);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
 

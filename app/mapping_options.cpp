@@ -38,20 +38,31 @@ constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
-Take store_water(std::optional<Water>& water) {
-  return [&water](const std::string& text) -> Result<void> {
+/// "T,S", "T,S,D" or "nav,S".
+Take store_water(EchoArgs& args) {
+  return [&args](const std::string& text) -> Result<void> {
+    constexpr std::string_view kOfNav = "nav,";
     std::array<double, 3> n{};
+    args.water.reset();
+    args.nav_salinity.reset();
+    if (text.starts_with(kOfNav)) {
+      const auto salinity = numbers_from<1>(text.substr(kOfNav.size()));
+      if (!salinity) return tl::unexpected(salinity.error());
+      if (const auto valid = Water{.salinity = (*salinity)[0]}.validate(); !valid) return tl::unexpected(valid.error());
+      args.nav_salinity = (*salinity)[0];
+      return {};
+    }
     const auto three = numbers_from<3>(text);
     const auto two = numbers_from<2>(text);
     if (three) n = *three;
     if (two) n = {(*two)[0], (*two)[1], 0.0};
     if (!two && !three) {
-      return usage_error(
-          fmt::format("'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D", text));
+      return usage_error(fmt::format(
+          "'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D; or nav,S", text));
     }
     const Water given{.temperature_c = n[0], .salinity = n[1], .depth_m = n[2]};
     if (const auto valid = given.validate(); !valid) return tl::unexpected(valid.error());
-    water = given;
+    args.water = given;
     return {};
   };
 }
@@ -184,8 +195,11 @@ double EchoArgs::sound_speed_ratio() const {
   return speed_m_s / kAssumedSoundSpeed_m_s;
 }
 
-Result<void> EchoArgs::validate() const {
-  if (water && sound_speed_m_s) return usage_error("--sound-speed and --water: exclude each other");
+Result<void> EchoArgs::validate(UseOfNav use) const {
+  if ((water || nav_salinity) && sound_speed_m_s) return usage_error("--sound-speed and --water: exclude each other");
+  if (nav_salinity && use == UseOfNav::kNone) {
+    return usage_error("--water nav,S: takes the temperature from the log of --nav, which only 'map' does");
+  }
   return {};
 }
 
@@ -206,9 +220,10 @@ OptionTable::Group echo_group(EchoArgs& args) {
         number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                store_optional(args.sound_speed_m_s))},
-       {"--water", 0, "T,S[,D]",
-        "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m", "none",
-        store_water(args.water)},
+       {"--water", 0, "T,S[,D]|nav,S",
+        "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m; nav: "
+        "temperature and depth of --nav ('map' only)",
+        "none", store_water(args)},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; without it more beams are silent",
               args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",

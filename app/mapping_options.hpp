@@ -30,10 +30,14 @@ struct EchoArgs {
   std::optional<double> background_m;     ///< nullopt: none is subtracted
   std::optional<double> sound_speed_m_s;  ///< nullopt: of `water`, else as the device assumes
   std::optional<Water> water;
+  std::optional<double> nav_salinity;  ///< of water whose temperature the navigation log tells
+
+  /// What a command knows of the water from a navigation log.
+  enum class UseOfNav { kNone, kWater };
 
   double sound_speed_ratio() const;
-  /// kBadOption when both say what the speed of sound is.
-  Result<void> validate() const;
+  /// kBadOption when both say what the speed of sound is, or when the navigation log should and is not asked.
+  Result<void> validate(UseOfNav use = UseOfNav::kNone) const;
 
   FilterOptions filter_options() const {
     const FilterOptions usual = default_filter(echo.detector);

@@ -107,10 +107,12 @@ Result<Command> map_command(const Args& args) {
     }
     map.thresholds = command.occupancy.apply_to(map.thresholds);
     command.map = map;
-    if (const auto valid = build.echoes.validate(); !valid) return tl::unexpected(valid.error());
+    const auto use_of_nav = build.navs.empty() ? EchoArgs::UseOfNav::kNone : EchoArgs::UseOfNav::kWater;
+    if (const auto valid = build.echoes.validate(use_of_nav); !valid) return tl::unexpected(valid.error());
     command.build = build.build_options();
     command.head = build.head;
     command.background_m = build.echoes.background_m;
+    command.nav_salinity = build.echoes.nav_salinity;
     if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
     if (map.depth != Lattice::kDefaultDepth && (*output_as == Format::kBt || *output_as == Format::kOt)) {

@@ -115,9 +115,14 @@ void add_pressure(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kPressure, {pascals(message.number(0)), 0.0, 0.0});
 }
 
-void add_depth_and_pressure(const RosFields& message, Samples& samples) {
+void add_depth_pressure_temperature(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
   samples.add(NavQuantity::kPressure, {pascals(message.number(1)), 0.0, 0.0});
+  samples.add(NavQuantity::kTemperature, {message.number(2), 0.0, 0.0});
+}
+
+void add_temperature(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kTemperature, {message.number(0), 0.0, 0.0});
 }
 
 void add_range(const RosFields& message, Samples& samples) {
@@ -212,6 +217,7 @@ constexpr std::array kNavTypes = {
     NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix},
     NavType{{"Xsens700Position", {"lat", "lon", "fixind"}}, add_xsens_fix},
     NavType{{"FluidPressure", {"fluid_pressure"}}, add_pressure},
+    NavType{{"Temperature", {"temperature"}}, add_temperature},
     NavType{{"Range", {"range", "min_range", "max_range"}}, add_range},
     NavType{{"DVL", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
     // Those of SOLAQUA look ahead, at the net.
@@ -225,7 +231,7 @@ constexpr std::array kNavTypes = {
     NavType{{"DVLVelocity", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
     NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}}, add_reckoning},
     NavType{{"Attitude", {"roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed"}}, add_ned_attitude},
-    NavType{{"DepthTemperature", {"depth", "pressure"}}, add_depth_and_pressure},
+    NavType{{"DepthTemperature", {"depth", "pressure", "temperature"}}, add_depth_pressure_temperature},
     NavType{{"Odometry",
              {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
               "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w", "twist.twist.linear.x",
@@ -236,6 +242,8 @@ constexpr std::array kNavTypes = {
     NavType{{"Float32", {"data"}, "depth"}, add_depth},
     NavType{{"Float64", {"data"}, "pressure"}, add_pressure},
     NavType{{"Float32", {"data"}, "pressure"}, add_pressure},
+    NavType{{"Float64", {"data"}, "temperature"}, add_temperature},
+    NavType{{"Float32", {"data"}, "temperature"}, add_temperature},
 };
 
 /// Gathers the topics and the navigation of a bag.

@@ -143,6 +143,7 @@ class Message {
   void add_pressure(const char* name, const Fields& fields) {
     has_boot_time(fields.at<std::uint32_t>(0));
     put(name, NavQuantity::kPressure, sample_of({fields.at<float>(4) * 100.0, 0, 0}));
+    put(name, NavQuantity::kTemperature, sample_of({fields.at<std::int16_t>(12) * 0.01, 0, 0}));
   }
 
   void add_quaternion(const Fields& fields) {

@@ -40,6 +40,7 @@ class DataflashNav {
     }
     if (name.starts_with("BAR")) {
       if (const auto pressure_pa = record.number_of("Press")) put(kPressure, {*pressure_pa, 0, 0});
+      if (const auto temperature_c = record.number_of("Temp")) put(kTemperature, {*temperature_c, 0, 0});
     }
     if (name == "CTUN" && record.type.field("DAlt") != nullptr) {
       if (const auto up_m = record.number_of("Alt")) put(kDepth, {-*up_m, 0, 0});

@@ -70,6 +70,7 @@ void add_dvl(NavSources& sources, const std::vector<double>& row) {
   sources.add("DVL", NavQuantity::kVelocity, sample_at(row[0], body_from_dvl * velocity_cm_s / 100.0, velocity));
   sources.add("DVL", NavQuantity::kHeading,
               sample_at(row[0], {from_ned::yaw(row[22] * kDegree_rad - kDvlYaw_rad), 0.0, 0.0}));
+  sources.add("DVL", NavQuantity::kTemperature, sample_at(row[0], {row[25], 0.0, 0.0}));
   constexpr double kMetresOfCount = 0.00377225, kSurfaceCount = 1440.0;
   sources.add("DVL", NavQuantity::kDepth, sample_at(row[0], {kMetresOfCount * (row[26] - kSurfaceCount), 0.0, 0.0}));
 }

@@ -179,6 +179,7 @@ class NmeaNav {
     if (sentence.is("THS")) add_heading(sentence.number(1), sentence.field(2) != "V");
     if (sentence.is("HDG")) add_compass(sentence);
     if (sentence.is("DPT")) add_range(sentence.number(1));
+    if (sentence.is("MTW") && sentence.number(1)) put(NavQuantity::kTemperature, {*sentence.number(1), 0.0, 0.0}, true);
     if (sentence.is("DBT")) add_range(sentence.number(3));
     if (sentence.is("VBW")) add_velocity(sentence);
   }

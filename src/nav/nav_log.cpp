@@ -20,7 +20,8 @@ constexpr std::array kNames = {std::pair{NavQuantity::kVelocity, std::string_vie
                                std::pair{NavQuantity::kPosition, std::string_view("position")},
                                std::pair{NavQuantity::kFix, std::string_view("fix")},
                                std::pair{NavQuantity::kRange, std::string_view("range")},
-                               std::pair{NavQuantity::kPressure, std::string_view("pressure")}};
+                               std::pair{NavQuantity::kPressure, std::string_view("pressure")},
+                               std::pair{NavQuantity::kTemperature, std::string_view("temperature")}};
 
 constexpr double kMaxInAir_pa = 110'000.0, kSurface_pa = 101'325.0, kSeaWater_kg_m3 = 1025.0, kGravity_m_s2 = 9.80665;
 
@@ -33,6 +34,16 @@ double median(std::vector<double> numbers) {
 std::size_t valid_samples(const NavSource& source) {
   return static_cast<std::size_t>(
       std::count_if(source.samples.begin(), source.samples.end(), [](const NavSample& s) { return s.valid; }));
+}
+
+/// Median of the first number of all valid samples.
+std::optional<double> usual_value(const NavSource& source) {
+  std::vector<double> values;
+  for (const NavSample& sample : source.samples) {
+    if (sample.valid) values.push_back(sample.value.x());
+  }
+  if (values.empty()) return std::nullopt;
+  return median(std::move(values));
 }
 
 }  // namespace
@@ -58,6 +69,7 @@ int numbers_of(NavQuantity quantity) {
     case NavQuantity::kDepth:
     case NavQuantity::kRange:
     case NavQuantity::kPressure:
+    case NavQuantity::kTemperature:
       return 1;
     default:
       return 3;
@@ -124,6 +136,21 @@ std::optional<NavSource> depth_source(const NavLog& log) {
     sample.deviation.x() /= kSeaWater_kg_m3 * kGravity_m_s2;
   }
   return depth;
+}
+
+std::optional<WaterAround> water_around(const NavLog& log) {
+  constexpr double kNone_c = 0.0, kWarmest_c = 35.0;
+  std::optional<double> coldest_c;
+  for (const NavSource& source : log.sources()) {
+    if (source.quantity != NavQuantity::kTemperature) continue;
+    const std::optional<double> usual_c = usual_value(source);
+    if (!usual_c || *usual_c <= kNone_c || *usual_c > kWarmest_c) continue;
+    coldest_c = std::min(*usual_c, coldest_c.value_or(*usual_c));
+  }
+  if (!coldest_c) return std::nullopt;
+  const std::optional<NavSource> depth = depth_source(log);
+  const double depth_m = depth ? usual_value(*depth).value_or(0.0) : 0.0;
+  return WaterAround{*coldest_c, std::max(depth_m, 0.0)};
 }
 
 NavSummary summary_of(const NavSource& source) {

@@ -103,6 +103,27 @@ TEST(Nav, MapsAsTheSamePosesDo) {
   EXPECT_THAT(here.call({"info", "nav.tum", "--json"}).out, HasSubstr("\"kind\": \"trajectory\""));
 }
 
+TEST(Nav, TellsHowFastSoundIs) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2"}).status, 0);
+  const std::string nav = nav_of_poses(here.read("dive.tum"), 0.0);
+  here.write("dry.csv", nav);
+  here.write("nav.csv", nav + "1,hull,temperature,30,,\n1,bar,temperature,8.7,,\n1,bar,depth,12,,\n");
+  const Outcome mapped = here.call({"map", "dive.csv", "--nav", "nav.csv", "--water", "nav,0", "-o", "nav.ot"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("8.7 degrees C at 12.0 m by --nav, salinity 0: sound 1442.2 m/s\n"));
+  ASSERT_EQ(here.call({"map", "dive.csv", "--nav", "nav.csv", "--water", "8.7,0,12", "-o", "same.ot"}).status, 0);
+  EXPECT_EQ(here.call({"compare", "nav.ot", "same.ot"}).status, 0);
+  ASSERT_EQ(here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "usual.ot"}).status, 0);
+  EXPECT_EQ(here.call({"compare", "nav.ot", "usual.ot"}).status, 1) << "ranges are 4% shorter";
+
+  expect_error(here.call({"map", "dive.csv", "--nav", "dry.csv", "--water", "nav,0", "-o", "o.ot"}), 1,
+               {"--water", "no temperature"});
+  expect_error(here.call({"map", "dive.csv", "--water", "nav,0", "-o", "o.ot"}), 2, {"--water", "--nav"});
+  expect_error(here.call({"render", "dive.csv", "--water", "nav,0", "-o", "o.png"}), 2, {"--water", "--nav"});
+  expect_error(here.call({"map", "dive.csv", "--nav", "nav.csv", "--water", "nav,90", "-o", "o.ot"}), 2, {"salinity"});
+}
+
 // Kills readers that take the last file alone, or sources of the same name for two.
 TEST(Nav, SeveralLogsOfADiveAreOne) {
   const Workplace here;

@@ -83,10 +83,11 @@ TEST(Nmea, WhatIsEmptyIsNotZero) {
 TEST(Nmea, ReadsCompassSounderAndLog) {
   const NavFile nav = read(std::string(kRmc) +
                            "$IIHDG,10.0,2.0,W,5.0,E*6D\r\n$SDDBT,30.0,f,9.1,M,5.0,F*38\r\n$SDDPT,3.5,0.2*53\r\n"
-                           "$VDVBW,,,V,2.0,1.0,A*45\r\n");
+                           "$VDVBW,,,V,2.0,1.0,A*45\r\n$YXMTW,12.5,C*14\r\n");
   EXPECT_NEAR(samples_of(nav, "IIHDG").at(0).value.x(), 77 * kDegree, 1e-12) << "10 - 2 + 5 from north";
   EXPECT_EQ(samples_of(nav, "SDDBT").at(0).value.x(), 9.1) << "metres, not feet";
   EXPECT_EQ(samples_of(nav, "SDDPT").at(0).value.x(), 3.5);
+  EXPECT_EQ(samples_of(nav, "YXMTW").at(0).value.x(), 12.5);
   const NavSample& velocity = samples_of(nav, "VDVBW").at(0);
   EXPECT_NEAR(velocity.value.x(), 2 * 1852.0 / 3600.0, 1e-12);
   EXPECT_NEAR(velocity.value.y(), -1852.0 / 3600.0, 1e-12) << "to starboard";

@@ -60,6 +60,9 @@ TEST(Tlog, TurnsWhatAVehicleSaidIntoOurFrames) {
   const NavSource* pressure = source_of(nav->log, "SCALED_PRESSURE2", NavQuantity::kPressure);
   ASSERT_NE(pressure, nullptr);
   EXPECT_NEAR(pressure->samples.at(0).value.x(), 101580, 1);
+  const NavSource* temperature = source_of(nav->log, "SCALED_PRESSURE2", NavQuantity::kTemperature);
+  ASSERT_NE(temperature, nullptr);
+  EXPECT_NEAR(temperature->samples.at(0).value.x(), 12.45, 1e-9);
 }
 
 TEST(Tlog, PutsSamplesWhereTheirSenderMadeThemNotWhereTheyArrived) {

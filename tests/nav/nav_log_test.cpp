@@ -23,6 +23,17 @@ NavSource depths(std::string name, const std::vector<double>& times_s) {
   return source;
 }
 
+NavSource source_of_values(std::string name, NavQuantity quantity, const std::vector<double>& values) {
+  NavSource source{std::move(name), quantity, {}};
+  for (const double value : values) {
+    NavSample sample;
+    sample.time_s = static_cast<double>(source.samples.size());
+    sample.value.x() = value;
+    source.samples.push_back(sample);
+  }
+  return source;
+}
+
 TEST(NavLog, PutsSamplesInOrderAndKeepsThatOfEqualTimes) {
   const auto log = NavLog::make({depths("a", {3, 1, 2, 1}), depths("empty", {})}, NavClock::kBoot);
   ASSERT_TRUE(log) << log.error().message;
@@ -51,18 +62,8 @@ TEST(NavLog, TakesTheSourceWithMostValidSamples) {
 
 // Kills the barometer within the hull as a depth, and hectopascals.
 TEST(DepthSource, IsThatOfThePressureInWaterWhereThereIsNoDepth) {
-  const auto pressures = [](std::string name, const std::vector<double>& values_pa) {
-    NavSource source{std::move(name), NavQuantity::kPressure, {}};
-    for (const double value_pa : values_pa) {
-      NavSample sample;
-      sample.time_s = static_cast<double>(source.samples.size());
-      sample.value.x() = value_pa;
-      source.samples.push_back(sample);
-    }
-    return source;
-  };
-  const NavSource inside = pressures("inside", {101'000, 102'000, 103'000, 103'000}),
-                  outside = pressures("outside", {101'325, 151'325, 201'325});
+  const NavSource inside = source_of_values("inside", NavQuantity::kPressure, {101'000, 102'000, 103'000, 103'000}),
+                  outside = source_of_values("outside", NavQuantity::kPressure, {101'325, 151'325, 201'325});
   const auto depth = depth_source(*NavLog::make({inside, outside}, NavClock::kBoot));
   ASSERT_TRUE(depth);
   EXPECT_EQ(depth->name, "outside");
@@ -72,6 +73,24 @@ TEST(DepthSource, IsThatOfThePressureInWaterWhereThereIsNoDepth) {
   EXPECT_NEAR(depth->samples[0].value.x(), 0.0, 1e-9);
   EXPECT_FALSE(depth_source(*NavLog::make({inside}, NavClock::kBoot))) << "air";
   EXPECT_EQ(depth_source(*NavLog::make({outside, depths("bar", {1, 2})}, NavClock::kBoot))->name, "bar");
+}
+
+// Kills the inside of the hull as water, and the air before the dive.
+TEST(WaterAround, IsAsWarmAsTheColdestSensorUsuallyIs) {
+  using enum NavQuantity;
+  const NavSource hull = source_of_values("hull", kTemperature, {28, 30, 31}),
+                  outside = source_of_values("outside", kTemperature, {19, 12, 12.5, 12, 12.1}),
+                  broken = source_of_values("broken", kTemperature, {-273, -273, -273}),
+                  none = source_of_values("none", kTemperature, {0, 0}),
+                  depth = source_of_values("bar", kDepth, {0, 9, 8}), surface = source_of_values("bar", kDepth, {-0.2});
+  const auto water = water_around(*NavLog::make({hull, broken, none, outside, depth}, NavClock::kBoot));
+  ASSERT_TRUE(water);
+  EXPECT_EQ(water->temperature_c, 12.1);
+  EXPECT_EQ(water->depth_m, 8.0);
+  const auto at_surface = water_around(*NavLog::make({outside, surface}, NavClock::kBoot));
+  ASSERT_TRUE(at_surface);
+  EXPECT_EQ(at_surface->depth_m, 0.0);
+  EXPECT_FALSE(water_around(*NavLog::make({broken, depth}, NavClock::kBoot)));
 }
 
 TEST(NavSummary, CountsGapsAndIgnoresRepeatedTimes) {
@@ -89,7 +108,8 @@ TEST(NavSummary, CountsGapsAndIgnoresRepeatedTimes) {
 }
 
 TEST(NavQuantity, IsFoundByItsName) {
-  for (const auto quantity : {NavQuantity::kVelocity, NavQuantity::kTurnRate, NavQuantity::kPressure}) {
+  for (const auto quantity :
+       {NavQuantity::kVelocity, NavQuantity::kTurnRate, NavQuantity::kPressure, NavQuantity::kTemperature}) {
     EXPECT_EQ(nav_quantity_of(name_of(quantity)), quantity);
   }
   EXPECT_EQ(nav_quantity_of("speed"), std::nullopt);

@@ -14,16 +14,17 @@ namespace pingvox {
 /// What a sensor of the vehicle measures. The body frame is x ahead, y left, z up; the world frame x east, y north,
 /// z up (ROS REP-103); angles are counter-clockwise [rad].
 enum class NavQuantity {
-  kVelocity,  ///< over ground, in the body frame [m/s]: x, y, z
-  kAttitude,  ///< roll, pitch, yaw [rad], fixed-axis as in pose_from_rpy; yaw 0 is east unless the source says
-              ///< otherwise
-  kHeading,   ///< yaw alone [rad]: x
-  kTurnRate,  ///< about the body's axes [rad/s]: x, y, z
-  kDepth,     ///< below the surface [m], positive down: x
-  kPosition,  ///< in the source's own local frame [m]: x east, y north, z up
-  kFix,       ///< WGS 84: x latitude [rad], y longitude [rad], z altitude [m]
-  kRange,     ///< to an obstacle or the bottom along the sensor's axis [m]: x
-  kPressure,  ///< [Pa]: x
+  kVelocity,     ///< over ground, in the body frame [m/s]: x, y, z
+  kAttitude,     ///< roll, pitch, yaw [rad], fixed-axis as in pose_from_rpy; yaw 0 is east unless the source says
+                 ///< otherwise
+  kHeading,      ///< yaw alone [rad]: x
+  kTurnRate,     ///< about the body's axes [rad/s]: x, y, z
+  kDepth,        ///< below the surface [m], positive down: x
+  kPosition,     ///< in the source's own local frame [m]: x east, y north, z up
+  kFix,          ///< WGS 84: x latitude [rad], y longitude [rad], z altitude [m]
+  kRange,        ///< to an obstacle or the bottom along the sensor's axis [m]: x
+  kPressure,     ///< [Pa]: x
+  kTemperature,  ///< where the sensor is: of the water, or inside of a hull [degrees C]: x
 };
 
 /// Lower-case name, as in "turn rate".
@@ -80,6 +81,15 @@ class NavLog {
 /// Depth by the source with most valid samples; in a log without depth by the highest pressure, if it exceeds 1100 hPa,
 /// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.
 std::optional<NavSource> depth_source(const NavLog& log);
+
+/// The water around a vehicle.
+struct WaterAround {
+  double temperature_c = 0.0;
+  double depth_m = 0.0;  ///< median of the depth; 0 where none is known
+};
+/// The temperature is the lowest median of its sources, of those within 0..35 degrees C: the inside of a hull is warmer
+/// than the water around it. Just 0 is said where there is no thermometer. nullopt: there is none.
+std::optional<WaterAround> water_around(const NavLog& log);
 
 /// A source at a glance.
 struct NavSummary {
