@@ -194,7 +194,8 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   if (is_bag(format) && to == FormatKind::kBeams) {
     const Result<BagContents> bag = bag_contents(stream, command.damage);
     if (!bag) return tl::unexpected(bag.error());
-    if (!has_beams(*bag) && !bag->nav.log.sources().empty()) return convert_nav(std::move(stream), command);
+    if (!has_beams(*bag) && !command.topic.fields && !bag->nav.log.sources().empty())
+      return convert_nav(std::move(stream), command);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command);

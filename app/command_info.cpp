@@ -257,7 +257,7 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
   return summary;
 }
 
-Result<Summary> summarize_log(ByteStream stream, Format format, Damage damage, const std::string& topic = {}) {
+Result<Summary> summarize_log(ByteStream stream, Format format, Damage damage, const BeamTopic& topic = {}) {
   const std::string name = stream.name();
   const Result<Log> log = open_log(std::move(stream), damage, std::nullopt, topic);
   if (!log) return tl::unexpected(log.error());
@@ -367,7 +367,7 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
   const Result<BagContents> bag = bag_contents(stream, command.damage);
   if (!bag) return tl::unexpected(bag.error());
   const bool is_navigated = !bag->nav.log.sources().empty();
-  if (!has_beams(*bag)) {
+  if (!has_beams(*bag) && !command.topic.fields) {
     Summary summary;
     summary.json.add("kind", "nav").add("format", name_of(format));
     add_nav(summary.json, bag->nav);

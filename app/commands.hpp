@@ -97,7 +97,7 @@ struct MapCommand {
   PathArgs path;
   std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
-  std::string topic;  ///< of a bag; empty: the only one with beams
+  BeamTopic topic;  ///< of a bag
   MapOptions map;
   OccupancyArgs occupancy;  ///< of the finished map
   BuildOptions build;
@@ -113,7 +113,7 @@ struct InfoCommand {
   std::string file;
   std::vector<LimitedOption> limited;
   Damage damage = Damage::kSkip;
-  std::string topic;  ///< of a bag; empty: the only one with beams
+  BeamTopic topic;  ///< of a bag
 };
 
 struct CompareCommand {
@@ -132,7 +132,7 @@ struct ConvertCommand {
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
-  std::string topic;                   ///< of a bag; empty: the only one with beams
+  BeamTopic topic;                     ///< of a bag
   std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the default
   OccupancyArgs occupancy;             ///< of a map
   SliceOptions slice;                  ///< of a map
@@ -179,7 +179,7 @@ struct RenderCommand {
   OutputOptions output_options;
   std::string output, title;
   Damage damage = Damage::kSkip;
-  std::string topic;                   ///< of a bag; empty: the only one with beams
+  BeamTopic topic;                     ///< of a bag
   std::vector<PanelCommand> panels;    ///< at least one
   std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs that are mapped"
 };

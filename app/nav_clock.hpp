@@ -19,8 +19,8 @@ struct NavOffset {
 
 /// The sonar log whose clock is wanted.
 struct SonarLog {
-  std::string name;   ///< "-" is standard input
-  std::string topic;  ///< of a bag; empty: the only one with beams
+  std::string name;  ///< "-" is standard input
+  BeamTopic topic;   ///< of a bag
 };
 
 /// The offset between the clocks of a sonar log and of navigation: what was `given`, else by their dates, else by the

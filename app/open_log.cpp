@@ -98,7 +98,7 @@ std::string kind_text(FormatKind kind) {
 }
 
 Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m,
-                     const std::string& topic) {
+                     const BeamTopic& topic) {
   const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
@@ -115,7 +115,7 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
                           kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
 }
 
-Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const std::string& topic) {
+Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic) {
   if (path == "-") return usage_error("--background: reads the log twice, and standard input can be read only once");
   return ByteStream::open(path)
       .and_then([&](ByteStream stream) { return open_beams(std::move(stream), damage, topic); })
@@ -123,7 +123,7 @@ Result<Background> learn_background(const std::string& path, double range_m, Dam
 }
 
 Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage,
-                                 const std::string& topic) {
+                                 const BeamTopic& topic) {
   auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
   if (beams == nullptr || !range_m) return {};
   Result<Background> background = learn_background(path, *range_m, damage, topic);

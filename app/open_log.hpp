@@ -34,8 +34,7 @@ using Log = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource
 /// @param cloud_origin_m  as for open_scans
 /// @param topic           as for open_beams
 Result<Log> open_log(ByteStream stream, Damage damage,
-                     const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt,
-                     const std::string& topic = {});
+                     const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt, const BeamTopic& topic = {});
 
 /// What a bag holds; the stream can still be read afterwards. A pipe is loaded into memory for that.
 Result<BagContents> bag_contents(ByteStream& stream, Damage damage);
@@ -43,10 +42,10 @@ bool has_beams(const BagContents& bag);
 
 /// What each direction of the log at a path always hears nearer than `range_m`.
 /// @return kBadOption for standard input, which cannot be read once more
-Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const std::string& topic);
+Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic);
 
 /// Subtracts it from the beams of a log; nullopt or a log of points: nothing is done.
 Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage,
-                                 const std::string& topic);
+                                 const BeamTopic& topic);
 
 }  // namespace pingvox::app

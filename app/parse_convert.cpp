@@ -76,6 +76,7 @@ Result<Command> convert_command(const Args& args) {
           "format of the output where its name has none of these suffixes", "by suffix, else csv", format},
          strict_option(command.damage),
          topic_option(command.topic),
+         fields_option(command.topic),
          quiet_option(command.output_options)}},
        std::move(echo_options),
        {"Meshes",

@@ -16,7 +16,9 @@ namespace pingvox::app {
 Option output_option(std::string& target, std::string help);
 Option config_option();
 Option strict_option(Damage& damage);
-Option topic_option(std::string& topic);
+Option topic_option(BeamTopic& topic);
+/// --fields: how the messages of that topic are beams.
+Option fields_option(BeamTopic& topic);
 Option json_option(OutputOptions& output_options);
 Option quiet_option(OutputOptions& output_options);
 

@@ -16,21 +16,21 @@ _pingvox_options() {
   case "$1" in
     "") options+=(--version) ;;
     map)
-      options+=(--output --format --json --quiet --progress --strict --topic --config)
+      options+=(--output --format --json --quiet --progress --strict --topic --fields --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads --occupied --free --cut-depth)
       options+=(--poses --nav --nav-offset --use-calibration --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
-    info) options+=(--json --strict --topic) ;;
+    info) options+=(--json --strict --topic --fields) ;;
     compare)
       options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
-      options+=(--output --format --strict --topic --quiet --resolution --z --min-z --max-z --height --occupied --free --cut-depth --echoes)
+      options+=(--output --format --strict --topic --fields --quiet --resolution --z --min-z --max-z --height --occupied --free --cut-depth --echoes)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
       options+=(--output --view --from --z --min-z --max-z --occupied --free --cut-depth --path --sweep --show --echoes --between --size --caption --beside)
-      options+=(--title --strict --topic --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
+      options+=(--title --strict --topic --fields --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
       options+=(--poses --nav --nav-offset --use-calibration --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
@@ -126,7 +126,7 @@ _pingvox() {
         --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
-        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --to | --obstacles | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside)
+        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --to | --obstacles | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside | --fields)
         return # a number or a text: nothing to offer
         ;;
     esac

@@ -132,6 +132,14 @@ Beams image_beams(const RosFields& message, SonarSettings&) {
   return found;
 }
 
+/// Of a driver that we do not know.
+Beams beam_of_fields(const RosFields& message, const BeamFields& fields) {
+  std::vector<std::uint8_t> samples = message.bytes(2);
+  const double length_m = message.number(1), parts = static_cast<double>(samples.size());
+  const double bin_length_m = fields.length_of == BeamFields::Length::kBin ? length_m : length_m / parts;
+  return beam_of((message.number(0) - fields.ahead) * fields.angle_unit_rad, bin_length_m, std::move(samples));
+}
+
 struct SonarType {
   RosType type;
   std::string_view device;  ///< empty: unknown
@@ -156,8 +164,8 @@ constexpr std::array kSonarTypes = {
 
 class BagBeams final : public DeviceLog {
  public:
-  BagBeams(std::unique_ptr<Bag> bag, Damage damage, std::string wanted)
-      : bag_(std::move(bag)), damage_(damage), wanted_(std::move(wanted)) {}
+  BagBeams(std::unique_ptr<Bag> bag, Damage damage, BeamTopic wanted)
+      : bag_(std::move(bag)), damage_(damage), wanted_(std::move(wanted.name)), fields_(std::move(wanted.fields)) {}
 
   /// Reads the first beam. An error also when there is none.
   Result<void> start() {
@@ -191,17 +199,19 @@ class BagBeams final : public DeviceLog {
   }
 
   Result<void> add(const BagMessage& message) {
-    while (topics_.size() <= message.topic) topics_.push_back(known_topic(bag_->topics()[topics_.size()], kSonarTypes));
+    while (topics_.size() <= message.topic) topics_.push_back(sonar_topic(bag_->topics()[topics_.size()]));
     const std::optional<KnownTopic>& topic = topics_[message.topic];
+    const std::string& name = bag_->topics()[message.topic].name;
+    if (!topic && fields_ && name == wanted_) return missing_field(bag_->topics()[message.topic]);
     if (!topic) return {};
     const SonarType& type = kSonarTypes[topic->type];
-    const std::string& name = bag_->topics()[message.topic].name;
-    if (type.has_beams && !wanted_.empty() && name != wanted_) return {};
+    if (!fields_ && type.has_beams && !wanted_.empty() && name != wanted_) return {};
     if (!message_.read(topic->layout, message.bytes)) {
       add_damage(unusable_, kNoFit, message.file_byte);
       return {};
     }
-    Beams beams = type.beams_in(RosFields(message_, topic->fields), settings_);
+    const RosFields values(message_, topic->fields);
+    Beams beams = fields_ ? beam_of_fields(values, *fields_) : type.beams_in(values, settings_);
     if (!beams) {
       add_damage(unusable_, beams.error(), message.file_byte);
       return {};
@@ -217,9 +227,24 @@ class BagBeams final : public DeviceLog {
     }
     if (chosen_.empty()) chosen_ = name;
     if (name != chosen_) return several_topics();
-    device_ = find_device(type.device);
+    if (!fields_) device_ = find_device(type.device);
     beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
     return {};
+  }
+
+  std::optional<KnownTopic> sonar_topic(const BagTopic& topic) const {
+    if (!fields_) return known_topic(topic, kSonarTypes);
+    if (topic.name != wanted_ || !topic.is_readable) return std::nullopt;
+    return topic_with(topic, std::array<std::string_view, 3>{fields_->angle, fields_->length, fields_->intensities});
+  }
+
+  tl::unexpected<Error> missing_field(const BagTopic& topic) const {
+    const std::optional<RosLayout> layout = RosLayout::make(topic.type, topic.definition, topic.encoding);
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}: {} ({}) lacks a field of {}, {}, {}{}", bag_->name(), topic.name, topic.type,
+                            fields_->angle, fields_->length, fields_->intensities,
+                            layout ? fmt::format(": it has {}", fmt::join(layout->paths(), ", "))
+                                   : std::string(" and cannot be read: its definition is not in the bag")));
   }
 
   /// Names and types of the topics with beams.
@@ -253,6 +278,7 @@ class BagBeams final : public DeviceLog {
   std::unique_ptr<Bag> bag_;
   Damage damage_;
   std::string wanted_, chosen_;
+  std::optional<BeamFields> fields_;
   std::vector<std::optional<KnownTopic>> topics_;
   SonarSettings settings_;
   RosMessage message_;
@@ -261,6 +287,26 @@ class BagBeams final : public DeviceLog {
 };
 
 }  // namespace
+
+std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std::string_view> paths) {
+  // Some writers leave only a part of the definition; a common type has another.
+  for (const std::string_view definition : {std::string_view(topic.definition), std::string_view()}) {
+    std::optional<RosLayout> layout = RosLayout::make(topic.type, definition, topic.encoding);
+    if (!layout) continue;
+    std::vector<std::size_t> fields;
+    bool has_all = true;
+    for (const std::string_view path : paths) {
+      if (path.empty()) break;
+      const std::optional<std::size_t> field = layout->field(path);
+      has_all = has_all && field;
+      fields.push_back(field.value_or(0));
+    }
+    if (!has_all) continue;
+    const auto stamp_s = layout->field("header.stamp.sec"), stamp_ns = layout->field("header.stamp.nanosec");
+    return KnownTopic{0, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
+  }
+  return std::nullopt;
+}
 
 bool is_sonar(const BagTopic& topic) {
   const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
@@ -273,7 +319,11 @@ Result<std::unique_ptr<Bag>> open_bag(ByteStream stream) {
   return open_sqlite_bag(std::move(stream));
 }
 
-Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const std::string& topic) {
+Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
+  if (topic.fields && topic.name.empty()) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}: --fields: needs the --topic whose messages have them", stream.name()));
+  }
   Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
   if (!bag) return tl::unexpected(bag.error());
   auto beams = std::make_unique<BagBeams>(*std::move(bag), damage, topic);

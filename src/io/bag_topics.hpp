@@ -41,7 +41,7 @@ class RosFields {
 
 /// A topic of a known type.
 struct KnownTopic {
-  std::size_t type;  ///< in the table
+  std::size_t type = 0;  ///< in the table
   RosLayout layout;
   std::vector<std::size_t> fields;
   std::optional<std::size_t> stamp_s, stamp_ns;
@@ -55,6 +55,9 @@ struct KnownTopic {
   }
 };
 
+/// A topic whose messages have these fields, up to the first empty one; nullopt: they lack one.
+std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std::string_view> paths);
+
 /// nullopt: the topic is of none of these types, or has other fields.
 template <class Types>
 std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types) {
@@ -66,21 +69,9 @@ std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types)
     if (name != wanted.name || !topic.name.ends_with(wanted.topic_end) || !type.starts_with(wanted.package)) {
       continue;
     }
-    // Some writers leave only a part of the definition; a common type has another.
-    for (const std::string_view definition : {std::string_view(topic.definition), std::string_view()}) {
-      std::optional<RosLayout> layout = RosLayout::make(type, definition, topic.encoding);
-      if (!layout) continue;
-      std::vector<std::size_t> fields;
-      bool has_all = true;
-      for (const std::string_view path : wanted.fields) {
-        if (path.empty()) break;
-        const std::optional<std::size_t> field = layout->field(path);
-        has_all = has_all && field;
-        fields.push_back(field.value_or(0));
-      }
-      if (!has_all) continue;
-      const auto stamp_s = layout->field("header.stamp.sec"), stamp_ns = layout->field("header.stamp.nanosec");
-      return KnownTopic{i, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
+    if (auto known = topic_with(topic, wanted.fields)) {
+      known->type = i;
+      return known;
     }
   }
   return std::nullopt;

@@ -81,7 +81,7 @@ tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wan
 
 }  // namespace
 
-Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage, const std::string& topic) {
+Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
   const std::optional<Format> streamed = streamed_format_of(stream.beginning());
   if (streamed && is_bag(*streamed)) return open_bag_beams(std::move(stream), damage, topic);
   if (streamed == Format::kPingViewer) return open_ping_viewer(std::move(stream), damage);
@@ -102,7 +102,7 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage,
   return wrong_format(file.name, "a log of beams", format);
 }
 
-Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, const std::string& topic) {
+Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, const BeamTopic& topic) {
   return open_beams(ByteStream(std::move(file)), damage, topic);
 }
 

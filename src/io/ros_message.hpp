@@ -37,6 +37,8 @@ class RosLayout {
   /// The number of a field; nullopt: there is none of that path.
   std::optional<std::size_t> field(std::string_view path) const;
   std::size_t fields() const { return paths_.size(); }
+  /// Of all fields.
+  const std::vector<std::string>& paths() const { return paths_; }
   RosEncoding encoding() const { return encoding_; }
 
  private:

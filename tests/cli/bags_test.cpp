@@ -79,6 +79,30 @@ std::vector<std::vector<double>> rows_of(std::string text) {
   return rows;
 }
 
+TEST(Bags, BeamsOfAnUnknownDriverAreReadByTheirFields) {
+  const Workplace here;
+  // As if we did not know it.
+  const char* fields = "angle=angle,turn=cw,ahead=3.14159265358979,range=range,intensities=intensities";
+  ASSERT_EQ(here.call({"convert", kMcap, "-o", "known.csv", "--topic", "/echo"}).status, 0);
+  ASSERT_EQ(here.call({"convert", kMcap, "-o", "fields.csv", "--topic", "/echo", "--fields", fields}).status, 0);
+  const auto known = rows_of(here.read("known.csv")), read = rows_of(here.read("fields.csv"));
+  ASSERT_EQ(read.size(), known.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    ASSERT_EQ(read[i].size(), known[i].size());
+    for (std::size_t k = 0; k < read[i].size(); ++k) EXPECT_NEAR(read[i][k], known[i][k], 1e-9);
+  }
+  here.write("driver.toml", "topic = \"/echo\"\nfields = \"angle=angle,bin=range,intensities=intensities\"\n");
+  const Outcome mapped = here.call({"map", kMcap, "-o", "map.bt", "--config", "driver.toml"});
+  EXPECT_EQ(mapped.status, 0) << mapped.err;
+  expect_error(
+      here.call({"map", kMcap, "-o", "map.bt", "--topic", "/echo", "--fields", "angle=a,range=b,intensities=c"}), 2,
+      {"/echo", "lacks a field", "transmit_frequency"});
+  expect_error(here.call({"map", kMcap, "-o", "map.bt", "--fields", fields}), 2, {"--topic"});
+  for (const char* wrong : {"angle=a,range=b", "angle=a,range=b,intensities=c,unit=turns", "angle", "heading=a"}) {
+    expect_error(here.call({"map", kMcap, "-o", "map.bt", "--topic", "/echo", "--fields", wrong}), 2, {"--fields"});
+  }
+}
+
 // The DVL of this vehicle looks ahead: at the net of a fish farm, 1.02 m to 1.06 m away while the head looks there.
 TEST(Bags, MapsANetWhereTheDvlMeasuresIt) {
   const std::string bag = PINGVOX_SOURCE_DIR "/../shared/data/solaqua-ping360-dvl/sintef_dataset_ros2_bag_fixed.db3";

@@ -156,12 +156,50 @@ TEST(RosBag, AsksForATopicWhereSeveralHaveBeams) {
   const auto all = all_beams({"dive.bag", bag.file()});
   EXPECT_THAT(all.error, HasSubstr("/port (micron_driver_ros/ScanLine), /starboard"));
   EXPECT_THAT(all.error, HasSubstr("--topic"));
-  const auto one = read_everything<Beam>(open_beams(FileBytes{"dive.bag", bag.file()}, Damage::kSkip, "/starboard"));
+  const auto one =
+      read_everything<Beam>(open_beams(FileBytes{"dive.bag", bag.file()}, Damage::kSkip, {.name = "/starboard"}));
   EXPECT_EQ(one.error, "");
   EXPECT_THAT(one.items, SizeIs(2));
-  const auto none = open_beams(FileBytes{"dive.bag", bag.file()}, Damage::kSkip, "/stern");
+  const auto none = open_beams(FileBytes{"dive.bag", bag.file()}, Damage::kSkip, {.name = "/stern"});
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message, HasSubstr("only in /port"));
+}
+
+TEST(RosBag, ReadsBeamsOfAnUnknownTypeByTheirFields) {
+  bags::Ros1 bag;
+  bag.topic(1, "/sonar", "micron_driver_ros/Line", kScanLine);
+  for (unsigned i = 0; i < 3; ++i) {
+    bag.message(1, 1000 + i, 0, scan_line(110.0F + 10.0F * static_cast<float>(i), 1000U + i));
+  }
+  bag.end_chunk();
+  const FileBytes file{"dive.bag", bag.file()};
+  EXPECT_THAT(all_beams(file).error, HasSubstr("that we know"));
+  // Of 400 a turn, clockwise, 100 ahead.
+  BeamFields fields{.angle = "angle",
+                    .length = "bin_distance_step",
+                    .intensities = "bins.intensity",
+                    .length_of = BeamFields::Length::kBin,
+                    .angle_unit_rad = -std::numbers::pi / 200.0,
+                    .ahead = 100.0};
+  const auto by_bin = read_everything<Beam>(open_beams(file, Damage::kSkip, {"/sonar", fields}));
+  EXPECT_EQ(by_bin.error, "");
+  ASSERT_THAT(by_bin.items, SizeIs(3));
+  EXPECT_NEAR(by_bin.items[0].bearing_rad, 2.0 * std::numbers::pi - std::numbers::pi / 20.0, 1e-6) << "to starboard";
+  EXPECT_EQ(by_bin.items[0].bin_length_m, 0.5);
+  EXPECT_THAT(by_bin.items[0].intensities, ElementsAre(0, 10, 64, 255));
+  EXPECT_EQ(by_bin.items[2].time_s, 1002.5);
+
+  fields.length_of = BeamFields::Length::kBeam;
+  const auto by_beam = read_everything<Beam>(open_beams(file, Damage::kSkip, {"/sonar", fields}));
+  ASSERT_THAT(by_beam.items, SizeIs(3));
+  EXPECT_EQ(by_beam.items[0].bin_length_m, 0.125);
+
+  fields.angle = "bearing";
+  const auto lacking = open_beams(file, Damage::kSkip, {"/sonar", fields});
+  ASSERT_FALSE(lacking);
+  EXPECT_THAT(lacking.error().message, testing::AllOf(HasSubstr("lacks a field of bearing"), HasSubstr("it has"),
+                                                      HasSubstr("bin_distance_step, bins.distance, bins.intensity")));
+  EXPECT_THAT(open_beams(file, Damage::kSkip, {"", fields}).error().message, HasSubstr("--topic"));
 }
 
 TEST(RosBag, IsRefusedWithoutBeams) {

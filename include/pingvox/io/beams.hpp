@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 
+#include "pingvox/io/beam_topic.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/map/point_scan.hpp"
@@ -22,13 +23,13 @@ enum class Damage {
 
 /// Opens a log of beams; its content tells the format. Device logs are read as streams in constant memory, others as a
 /// whole.
-/// @param topic  of a ROS bag; empty: the only one with beams. A second one is an error (kBadOption) where it begins.
+/// @param topic  of a ROS bag. Without a name, a second topic with beams is an error (kBadOption) where it begins.
 /// @return kUnsupported when it holds no beams, kCorrupt when its header is damaged
 Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage = Damage::kSkip,
-                                               const std::string& topic = {});
+                                               const BeamTopic& topic = {});
 /// The same for bytes in memory.
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = Damage::kSkip,
-                                               const std::string& topic = {});
+                                               const BeamTopic& topic = {});
 
 /// Opens a log of point scans, or a point cloud (PLY, PCD, XYZ) as one scan; its content tells the format.
 /// @param cloud_origin_m  origin of a cloud's rays (map frame); nullopt: a PCD's VIEWPOINT, else 0, 0, 0. Ignored for
