@@ -222,7 +222,7 @@ OptionTable::Group echo_group(EchoArgs& args) {
                store_optional(args.sound_speed_m_s))},
        {"--water", 0, "T,S[,D]|nav,S",
         "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m; nav: "
-        "temperature and depth of --nav ('map' only)",
+        "temperature and depth of the navigation log ('map' only)",
         "none", store_water(args)},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; without it more beams are silent",
               args.filter),

@@ -58,7 +58,7 @@ _pingvox_options() {
       options+=(--mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar)
       ;;
-    emulate) options+=(--listen --to --lost --doubled --damaged --world --trajectory --speed --rate --pings --stall-every --stall --seed) ;;
+    emulate) options+=(--listen --to --lost --doubled --damaged --world --trajectory --speed --rate --pings --stall-every --stall --lines --seed) ;;
     bench) options+=(--json --markdown --pictures --quiet) ;;
   esac
   printf '%s\n' "${options[@]}"
@@ -88,6 +88,7 @@ _pingvox_words() {
       [[ $2 == live ]] || printf '%s\n' ply pcd xyz
       [[ $2 != convert ]] || printf '%s\n' pgm yaml asc tum
       ;;
+    --lines) printf '%s\n' 1 2 ;;
     --gain) [[ $2 != live ]] || printf '%s\n' low normal high ;;
     --world) printf '%s\n' tank harbour seabed cave ;;
     --view) printf '%s\n' polar cartesian above side slice ;;
