@@ -19,8 +19,9 @@
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
+#include "pingvox/sonar/sweep.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -45,27 +46,38 @@ Result<std::string> write_beams(BeamSource& source, std::ostream& out) {
 /// A table with a line for each echo (docs/formats.md).
 Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& command, std::ostream& out) {
   out << "time_s,bearing_rad,range_m,intensity,first_bin,peak_bin,last_bin,threshold\n";
-  EchoStream stream(command.filter, command.echo, EchoStream::Wait::kForSweep);
   std::size_t beams = 0, echoes = 0;
-  const auto write = [&](const std::vector<EchoStream::BeamWithEcho>& heard) {
-    for (const EchoStream::BeamWithEcho& one : heard) {
-      const std::optional<Echo>& echo = one.echo;
-      if (!echo) continue;
-      ++echoes;
-      out << fmt::format("{},{},{},{},{},{},{},{}\n", one.beam.time_s, one.beam.bearing_rad, echo->range_m,
-                         echo->intensity, echo->first, echo->peak, echo->last, echo->threshold);
+  const auto write_echo = [&](const Beam& beam, const Echo& echo) {
+    ++echoes;
+    out << fmt::format("{},{},{},{},{},{},{},{}\n", beam.time_s, beam.bearing_rad, echo.range_m, echo.intensity,
+                       echo.first, echo.peak, echo.last, echo.threshold);
+  };
+  const auto write_sweep = [&](const std::optional<Sweep>& sweep) {
+    if (!sweep) return;
+    const PolarImage image = apply_filter(PolarImage(*sweep), command.filter);
+    if (command.echoes == EchoesOfBeam::kAll) {
+      const std::vector<std::vector<Echo>> all = detect_all_echoes(image, *sweep, command.echo);
+      for (std::size_t n = 0; n < all.size(); ++n) {
+        for (const Echo& echo : all[n]) write_echo(sweep->beams[n], echo);
+      }
+      return;
+    }
+    const std::vector<std::optional<Echo>> first = detect_echoes(image, *sweep, command.echo);
+    for (std::size_t n = 0; n < first.size(); ++n) {
+      if (first[n]) write_echo(sweep->beams[n], *first[n]);
     }
   };
+  SweepAssembler assembler;
   for (;;) {
     Result<std::optional<Beam>> beam = source.next();
     if (!beam) return tl::unexpected(beam.error());
     if (!*beam) break;
     ++beams;
     (*beam)->bin_length_m *= command.sound_speed_ratio;
-    write(stream.add(**std::move(beam)));
+    write_sweep(assembler.add(**std::move(beam)));
     if (!out) break;
   }
-  write(stream.finish());
+  write_sweep(assembler.finish());
   if (!out.flush()) return fail(Error::Code::kIo, "the echoes could not be written");
   return fmt::format("{} echoes of {} beams", echoes, beams);
 }
@@ -82,7 +94,7 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   }
   std::string what;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
-    Result<std::string> done = command.has_echoes ? write_echoes(**source, command, out) : write_beams(**source, out);
+    Result<std::string> done = command.echoes ? write_echoes(**source, command, out) : write_beams(**source, out);
     if (!done) return tl::unexpected(done.error());
     what = *std::move(done);
     return {};
@@ -91,7 +103,7 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   const std::size_t skipped = (*source)->skipped();
   if (skipped > 0)
     what += fmt::format("; {} damaged ones skipped, the first: {}", skipped, on_one_line((*source)->first_damage()));
-  const DeviceProfile* device = command.has_echoes ? nullptr : (*source)->device();
+  const DeviceProfile* device = command.echoes ? nullptr : (*source)->device();
   if (device != nullptr) what += fmt::format(" (CSV names no sonar: map it with --device {})", device->name);
   return what;
 }
@@ -186,7 +198,7 @@ Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
 Result<std::string> convert(ByteStream stream, Format format, const ConvertCommand& command) {
   const FormatKind from = kind_of(format), to = kind_of(command.format);
   std::vector<std::string> kinds = {kind_text(from)};
-  if (command.has_echoes) kinds.emplace_back(kEchoTables);
+  if (command.echoes) kinds.emplace_back(kEchoTables);
   if (const auto used = check_limited(command.limited, kinds); !used) {
     return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
   }

@@ -127,6 +127,9 @@ struct CompareCommand {
   ViewOptions view{.min_range_m = EchoOptions::kDefaultBlanking_m};
 };
 
+/// Which echoes of a beam are written.
+enum class EchoesOfBeam { kFirst, kAll };
+
 struct ConvertCommand {
   OutputOptions output_options;
   std::string input, output;
@@ -136,7 +139,7 @@ struct ConvertCommand {
   std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the default
   OccupancyArgs occupancy;             ///< of a map
   SliceOptions slice;                  ///< of a map
-  bool has_echoes = false;             ///< the detected echoes of a log instead of its beams
+  std::optional<EchoesOfBeam> echoes;  ///< the detected echoes of a log instead of its beams
   FilterOptions filter;
   EchoOptions echo;
   double sound_speed_ratio = 1.0;  ///< of the echoes

@@ -154,7 +154,7 @@ Result<void> check_conditions(const OptionTable& table, const Option& option, co
 
 std::string label_of(const Option& option) {
   std::string label = option.letter != 0 ? fmt::format("-{}, {}", option.letter, option.name) : "    " + option.name;
-  if (!option.value.empty()) label += " " + option.value;
+  if (!option.value.empty()) label += option.implied.empty() ? " " + option.value : " [" + option.value + "]";
   return label;
 }
 
@@ -187,9 +187,28 @@ std::string help_entry(const std::string& label, const std::string& text) {
   return out + "\n";
 }
 
+/// Gives options that may stand without a value the implied one (Option::implied).
+std::vector<std::string> with_implied_values(const OptionTable& table, const std::vector<std::string>& args) {
+  std::vector<std::string> complete;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    complete.push_back(args[i]);
+    for (const auto& group : table.groups) {
+      for (const Option& option : group.options) {
+        if (option.implied.empty() || option.name != args[i]) continue;
+        const bool has_value =
+            i + 1 < args.size() &&
+            fmt::format("|{}|", option.value).find(fmt::format("|{}|", args[i + 1])) != std::string::npos;
+        if (!has_value) complete.push_back(option.implied);
+      }
+    }
+  }
+  return complete;
+}
+
 }  // namespace
 
-Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& args) {
+Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& given_args) {
+  const std::vector<std::string> args = with_implied_values(table, given_args);
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();

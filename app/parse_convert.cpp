@@ -19,6 +19,8 @@ constexpr std::array kLogAndMapFormats = {
     Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},  Choice<Format>{"pcd", Format::kPcd},
     Choice<Format>{"xyz", Format::kXyz}, Choice<Format>{"pgm", Format::kGrid}, Choice<Format>{"yaml", Format::kGrid},
     Choice<Format>{"asc", Format::kAsc}, Choice<Format>{"tum", Format::kTum}};
+constexpr std::array kEchoesOfBeam = {Choice<EchoesOfBeam>{"first", EchoesOfBeam::kFirst},
+                                      Choice<EchoesOfBeam>{"all", EchoesOfBeam::kAll}};
 constexpr std::array kSurfaces = {Choice<Surface>{"highest", Surface::kHighest},
                                   Choice<Surface>{"lowest", Surface::kLowest}};
 
@@ -47,15 +49,19 @@ Result<Command> convert_command(const Args& args) {
   for (Option& option : echo_options.options) {
     option.only_for = {std::string(kEchoTables)};
   }
-  Option echoes{"--echoes",
-                0,
-                "",
-                "write the detected echoes of a log: time, bearing, range, intensity, bins",
-                "",
-                [&](const std::string&) -> Result<void> {
-                  command.has_echoes = true;
-                  return {};
-                }};
+  Option echoes{
+      "--echoes",
+      0,
+      choices_text(kEchoesOfBeam),
+      "write the detected echoes of a log: time, bearing, range, intensity, bins; of each beam the first or all",
+      "",
+      [&](const std::string& text) -> Result<void> {
+        const Result<EchoesOfBeam> which = choice_value(kEchoesOfBeam, text);
+        if (!which) return tl::unexpected(which.error());
+        command.echoes = *which;
+        return {};
+      }};
+  echoes.implied = choice_name(kEchoesOfBeam, EchoesOfBeam::kFirst);
   echoes.only_for = {std::string(kBeamLogs)};
   echo_options.options.insert(echo_options.options.begin(), std::move(echoes));
   const std::vector<std::string> maps = {std::string(kMaps), std::string(kMeshes)};
@@ -112,7 +118,7 @@ Result<Command> convert_command(const Args& args) {
     if (const auto valid = echo.validate(); !valid) return tl::unexpected(valid.error());
     command.sound_speed_ratio = echo.sound_speed_ratio();
     command.background_m = echo.background_m;
-    if (command.has_echoes && command.format != Format::kCsv) return usage_error("--echoes: are written as .csv only");
+    if (command.echoes && command.format != Format::kCsv) return usage_error("--echoes: are written as .csv only");
     if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());
     const bool is_grid = command.format == Format::kGrid, is_heights = command.format == Format::kAsc;

@@ -358,7 +358,8 @@ Result<Command> emulate_command(const Args& args) {
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
     const bool is_micron = command.device == Device::kMicron;
     const bool is_head = command.device == Device::kPing360 || is_micron, sends = command.device == Device::kMavlink;
-    if (sends && !listen.empty()) return usage_error("--listen: has no effect on mavlink, which sends to an address (--to)");
+    if (sends && !listen.empty())
+      return usage_error("--listen: has no effect on mavlink, which sends to an address (--to)");
     if (!sends && !send_to.empty()) return usage_error("--to: has an effect only on mavlink");
     command.line = sends ? send_to : listen;
     if (command.line.empty()) {

@@ -94,7 +94,13 @@ _pingvox_words() {
     --view) printf '%s\n' polar cartesian above side slice ;;
     --from) printf '%s\n' right left front behind ;;
     --show) printf '%s\n' raw filtered background ;;
-    --echoes) [[ $2 != render ]] || printf '%s\n' on off ;;
+    --echoes)
+      if [[ $2 == render ]]; then
+        printf '%s\n' on off
+      else
+        printf '%s\n' first all
+      fi
+      ;;
     --between) printf '%s\n' interpolate nothing ;;
     --height) printf '%s\n' highest lowest ;;
     --progress) printf '%s\n' auto always never ;;

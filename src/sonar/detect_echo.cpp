@@ -118,7 +118,7 @@ class FirstBins {
   /// @param heard    bins that set the contrast  @param windows  bins that are searched, within those
   FirstBins(const PolarImage& image, const std::vector<BinWindow>& heard, const std::vector<BinWindow>& windows,
             const std::vector<int>& contrasts, const EchoOptions& options)
-      : heard_(heard), windows_(windows), contrasts_(contrasts), options_(options) {
+      : heard_(heard), contrasts_(contrasts), options_(options) {
     if (options.detector == Detector::kCfar) scale_ = cfar_scale(options.cfar);
     if (options.detector != Detector::kCanny) return;
     std::vector<int> strong;
@@ -136,9 +136,8 @@ class FirstBins {
     return contrasts_[n];
   }
 
-  /// REQUIRES a window that is not empty.
-  std::optional<std::size_t> in(std::size_t n, Bins bins) const {
-    const BinWindow window = windows_[n];
+  /// @param window  part of the beam's bins that is searched. REQUIRES that it is not empty
+  std::optional<std::size_t> in(std::size_t n, Bins bins, BinWindow window) const {
     const int contrast = contrasts_[n];
     switch (options_.detector) {
       case Detector::kRise:
@@ -149,7 +148,8 @@ class FirstBins {
       case Detector::kMax:
         return start_of_strongest(bins, window, level_of(n, bins, contrast), contrast);
       case Detector::kCanny:
-        return edges_[n];
+        // Only the first edge of a beam is known.
+        return edges_[n] && *edges_[n] >= window.begin ? edges_[n] : std::nullopt;
       case Detector::kCfar: {
         const double least = options_.threshold ? *options_.threshold : contrast;
         const auto first =
@@ -169,7 +169,6 @@ class FirstBins {
   }
 
   const std::vector<BinWindow>& heard_;
-  const std::vector<BinWindow>& windows_;
   const std::vector<int>& contrasts_;
   const EchoOptions& options_;
   double scale_ = 0.0;                             ///< kCfar
@@ -189,6 +188,33 @@ std::vector<int> contrasts_of(const PolarImage& image, const std::vector<BinWind
     for (int& contrast : contrasts) contrast = std::min(contrast, *options.threshold);
   }
   return contrasts;
+}
+
+enum class Search { kStop, kContinue };
+
+/// Calls f(beam, echo) for the echoes of each beam, the nearest first, until it returns kStop. The next echo is
+/// searched for behind the last bin of the one before.
+template <class F>
+void for_each_echo(const PolarImage& image, const Sweep& sweep, const EchoOptions& options, F&& f) {
+  assert(options.validate());
+  assert(image.rows() == sweep.beams.size());
+  const std::vector<BinWindow> heard = windows_of(image, sweep, options);
+  const std::vector<int> contrasts = contrasts_of(image, heard, options);
+  const std::vector<BinWindow> windows = clip_windows(options.max_range_m, heard, sweep);
+  const FirstBins first_bins(image, heard, windows, contrasts, options);
+  for (std::size_t n = 0; n < image.rows(); ++n) {
+    const Bins bins = image.row(n).first(image.bins_in(n));
+    for (BinWindow window = windows[n]; window.begin < window.end;) {
+      const std::optional<std::size_t> first = first_bins.in(n, bins, window);
+      if (!first) break;
+      Echo echo = echo_from(bins, window, *first, contrasts[n]);
+      echo.intensity = bins[echo.peak];
+      echo.threshold = first_bins.threshold_of(n, bins);
+      echo.range_m = wall_of(sweep.beams[n].intensities, echo, contrasts[n]) * sweep.beams[n].bin_length_m;
+      window.begin = echo.last + 1;
+      if (f(n, echo) == Search::kStop) break;
+    }
+  }
 }
 
 }  // namespace
@@ -219,26 +245,22 @@ Result<void> EchoOptions::validate() const {
 
 std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sweep& sweep,
                                                const EchoOptions& options) {
-  assert(options.validate());
-  assert(image.rows() == sweep.beams.size());
-  const std::vector<BinWindow> heard = windows_of(image, sweep, options);
-  const std::vector<int> contrasts = contrasts_of(image, heard, options);
-  const std::vector<BinWindow> windows = clip_windows(options.max_range_m, heard, sweep);
-  const FirstBins first_bins(image, heard, windows, contrasts, options);
+  std::vector<std::optional<Echo>> first(image.rows());
+  for_each_echo(image, sweep, options, [&](std::size_t beam, const Echo& echo) {
+    first[beam] = echo;
+    return Search::kStop;
+  });
+  return first;
+}
 
-  std::vector<std::optional<Echo>> echoes(image.rows());
-  for (std::size_t n = 0; n < image.rows(); ++n) {
-    if (windows[n].begin >= windows[n].end) continue;
-    const Bins bins = image.row(n).first(image.bins_in(n));
-    const std::optional<std::size_t> first = first_bins.in(n, bins);
-    if (!first) continue;
-    Echo echo = echo_from(bins, windows[n], *first, contrasts[n]);
-    echo.intensity = bins[echo.peak];
-    echo.threshold = first_bins.threshold_of(n, bins);
-    echo.range_m = wall_of(sweep.beams[n].intensities, echo, contrasts[n]) * sweep.beams[n].bin_length_m;
-    echoes[n] = echo;
-  }
-  return echoes;
+std::vector<std::vector<Echo>> detect_all_echoes(const PolarImage& image, const Sweep& sweep,
+                                                 const EchoOptions& options) {
+  std::vector<std::vector<Echo>> all(image.rows());
+  for_each_echo(image, sweep, options, [&](std::size_t beam, const Echo& echo) {
+    all[beam].push_back(echo);
+    return Search::kContinue;
+  });
+  return all;
 }
 
 FilterOptions default_filter(Detector detector) {

@@ -209,6 +209,28 @@ TEST(FirstUse, EchoesAreATable) {
   EXPECT_EQ(lines, 80);
 }
 
+// Kills a value that is taken for the file, and a file that is taken for the value.
+TEST(FirstUse, AllEchoesOfABeamCanBeHad) {
+  const Workplace here;
+  // An echo at 2 m and a wall behind it at 4.5 m.
+  std::string csv = "time_s,bearing_cw_deg,bin_length_m,intensities\n";
+  for (int beam = 0; beam < 40; ++beam) {
+    csv += std::to_string(beam) + "," + std::to_string(9 * beam) + ",0.1";
+    for (int bin = 0; bin < 60; ++bin) csv += (bin / 3 == 6 || bin / 3 == 15) ? ",200" : ",10";
+    csv += "\n";
+  }
+  here.write("a.csv", csv);
+  const auto lines_of = [&](const std::vector<std::string>& words) {
+    EXPECT_EQ(here.call(words).status, 0);
+    const std::string table = here.read("e.csv");
+    return std::count(table.begin(), table.end(), '\n') - 1;
+  };
+  EXPECT_EQ(lines_of({"convert", "--echoes", "a.csv", "-o", "e.csv"}), 40);
+  EXPECT_EQ(lines_of({"convert", "a.csv", "--echoes", "first", "-o", "e.csv"}), 40);
+  EXPECT_EQ(lines_of({"convert", "--echoes", "all", "a.csv", "-o", "e.csv"}), 80);
+  EXPECT_EQ(lines_of({"convert", "--echoes=all", "a.csv", "-o", "e.csv"}), 80);
+}
+
 // Both counted sweeps, one without those that are not complete.
 TEST(FirstUse, InfoAndRenderNumberSweepsAlike) {
   const Workplace here;

@@ -72,6 +72,60 @@ TEST(Rise, StaysTogetherAcrossADipOfHalfTheThresholdAndNoMore) {
   EXPECT_EQ(echo->last, 3U);
 }
 
+// Kills a search that goes on within the echo before, one that begins a bin too late, and echoes of one beam that are
+// given to another.
+TEST(AllEchoes, OfABeamAreThoseBehindTheEndOfTheOneBefore) {
+  Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(3)};
+  for (Beam& beam : sweep.beams) beam.bin_length_m = kBin_m;
+  sweep.beams[0].intensities = {0, 90, 55, 120, 84, 200, 200, 0, 0, 0, 0, 70, 0};
+  sweep.beams[1].intensities = std::vector<std::uint8_t>(13, 30);
+  sweep.beams[2].intensities = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 100, 100};
+  const EchoOptions options{.min_range_m = 0.0, .threshold = kThreshold};
+  const PolarImage image(sweep);
+  const auto all = detect_all_echoes(image, sweep, options);
+  ASSERT_EQ(all.size(), 3U);
+  ASSERT_EQ(all[0].size(), 3U);
+  EXPECT_EQ(all[0][0].last, 3U);
+  EXPECT_EQ(all[0][1].first, 5U) << "116 above bin 4, where nothing was before";
+  EXPECT_EQ(all[0][1].last, 6U);
+  EXPECT_EQ(all[0][2].first, 11U);
+  EXPECT_TRUE(all[1].empty());
+  ASSERT_EQ(all[2].size(), 1U);
+  const auto first = detect_echoes(image, sweep, options);
+  EXPECT_EQ(first[0]->range_m, all[0][0].range_m);
+  EXPECT_FALSE(first[1]);
+  EXPECT_EQ(first[2]->range_m, all[2][0].range_m);
+}
+
+// Kills a search that never ends because an echo is found again.
+TEST(AllEchoes, EndWithEachDetector) {
+  std::size_t found = 0;
+  for (const Detector detector :
+       {Detector::kRise, Detector::kLevel, Detector::kMax, Detector::kCanny, Detector::kCfar}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      SCOPED_TRACE(testing::Message() << "detector " << static_cast<int>(detector) << ", seed " << seed);
+      std::mt19937_64 random(seed);
+      Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(5)};
+      for (Beam& beam : sweep.beams) {
+        beam.bin_length_m = kBin_m;
+        for (int i = 0; i < 200; ++i) {
+          beam.intensities.push_back(static_cast<std::uint8_t>(random() % 20 + (i % 50 < 6 && i > 6 ? 150 : 0)));
+        }
+      }
+      const EchoOptions options{.detector = detector};
+      const PolarImage image = apply_filter(PolarImage(sweep), {});
+      const auto all = detect_all_echoes(image, sweep, options);
+      const auto first = detect_echoes(image, sweep, options);
+      for (std::size_t n = 0; n < all.size(); ++n) {
+        ASSERT_EQ(all[n].empty(), !first[n]);
+        for (std::size_t i = 1; i < all[n].size(); ++i) ASSERT_GT(all[n][i].first, all[n][i - 1].last);
+        found += all[n].size();
+      }
+    }
+  }
+  EXPECT_GT(found, 500U);
+}
+
 TEST(Rise, StartsAtTheLowestBinOfItsValley) {
   EXPECT_TRUE(echo_of({60, 40, 20, 0, 40, 80}));
   EXPECT_FALSE(echo_of({60, 40, 30, 40, 80})) << "50 above the valley, although 80 is the strongest bin";

@@ -100,6 +100,12 @@ struct EchoOptions {
 /// REQUIRES valid options, image.rows() == sweep.beams.size()
 std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sweep& sweep, const EchoOptions& options);
 
+/// All echoes of each beam, the nearest first: the next one begins behind the last bin of the one before. What comes
+/// behind the first is another wall within the beam's height, or an echo of an echo. kCanny finds the first alone.
+/// @see detect_echoes
+std::vector<std::vector<Echo>> detect_all_echoes(const PolarImage& image, const Sweep& sweep,
+                                                 const EchoOptions& options);
+
 /// Default filter of a detector, a Gaussian: kernel 11 and sigma 2.3 for Canny, as in the paper, else 5 and 1.
 FilterOptions default_filter(Detector detector);
 
