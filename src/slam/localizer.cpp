@@ -3,21 +3,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <string_view>
-#include <tuple>
-#include <unordered_set>
 #include <utility>
 
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 #include "slam/beam_likelihood.hpp"
+#include "slam/particles.hpp"
 #include "slam/pose_search.hpp"
 
 namespace pingvox {
@@ -36,8 +33,6 @@ constexpr double kLostShare = 0.55;
 /// Least mean likelihood of echoes at a pose that is believed. In a small
 /// room it is 0.3 at poses that are wrong.
 constexpr double kMinFit = 0.45, kSureFit = 0.6;
-constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree;
-constexpr std::size_t kMaxHypotheses = 100;
 constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
 /// Spread of the particles around what a search found.
 constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree;
@@ -48,20 +43,6 @@ double yaw_of(const Pose& pose) {
 
 PlanePose plane_pose(const Pose& pose) {
   return {pose.translation().x(), pose.translation().y(), yaw_of(pose)};
-}
-
-double turn_between(double a_rad, double b_rad) {
-  return std::remainder(b_rad - a_rad, 2.0 * kPi);
-}
-
-/// Number of particles that keep the Kullback-Leibler distance below 0.05 with probability 0.99 when they lie in
-/// `bins` bins (Fox 2003, equation 7).
-double kld_particles(std::size_t bins) {
-  if (bins < 2) return 1.0;
-  constexpr double kDistance = 0.05, kQuantile = 2.3263;
-  const double free = static_cast<double>(bins - 1), part = 2.0 / (9.0 * free);
-  const double cube = 1.0 - part + std::sqrt(part) * kQuantile;
-  return free / (2.0 * kDistance) * cube * cube * cube;
 }
 
 /// Where the body was when a beam was heard.
@@ -75,126 +56,6 @@ struct TurnBeam {
   HeardBeam beam;  ///< in the odometry's frame
   double turned_rad = 0.0;
 };
-
-struct Particles {
-  std::vector<PlanePose> poses;
-  std::vector<double> log_weights;
-
-  /// Normalised weights.
-  std::vector<double> weights() const {
-    std::vector<double> w(log_weights.size());
-    const double most = log_weights.empty() ? 0.0 : *std::ranges::max_element(log_weights);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < w.size(); ++i) sum += w[i] = std::exp(log_weights[i] - most);
-    for (double& weight : w) weight /= sum;
-    return w;
-  }
-};
-
-/// Systematic resampling: indices of `count` particles.
-std::vector<std::size_t> draw_particles(const std::vector<double>& weights, std::size_t count, double offset) {
-  std::vector<std::size_t> chosen;
-  chosen.reserve(count);
-  double sum = weights.front();
-  std::size_t i = 0;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double at = (static_cast<double>(n) + offset) / static_cast<double>(count);
-    while (sum < at && i + 1 < weights.size()) sum += weights[++i];
-    chosen.push_back(i);
-  }
-  return chosen;
-}
-
-/// How many boxes of 0.1 m and 3 degrees the chosen particles lie in.
-std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::size_t>& chosen) {
-  std::unordered_set<std::uint64_t> bins;
-  for (const std::size_t i : chosen) {
-    const PlanePose& p = poses[i];
-    const auto part = [](double value, double step) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::clamp(std::floor(value / step), -1e6, 1e6))) &
-             0x1FFFFFU;
-    };
-    bins.insert(part(p.x, 0.1) | part(p.y, 0.1) << 21U | part(std::remainder(p.yaw, 2.0 * kPi), 3.0 * kDegree) << 42U);
-  }
-  return bins.size();
-}
-
-/// Mean and spread of the particles that `is_member` says belong together.
-template <class IsMember>
-PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& weights, const IsMember& is_member) {
-  double weight = 0.0, x = 0.0, y = 0.0, cosine = 0.0, sine = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (!is_member(i)) continue;
-    const PlanePose& p = particles.poses[i];
-    weight += weights[i];
-    x += weights[i] * p.x;
-    y += weights[i] * p.y;
-    cosine += weights[i] * std::cos(p.yaw);
-    sine += weights[i] * std::sin(p.yaw);
-  }
-  PoseHypothesis mean;
-  mean.weight = weight;
-  if (!(weight > 0.0)) return mean;
-  mean.x_m = x / weight;
-  mean.y_m = y / weight;
-  mean.yaw_rad = std::atan2(sine, cosine);
-  double squares = 0.0, turns = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (!is_member(i)) continue;
-    const PlanePose& p = particles.poses[i];
-    squares += weights[i] * (std::pow(p.x - mean.x_m, 2) + std::pow(p.y - mean.y_m, 2));
-    turns += weights[i] * std::pow(turn_between(mean.yaw_rad, p.yaw), 2);
-  }
-  mean.deviation_m = std::sqrt(squares / weight);
-  mean.deviation_rad = std::sqrt(turns / weight);
-  return mean;
-}
-
-bool is_near(double x_m, double y_m, double yaw_rad, const PlanePose& pose, double near_m, double near_rad) {
-  return std::hypot(x_m - pose.x, y_m - pose.y) <= near_m && std::abs(turn_between(yaw_rad, pose.yaw)) <= near_rad;
-}
-
-/// Particles that lie together, the heaviest group first.
-std::vector<PoseHypothesis> groups_of(const Particles& particles) {
-  const std::vector<double> weights = particles.weights();
-  std::vector<std::size_t> order(weights.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(-weights[i], i); });
-  // Each belongs to the first leader that is near it.
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> group(weights.size(), kNone), leaders;
-  for (const std::size_t i : order) {
-    const PlanePose& p = particles.poses[i];
-    for (std::size_t g = 0; g < leaders.size() && group[i] == kNone; ++g) {
-      if (is_near(p.x, p.y, p.yaw, particles.poses[leaders[g]], kHypothesis_m, kHypothesis_rad)) group[i] = g;
-    }
-    if (group[i] == kNone && leaders.size() < kMaxHypotheses) {
-      group[i] = leaders.size();
-      leaders.push_back(i);
-    }
-  }
-  // Groups whose means are near each other are one.
-  std::vector<PoseHypothesis> means;
-  for (std::size_t g = 0; g < leaders.size(); ++g) {
-    means.push_back(mean_of(particles, weights, [&](std::size_t i) { return group[i] == g; }));
-  }
-  for (std::size_t g = 1; g < means.size(); ++g) {
-    for (std::size_t other = 0; other < g; ++other) {
-      const PlanePose place{means[other].x_m, means[other].y_m, means[other].yaw_rad};
-      if (means[other].weight == 0.0 ||
-          !is_near(means[g].x_m, means[g].y_m, means[g].yaw_rad, place, kHypothesis_m, kHypothesis_rad)) {
-        continue;
-      }
-      for (std::size_t& of : group) of = of == g ? other : of;
-      means[other] = mean_of(particles, weights, [&](std::size_t i) { return group[i] == other; });
-      means[g].weight = 0.0;
-      break;
-    }
-  }
-  std::erase_if(means, [](const PoseHypothesis& mean) { return mean.weight < 1e-3; });
-  std::ranges::sort(means, {}, [](const PoseHypothesis& m) { return std::tuple(-m.weight, m.x_m, m.y_m, m.yaw_rad); });
-  return means;
-}
 
 /// Collects what is wrong with options.
 class Check {
@@ -288,6 +149,9 @@ struct Localizer::State {
   std::optional<double> lost_rad;  ///< turned_rad when it was found to be wrong
   double short_term = 0.5, long_term = 0.5;
   double fit = 0.0;  ///< of the last turn at the most likely pose
+  /// Whether another turn of the head, searched for itself, led to the same pose, and the pose has fitted since.
+  bool is_confirmed = false;
+  std::optional<double> doubted_rad;  ///< turned_rad when it no longer did
 
   void move(double step_s);
   void take(const EchoStream::BeamWithEcho& heard);
@@ -296,6 +160,9 @@ struct Localizer::State {
   void look_after();
   void group();
   void search();
+  void confirm();
+  std::vector<ScoredPose> candidates(const std::vector<HeardBeam>& beams_now) const;
+  void adopt(const std::vector<ScoredPose>& found, const std::vector<HeardBeam>& beams_now);
   std::vector<HeardBeam> turn_beams() const;
   void seed(const std::vector<ScoredPose>& found);
   PoseHypothesis around_anchor() const;
@@ -376,9 +243,9 @@ void Localizer::State::weigh(const HeardBeam& beam) {
 
 void Localizer::State::resample(const std::vector<double>& weights) {
   const double offset = random.uniform();
-  const std::size_t bins = bins_of(particles.poses, draw_particles(weights, weights.size(), offset));
-  const double count = std::clamp(kld_particles(bins), static_cast<double>(options.min_particles),
-                                  static_cast<double>(options.max_particles));
+  const double asked = kld_particles(particles.poses, draw_particles(weights, weights.size(), offset));
+  const double count =
+      std::clamp(asked, static_cast<double>(options.min_particles), static_cast<double>(options.max_particles));
   Particles chosen;
   for (const std::size_t i : draw_particles(weights, static_cast<std::size_t>(count), offset)) {
     chosen.poses.push_back(particles.poses[i]);
@@ -402,6 +269,10 @@ void Localizer::State::look_after() {
     search();
   } else if (turned_rad - grouped_rad >= 0.5 * kPi) {
     group();
+    // Once the turn that the search used, or that did not fit, is behind.
+    const bool is_one = !groups.empty() && groups.front().weight >= kSureWeight;
+    const bool is_next_turn = turned_rad - std::max(searched_rad, doubted_rad.value_or(0.0)) >= kTurn;
+    if (!is_confirmed && is_next_turn && (doubted_rad || (is_one && !lost_rad))) confirm();
   }
 }
 
@@ -420,13 +291,14 @@ void Localizer::State::group() {
   groups = groups_of(particles);
   if (groups.empty()) return;
   anchor = {groups.front().x_m, groups.front().y_m, groups.front().yaw_rad};
-  fit = fit_of(turn_beams(), field, options.beam, anchor).value_or(0.0);
+  const double before = std::exchange(fit, fit_of(turn_beams(), field, options.beam, anchor).value_or(0.0));
+  if (before < kSureFit || fit >= kSureFit) return;
+  is_confirmed = false;
+  doubted_rad = turned_rad;
 }
 
-/// Lets all poses of the map compete with those that are believed, by the last turn of the head.
-void Localizer::State::search() {
-  searched_rad = turned_rad;
-  const std::vector<HeardBeam> beams_now = turn_beams();
+/// All poses of the map and those that are believed, by the last turn of the head: the most likely first.
+std::vector<ScoredPose> Localizer::State::candidates(const std::vector<HeardBeam>& beams_now) const {
   std::vector<ScoredPose> found = search_poses(field, beams_now, options.beam);
   std::vector<BeamJudge> judges;
   for (const HeardBeam& beam : beams_now) judges.emplace_back(beam, field, options.beam);
@@ -434,7 +306,30 @@ void Localizer::State::search() {
     found.push_back(
         refine_pose(judges, options.beam, {believed.x_m, believed.y_m, believed.yaw_rad}, 0.1, 2.0 * kDegree));
   }
-  found = without_neighbours(std::move(found), 0.3, 10.0 * kDegree, kMaxHypotheses);
+  return without_neighbours(std::move(found), 0.3, 10.0 * kDegree, kMaxHypotheses);
+}
+
+/// Begins with what the last turn of the head says.
+void Localizer::State::search() {
+  const std::vector<HeardBeam> beams_now = turn_beams();
+  adopt(candidates(beams_now), beams_now);
+}
+
+/// Asks another turn of the head, by itself: what looks like the right place in one by chance does not in the next.
+void Localizer::State::confirm() {
+  const std::vector<HeardBeam> beams_now = turn_beams();
+  const std::vector<ScoredPose> found = candidates(beams_now);
+  if (found.empty()) return;
+  const PlanePose& best = found.front().pose;
+  doubted_rad.reset();
+  is_confirmed = is_near(best.x, best.y, best.yaw, anchor, kHypothesis_m, kHypothesis_rad);
+  if (!is_confirmed) adopt(found, beams_now);
+}
+
+void Localizer::State::adopt(const std::vector<ScoredPose>& found, const std::vector<HeardBeam>& beams_now) {
+  searched_rad = turned_rad;
+  is_confirmed = false;
+  doubted_rad.reset();
   if (found.empty()) return;
   seed(found);
   const double best_fit = fit_of(beams_now, field, options.beam, found.front().pose).value_or(0.0);
@@ -465,10 +360,7 @@ void Localizer::State::seed(const std::vector<ScoredPose>& found) {
 }
 
 PoseHypothesis Localizer::State::around_anchor() const {
-  return mean_of(particles, particles.weights(), [&](std::size_t i) {
-    const PlanePose& p = particles.poses[i];
-    return is_near(p.x, p.y, p.yaw, anchor, 2.0 * kHypothesis_m, 2.0 * kHypothesis_rad);
-  });
+  return mean_near(particles, anchor, 2.0 * kHypothesis_m, 2.0 * kHypothesis_rad);
 }
 
 Localizer::Localizer(DistanceField field, const LocalizerOptions& options)
@@ -489,6 +381,8 @@ void Localizer::start(double x_m, double y_m, double yaw_rad, double deviation_m
   s.particles.log_weights.assign(s.particles.poses.size(), 0.0);
   s.anchor = {x_m, y_m, yaw_rad};
   s.since_rad = s.turned_rad;
+  s.is_confirmed = true;
+  s.doubted_rad.reset();
   s.lost_rad.reset();
   s.short_term = s.long_term = 0.5;
   s.group();
@@ -539,7 +433,8 @@ std::optional<Localizer::Located> Localizer::pose() const {
 
 bool Localizer::is_sure() const {
   const State& s = *state_;
-  if (s.groups.empty() || s.lost_rad || s.turned_rad - s.since_rad < kTurn || s.fit < kSureFit) return false;
+  if (s.groups.empty() || !s.is_confirmed || s.lost_rad || s.turned_rad - s.since_rad < kTurn || s.fit < kSureFit)
+    return false;
   if (s.groups.front().weight < kSureWeight) return false;
   const PoseHypothesis now = s.around_anchor();
   return now.weight >= kSureWeight && now.deviation_m <= kSure_m && now.deviation_rad <= kSure_rad;

@@ -97,6 +97,39 @@ TEST(Localizer, RecoversWithinThreeTurnsWhenItIsCarriedAway) {
   EXPECT_NEAR(turn, 0.0, 0.05);
 }
 
+// Kills a filter that is sure of what one turn of the head says: in a harbour it may be a place that looks alike.
+TEST(Localizer, IsNotSureOfAPlaceThatTheNextTurnDoesNotFind) {
+  const Room room;
+  Localizer localizer = localizer_in(room);
+  hear(localizer, room, 0, 101, kPlace);
+  ASSERT_TRUE(localizer.pose());
+  EXPECT_FALSE(localizer.is_sure());
+  const Room::State elsewhere{1.5, -1.2, -2.0};
+  for (int i = 101; i < 200; ++i) {
+    ASSERT_TRUE(localizer.add(room.beam(i, elsewhere)));
+    EXPECT_FALSE(localizer.is_sure()) << i;
+  }
+}
+
+// Kills a filter that goes on to be sure of where it was, or is sure of a place between.
+TEST(Localizer, IsSureOfNoWrongPlaceAfterItWasCarriedAwayTwice) {
+  const Room room;
+  Localizer localizer = localizer_in(room);
+  const std::vector<Room::State> places = {kPlace, {1.5, -1.2, -2.0}, {-2.0, -1.0, 1.0}};
+  constexpr int kBeams = 400;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const int first = kBeams * static_cast<int>(n);
+    for (int i = first; i < first + kBeams; ++i) {
+      ASSERT_TRUE(localizer.add(room.beam(i, places[n])));
+      double turn = 0.0;
+      if (i - first < 110 || !localizer.is_sure()) continue;
+      EXPECT_LT(error_m(localizer, places[n], turn), 0.2) << i;
+    }
+    double turn = 0.0;
+    EXPECT_LT(error_m(localizer, places[n], turn), 0.2) << n;
+  }
+}
+
 TEST(Localizer, LeavesAWrongStart) {
   const Room room;
   Localizer localizer = localizer_in(room);
