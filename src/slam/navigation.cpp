@@ -15,6 +15,10 @@ constexpr double kClip = 2.0;                ///< robust standard deviations
 constexpr double kMadToDeviation = 1.4826;   ///< of normal noise
 constexpr double kMinDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
+/// Errors of a compass, and for how long they stay alike; usual bias of a gyro.
+constexpr double kCompass_rad = 3.0 * std::numbers::pi / 180.0, kCompassAlike_s = 10.0;
+constexpr double kGyroBias_rad_s = 0.1 * std::numbers::pi / 180.0;
+constexpr double kMaxGyroStep_s = 0.5;
 
 /// Valid samples at rising times; of equal times the first counts.
 std::vector<NavSample> usable(const NavSource& source) {
@@ -150,6 +154,43 @@ std::optional<HeadingSource> turned_heading(const NavSource& source, const Pose&
     yaw.push_back(yaw.back() + 0.5 * step_s * (rate(samples[i - 1]) + rate(samples[i])));
   }
   return HeadingSource{source.name, TimeSeries(times_of(samples), std::move(yaw)), std::nullopt, std::nullopt, true};
+}
+
+std::optional<HeadingSource> gyro_heading(const NavSource& rate, const Pose& body_from_source,
+                                          const HeadingSource& heading) {
+  std::optional<HeadingSource> turned = turned_heading(rate, body_from_source);
+  if (!turned) return std::nullopt;
+  const TimeSeries& compass = heading.yaw_rad;
+  const double from_s = compass.from_s(), to_s = compass.to_s();
+  if (turned->yaw_rad.from_s() > from_s + kMaxGyroStep_s || turned->yaw_rad.to_s() < to_s - kMaxGyroStep_s ||
+      turned->yaw_rad.longest_step_s() > kMaxGyroStep_s) {
+    return std::nullopt;
+  }
+  // Least squares of the compass's drift against the gyro, and of what is usual.
+  double mean_s = 0.0, mean_rad = 0.0;
+  const auto count = static_cast<double>(compass.size());
+  for (const double time_s : compass.times_s()) {
+    mean_s += time_s / count;
+    mean_rad += (compass.at(time_s) - turned->yaw_rad.at(time_s)) / count;
+  }
+  double squares = 0.0, products = 0.0;
+  for (const double time_s : compass.times_s()) {
+    squares += std::pow(time_s - mean_s, 2);
+    products += (time_s - mean_s) * (compass.at(time_s) - turned->yaw_rad.at(time_s) - mean_rad);
+  }
+  // Its errors stay the same for some time.
+  const double alike = std::max(1.0, count * kCompassAlike_s / std::max(to_s - from_s, kCompassAlike_s));
+  const double believed = alike * std::pow(kCompass_rad / kGyroBias_rad_s, 2);
+  const double drift_rad_s = products / (squares + believed);
+  std::vector<double> yaw_rad = turned->yaw_rad.values();
+  for (std::size_t i = 0; i < yaw_rad.size(); ++i) {
+    yaw_rad[i] += mean_rad + drift_rad_s * (turned->yaw_rad.times_s()[i] - mean_s);
+  }
+  turned->yaw_rad = TimeSeries(turned->yaw_rad.times_s(), std::move(yaw_rad));
+  turned->name = rate.name + " turn rate";
+  turned->roll_rad = heading.roll_rad;
+  turned->pitch_rad = heading.pitch_rad;
+  return turned;
 }
 
 std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source) {

@@ -52,6 +52,11 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
 /// A heading that drifts: the turn rate integrated. nullopt: fewer than two valid samples.
 std::optional<HeadingSource> turned_heading(const NavSource& source, const Pose& body_from_source);
 
+/// How a turn rate says that the body turned, less its bias as a heading tells it: a compass does not turn as the body
+/// does where it deviates. Roll and pitch are the heading's. nullopt: the rate does not cover the time of the heading.
+std::optional<HeadingSource> gyro_heading(const NavSource& rate, const Pose& body_from_source,
+                                          const HeadingSource& heading);
+
 /// The heading or attitude with most samples, the first of equals.
 /// @param body_from_source  how sources are mounted, by name; the identity for others
 std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source);

@@ -63,6 +63,13 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   if (options.calibration) {
     if (const auto done = correct(*options.calibration, *heading, velocity); !done) return tl::unexpected(done.error());
   }
+  const NavSource* rate = options.turns == TurnsBy::kTurnRate ? log.best(NavQuantity::kTurnRate) : nullptr;
+  if (rate != nullptr) {
+    if (auto turned = gyro_heading(*rate, mount_of(options, rate->name), *heading)) {
+      turned->name = heading->name;
+      heading = std::move(turned);
+    }
+  }
   std::optional<TimeSeries> depth;
   if (const auto source = depth_source(log)) depth = number_source(*source);
 

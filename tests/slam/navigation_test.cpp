@@ -83,6 +83,48 @@ TEST(HeadingSource, GoesOnPastTheHalfTurnAndTakesOffItsMount) {
   EXPECT_NEAR(heading->yaw_rad.at(6.5), 3.55, 1e-12) << "between 6 and 7 it passes the half turn";
 }
 
+/// A vehicle that turns to and fro for `duration_s`: by a gyro with a bias, and by a compass that deviates.
+struct Turning {
+  NavSource rate{"imu", NavQuantity::kTurnRate, {}}, compass{"imu", NavQuantity::kHeading, {}};
+  static double yaw_rad(double time_s) { return 2.0 * std::sin(0.1 * time_s); }
+
+  Turning(double duration_s, double bias_rad_s) {
+    for (double time_s = 0.0; time_s <= duration_s; time_s += 0.1) {
+      NavSample sample;
+      sample.time_s = time_s;
+      sample.value = {0.0, 0.0, 0.2 * std::cos(0.1 * time_s) + bias_rad_s};
+      rate.samples.push_back(sample);
+      sample.value = {yaw_rad(time_s) + 0.08 * std::sin(yaw_rad(time_s)) - 0.05 * std::cos(yaw_rad(time_s)), 0.0, 0.0};
+      compass.samples.push_back(sample);
+    }
+  }
+};
+
+// Kills a bias that is added, and turns that are the compass's.
+TEST(GyroHeading, TurnsAsTheBodyDoesAndDriftsLittle) {
+  const Turning turning(300.0, 0.5 * kPi / 180.0);
+  const auto compass = heading_source(turning.compass, Pose::Identity());
+  const auto heading = gyro_heading(turning.rate, Pose::Identity(), *compass);
+  ASSERT_TRUE(heading);
+  const auto off_rad = [&](double time_s) { return heading->yaw_rad.at(time_s) - Turning::yaw_rad(time_s); };
+  // The bias alone would make 2.6 rad in this time.
+  EXPECT_NEAR(off_rad(300.0), off_rad(0.0), 0.12);
+  for (double time_s = 10.0; time_s < 300.0; time_s += 10.0) {
+    EXPECT_NEAR(off_rad(time_s), off_rad(time_s - 10.0), 0.01) << time_s;
+  }
+}
+
+TEST(GyroHeading, NeedsAGyroThatSpeaksAllTheTime) {
+  const Turning turning(60.0, 0.0);
+  const auto compass = heading_source(turning.compass, Pose::Identity());
+  NavSource gap = turning.rate, half = turning.rate;
+  gap.samples.erase(gap.samples.begin() + 200, gap.samples.begin() + 220);
+  half.samples.resize(300);
+  EXPECT_TRUE(gyro_heading(turning.rate, Pose::Identity(), *compass));
+  EXPECT_FALSE(gyro_heading(gap, Pose::Identity(), *compass));
+  EXPECT_FALSE(gyro_heading(half, Pose::Identity(), *compass));
+}
+
 TEST(TimeSeries, KnowsItsGaps) {
   const TimeSeries series({0.0, 1.0, 2.0, 3.0, 13.0, 14.0, 15.0, 16.0}, {0, 1, 2, 3, 13, 14, 15, 16});
   EXPECT_EQ(series.at(8.0), 8.0);

@@ -40,6 +40,18 @@ TEST(Odometry, GoesAlongTheHeading) {
   EXPECT_EQ(odometry->velocity, "dvl");
 }
 
+TEST(Odometry, TurnsByTheTurnRateIfAskedTo) {
+  const NavLog log = log_of({source("imu", NavQuantity::kAttitude, 0.0, {0.0, 0.0, 1.0}),
+                             source("imu", NavQuantity::kTurnRate, 0.0, {0.0, 0.0, 0.2})});
+  const auto turned_rad = [&](TurnsBy turns) {
+    const auto odometry = odometry_of(log, {.body_from_source = {}, .turns = turns});
+    const Pose from = *odometry->odometry_from_body.at(0.0), to = *odometry->odometry_from_body.at(0.5);
+    return Eigen::AngleAxisd(from.rotation().transpose() * to.rotation()).angle();
+  };
+  EXPECT_NEAR(turned_rad(TurnsBy::kHeading), 0.0, 1e-9);
+  EXPECT_GT(turned_rad(TurnsBy::kTurnRate), 0.05);  // 0.1, less what the heading says of the bias
+}
+
 TEST(Odometry, StaysWithoutVelocityAndNeedsAHeading) {
   const auto turns = odometry_of(log_of({source("imu", NavQuantity::kAttitude, 0.0, {0.0, 0.0, 1.0})}), {});
   ASSERT_TRUE(turns);

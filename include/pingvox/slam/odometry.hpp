@@ -12,10 +12,17 @@
 
 namespace pingvox {
 
+/// What says how a vehicle turns.
+enum class TurnsBy {
+  kHeading,   ///< a compass, whose errors do not grow, but change as the vehicle turns
+  kTurnRate,  ///< a gyro where there is one all the time, else the heading: exact for minutes, but north is lost
+};
+
 struct OdometryOptions {
   /// How a source is mounted: body_from_source by its name; the identity for others.
   std::map<std::string, Pose> body_from_source;
   double offset_s = 0.0;  ///< added to the times of the navigation
+  TurnsBy turns = TurnsBy::kHeading;
   /// By which velocity and heading are corrected; must be valid. nullopt: they are taken as they are.
   std::optional<SlamCalibration> calibration = std::nullopt;
 };
