@@ -20,6 +20,7 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
 #include "progress.hpp"
 #include "stopwatch.hpp"
 
@@ -35,6 +36,8 @@ struct Motion {
   std::optional<Trajectory> odometry;
   std::string text = "none: the vehicle is assumed to move little";
   bool turns_only = false;  ///< x and y are not known
+  std::optional<NavLog> nav;
+  OdometryOptions nav_options;
   std::optional<NavOffset> clock;
   std::size_t skipped = 0;
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
@@ -43,6 +46,7 @@ struct Motion {
 /// What was found.
 struct Found {
   std::vector<StampedPose> poses;
+  std::size_t smoothed = 0;  ///< of these, by all of the recording
   struct Span {
     double from_s, to_s;
   };
@@ -78,6 +82,7 @@ Result<Motion> motion_of(const LocateCommand& command) {
   if (!offset) return tl::unexpected(offset.error());
   OdometryOptions options = command.nav;
   options.offset_s = offset->offset_s;
+  options.turns = TurnsBy::kTurnRate;
   motion.clock = *std::move(offset);
   if (command.calibration) {
     const Result<Eigen::Vector3d> moved_m = use_calibration(*command.calibration, options);
@@ -94,6 +99,8 @@ Result<Motion> motion_of(const LocateCommand& command) {
   motion.turns_only = odometry->velocity.empty();
   if (motion.turns_only) motion.text += ": the vehicle is assumed to move little";
   motion.odometry = std::move(odometry->odometry_from_body);
+  motion.nav = nav->log;
+  motion.nav_options = std::move(options);
   return motion;
 }
 
@@ -127,11 +134,66 @@ DistanceFieldOptions layer_of(const LocateCommand& command, const std::optional<
   return {command.min_z_m.value_or(z_m - kHalf_m), command.max_z_m.value_or(z_m + kHalf_m)};
 }
 
-Result<Found> locate(std::vector<Beam> beams, const Motion& motion, DistanceField field, const LocateCommand& command) {
+/// Puts the poses by all of the recording in the place of those that were found, where the map fits.
+void smooth(const SlamSmoother& smoother, const DistanceField& field, std::vector<StampedPose>& poses,
+            std::size_t& smoothed) {
+  const Result<Trajectory> near = Trajectory::make(poses);
+  if (!near) return;
+  const Result<SlamSolution> solution = smoother.solve_in(field, *near);
+  if (!solution) return;
+  for (StampedPose& pose : poses) {
+    const auto better = solution->trajectory.at(pose.time_s);
+    if (!better) continue;
+    pose.map_from_body = *better;
+    ++smoothed;
+  }
+}
+
+/// The same of all poses, or else, as when the vehicle was carried away, of those between jumps, each for themselves.
+void smooth(const SlamSmoother& smoother, const DistanceField& field, Found& found) {
+  constexpr double kJump_m = 0.5, kFastest_m_s = 2.0;
+  smooth(smoother, field, found.poses, found.smoothed);
+  if (found.smoothed > 0) return;
+  std::vector<StampedPose> all;
+  const auto is_jump = [](const StampedPose& a, const StampedPose& b) {
+    const double way_m = (b.map_from_body.translation() - a.map_from_body.translation()).head<2>().norm();
+    return way_m > kJump_m + kFastest_m_s * (b.time_s - a.time_s);
+  };
+  for (auto first = found.poses.begin(); first != found.poses.end();) {
+    auto end = std::adjacent_find(first, found.poses.end(), is_jump);
+    if (end != found.poses.end()) ++end;
+    std::vector<StampedPose> part(first, end);
+    if (part.size() < found.poses.size()) smooth(smoother, field, part, found.smoothed);
+    all.insert(all.end(), part.begin(), part.end());
+    first = end;
+  }
+  found.poses = std::move(all);
+}
+
+SlamOptions smoother_options(const Motion& motion, const LocalizerOptions& localizer) {
+  SlamOptions options;
+  options.seed = localizer.seed;
+  options.body_from_sonar = localizer.body_from_sonar;
+  options.body_from_source = motion.nav_options.body_from_source;
+  options.nav_offset_s = motion.nav_options.offset_s;
+  options.calibration = motion.nav_options.calibration;
+  options.filter = localizer.filter;
+  options.sound_speed_ratio = localizer.sound_speed_ratio;
+  options.echo = localizer.echo;
+  return options;
+}
+
+Result<Found> locate(std::vector<Beam> beams, const Motion& motion, const DistanceField& field,
+                     const LocateCommand& command) {
   LocalizerOptions options = command.localizer;
   if (motion.turns_only) options.noise = MotionNoise::turns_only();
   options.body_from_sonar.pretranslate(motion.sonar_moved_m);
-  Localizer localizer(std::move(field), options);
+  Localizer localizer(field, options);
+  std::optional<SlamSmoother> smoother;
+  if (command.estimation == Estimation::kBatch && motion.nav && !motion.turns_only) {
+    smoother.emplace(smoother_options(motion, options));
+    if (const auto added = smoother->add(*motion.nav); !added) return tl::unexpected(added.error());
+  }
   if (command.start) {
     const StartPose& start = *command.start;
     localizer.start(start.x_m, start.y_m, start.yaw_rad, start.deviation_m, start.deviation_rad);
@@ -154,6 +216,7 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, DistanceFiel
   };
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double time_s = beams[i].time_s;
+    if (smoother) smoother->add(beams[i]);
     if (bar.is_due()) bar.draw(static_cast<double>(i) / static_cast<double>(beams.size()), "locating");
     if (const auto pose = motion.odometry ? motion.odometry->at(time_s) : std::nullopt) localizer.add({time_s, *pose});
     if (const auto added = localizer.add(std::move(beams[i])); !added) {
@@ -172,6 +235,7 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, DistanceFiel
   if (found.poses.empty()) {
     return fail(Error::Code::kUnsupported, fmt::format("{}: no echo fits anywhere in the map", command.logs.front()));
   }
+  if (smoother) smooth(*smoother, field, found);
   return found;
 }
 
@@ -196,6 +260,7 @@ std::string json_of(const Found& found, const Motion& motion, std::size_t field_
       .add("locate", round_to_us(seconds.locate))
       .add("total", round_to_us(seconds.total));
   json.add("poses", found.poses.size())
+      .add("smoothed", found.smoothed)
       .add("beams", found.beams)
       .add("skipped", found.skipped + motion.skipped)
       .add("motion", motion.text);
@@ -217,9 +282,10 @@ std::string text_of(const Found& found, const Motion& motion, const LocateComman
   std::string text = command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
   if (motion.clock) text += report_line("nav clock", text_of(*motion.clock));
-  text += report_line("trajectory",
-                      fmt::format("{} poses of {} beams, {:.0f} particles on average, {} at most", found.poses.size(),
-                                  found.beams, found.mean_particles, found.most_particles));
+  text += report_line(
+      "trajectory",
+      fmt::format("{} poses of {} beams, {} by all of the recording; {:.0f} particles on average, {} at most",
+                  found.poses.size(), found.beams, found.smoothed, found.mean_particles, found.most_particles));
   for (const PoseHypothesis& h : found.hypotheses) {
     text += report_line("at the end",
                         fmt::format("{:.3f} {:.3f} m +- {:.3f}, {:.1f} +- {:.1f} degrees, weight {:.3f}", h.x_m, h.y_m,
@@ -273,7 +339,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
   seconds.field = making.seconds();
 
   const Stopwatch locating;
-  Result<Found> found = locate(*std::move(beams), *motion, *std::move(field), command);
+  Result<Found> found = locate(*std::move(beams), *motion, *field, command);
   if (!found) return tl::unexpected(found.error());
   found->skipped = skipped;
   seconds.locate = locating.seconds();

@@ -241,6 +241,7 @@ struct LocateCommand {
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's
   Damage damage = Damage::kSkip;
   LocalizerOptions localizer;
+  Estimation estimation = Estimation::kBatch;  ///< of the poses by `navs`
 };
 
 /// What `live` listens to.

@@ -48,7 +48,7 @@ _pingvox_options() {
       ;;
     locate)
       options+=(--output --map --min-z --max-z --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --odometry --start)
-      options+=(--seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
+      options+=(--causal --seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
     live)

@@ -19,6 +19,7 @@
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/slam/localizer.hpp"
 #include "pingvox/slam/odometry.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "slam/beam_likelihood.hpp"
 #include "tank_beams.hpp"
@@ -70,14 +71,33 @@ struct Sums {
     ++sure;
     if (error.m > 0.5) ++sure_and_wrong;
   }
+  double rmse_m() const { return std::sqrt(m2 / static_cast<double>(poses)); }
+  double yaw_rmse_deg() const { return std::sqrt(rad2 / static_cast<double>(poses)) / kDegree_rad; }
 };
 
+/// Errors of the same poses by all of the recording.
+Result<Sums> smooth(const Drive& drive, const DistanceField& field, std::vector<StampedPose> found) {
+  const Result<Trajectory> near = Trajectory::make(std::move(found));
+  if (!near) return tl::unexpected(near.error());
+  SlamSmoother smoother({});
+  for (const Beam& beam : drive.beams) smoother.add(beam);
+  if (const auto added = smoother.add(drive.nav); !added) return tl::unexpected(added.error());
+  const Result<SlamSolution> solution = smoother.solve_in(field, *near);
+  if (!solution) return tl::unexpected(solution.error());
+  Sums sums;
+  for (const StampedPose& pose : solution->trajectory.poses()) {
+    if (const auto truth = drive.reference.at(pose.time_s)) sums.add(between(pose.map_from_body, *truth), false);
+  }
+  return sums;
+}
+
 /// Errors from when the vehicle is found.
-Result<Row> follow(std::string_view world, Known known, const Drive& drive, DistanceField field, std::uint64_t seed) {
+Result<Row> follow(std::string_view world, Known known, const Drive& drive, const DistanceField& field,
+                   std::uint64_t seed) {
   std::optional<Trajectory> odometry;
   if (known == Known::kMotion) odometry = drive.reference;
   if (known == Known::kNavigation) {
-    Result<Odometry> reckoned = odometry_of(drive.nav, {});
+    Result<Odometry> reckoned = odometry_of(drive.nav, {.body_from_source = {}, .turns = TurnsBy::kTurnRate});
     if (!reckoned) return tl::unexpected(reckoned.error());
     odometry = std::move(reckoned->odometry_from_body);
   }
@@ -86,7 +106,8 @@ Result<Row> follow(std::string_view world, Known known, const Drive& drive, Dist
   std::vector<Beam> beams = drive.beams;
   const double recorded_s = beams.back().time_s - beams.front().time_s, begin_s = beams.front().time_s;
   const double before_s = cpu_time_s();
-  Localizer localizer(std::move(field), options);
+  Localizer localizer(field, options);
+  std::vector<StampedPose> found;
   Sums sums;
   double found_s = std::numeric_limits<double>::quiet_NaN();
   for (Beam& beam : beams) {
@@ -96,6 +117,7 @@ Result<Row> follow(std::string_view world, Known known, const Drive& drive, Dist
     const auto located = localizer.pose();
     const auto truth = drive.reference.at(time_s);
     if (!located || !truth) continue;
+    if (found.empty() || time_s > found.back().time_s) found.push_back({time_s, located->map_from_body});
     if (sums.poses == 0) found_s = time_s - begin_s;
     sums.add(between(located->map_from_body, *truth), localizer.is_sure());
   }
@@ -108,11 +130,18 @@ Result<Row> follow(std::string_view world, Known known, const Drive& drive, Dist
       .add("seed", seed)
       .add("beams", std::uint64_t{drive.beams.size()})
       .add("found_after_s", found_s)
-      .add("rmse_m", std::sqrt(sums.m2 / count))
-      .add("yaw_rmse_deg", std::sqrt(sums.rad2 / count) / kDegree_rad)
+      .add("rmse_m", sums.rmse_m())
+      .add("yaw_rmse_deg", sums.yaw_rmse_deg())
       .add("sure", static_cast<double>(sums.sure) / count)
       .add("sure_and_wrong", std::uint64_t{sums.sure_and_wrong})
       .add("share_of_core", took_s / recorded_s);
+  if (known != Known::kNavigation || found.size() < 2) return row;
+  const double smoothing_s = cpu_time_s();
+  const auto smoothed = smooth(drive, field, std::move(found));
+  if (!smoothed) return tl::unexpected(smoothed.error());
+  row.add("smoothed_rmse_m", smoothed->rmse_m())
+      .add("smoothed_yaw_rmse_deg", smoothed->yaw_rmse_deg())
+      .add("smoothing_s", cpu_time_s() - smoothing_s);
   return row;
 }
 
@@ -141,57 +170,121 @@ Result<Row> follow_recorded_tank() {
   if (!none) return tl::unexpected(none.error());
   const Drive drive{std::move(found), *none, Pose::Identity(), Trajectory::still(Pose::Identity())};
   return follow(tank->input == "recording" ? "tank, recorded" : "tank, simulated, other sweeps", Known::kNothing, drive,
-                *std::move(field), 1);
+                *field, 1);
 }
 
-/// Random places of a harbour, each for three turns of the head.
-Result<Row> find_places(const Scene& harbour, const DistanceField& field, const BenchOptions& options) {
-  constexpr std::size_t kPlaces = 100, kTurns = 3;
-  constexpr double kFromWalls_m = 0.8, kRight_m = 0.3, kRight_rad = 5.0 * kDegree_rad;
+constexpr std::size_t kPlaces = 100, kTurns = 3;
+
+/// Random poses in the free water of a harbour.
+std::vector<Pose> random_places(const Scene& harbour, const DistanceField& field, std::size_t count) {
+  constexpr double kFromWalls_m = 0.8;
   Random random(1);
-  std::size_t right = 0, right_and_sure = 0, wrong_and_sure = 0, not_found = 0;
   const Eigen::AlignedBox3d& water = harbour.water_m;
-  for (std::uint64_t n = 0; n < kPlaces;) {
+  std::vector<Pose> places;
+  while (places.size() < count) {
     const Eigen::Vector2d place =
         water.min().head<2>() +
         Eigen::Vector2d(random.uniform(), random.uniform()).cwiseProduct(water.sizes().head<2>());
     const double yaw_rad = 2.0 * std::numbers::pi * random.uniform();
     if (field.classify(place) != Occupancy::kFree || field.distance_m(place) < kFromWalls_m) continue;
-    ++n;
-    if (options.say != nullptr && n % 20 == 0) options.say(fmt::format("  {} of {} places", n, kPlaces));
-    const Pose truth = pose_from_rpy({place.x(), place.y(), 0.0}, 0.0, 0.0, yaw_rad);
-    SonarOptions sonar;
-    sonar.seed = n;
-    sonar.beams_per_s = harbour.beams_per_s;
-    sonar.bin_length_m = harbour.sonar_range_m / static_cast<double>(sonar.bins);
-    SonarSimulator simulator(harbour.world, Trajectory::still(truth), sonar, kTurns);
+    places.push_back(pose_from_rpy({place.x(), place.y(), 0.0}, 0.0, 0.0, yaw_rad));
+  }
+  return places;
+}
+
+bool is_right(const std::optional<Localizer::Located>& located, const Pose& truth) {
+  constexpr double kRight_m = 0.3, kRight_rad = 5.0 * kDegree_rad;
+  if (!located) return false;
+  const Offset error = between(located->map_from_body, truth);
+  return error.m <= kRight_m && error.rad <= kRight_rad;
+}
+
+/// Calls `heard(time_s)` after each beam of three turns of the head at a place, from a time on.
+template <class Heard>
+Result<void> hear_at(const Pose& place, const Scene& harbour, std::uint64_t seed, double from_s, Localizer& localizer,
+                     const Heard& heard) {
+  SonarOptions sonar;
+  sonar.seed = seed;
+  sonar.beams_per_s = harbour.beams_per_s;
+  sonar.bin_length_m = harbour.sonar_range_m / static_cast<double>(sonar.bins);
+  SonarSimulator simulator(harbour.world, Trajectory::still(place), sonar, kTurns);
+  for (;;) {
+    Result<std::optional<Beam>> beam = simulator.next();
+    if (!beam) return tl::unexpected(beam.error());
+    if (!*beam) return {};
+    (*beam)->time_s += from_s;
+    const double time_s = (*beam)->time_s;
+    if (const auto added = localizer.add(**std::move(beam)); !added) return added;
+    heard(time_s);
+  }
+}
+
+/// Random places of a harbour, each for three turns of the head.
+Result<Row> find_places(const Scene& harbour, const DistanceField& field, const BenchOptions& options) {
+  std::uint64_t n = 0, right = 0, right_and_sure = 0, wrong_and_sure = 0, not_found = 0;
+  for (const Pose& truth : random_places(harbour, field, kPlaces)) {
+    if (++n % 20 == 0 && options.say != nullptr) options.say(fmt::format("  {} of {} places", n, kPlaces));
     Localizer localizer(field, {});
-    for (;;) {
-      Result<std::optional<Beam>> beam = simulator.next();
-      if (!beam) return tl::unexpected(beam.error());
-      if (!*beam) break;
-      if (const auto added = localizer.add(*std::move(*beam)); !added) return tl::unexpected(added.error());
+    if (const auto done = hear_at(truth, harbour, n, 0.0, localizer, [](double) {}); !done) {
+      return tl::unexpected(done.error());
     }
     localizer.finish();
     const auto located = localizer.pose();
-    if (!located) {
-      ++not_found;
-      continue;
-    }
-    const Offset error = between(located->map_from_body, truth);
-    const bool is_right = error.m <= kRight_m && error.rad <= kRight_rad;
-    if (is_right) ++right;
-    if (localizer.is_sure()) ++(is_right ? right_and_sure : wrong_and_sure);
+    if (!located) ++not_found;
+    if (is_right(located, truth)) ++right;
+    if (localizer.is_sure()) ++(is_right(located, truth) ? right_and_sure : wrong_and_sure);
   }
   Row row;
   row.add("name", "locate-places")
       .add("world", "harbour")
       .add("places", std::uint64_t{kPlaces})
       .add("turns", std::uint64_t{kTurns})
-      .add("right", std::uint64_t{right})
-      .add("right_and_sure", std::uint64_t{right_and_sure})
-      .add("wrong_and_sure", std::uint64_t{wrong_and_sure})
-      .add("not_found", std::uint64_t{not_found});
+      .add("right", right)
+      .add("right_and_sure", right_and_sure)
+      .add("wrong_and_sure", wrong_and_sure)
+      .add("not_found", not_found);
+  return row;
+}
+
+/// From one of the places to the next, without notice, three turns of the head at each.
+Result<Row> kidnap(const Scene& harbour, const DistanceField& field, const BenchOptions& options) {
+  const std::vector<Pose> places = random_places(harbour, field, kPlaces + 1);
+  std::uint64_t was_sure = 0, right = 0, right_and_sure = 0, wrong_and_sure = 0;
+  double longest_sure_s = 0.0;  // of the place where it no longer is
+  for (std::size_t n = 0; n < kPlaces; ++n) {
+    if (n % 20 == 0 && options.say != nullptr) options.say(fmt::format("  {} of {} kidnaps", n, kPlaces));
+    Localizer localizer(field, {});
+    double time_s = 0.0;
+    const auto keep_time = [&](double now_s) { time_s = now_s; };
+    if (const auto done = hear_at(places[n], harbour, 1000 + n, 0.0, localizer, keep_time); !done) {
+      return tl::unexpected(done.error());
+    }
+    if (localizer.is_sure()) ++was_sure;
+    const double kidnapped_s = time_s + 1.0 / harbour.beams_per_s;
+    const Pose& truth = places[n + 1];
+    const auto note = [&](double now_s) {
+      if (localizer.is_sure() && !is_right(localizer.pose(), truth)) {
+        longest_sure_s = std::max(longest_sure_s, now_s - kidnapped_s);
+      }
+    };
+    if (const auto done = hear_at(truth, harbour, 2000 + n, kidnapped_s, localizer, note); !done) {
+      return tl::unexpected(done.error());
+    }
+    localizer.finish();
+    const bool found = is_right(localizer.pose(), truth);
+    if (found) ++right;
+    if (localizer.is_sure()) ++(found ? right_and_sure : wrong_and_sure);
+  }
+  Row row;
+  row.add("name", "locate-kidnaps")
+      .add("world", "harbour")
+      .add("kidnaps", std::uint64_t{kPlaces})
+      .add("turns", std::uint64_t{kTurns})
+      .add("sure_before", was_sure)
+      .add("right", right)
+      .add("right_and_sure", right_and_sure)
+      .add("wrong_and_sure", wrong_and_sure)
+      .add("longest_sure_of_old_s", longest_sure_s);
   return row;
 }
 
@@ -278,6 +371,7 @@ Result<std::vector<Row>> locate(const BenchOptions& options) {
   }
   if (auto done = keep(follow_recorded_tank()); !done) return tl::unexpected(done.error());
   if (auto done = keep(find_places(harbour, *harbour_field, options)); !done) return tl::unexpected(done.error());
+  if (auto done = keep(kidnap(harbour, *harbour_field, options)); !done) return tl::unexpected(done.error());
   if (auto done = keep(score_poses(*harbour_field)); !done) return tl::unexpected(done.error());
   return rows;
 }

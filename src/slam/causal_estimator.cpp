@@ -229,6 +229,7 @@ Result<SlamSolution> CausalEstimator::finish() {
                             "moved: {} of {} sweeps match those before them",
                             odometry_.matched(), all_sweeps_ - 1));
   }
+  begin_at_origin(poses_);
   Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(poses_));
   if (!solution) return solution;
   solution->report.beams = beams_;

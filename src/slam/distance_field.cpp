@@ -273,6 +273,20 @@ std::vector<Eigen::Vector2d> DistanceField::places(double step_m, double reach_m
   return places;
 }
 
+std::vector<Eigen::Vector2d> DistanceField::occupied() const {
+  std::vector<Eigen::Vector2d> occupied;
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+    if (tiles_[tile] == 0) continue;
+    for (std::size_t i = 0; i < kTileCells; ++i) {
+      if (values_[tiles_[tile] * kTileCells + i] != 0) continue;
+      const std::size_t x = tile % tiles_x_ * kTile + i % kTile, y = tile / tiles_x_ * kTile + i / kTile;
+      occupied.emplace_back((first_x_ + static_cast<double>(x) + 0.5) * cell_m_,
+                            (first_y_ + static_cast<double>(y) + 0.5) * cell_m_);
+    }
+  }
+  return occupied;
+}
+
 double DistanceField::free_area_m2() const {
   const auto cells =
       std::ranges::count_if(values_, [](std::uint8_t value) { return value != 0 && (value & kUnknown) == 0; });

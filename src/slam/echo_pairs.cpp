@@ -29,6 +29,8 @@ constexpr double kPlace_m = 0.3, kOfHalfLength = 0.3, kBearing_rad = 1.0 * kDegr
 /// The pairs of an echo weigh half an echo together, and a pair is of two echoes.
 constexpr double kWeightOfEcho = 0.25;
 constexpr double kRobustOfGate = 0.35;
+/// The same of an echo and a wall of a map.
+constexpr double kMapPlace_m = 0.05, kOfCell = 0.3, kMapBearing_rad = 0.6 * kDegree_rad, kMapWeight = 0.25;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -78,7 +80,22 @@ std::vector<SweepIndex> index_sweeps(std::span<const EchoOnGround> ground, std::
   return indices;
 }
 
-/// Normal of the line through points; zero if they are no line.
+/// splitmix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+std::uint64_t mix(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal, double scale) {
+  const double along = kOfHalfLength * echo.run.half_length_m * normal.dot(ground.ray);
+  const double across = kBearing_rad * echo.run.middle_m * cross(normal, ground.ray);
+  return scale * scale * kPlace_m * kPlace_m + along * along + across * across;
+}
+
+}  // namespace
+
 Eigen::Vector2d normal_of(std::span<const Eigen::Vector2d> points) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : points) mean += p;
@@ -98,22 +115,6 @@ Eigen::Vector2d normal_of(std::span<const Eigen::Vector2d> points) {
   const double along_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
   return {-std::sin(along_rad), std::cos(along_rad)};
 }
-
-/// splitmix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
-double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal, double scale) {
-  const double along = kOfHalfLength * echo.run.half_length_m * normal.dot(ground.ray);
-  const double across = kBearing_rad * echo.run.middle_m * cross(normal, ground.ray);
-  return scale * scale * kPlace_m * kPlace_m + along * along + across * across;
-}
-
-}  // namespace
 
 double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns) {
   if (echo.held) return echo.held->yaw_rad;
@@ -251,27 +252,44 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
   return result;
 }
 
+std::vector<WallMatch> match_walls(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
+                                   const MapWalls& walls, double gate_m) {
+  std::vector<WallMatch> matches;
+  for (std::uint32_t i = 0; i < echoes.size(); ++i) {
+    const auto wall = walls.nearest(ground[i].at, gate_m);
+    if (!wall) continue;
+    const double distance_m = wall->normal.dot(ground[i].at - wall->place_m);
+    const double across_m = kMapBearing_rad * echoes[i].run.middle_m;
+    const double variance =
+        kMapPlace_m * kMapPlace_m + kOfCell * kOfCell * walls.cell_m() * walls.cell_m() + across_m * across_m;
+    const double square = kRobustOfGate * kRobustOfGate * gate_m * gate_m;
+    const double share = square / (square + distance_m * distance_m);
+    matches.push_back({i, wall->normal, distance_m, kMapWeight * share * share / variance});
+  }
+  return matches;
+}
+
+EchoRow echo_row(const PlacedEcho& echo, const EchoOnGround& ground, const Unknowns& unknowns,
+                 const Eigen::Vector2d& normal) {
+  EchoRow row;
+  if (!echo.held) {
+    const double rest = 1.0 - echo.share, by_yaw = normal.dot(quarter_turn(ground.arm));
+    row.by_knots << rest * normal, rest * by_yaw, echo.share * normal, echo.share * by_yaw;
+  }
+  const double yaw_rad = yaw_of(echo, unknowns);
+  const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
+  row.by_globals = {echo.run.half_length_m * normal.dot(ground.ray), normal.dot(ahead),
+                    normal.dot(quarter_turn(ahead))};
+  return row;
+}
+
 PairRow pair_row(const PlacedEcho& a, const EchoOnGround& ground_a, const PlacedEcho& b, const EchoOnGround& ground_b,
                  const Unknowns& unknowns, const EchoPair& pair) {
+  const EchoRow of_a = echo_row(a, ground_a, unknowns, pair.normal),
+                of_b = echo_row(b, ground_b, unknowns, pair.normal);
   PairRow row;
   row.distance_m = pair.normal.dot(ground_a.at - ground_b.at);
-  const auto add = [&](const PlacedEcho& echo, const EchoOnGround& ground, double sign, Eigen::Index first) {
-    if (!echo.held) {
-      const double rest = 1.0 - echo.share;
-      const double by_yaw = sign * pair.normal.dot(quarter_turn(ground.arm));
-      row.by.segment<2>(first) = sign * rest * pair.normal;
-      row.by[first + 2] = rest * by_yaw;
-      row.by.segment<2>(first + 3) = sign * echo.share * pair.normal;
-      row.by[first + 5] = echo.share * by_yaw;
-    }
-    row.by[12] += sign * echo.run.half_length_m * pair.normal.dot(ground.ray);
-    const double yaw_rad = yaw_of(echo, unknowns);
-    const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
-    row.by[13] += sign * pair.normal.dot(ahead);
-    row.by[14] += sign * pair.normal.dot(quarter_turn(ahead));
-  };
-  add(a, ground_a, 1.0, 0);
-  add(b, ground_b, -1.0, 6);
+  row.by << of_a.by_knots, -of_b.by_knots, of_a.by_globals - of_b.by_globals;
   return row;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "slam/map_walls.hpp"
 #include "slam/slam_problem.hpp"
 
 /// Echoes on the ground, and pairs of them.
@@ -25,6 +26,9 @@ struct SonarMount {
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
   double yaw_rad = 0.0;
 };
+
+/// Normal of the line through points; zero if they are no line. REQUIRES a point.
+Eigen::Vector2d normal_of(std::span<const Eigen::Vector2d> points);
 
 /// The body's yaw at an echo.
 double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns);
@@ -64,6 +68,16 @@ struct EchoPairs {
   std::size_t loops_found = 0, loops_kept = 0;  ///< see SlamReport
 };
 
+/// An echo and a wall of a known map.
+struct WallMatch {
+  std::uint32_t echo = 0;
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+  double distance_m = 0.0;  ///< from the wall to the echo along the normal
+  double weight = 0.0;      ///< of its square, as that of a pair
+};
+std::vector<WallMatch> match_walls(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
+                                   const MapWalls& walls, double gate_m);
+
 /// Which sweep of the log it is, and where the vehicle was in its middle.
 struct SweepPlace {
   std::size_t number = 0;
@@ -77,6 +91,15 @@ struct SweepPlace {
 EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
                      std::span<const std::size_t> sweeps, std::span<const SweepPlace> places,
                      const PairOptions& options);
+
+/// How a place along a normal depends on the knots around an echo, and on the globals from kWall to kSonarY. The bulge
+/// is held, and the knots of an echo that is.
+struct EchoRow {
+  Eigen::Matrix<double, 6, 1> by_knots = Eigen::Matrix<double, 6, 1>::Zero();  ///< the one before, the one after
+  Eigen::Vector3d by_globals = Eigen::Vector3d::Zero();
+};
+EchoRow echo_row(const PlacedEcho& echo, const EchoOnGround& ground, const Unknowns& unknowns,
+                 const Eigen::Vector2d& normal);
 
 /// Distance of a pair along its normal, and its derivatives by the knots around both echoes and by the globals from
 /// kWall to kSonarY. The bulges and the normal are held, and the knots of echoes that are.

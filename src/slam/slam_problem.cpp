@@ -179,9 +179,11 @@ std::vector<SlamProblem::Way> SlamProblem::ways(const Unknowns& unknowns) const 
       const double half_s = 0.5 * (b.time_s - a.time_s);
       way.moved += half_s * (last + next);
       way.weighted += half_s * (a.share * last + b.share * next);
+      way.measured += half_s * (a.velocity + b.velocity);
       last = next;
     }
     const double from_s = knot_times_s_[k], to_s = knot_times_s_[k + 1];
+    way.measured /= to_s - from_s;
     const double density = velocity_.density.at(0.5 * (from_s + to_s));
     const double gap_m = kVelocityInGap_m_s * velocity_.ahead.gap_s(from_s, to_s);
     way.deviation_m = std::sqrt(density * density * (to_s - from_s) + gap_m * gap_m);

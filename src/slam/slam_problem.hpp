@@ -96,6 +96,7 @@ class SlamProblem {
   struct Way {
     Eigen::Vector2d moved = Eigen::Vector2d::Zero();     ///< [m]
     Eigen::Vector2d weighted = Eigen::Vector2d::Zero();  ///< each part of it times its share of the time
+    Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< mean velocity as measured, in the frame of the body [m/s]
     double deviation_m = 0.0;                            ///< of either axis
   };
   std::vector<Way> ways(const Unknowns& unknowns) const;

@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "pingvox/geometry/pose2.hpp"
 #include "slam/causal_estimator.hpp"
+#include "slam/map_solution.hpp"
 #include "slam/recording.hpp"
 #include "slam/slam_problem.hpp"
 #include "slam/slam_solver.hpp"
@@ -58,7 +58,23 @@ struct SlamSmoother::State {
   std::vector<double> beam_times_s;
   std::vector<HeardSweep> sweeps;
   std::vector<NavSource> sources;
+
+  /// With what there is of the last. @return kUnsupported without beams; kCorrupt when their times do not rise
+  Result<std::vector<HeardSweep>> all_sweeps() const;
 };
+
+Result<std::vector<HeardSweep>> SlamSmoother::State::all_sweeps() const {
+  if (beam_times_s.empty()) return fail(Error::Code::kUnsupported, "there are no beams");
+  if (const auto back = std::ranges::adjacent_find(beam_times_s, std::ranges::greater()); back != beam_times_s.end()) {
+    return fail(Error::Code::kCorrupt, fmt::format("the times of the beams do not rise: beam {} is at {:.3f} s, the "
+                                                   "next at {:.3f} s",
+                                                   back - beam_times_s.begin(), *back, *(back + 1)));
+  }
+  std::vector<HeardSweep> all = sweeps;
+  SweepAssembler rest = assembler;
+  if (const auto sweep = rest.finish()) all.push_back(heard_sweep(*sweep, options));
+  return all;
+}
 
 SlamSmoother::SlamSmoother(SlamOptions options) : state_(std::make_unique<State>()) {
   assert(options.validate());
@@ -90,21 +106,6 @@ Result<void> SlamSmoother::add(const NavLog& log) {
 
 namespace {
 
-/// Of the body, whose origin is carried by the place of the velocity's source.
-std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::vector<Eigen::Matrix3d>& of_knots,
-                                           const SlamOptions& options) {
-  const Eigen::Vector2d velocity_place = mount_of(options, solver.problem().velocity().name).translation().head<2>();
-  std::vector<PoseCovariance> covariances;
-  for (std::size_t k = 0; k < of_knots.size(); ++k) {
-    const double time_s = solver.problem().knot_times_s()[k];
-    const double yaw_rad = solver.problem().main_yaw_rad(time_s) + solver.unknowns().knots[k].z();
-    Eigen::Matrix3d body_by_knot = Eigen::Matrix3d::Identity();
-    body_by_knot.block<2, 1>(0, 2) = -quarter_turn(rotation2(yaw_rad) * velocity_place);
-    covariances.push_back({time_s, body_by_knot * of_knots[k] * body_by_knot.transpose()});
-  }
-  return covariances;
-}
-
 Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& options) {
   Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
   if (!times_s) return tl::unexpected(times_s.error());
@@ -125,9 +126,10 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
   if (!of_knots) {
     return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
   }
-  Result<SlamSolution> solution = solution_of(
-      solver, options,
-      poses_at(recording.beam_times_s, solver.problem(), solver.unknowns(), recording.navigation.depth, options));
+  std::vector<StampedPose> poses =
+      poses_at(recording.beam_times_s, solver.problem(), solver.unknowns(), recording.navigation.depth, options);
+  begin_at_origin(poses);
+  Result<SlamSolution> solution = solution_of(solver, options, std::move(poses));
   if (!solution) return solution;
   solution->report.beams = recording.beam_times_s.size();
   solution->report.sweeps = static_cast<std::size_t>(
@@ -205,18 +207,23 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
 
 }  // namespace
 
+Result<SlamSolution> SlamSmoother::solve_in(const DistanceField& map, const Trajectory& near) const {
+  const SlamOptions& options = state_->options;
+  const Result<std::vector<HeardSweep>> sweeps = state_->all_sweeps();
+  if (!sweeps) return tl::unexpected(sweeps.error());
+  const Result<Recording> recording = recording_of(state_->beam_times_s, *sweeps, state_->sources, options);
+  if (!recording) return tl::unexpected(recording.error());
+  const Result<NavLog> log = NavLog::make(state_->sources, NavClock::kUnknown);
+  if (!log) return tl::unexpected(log.error());
+  return solve_in_map(*recording, *log, options, map, near);
+}
+
 Result<SlamSolution> SlamSmoother::solve() const {
   const SlamOptions& options = state_->options;
+  Result<std::vector<HeardSweep>> heard = state_->all_sweeps();
+  if (!heard) return tl::unexpected(heard.error());
+  const std::vector<HeardSweep>& sweeps = *heard;
   const std::vector<double>& times_s = state_->beam_times_s;
-  if (times_s.empty()) return fail(Error::Code::kUnsupported, "there are no beams");
-  if (const auto back = std::ranges::adjacent_find(times_s, std::ranges::greater()); back != times_s.end()) {
-    return fail(Error::Code::kCorrupt, fmt::format("the times of the beams do not rise: beam {} is at {:.3f} s, the "
-                                                   "next at {:.3f} s",
-                                                   back - times_s.begin(), *back, *(back + 1)));
-  }
-  std::vector<HeardSweep> sweeps = state_->sweeps;
-  SweepAssembler rest = state_->assembler;
-  if (const auto sweep = rest.finish()) sweeps.push_back(heard_sweep(*sweep, options));
   if (options.matching == Matching::kPairs && sweeps.size() < 2) {
     return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
   }

@@ -3,8 +3,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "slam/pose_edges.hpp"
+#include "slam/steady_motion.hpp"
 
 namespace pingvox {
 namespace {
@@ -97,11 +99,20 @@ std::vector<EchoOnGround> SlamSolver::ground() const {
   return place_echoes(problem_, mount_, unknowns_, problem_.ways(unknowns_), echoes_, sweeps_);
 }
 
+void SlamSolver::set_walls(const MapWalls& walls) {
+  walls_ = &walls;
+  velocity_change_ = velocity_change(problem_.velocity());
+}
+
 bool SlamSolver::step(std::optional<double> gate_m) {
   const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
   std::vector<EchoOnGround> ground;
   pairs_ = {};
-  if (gate_m) {
+  wall_matches_.clear();
+  if (gate_m && walls_ != nullptr) {
+    ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
+    wall_matches_ = match_walls(echoes_, ground, *walls_, *gate_m);
+  } else if (gate_m) {
     ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
     pairs_ = echo_pairs(echoes_, ground, sweeps_, sweep_places(), {seed_, scale_ * *gate_m, scale_});
     // In order of the knots that they join.
@@ -122,7 +133,9 @@ bool SlamSolver::step(std::optional<double> gate_m) {
 std::optional<std::vector<Eigen::Matrix3d>> SlamSolver::knot_covariances() const {
   const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
   std::vector<EchoOnGround> ground;
-  if (!pairs_.pairs.empty()) ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
+  if (!pairs_.pairs.empty() || !wall_matches_.empty()) {
+    ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);
+  }
   return equations(ways, ground).knot_covariances();
 }
 
@@ -133,6 +146,7 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
   };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;
   for (std::uint32_t k = 0; k + 1 < problem_.knots(); ++k) shared.emplace_back(k, k + 1);
+  for (std::uint32_t k = 0; walls_ != nullptr && k + 2 < problem_.knots(); ++k) shared.emplace_back(k, k + 2);
   for (std::size_t i = 0; i < pairs_.pairs.size(); ++i) {
     const auto [a, b] = joined(pairs_.pairs[i]);
     if (i > 0 && joined(pairs_.pairs[i - 1]) == std::pair{a, b}) continue;
@@ -146,6 +160,10 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
   NormalEquations equations(problem_.knots(), problem_.globals(), shared);
   for (const SlamProblem::Row& row : problem_.rows(unknowns_, ways)) add_row(row, equations);
   add_pairs(ground, equations);
+  if (walls_ != nullptr) {
+    add_walls(ground, equations);
+    add_steady_motion(problem_, unknowns_, ways, velocity_change_, equations);
+  }
   for (const PoseEdge& loop : loops_) {
     const Pose2 a = pose_of_knot(loop.a), b = pose_of_knot(loop.b);
     add_edge(loop, a, b, loop_weight(loop, a, b), equations);
@@ -268,6 +286,38 @@ void SlamSolver::add_pairs(const std::vector<EchoOnGround>& ground, NormalEquati
     }
     equations.corner.block<3, 3>(global::kWall, global::kWall) += sum.block<3, 3>(12, 12);
     equations.gradient.segment<3>(equations.border.rows() + Eigen::Index{global::kWall}) += sum.block<3, 1>(12, 15);
+  }
+}
+
+double SlamSolver::least_on_walls(double near_m) const {
+  constexpr std::size_t kFew = 20;
+  std::vector<std::size_t> near(sweeps_.size() - 1, 0);
+  for (const WallMatch& match : wall_matches_) {
+    if (std::abs(match.distance_m) <= near_m) ++near[echoes_[match.echo].sweep];
+  }
+  double least = 1.0;
+  for (std::size_t s = 0; s < near.size(); ++s) {
+    const std::size_t count = sweeps_[s + 1] - sweeps_[s];
+    if (count >= kFew) least = std::min(least, static_cast<double>(near[s]) / static_cast<double>(count));
+  }
+  return least;
+}
+
+void SlamSolver::add_walls(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const {
+  for (const WallMatch& match : wall_matches_) {
+    const PlacedEcho& echo = echoes_[match.echo];
+    const EchoRow row = echo_row(echo, ground[match.echo], unknowns_, match.normal);
+    const Eigen::Matrix<double, 6, 6> square = match.weight * row.by_knots * row.by_knots.transpose();
+    equations.add_block(echo.knot, echo.knot, square.topLeftCorner<3, 3>());
+    equations.add_block(echo.knot + 1, echo.knot + 1, square.bottomRightCorner<3, 3>());
+    equations.add_block(echo.knot + 1, echo.knot, square.bottomLeftCorner<3, 3>());
+    const auto first = static_cast<Eigen::Index>(3 * echo.knot);
+    equations.border.block<6, 3>(first, global::kWall) += match.weight * row.by_knots * row.by_globals.transpose();
+    equations.corner.block<3, 3>(global::kWall, global::kWall) +=
+        match.weight * row.by_globals * row.by_globals.transpose();
+    equations.gradient.segment<6>(first) += match.weight * match.distance_m * row.by_knots;
+    equations.gradient.segment<3>(equations.border.rows() + Eigen::Index{global::kWall}) +=
+        match.weight * match.distance_m * row.by_globals;
   }
 }
 

@@ -13,6 +13,7 @@
 #include "slam/echo_pairs.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/held_sweeps.hpp"
+#include "slam/map_walls.hpp"
 #include "slam/normal_equations.hpp"
 #include "slam/slam_problem.hpp"
 
@@ -41,6 +42,10 @@ class SlamSolver {
   SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
              Unknowns start, Before before = {});
 
+  /// In the steps to come, echoes are matched with the walls of a known map instead of each other, and the vehicle is
+  /// taken to move as steadily as its velocity says. The walls must outlive the solver.
+  void set_walls(const MapWalls& walls);
+
   /// One Gauss-Newton step. False: the problem does not determine its unknowns, and they stay.
   /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs. Without a measured velocity it
   /// is less for a sonar that reaches less than 20 m, in proportion.
@@ -66,6 +71,9 @@ class SlamSolver {
   /// Of x, y [m] and yaw [rad] at each knot, with the pairs of the last step. nullopt: not determined.
   std::optional<std::vector<Eigen::Matrix3d>> knot_covariances() const;
   const EchoPairs& pairs() const { return pairs_; }
+  /// The least share of the echoes of a sweep that are within `near_m` of the wall that they are matched with; of
+  /// sweeps with 20 echoes or more, 1 without any.
+  double least_on_walls(double near_m) const;
   /// What the problem, as of the last step, tells of a knot and the globals when the knots before it leave. Pairs of
   /// echoes before and after the knot are left out: they are made again with the sweeps that are held. nullopt: not
   /// determined.
@@ -84,6 +92,7 @@ class SlamSolver {
   /// The knot before the second echo of a pair; the first one's where that is held, for then it moves with no knot.
   std::size_t second_knot(const EchoPair& pair) const { return echoes_[echoes_[pair.b].held ? pair.a : pair.b].knot; }
   void add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
+  void add_walls(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
 
   SlamProblem problem_;
   SonarMount mount_;
@@ -97,6 +106,9 @@ class SlamSolver {
   std::size_t held_echoes_ = 0;
   double reach_m_ = 0.0, scale_ = 1.0;
   EchoPairs pairs_;
+  const MapWalls* walls_ = nullptr;
+  double velocity_change_ = 0.0;  ///< with walls
+  std::vector<WallMatch> wall_matches_;
   std::vector<PoseEdge> loops_;
   Eigen::MatrixXd global_covariance_;
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/recording.hpp"
 
 namespace pingvox {
@@ -114,10 +115,28 @@ std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamPro
   return poses;
 }
 
-Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses) {
-  if (poses.empty()) return fail(Error::Code::kUnsupported, "no beam is within the time of the navigation");
+std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::vector<Eigen::Matrix3d>& of_knots,
+                                           const SlamOptions& options) {
+  const Eigen::Vector2d velocity_place = mount_of(options, solver.problem().velocity().name).translation().head<2>();
+  std::vector<PoseCovariance> covariances;
+  for (std::size_t k = 0; k < of_knots.size(); ++k) {
+    const double time_s = solver.problem().knot_times_s()[k];
+    const double yaw_rad = solver.problem().main_yaw_rad(time_s) + solver.unknowns().knots[k].z();
+    Eigen::Matrix3d body_by_knot = Eigen::Matrix3d::Identity();
+    body_by_knot.block<2, 1>(0, 2) = -quarter_turn(rotation2(yaw_rad) * velocity_place);
+    covariances.push_back({time_s, body_by_knot * of_knots[k] * body_by_knot.transpose()});
+  }
+  return covariances;
+}
+
+void begin_at_origin(std::vector<StampedPose>& poses) {
+  if (poses.empty()) return;
   const Eigen::Vector2d origin = poses.front().map_from_body.translation().head<2>();
   for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
+}
+
+Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses) {
+  if (poses.empty()) return fail(Error::Code::kUnsupported, "no beam is within the time of the navigation");
   Result<Trajectory> trajectory = Trajectory::make(std::move(poses));
   if (!trajectory) return tl::unexpected(trajectory.error());
   SlamSolution solution{*std::move(trajectory), {}, {}, report_of(solver)};

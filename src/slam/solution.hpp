@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,8 +19,15 @@ namespace pingvox {
 std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamProblem& problem, const Unknowns& unknowns,
                                   const std::optional<TimeSeries>& depth, const SlamOptions& options);
 
+/// Of the body, whose origin is carried by the place of the velocity's source.
+std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::vector<Eigen::Matrix3d>& of_knots,
+                                           const SlamOptions& options);
+
+/// Shifts poses so that the first is at x, y = 0.
+void begin_at_origin(std::vector<StampedPose>& poses);
+
 /// With all of the report but beams and sweeps, and without covariances.
-/// @param poses  of the beams; their first place becomes the origin
+/// @param poses  of the beams
 /// @return kUnsupported without poses
 Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses);
 

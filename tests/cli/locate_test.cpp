@@ -41,6 +41,29 @@ TEST(Locate, FindsTheSonarInTheTankOfAnotherRun) {
   EXPECT_GT(count, 300U);
 }
 
+// Kills a trajectory that is the filter's although all of the recording says more.
+TEST(Locate, AllOfTheRecordingTellsMoreThanWhatWasKnownThen) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--trajectory", "loop", "--nav", "nav.csv", "--nav-delay",
+                       "0", "--truth", "t", "--resolution", "0.05", "--seed", "11"})
+                .status,
+            0);
+  const auto locate = [&](std::vector<std::string> more) {
+    std::vector<std::string> call = {"locate",       "a.csv", "--map", "t/world.bt", "--nav", "nav.csv",
+                                     "--nav-offset", "0",     "-o",    "a.tum",      "--json"};
+    call.insert(call.end(), more.begin(), more.end());
+    const Outcome found = here.call(call);
+    EXPECT_EQ(found.status, 0) << found.err;
+    EXPECT_EQ(found.out.find(R"("smoothed": 0)") == std::string::npos, more.empty()) << found.out;
+    const std::string compared = here.call({"compare", "a.tum", "t/poses.tum", "--json"}).out;
+    const std::string before = R"("none": {"mean": )";
+    const std::size_t at = compared.find(before);
+    return at == std::string::npos ? 1e9 : std::stod(compared.substr(at + before.size()));
+  };
+  EXPECT_LT(locate({}), 0.08);
+  EXPECT_GT(locate({"--causal"}), 0.1);
+}
+
 TEST(Locate, TheSameSeedWritesTheSameBytesAndAStartNeedsNoSearch) {
   const Workplace here;
   ASSERT_EQ(

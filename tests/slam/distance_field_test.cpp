@@ -57,6 +57,17 @@ TEST(DistanceField, TellsFreeFromUnknownAndOccupied) {
             DistanceField::kFar + DistanceField::kUnknown);
 }
 
+TEST(DistanceField, NamesItsOccupiedColumns) {
+  const auto field = DistanceField::make(map_of({{-3.05, 0.25, 0.05}, {9.95, -0.05, 0.05}}, {{0.05, 0.05, 0.05}}), {});
+  ASSERT_TRUE(field);
+  const auto occupied = field->occupied();
+  ASSERT_EQ(occupied.size(), 2U);
+  for (const Eigen::Vector2d& place : occupied) {
+    const Eigen::Vector2d expected = place.x() < 0.0 ? Eigen::Vector2d(-3.05, 0.25) : Eigen::Vector2d(9.95, -0.05);
+    EXPECT_TRUE(place.isApprox(expected, 1e-9)) << place.transpose();
+  }
+}
+
 TEST(DistanceField, GoesUpToTheFirstWall) {
   const auto field = DistanceField::make(Room().map(), {});
   ASSERT_TRUE(field);

@@ -60,6 +60,8 @@ class DistanceField {
   /// `reach_m` (a sonar that stands still leaves unknown what is nearer than its blanking range). Each is the middle of
   /// a column. In order of tiles, then rows. REQUIRES step_m > 0
   std::vector<Eigen::Vector2d> places(double step_m, double reach_m) const;
+  /// The middles of the occupied columns [m]. In order of tiles, then rows.
+  std::vector<Eigen::Vector2d> occupied() const;
   /// Free columns times their area [m^2].
   double free_area_m2() const;
 

@@ -14,6 +14,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/distance_field.hpp"
 #include "pingvox/slam/slam_calibration.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
@@ -110,6 +111,7 @@ struct SlamReport {
   std::size_t velocities = 0;  ///< valid samples
   std::size_t velocities_clipped = 0;
   double longest_gap_s = 0.0;     ///< between valid velocities
+  double least_on_walls = 0.0;    ///< in a map: of all sweeps the least share of echoes that are on walls of it
   std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
@@ -151,6 +153,12 @@ class SlamSmoother {
   ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke, or the
   ///         calibration is of another velocity
   Result<SlamSolution> solve() const;
+  /// The same in a map that is known: echoes are matched with it instead of with each other. Where the sonar is mounted
+  /// is taken as it is said, and no heading needs to point to the map's north.
+  /// @param near  poses in the map, within some decimetres and degrees, as a Localizer finds them; the solution is of
+  ///              the beams within its time
+  /// @return as solve(); kUnsupported also without a velocity
+  Result<SlamSolution> solve_in(const DistanceField& map, const Trajectory& near) const;
 
  private:
   struct State;
