@@ -276,8 +276,10 @@ std::string text_of(const SlamSolution& solution, const SlamCommand& command, co
   text += report_line("trajectory",
                       fmt::format("{} poses over {:.1f} s", solution.trajectory.poses().size(), recorded_s(solution)));
   if (command.slam.matching == Matching::kPairs) {
-    text += report_line("pairs", fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
-                                             report.pair_median_m, report.loops_kept, report.loops_found));
+    text += report_line("pairs", report.pairs == 0
+                                     ? "none: nothing but velocity and headings tells the poses"
+                                     : fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
+                                                   report.pair_median_m, report.loops_kept, report.loops_found));
     if (report.submap_loops_found > 0) {
       text += report_line(
           "submaps", fmt::format("{} of {} loops kept before", report.submap_loops_kept, report.submap_loops_found));

@@ -131,9 +131,10 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   window_.times_s = *std::move(times_s);
   SlamSolver solver = solver_of(std::move(problem), *recording, options_, start, std::move(before));
   add_poses(solver, *recording);
-  if (options_.matching == Matching::kPairs && window_.first_sweep + sweeps_.size() > 1) {
-    if (is_first) solver.step(std::nullopt);
-    for (const double gate_m : kGates_m) solver.step(gate_m);
+  if (options_.matching == Matching::kPairs) {
+    bool determined = !is_first || solver.step(std::nullopt);
+    for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
+    if (!determined) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
   }
   if (!poses_.empty() && !window_.prior && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
     frame_ = frame_ * align(solver.unknowns().knots, start.knots);

@@ -148,6 +148,11 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
   if (options.motion == MotionSource::kVelocity && velocity_of(*log, options)) return sources;
+  if (sweeps.size() < 2) {
+    return fail(
+        Error::Code::kUnsupported,
+        "the navigation has no valid velocity over ground, and there is only one sweep: nothing to match it with");
+  }
   const std::vector<HeadingSource> headings = headings_of(*log, options);
   if (!headings.empty()) {
     const Span beams{sweeps.front().from_s, sweeps.back().to_s};
@@ -224,9 +229,6 @@ Result<SlamSolution> SlamSmoother::solve() const {
   if (!heard) return tl::unexpected(heard.error());
   const std::vector<HeardSweep>& sweeps = *heard;
   const std::vector<double>& times_s = state_->beam_times_s;
-  if (options.matching == Matching::kPairs && sweeps.size() < 2) {
-    return fail(Error::Code::kUnsupported, "there is only one sweep, and nothing to match it with");
-  }
   if (options.estimation == Estimation::kCausal) return solve_causal(times_s, sweeps, state_->sources, options);
   const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
   if (!sources) return tl::unexpected(sources.error());

@@ -534,20 +534,36 @@ TEST(SlamSmoother, RefusesBeamsThatJumpInTime) {
   expect_refused(smoother, "times jump");
 }
 
-TEST(SlamSmoother, RefusesToMatchOneSweepAlone) {
-  const Basin basin;
-  std::vector<Beam> beams = basin.beams();
-  beams.resize(100);
-  for (const Matching matching : {Matching::kPairs, Matching::kNone}) {
+// Kills a solution without any step, whose calibration has no deviations.
+TEST(SlamSmoother, ReckonsAlongOneSweepAlone) {
+  const Basin basin{.duration_s = 10.0};
+  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
     SlamOptions options;
-    options.matching = matching;
-    SlamSmoother smoother = smoother_of(basin, options);
-    add(smoother, basin.sources());
-    for (const Beam& beam : beams) smoother.add(beam);
-    if (matching == Matching::kPairs) {
-      expect_refused(smoother, "one sweep");
-    } else {
-      EXPECT_TRUE(smoother.solve());
+    options.estimation = estimation;
+    const auto solved = solve(basin, options);
+    ASSERT_TRUE(solved) << solved.error().message;
+    EXPECT_EQ(solved->report.pairs, 0U);
+    EXPECT_GT(solved->calibration.velocity_yaw_rad.deviation, 0.0);
+    EXPECT_LT(error_m(solved->trajectory), 0.5);
+  }
+  SlamSmoother without = smoother_of(basin, {});
+  add(without, {basin.sources()[1]});
+  for (const Beam& beam : basin.beams()) without.add(beam);
+  expect_refused(without, "only one sweep");
+}
+
+TEST(SlamSmoother, RefusesVelocitiesThatNoNumbersHold) {
+  const Basin basin{.duration_s = 60.0};
+  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
+    for (const double velocity_m_s : {1e6, 1e300}) {
+      SlamOptions options;
+      options.estimation = estimation;
+      SlamSmoother smoother = smoother_of(basin, options);
+      std::vector<NavSource> sources = basin.sources();
+      for (NavSample& sample : sources[0].samples) sample.value.x() = velocity_m_s;
+      add(smoother, sources);
+      for (const Beam& beam : basin.beams()) smoother.add(beam);
+      expect_refused(smoother, "does not determine");
     }
   }
 }
