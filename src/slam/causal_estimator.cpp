@@ -133,8 +133,13 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   add_poses(solver, *recording);
   if (options_.matching == Matching::kPairs) {
     bool determined = !is_first || solver.step(std::nullopt);
+    std::optional<SweepLoops> loops;
+    if (determined) loops = close_new_loops(solver);
+    determined = determined && loops;
     for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
     if (!determined) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
+    loops_.found += loops->found;
+    loops_.kept += loops->kept;
   }
   if (!poses_.empty() && !window_.prior && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
     frame_ = frame_ * align(solver.unknowns().knots, start.knots);
@@ -238,6 +243,8 @@ Result<SlamSolution> CausalEstimator::finish() {
   solution->report.knots = window_.left_knots + window_.times_s.size();
   solution->report.echoes = window_.left_echoes + window_.echoes;
   solution->report.largest = window_.largest;
+  solution->report.submap_loops_found = loops_.found;
+  solution->report.submap_loops_kept = loops_.kept;
   if (solution->report.by_sonar) {
     SonarMotion& motion = *solution->report.by_sonar;
     motion.matched = odometry_.matched();

@@ -12,6 +12,7 @@
 #include "slam/causal_window.hpp"
 #include "slam/recording.hpp"
 #include "slam/sonar_odometry.hpp"
+#include "slam/sweep_loops.hpp"
 
 namespace pingvox {
 
@@ -61,6 +62,7 @@ class CausalEstimator {
   GrowingOdometry odometry_;
 
   CausalWindow window_;
+  SweepLoops loops_;                  ///< that moved the poses, of all solutions
   std::optional<SlamSolver> solver_;  ///< of the last solution
   std::optional<Error> missing_;      ///< why there is no later one
   std::vector<StampedPose> poses_;

@@ -56,4 +56,21 @@ std::vector<std::shared_ptr<const HeldSweep>> HeldSweeps::partners(std::span<con
   return partners;
 }
 
+std::vector<std::shared_ptr<const HeldSweep>> HeldSweeps::near(const Eigen::Vector2d& place_m, double reach_m) const {
+  std::vector<std::shared_ptr<const HeldSweep>> sweeps;
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
+  const auto low = square_of(place_m - reach), high = square_of(place_m + reach);
+  if (!low || !high) return sweeps;
+  for (int x = low->first; x <= high->first; ++x) {
+    for (auto at = squares_.lower_bound({x, low->second});
+         at != squares_.end() && at->first <= std::pair(x, high->second); ++at) {
+      for (const auto& sweep : at->second) {
+        if ((sweep->place.place_m - place_m).norm() <= reach_m) sweeps.push_back(sweep);
+      }
+    }
+  }
+  std::ranges::sort(sweeps, {}, [](const auto& sweep) { return sweep->place.number; });
+  return sweeps;
+}
+
 }  // namespace pingvox

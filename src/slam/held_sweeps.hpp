@@ -32,6 +32,8 @@ class HeldSweeps {
   /// Partners of the sweeps of a window, in the order of their numbers: those just before it, and for each at most
   /// kFarPartners that are near in place.
   std::vector<std::shared_ptr<const HeldSweep>> partners(std::span<const SweepPlace> window, double reach_m) const;
+  /// All that were kept and are near a place, in the order of their numbers.
+  std::vector<std::shared_ptr<const HeldSweep>> near(const Eigen::Vector2d& place_m, double reach_m) const;
 
  private:
   std::uint64_t seed_;

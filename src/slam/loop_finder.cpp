@@ -52,6 +52,7 @@ std::vector<Eigen::Vector2d> submap(std::span<const KeyFrame> frames, std::span<
   std::unordered_set<std::uint64_t> taken;
   const std::size_t first = k < kAround ? 0 : k - kAround, last = std::min(k + kAround, frames.size() - 1);
   for (std::size_t i = first; i <= last; ++i) {
+    if (frames[i].pass != frames[k].pass) continue;
     const Pose2 k_from_i = k_from_map * poses[i];
     for (const Eigen::Vector2d& point : frames[i].points_m) {
       const Eigen::Vector2d at = k_from_i * point;
@@ -282,7 +283,7 @@ Loops find_loops(std::span<const KeyFrame> frames, std::span<const Pose2> poses,
   const MatchWindow window{static_cast<int>(std::lround(options.window_m / cell_m)), options.window_yaw_rad};
   Loops loops;
   std::vector<Loop> all;
-  for (std::size_t k = 0; k < frames.size(); k += 2) {
+  for (std::size_t k = options.first; k < frames.size(); k += 2) {
     if (!middles_m[k].allFinite()) continue;
     const std::vector<std::size_t> returns = returns_to(k, middles_m, way.moved_m, options);
     if (returns.empty()) continue;

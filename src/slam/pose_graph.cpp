@@ -14,6 +14,20 @@ constexpr int kIterations = 30;
 /// Squared distance, in standard deviations, at which a loop counts half.
 constexpr double kCauchy2 = 4.0;
 
+/// Derivatives of the residual of an edge.
+struct ByPoses {
+  Eigen::Matrix3d a = -Eigen::Matrix3d::Identity(), b = Eigen::Matrix3d::Identity();
+};
+ByPoses derivatives(const Pose2& a, const Pose2& b) {
+  const Eigen::Matrix2d turn = rotation2(-a.yaw_rad);
+  const Eigen::Vector2d between = turn * (b.place_m - a.place_m);
+  ByPoses by;
+  by.a.topLeftCorner<2, 2>() = -turn;
+  by.a.topRightCorner<2, 1>() = Eigen::Vector2d(between.y(), -between.x());
+  by.b.topLeftCorner<2, 2>() = turn;
+  return by;
+}
+
 }  // namespace
 
 Eigen::Vector3d residual_of(const PoseEdge& edge, const Pose2& a, const Pose2& b) {
@@ -29,20 +43,19 @@ double loop_weight(const PoseEdge& edge, const Pose2& a, const Pose2& b) {
 }
 
 void add_edge(const PoseEdge& edge, const Pose2& a, const Pose2& b, double weight, NormalEquations& equations) {
-  const Eigen::Matrix2d turn = rotation2(-a.yaw_rad);
-  const Eigen::Vector2d between = turn * (b.place_m - a.place_m);
-  const Eigen::Vector3d residual = residual_of(edge, a, b);
-  Eigen::Matrix3d by_a = -Eigen::Matrix3d::Identity(), by_b = Eigen::Matrix3d::Identity();
-  by_a.topLeftCorner<2, 2>() = -turn;
-  by_a.topRightCorner<2, 1>() = Eigen::Vector2d(between.y(), -between.x());
-  by_b.topLeftCorner<2, 2>() = turn;
-  const Eigen::Matrix3d of_a = weight * by_a.transpose() * edge.information,
-                        of_b = weight * by_b.transpose() * edge.information;
+  const ByPoses by = derivatives(a, b);
+  const Eigen::Matrix3d of_b = weight * by.b.transpose() * edge.information;
+  add_edge_to_fixed(edge, a, b, weight, equations);
+  equations.add_block(edge.b, edge.b, of_b * by.b);
+  equations.add_block(edge.b, edge.a, of_b * by.a);
+  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.b)) += of_b * residual_of(edge, a, b);
+}
+
+void add_edge_to_fixed(const PoseEdge& edge, const Pose2& a, const Pose2& b, double weight,
+                       NormalEquations& equations) {
+  const Eigen::Matrix3d by_a = derivatives(a, b).a, of_a = weight * by_a.transpose() * edge.information;
   equations.add_block(edge.a, edge.a, of_a * by_a);
-  equations.add_block(edge.b, edge.b, of_b * by_b);
-  equations.add_block(edge.b, edge.a, of_b * by_a);
-  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.a)) += of_a * residual;
-  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.b)) += of_b * residual;
+  equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * edge.a)) += of_a * residual_of(edge, a, b);
 }
 
 std::vector<double> solve_pose_graph(std::vector<Pose2>& poses, std::span<const PoseEdge> odometry,

@@ -137,7 +137,7 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
   solution->covariances = covariances_of(solver, *of_knots, options);
   if (loops) {
     solution->report.submap_loops_found = loops->found;
-    solution->report.submap_loops_kept = loops->kept.size();
+    solution->report.submap_loops_kept = loops->kept;
   }
   return solution;
 }

@@ -104,6 +104,14 @@ void SlamSolver::set_walls(const MapWalls& walls) {
   velocity_change_ = velocity_change(problem_.velocity());
 }
 
+std::vector<Eigen::Vector2d> SlamSolver::ground_of(const HeldSweep& sweep) const {
+  std::vector<Eigen::Vector2d> places_m;
+  for (const PlacedEcho& echo : sweep.echoes) {
+    places_m.push_back(place_echo(problem_, mount_, unknowns_, {}, echo).at);
+  }
+  return places_m;
+}
+
 bool SlamSolver::step(std::optional<double> gate_m) {
   const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
   std::vector<EchoOnGround> ground;
@@ -167,6 +175,10 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
   for (const PoseEdge& loop : loops_) {
     const Pose2 a = pose_of_knot(loop.a), b = pose_of_knot(loop.b);
     add_edge(loop, a, b, loop_weight(loop, a, b), equations);
+  }
+  for (const auto& [loop, held] : held_loops_) {
+    const Pose2 a = pose_of_knot(loop.a);
+    add_edge_to_fixed(loop, a, held, loop_weight(loop, a, held), equations);
   }
   if (before_.prior) {
     const WindowPrior& prior = *before_.prior;

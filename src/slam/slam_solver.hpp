@@ -36,6 +36,12 @@ struct Before {
   const HeldSweeps* held = nullptr;  ///< nullptr: none
 };
 
+/// A loop with a sweep that left the problem: `b` of the edge is not a knot, but where that sweep stays.
+struct HeldLoop {
+  PoseEdge edge;
+  Pose2 held;
+};
+
 /// The least-squares problem of sweeps, and its iterations.
 class SlamSolver {
  public:
@@ -52,13 +58,18 @@ class SlamSolver {
   bool step(std::optional<double> gate_m);
 
   /// Edges between knots that count in the steps to come, by Cauchy's function.
-  void set_loops(std::vector<PoseEdge> loops) { loops_ = std::move(loops); }
+  void set_loops(std::vector<PoseEdge> loops, std::vector<HeldLoop> held = {}) {
+    loops_ = std::move(loops);
+    held_loops_ = std::move(held);
+  }
   const std::vector<PoseEdge>& loops() const { return loops_; }
 
   /// The body's yaw at a knot, and where the velocity's source is.
   Pose2 pose_of_knot(std::size_t knot) const;
   /// All echoes of the sweeps within the time of the knots.
   std::vector<EchoOnGround> ground() const;
+  /// Where the echoes of a sweep that left are.
+  std::vector<Eigen::Vector2d> ground_of(const HeldSweep& sweep) const;
   /// Where the echoes of each sweep begin, those of held ones first, and the end of the last.
   const std::vector<std::size_t>& sweeps() const { return sweeps_; }
   /// The knots around the middle of each sweep, and the share of the way between them.
@@ -110,6 +121,7 @@ class SlamSolver {
   double velocity_change_ = 0.0;  ///< with walls
   std::vector<WallMatch> wall_matches_;
   std::vector<PoseEdge> loops_;
+  std::vector<HeldLoop> held_loops_;
   Eigen::MatrixXd global_covariance_;
 };
 

@@ -104,6 +104,24 @@ TEST(LoopFinder, FindsAPlaceThatIsSeenAgainWhereItIs) {
   for (const PoseEdge& loop : loops.kept) EXPECT_LT(drive.error_m(loop), 0.6) << loop.a << " " << loop.b;
 }
 
+// Kills a search that begins elsewhere, and submaps of sweeps that did not follow each other.
+TEST(LoopFinder, LooksFromTheNewestAndKeepsPassesApart) {
+  Recorded drive;
+  drive.go(places_along(kLap), kBasin, {});
+  const std::size_t first = drive.frames.size();
+  drive.leave();
+  const std::size_t second = drive.frames.size();
+  drive.go(places_along(kLap), kBasin, {{3.0, -2.0}, 0.05});
+  LoopOptions newest = kOptions;
+  newest.first = drive.frames.size() - 16;
+  const Loops loops = drive.find(newest);
+  ASSERT_GT(joining(loops, first, second), 3U);
+  for (const PoseEdge& loop : loops.kept) EXPECT_GE(loop.a, newest.first);
+  // Each frame for itself has too few points.
+  for (std::size_t k = 0; k < drive.frames.size(); ++k) drive.frames[k].pass = k;
+  EXPECT_LT(drive.find(newest).found, loops.found);
+}
+
 TEST(LoopFinder, DoesNotTakeAnyPlaceForAnother) {
   Recorded drive;
   drive.go(places_along(kLap), kBasin, {});

@@ -39,5 +39,15 @@ TEST(SlamSolver, ALoopMovesTheKnotsThatItJoins) {
   EXPECT_NEAR(off_m(), 0.5, 1e-3);
 }
 
+TEST(SlamSolver, ALoopWithWhatLeftMovesItsKnotThere) {
+  SlamSolver solver = solver_ahead();
+  const Pose2 held{{1.0, 2.0}, 0.4};
+  HeldLoop loop{{4, 0, solver.pose_of_knot(4).inverse() * held, 1e4 * Eigen::Matrix3d::Identity()}, held};
+  loop.edge.a_from_b.place_m.x() += 0.5;
+  solver.set_loops({}, {loop});
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(solver.step(std::nullopt));
+  EXPECT_LT(residual_of(loop.edge, solver.pose_of_knot(4), held).head<2>().norm(), 0.05);
+}
+
 }  // namespace
 }  // namespace pingvox::test

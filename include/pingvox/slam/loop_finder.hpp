@@ -15,6 +15,7 @@ namespace pingvox {
 struct KeyFrame {
   Pose2 odometry;                         ///< map_from_vehicle, as measured
   std::vector<Eigen::Vector2d> points_m;  ///< what was seen around it, in its own frame
+  std::size_t pass = 0;                   ///< a submap is of one pass: of key frames that follow each other
 };
 
 struct LoopOptions {
@@ -24,6 +25,7 @@ struct LoopOptions {
   /// Of one of two submaps, only what is within so many reaches of its key frame is looked for in the other: else where
   /// the submaps end would say where they are.
   double points_within = 3.0;  ///< > 0
+  std::size_t first = 0;       ///< only this key frame and later ones are compared with those before them
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };

@@ -106,7 +106,8 @@ struct SlamReport {
   std::size_t loops_found = 0;  ///< pairs of sweeps far apart in time and near in place
   std::size_t loops_kept = 0;   ///< of these, how many have at least ten pairs that count
   /// Submaps of some sweeps that look like one of an earlier time, and how many of these agree with each other: they
-  /// led the trajectory to where pairs were looked for. None with Estimation::kCausal.
+  /// led the trajectory to where pairs were looked for. With Estimation::kCausal of all solutions, but only where poses
+  /// were farther off than pairs lead back.
   std::size_t submap_loops_found = 0, submap_loops_kept = 0;
   std::size_t velocities = 0;  ///< valid samples
   std::size_t velocities_clipped = 0;
