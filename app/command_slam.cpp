@@ -218,6 +218,9 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
   std::vector<JsonObject> not_observable;
   for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
   json.add("not_observable", not_observable);
+  std::vector<JsonObject> implausible;
+  for (const std::string& what : report.implausible) implausible.emplace_back().add("name", what);
+  json.add("implausible", implausible);
   const std::optional<Uncertainty> uncertainty = uncertainty_of(solution);
   uncertainty ? json.add("uncertainty", json_of(*uncertainty)) : json.add_null("uncertainty");
   if (command.slam.matching == Matching::kPairs) {
@@ -305,6 +308,12 @@ std::string text_of(const SlamSolution& solution, const SlamCommand& command, co
     text +=
         report_line("not known",
                     on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(report.not_observable, ", "))));
+  }
+  if (!report.implausible.empty()) {
+    text +=
+        report_line("implausible", on_one_line(fmt::format("{}: far from what was expected; are --mount, --nav-mount "
+                                                           "and --nav-offset right?",
+                                                           fmt::join(report.implausible, ", "))));
   }
   return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
                                                    recorded_s(solution) / seconds.total));

@@ -33,9 +33,6 @@ struct Option {
   std::string help;
   std::string standard;  ///< the default, as typed; empty: none
   Take take;             ///< of a flag: gets "true"
-  /// Value of an option that is given without one; the next argument is its value only if it is one of the choices that
-  /// `value` names. Empty: it needs a value.
-  std::string implied = {};
   Repeats repeats = Repeats::kNot;
   /// The option has an effect only if one of these holds; empty: always.
   std::vector<Condition> only_with = {};
@@ -43,6 +40,9 @@ struct Option {
   std::vector<std::string> only_for = {};
   /// Whether the usage line shows it; the code that reads the value reports when it is missing.
   bool is_required = false;
+  /// Value of an option that is given without one; the next argument is its value only if it is one of the choices that
+  /// `value` names. Empty: it needs a value.
+  std::string implied = {};
 };
 
 /// A positional argument.

@@ -45,18 +45,33 @@ std::vector<std::string> global_names(const SlamProblem& problem) {
   return names;
 }
 
-std::vector<std::string> not_observable(const SlamSolver& solver) {
-  constexpr double kMostOfVariance = 0.5;
-  std::vector<std::string> unknown;
+/// Names of the calibration for which is_one(estimate, believed beforehand) is true; what is held fixed is left out.
+template <class IsOne>
+std::vector<std::string> names_of_globals(const SlamSolver& solver, IsOne&& is_one) {
+  std::vector<std::string> found;
   const std::vector<std::string> names = global_names(solver.problem());
   const std::vector<Estimate> priors = solver.problem().global_priors();
   for (std::size_t g = 0; g < priors.size(); ++g) {
     const auto i = static_cast<Eigen::Index>(g);
     if (priors[g].deviation <= kHeld) continue;
-    const double before = priors[g].deviation * priors[g].deviation;
-    if (solver.global_covariance()(i, i) > kMostOfVariance * before) unknown.push_back(names[g]);
+    const Estimate now{solver.unknowns().globals[i], std::sqrt(solver.global_covariance()(i, i))};
+    if (is_one(now, priors[g])) found.push_back(names[g]);
   }
-  return unknown;
+  return found;
+}
+
+std::vector<std::string> not_observable(const SlamSolver& solver) {
+  constexpr double kMostOfVariance = 0.5;
+  return names_of_globals(solver, [](const Estimate& now, const Estimate& before) {
+    return now.deviation * now.deviation > kMostOfVariance * before.deviation * before.deviation;
+  });
+}
+
+std::vector<std::string> implausible(const SlamSolver& solver) {
+  constexpr double kDeviations = 4.0;
+  return names_of_globals(solver, [](const Estimate& now, const Estimate& before) {
+    return std::abs(now.value - before.value) > kDeviations * before.deviation;
+  });
 }
 
 SlamReport report_of(const SlamSolver& solver) {
@@ -143,6 +158,7 @@ Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& op
   if (options.matching == Matching::kPairs) {
     solution.calibration = calibration_of(solver);
     solution.report.not_observable = not_observable(solver);
+    solution.report.implausible = implausible(solver);
   }
   return solution;
 }

@@ -346,6 +346,24 @@ TEST(SlamSmoother, SaysWhatTheRecordingDoesNotTell) {
   EXPECT_THAT(unknown, testing::Contains("constant of heading compass")) << "no fix says where north is";
   EXPECT_THAT(unknown, testing::Not(testing::Contains("angle of the velocity")));
   EXPECT_THAT(unknown, testing::Not(testing::Contains("cos1 of heading compass")));
+  EXPECT_TRUE(solved->report.implausible.empty());
+}
+
+// Kills limits of another unknown, and a limit that nothing passes.
+TEST(SlamSmoother, SaysWhatOfTheCalibrationIsFarFromWhatWasBelieved) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
+  const Basin basin{.duration_s = 400.0};
+  std::vector<NavSource> sources = basin.sources(1);
+  for (NavSource& source : sources) {
+    if (source.quantity != NavQuantity::kVelocity) continue;
+    for (NavSample& sample : source.samples) sample.value *= 1.1;  // as with a wrong speed of sound
+  }
+  SlamSmoother smoother = smoother_of(basin, {});
+  add(smoother, sources);
+  for (const Beam& beam : basin.beams()) smoother.add(beam);
+  const auto solved = smoother.solve();
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_THAT(solved->report.implausible, testing::ElementsAre("scale of the velocity"));
 }
 
 // Kills a calibration that is not used, or used with the wrong sign: another drive of the same sensors, without pairs.

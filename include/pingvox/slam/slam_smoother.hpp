@@ -117,6 +117,9 @@ struct SlamReport {
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
   std::vector<std::string> not_observable;
+  /// What of the calibration ended more than four standard deviations from what was believed beforehand: a mount, the
+  /// navigation of another vehicle, or the clock may be wrong.
+  std::vector<std::string> implausible;
   LargestSolution largest;
   std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity, and longest_gap_s is between matches
 };
