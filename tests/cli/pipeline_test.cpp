@@ -43,6 +43,7 @@ Args map_keys() {
           "skipped_for.no_pose",
           "skipped_for.blocked",
           "skipped_for.outside_map",
+          "sound_speed_m_s",
           "beam.shape",
           "beam.width_deg",
           "beam.height_deg",

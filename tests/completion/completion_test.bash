@@ -75,7 +75,7 @@ if [[ -n $program ]]; then
     in_help=$(sed -nE 's/^ {2,}(-[a-zA-Z], )?(--[a-z-]+)( .*)?$/\2/p' <<<"$help")
     same "$command" "$(_pingvox_options "$command")" "$in_help"
     for option in $in_help; do
-      words=$(sed -nE "s/^ {2,}(-[a-zA-Z], )?$option ([a-z0-9-]+(\|[a-z0-9-]+)*)( .*)?\$/\\2/p" <<<"$help" | tr '|' '\n')
+      words=$(sed -nE "s/^ {2,}(-[a-zA-Z], )?$option \[?([a-z0-9-]+(\|[a-z0-9-]+)*)]?( .*)?\$/\\2/p" <<<"$help" | tr '|' '\n')
       same "$command $option" "$(_pingvox_words "$option" "$command")" "$words"
     done
   done

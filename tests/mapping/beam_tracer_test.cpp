@@ -127,7 +127,7 @@ TEST(BeamTracer, BeamsOfAScanAreTracedAsEachByItself) {
     }
   }
   EXPECT_GT(cells, 50'000U);
-  EXPECT_GT(outside, 200U);
+  EXPECT_GT(outside, 50U);
 }
 
 }  // namespace
