@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/heard_mapper.hpp"
+#include "mapping/echo_mapper.hpp"
 #include "mapping/stopwatch.hpp"
 #include "mapping/without_exceptions.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
@@ -46,7 +46,7 @@ class BeamMapper::Stages {
  private:
   /// Maps the beams whose echoes are final.
   Result<void> take(const std::vector<EchoStream::BeamWithEcho>& final_echoes) {
-    const detail::HeardBeams heard = detail::heard_beams(final_echoes, 0, stream_.complete_sweeps());
+    const detail::EchoBeams heard = detail::echo_beams(final_echoes, 0, stream_.complete_sweeps());
     watch_.lap(report_.seconds.detect);
     std::vector<std::optional<Pose>> map_from_body;
     map_from_body.reserve(heard.beams.size());
@@ -57,7 +57,7 @@ class BeamMapper::Stages {
   double sound_speed_ratio_;
   EchoStream empty_stream_;  ///< to restart without an allocation
   EchoStream stream_;
-  detail::HeardMapper mapper_;
+  detail::EchoMapper mapper_;
   std::map<std::uint64_t, std::optional<Pose>> poses_;  ///< map_from_body of the beams that wait, by their numbers
   std::uint64_t beams_ = 0;                             ///< passed to the stream so far
   BuildReport report_;

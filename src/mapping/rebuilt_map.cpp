@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/heard_mapper.hpp"
+#include "mapping/echo_mapper.hpp"
 #include "mapping/without_exceptions.hpp"
 
 namespace pingvox {
@@ -23,7 +23,7 @@ struct BeamPose {
 };
 
 /// Beams from the stream of echoes, in order. They never change, so threads may share them.
-using Heard = std::shared_ptr<const detail::HeardBeams>;
+using Heard = std::shared_ptr<const detail::EchoBeams>;
 
 /// A map with its mapper.
 class MapBuild {
@@ -33,7 +33,7 @@ class MapBuild {
   MapBuild& operator=(const MapBuild&) = delete;
 
   /// @param poses  of all beams, by their numbers
-  Result<void> add(const detail::HeardBeams& heard, std::span<const BeamPose> poses) {
+  Result<void> add(const detail::EchoBeams& heard, std::span<const BeamPose> poses) {
     Result<void> added = detail::without_exceptions([&] {
       map_from_body_.clear();
       for (const std::uint64_t number : heard.numbers) map_from_body_.push_back(poses[number].map_from_body);
@@ -48,7 +48,7 @@ class MapBuild {
 
  private:
   OccupancyMap map_;
-  detail::HeardMapper mapper_;
+  detail::EchoMapper mapper_;
   BuildReport report_;
   std::vector<std::optional<Pose>> map_from_body_;
 };
@@ -185,9 +185,9 @@ class RebuiltMap::State {
   }
 
   Result<void> take(const std::vector<EchoStream::BeamWithEcho>& final_echoes) {
-    detail::HeardBeams heard = detail::heard_beams(final_echoes, first_, sweeps_before_ + stream_.complete_sweeps());
+    detail::EchoBeams heard = detail::echo_beams(final_echoes, first_, sweeps_before_ + stream_.complete_sweeps());
     if (heard.beams.empty() && heard.complete_sweeps == sweeps()) return {};
-    heard_.push_back(std::make_shared<const detail::HeardBeams>(std::move(heard)));
+    heard_.push_back(std::make_shared<const detail::EchoBeams>(std::move(heard)));
     Result<void> added = made_->add(*heard_.back(), poses_);
     if (!added) heard_.pop_back();  // or no rebuilt map would come about either
     return added;

@@ -17,36 +17,36 @@
 namespace pingvox::detail {
 
 /// What a map needs of a beam whose echo is known.
-struct HeardBeam {
+struct EchoBeam {
   double time_s, bearing_rad, bin_length_m;
   std::uint32_t bins;
   enum class Where : std::uint8_t { kInRange, kBeyond } where = Where::kInRange;  ///< is the echo
-  std::optional<Echo> echo;                                                       ///< the first thing heard
+  std::optional<Echo> echo;                                                       ///< the first one
 };
 
 /// Beams whose echoes became final together.
-struct HeardBeams {
-  std::vector<HeardBeam> beams;
+struct EchoBeams {
+  std::vector<EchoBeam> beams;
   std::vector<std::uint64_t> numbers;  ///< of the beams, in the order in which they came
   std::size_t complete_sweeps = 0;     ///< of the stream up to here
 };
 
 /// @param first  number of the stream's first beam
-HeardBeams heard_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
-                       std::size_t complete_sweeps);
+EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
+                     std::size_t complete_sweeps);
 
 /// The stream that finds the echoes of beams for a map.
 EchoStream echo_stream(const BuildOptions& options);
 
 /// Brings beams whose echoes are known into a map. The same beams at the same poses make the same map.
-class HeardMapper {
+class EchoMapper {
  public:
   /// REQUIRES valid options. `map` has to outlive this.
-  HeardMapper(const BuildOptions& options, OccupancyMap& map);
+  EchoMapper(const BuildOptions& options, OccupancyMap& map);
 
   /// @param map_from_body  of each beam; nullopt: not known, and the beam is left out and counted
   /// @return kLimit when the map or a beam would grow too large; the map keeps what it had got. Throws std::bad_alloc.
-  Result<void> add(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body, BuildReport& report);
+  Result<void> add(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body, BuildReport& report);
 
   /// After an error, and when the stream of echoes begins anew.
   void restart();
@@ -55,13 +55,13 @@ class HeardMapper {
   /// Beams that are to be mapped.
   struct Placed {
     std::vector<PlacedBeam> beams;
-    std::vector<const HeardBeam*> heard;
+    std::vector<const EchoBeam*> heard;
   };
 
-  Result<Placed> place(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
+  Result<Placed> place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
                        BuildReport& report) const;
   bool is_blocked(const PlacedBeam& beam) const;
-  Result<void> check_size(const HeardBeam& beam) const;
+  Result<void> check_size(const EchoBeam& beam) const;
   Result<void> map_as_one_scan(const Placed& placed, BuildReport& report);
   Result<void> map_one_by_one(const Placed& placed, BuildReport& report);
   Result<void> apply(BuildReport& report);

@@ -1,4 +1,4 @@
-#include "mapping/heard_mapper.hpp"
+#include "mapping/echo_mapper.hpp"
 
 #include <fmt/core.h>
 
@@ -11,9 +11,9 @@
 
 namespace pingvox::detail {
 
-HeardBeams heard_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
-                       std::size_t complete_sweeps) {
-  HeardBeams out;
+EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
+                     std::size_t complete_sweeps) {
+  EchoBeams out;
   out.complete_sweeps = complete_sweeps;
   out.beams.reserve(heard.size());
   out.numbers.reserve(heard.size());
@@ -22,7 +22,7 @@ HeardBeams heard_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::
         std::min<std::size_t>(one.beam.intensities.size(), std::numeric_limits<std::uint32_t>::max());
     // Sound that came back from beyond the range has passed all before.
     out.beams.push_back({one.beam.time_s, one.beam.bearing_rad, one.beam.bin_length_m, static_cast<std::uint32_t>(bins),
-                         one.echo ? HeardBeam::Where::kInRange : HeardBeam::Where::kBeyond,
+                         one.echo ? EchoBeam::Where::kInRange : EchoBeam::Where::kBeyond,
                          one.echo ? one.echo : one.beyond});
     out.numbers.push_back(first + one.number);
   }
@@ -34,13 +34,13 @@ EchoStream echo_stream(const BuildOptions& options) {
           options.timing == Timing::kBySweep ? EchoStream::Wait::kForSweep : EchoStream::Wait::kForNeighbours};
 }
 
-HeardMapper::HeardMapper(const BuildOptions& options, OccupancyMap& map)
+EchoMapper::EchoMapper(const BuildOptions& options, OccupancyMap& map)
     : options_(options), map_(&map), scan_(map.lattice(), options.miss), parts_(options.threads) {
   for (std::size_t i = 0; i < options.threads; ++i) tracers_.emplace_back(options.model, options.echo.max_range_m);
 }
 
-Result<void> HeardMapper::add(const HeardBeams& heard, std::span<const std::optional<Pose>> map_from_body,
-                              BuildReport& report) {
+Result<void> EchoMapper::add(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
+                             BuildReport& report) {
   watch_.skip();
   if (options_.timing == Timing::kBySweep) no_pose_before_ = report.no_pose.count;  // these beams are one sweep
   const Result<Placed> placed = place(heard, map_from_body, report);
@@ -57,20 +57,19 @@ Result<void> HeardMapper::add(const HeardBeams& heard, std::span<const std::opti
   return {};
 }
 
-void HeardMapper::restart() {
+void EchoMapper::restart() {
   sweeps_ = 0;
   scan_.clear();
 }
 
 /// Each beam where it was heard: de-skew. Those without a pose are left out.
-Result<HeardMapper::Placed> HeardMapper::place(const HeardBeams& heard,
-                                               std::span<const std::optional<Pose>> map_from_body,
-                                               BuildReport& report) const {
+Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
+                                             BuildReport& report) const {
   Placed placed;
   placed.beams.reserve(heard.beams.size());
   placed.heard.reserve(heard.beams.size());
   for (std::size_t n = 0; n < heard.beams.size(); ++n) {
-    const HeardBeam& one = heard.beams[n];
+    const EchoBeam& one = heard.beams[n];
     if (!map_from_body[n]) {
       report.no_pose.add(one.time_s);
       continue;
@@ -85,8 +84,8 @@ Result<HeardMapper::Placed> HeardMapper::place(const HeardBeams& heard,
     placed.beams.push_back(beam);
     placed.heard.push_back(&one);
   }
-  for (const HeardBeam* const one : placed.heard) {
-    if (!one->echo || one->where == HeardBeam::Where::kBeyond) continue;
+  for (const EchoBeam* const one : placed.heard) {
+    if (!one->echo || one->where == EchoBeam::Where::kBeyond) continue;
     const int threshold = one->echo->threshold;
     ++report.echoes;
     report.min_threshold = std::min(report.min_threshold.value_or(threshold), threshold);
@@ -98,7 +97,7 @@ Result<HeardMapper::Placed> HeardMapper::place(const HeardBeams& heard,
 
 /// Whether the map has an obstacle on the beam's axis within the blanking range. Its own echo is not heard; what is
 /// heard are its second echo, or sound that went round it.
-bool HeardMapper::is_blocked(const PlacedBeam& beam) const {
+bool EchoMapper::is_blocked(const PlacedBeam& beam) const {
   const double blanking_m = options_.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
   if (map_->empty() || !(blanking_m > 0.0)) return false;
   const Eigen::Vector3d axis{std::cos(beam.bearing_rad), std::sin(beam.bearing_rad), 0.0};
@@ -107,7 +106,7 @@ bool HeardMapper::is_blocked(const PlacedBeam& beam) const {
 }
 
 /// Refuses cells so small that a single beam would take all memory.
-Result<void> HeardMapper::check_size(const HeardBeam& beam) const {
+Result<void> EchoMapper::check_size(const EchoBeam& beam) const {
   const double range_m = beam.echo ? beam.echo->range_m : static_cast<double>(beam.bins) * beam.bin_length_m;
   const double resolution_m = map_->lattice().resolution_m();
   const double cells = cells_in_beam(options_.model, std::min(range_m, options_.echo.max_range_m), resolution_m);
@@ -120,7 +119,7 @@ Result<void> HeardMapper::check_size(const HeardBeam& beam) const {
 }
 
 /// All beams in one scan.
-Result<void> HeardMapper::map_as_one_scan(const Placed& placed, BuildReport& report) {
+Result<void> EchoMapper::map_as_one_scan(const Placed& placed, BuildReport& report) {
   const std::span<const PlacedBeam> beams = placed.beams;
   std::vector<std::size_t> left_out(beams.size());
   parts_.run(beams.size(), scan_, [&](std::size_t part, std::size_t first, std::size_t last, ScanUpdate& scan) {
@@ -134,7 +133,7 @@ Result<void> HeardMapper::map_as_one_scan(const Placed& placed, BuildReport& rep
 }
 
 /// Each beam as a scan of its own.
-Result<void> HeardMapper::map_one_by_one(const Placed& placed, BuildReport& report) {
+Result<void> EchoMapper::map_one_by_one(const Placed& placed, BuildReport& report) {
   const std::span<const PlacedBeam> beams = placed.beams;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (tracers_.front().trace(beams.subspan(i, 1), scan_).front() > 0) report.outside.add(placed.heard[i]->time_s);
@@ -144,7 +143,7 @@ Result<void> HeardMapper::map_one_by_one(const Placed& placed, BuildReport& repo
 }
 
 /// Applies the scan and empties it.
-Result<void> HeardMapper::apply(BuildReport& report) {
+Result<void> EchoMapper::apply(BuildReport& report) {
   watch_.lap(report.seconds.trace);
   if (scan_.empty()) return {};
   const Result<ApplyReport> applied = map_->apply(scan_);
