@@ -78,7 +78,7 @@ Result<Motion> motion_of(const LocateCommand& command) {
   const Result<NavFiles> nav = read_navs(command.navs, command.damage);
   if (!nav) return tl::unexpected(nav.error());
   motion.skipped = nav->damaged;
-  Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), ""}, command.damage);
+  Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   OdometryOptions options = command.nav;
   options.offset_s = offset->offset_s;

@@ -347,7 +347,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Result<NavFiles> nav = read_navs(command.navs, command.damage);
   if (!nav) return tl::unexpected(nav.error());
   const Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), ""}, command.damage);
+      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   SlamOptions options = command.slam;
   options.nav_offset_s = offset->offset_s;

@@ -92,7 +92,7 @@ std::vector<std::size_t> BeamTracer::trace_axes(std::span<const PlacedBeam> beam
     const Reach reach = reach_of(beam, options_, max_range_m_);
     const Eigen::Vector3d axis(std::cos(beam.bearing_rad), std::sin(beam.bearing_rad), 0.0);
     if (reach.free_m > 0.0) {
-      from_m.push_back(beam.map_from_sensor.translation());
+      from_m.emplace_back(beam.map_from_sensor.translation());
       to_m.push_back(beam.map_from_sensor * (axis * reach.free_m));
       of_ray.push_back(i);
     }
