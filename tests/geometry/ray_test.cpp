@@ -27,8 +27,6 @@ namespace {
 static_assert(std::ranges::view<KeyRange<DdaStepper<std::uint16_t>>>);
 static_assert(std::ranges::input_range<KeyRange<BresenhamStepper<WideWord>>>);
 
-constexpr std::int64_t kUnit = ExactSegment::kUnit;
-
 /// A key counted from the centre of its lattice.
 template <KeyWord W>
 Cell from_centre(const BasicKey<W>& key, int depth) {
