@@ -16,9 +16,9 @@ namespace {
 
 using test::uniform;
 
-// Kills rays that begin where another one does, a window that leaves out some of the beginnings, rays that are left out
-// under another one's number, marks of one scan that come with the next, and a ray along Bresenham's cells that is
-// walked by DDA.
+// Kills rays that begin where another one does (also of another block), a window that leaves out some of the
+// beginnings, rays that are left out under another one's number, marks of one scan that come with the next, and a ray
+// along Bresenham's cells that is walked by DDA.
 TEST(RayTracer, MarksWhatTraceRayMarks) {
   std::size_t cells = 0, left_out = 0;
   for (const RayAlgorithm algorithm : {RayAlgorithm::kDda, RayAlgorithm::kBresenham}) {
@@ -34,7 +34,8 @@ TEST(RayTracer, MarksWhatTraceRayMarks) {
       };
       const double way_m = seed % 3 == 0 ? 0.0 : 3.0;  // the head's own
       std::vector<Eigen::Vector3d> from_m, to_m;
-      for (auto n = random() % 60; n > 0; --n) {
+      // Now and then more rays than are prepared together.
+      for (auto n = seed % 20 == 0 ? 2500 : random() % 60; n > 0; --n) {
         from_m.push_back(point(way_m));
         to_m.push_back(from_m.back() + point(4.0));
       }
