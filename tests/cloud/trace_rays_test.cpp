@@ -35,7 +35,7 @@ TEST(RayTracer, MarksWhatTraceRayMarks) {
       const double way_m = seed % 3 == 0 ? 0.0 : 3.0;  // the head's own
       std::vector<Eigen::Vector3d> from_m, to_m;
       // Now and then more rays than are prepared together.
-      for (auto n = seed % 20 == 2 ? 2500 : random() % 60; n > 0; --n) {
+      for (auto n = seed % 20 == 2 ? 1200 : random() % 60; n > 0; --n) {
         from_m.push_back(point(way_m));
         to_m.push_back(from_m.back() + point(4.0));
       }
