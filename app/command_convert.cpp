@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <span>
 #include <utility>
 
 #include "commands.hpp"
@@ -55,16 +57,11 @@ Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& comma
   const auto write_sweep = [&](const std::optional<Sweep>& sweep) {
     if (!sweep) return;
     const PolarImage image = apply_filter(PolarImage(*sweep), command.filter);
-    if (command.echoes == EchoesOfBeam::kAll) {
-      const std::vector<std::vector<Echo>> all = detect_all_echoes(image, *sweep, command.echo);
-      for (std::size_t n = 0; n < all.size(); ++n) {
-        for (const Echo& echo : all[n]) write_echo(sweep->beams[n], echo);
-      }
-      return;
-    }
-    const std::vector<std::optional<Echo>> first = detect_echoes(image, *sweep, command.echo);
-    for (std::size_t n = 0; n < first.size(); ++n) {
-      if (first[n]) write_echo(sweep->beams[n], *first[n]);
+    const std::vector<std::vector<Echo>> all = detect_all_echoes(image, *sweep, command.echo);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      const std::size_t count =
+          command.echoes == EchoesOfBeam::kAll ? all[n].size() : std::min<std::size_t>(1, all[n].size());
+      for (const Echo& echo : std::span(all[n]).first(count)) write_echo(sweep->beams[n], echo);
     }
   };
   SweepAssembler assembler;

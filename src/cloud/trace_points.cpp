@@ -73,7 +73,7 @@ class PointTracer::Tracer {
     }
     // The window's hits tell which cells were found before.
     found_.clear();
-    constexpr std::size_t kBlock = 1024;
+    constexpr std::size_t kBlock = detail::WindowTracer::kBlock;
     for (std::size_t first = 0; first < points_m.size(); first += kBlock) {
       const std::span<const Point> block = points_m.subspan(first, std::min(kBlock, points_m.size() - first));
       find_places(window_.grid(), block, places_);

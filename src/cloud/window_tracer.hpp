@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,6 +17,9 @@ namespace pingvox::detail {
 /// Walks rays side by side in a ScanWindow and hands what they marked to a ScanUpdate. It keeps its memory.
 class WindowTracer {
  public:
+  /// Rays that are prepared together, so that what is known of them stays in the cache.
+  static constexpr std::size_t kBlock = 1024;
+
   /// Opens a window for so many rays that stay within `reach_m` of `middle_m` along each axis; rays that do not are
   /// not traced in it.
   /// @return whether there is one. There is none for few rays, for those that need a larger one than there may be, for
@@ -50,9 +52,6 @@ class WindowTracer {
   void drop() { window_.drop(); }
 
  private:
-  /// Rays that are prepared together.
-  static constexpr std::size_t kBlock = 1024;
-
   ScanWindow window_;
   RayGrid grid_;
   PreparedRays rays_;

@@ -61,9 +61,9 @@ std::vector<std::string> names_of_globals(const SlamSolver& solver, IsOne&& is_o
 }
 
 std::vector<std::string> not_observable(const SlamSolver& solver) {
-  constexpr double kMostOfVariance = 0.5;
+  constexpr double kLargeShare = 0.5;
   return names_of_globals(solver, [](const Estimate& now, const Estimate& before) {
-    return now.deviation * now.deviation > kMostOfVariance * before.deviation * before.deviation;
+    return now.deviation * now.deviation > kLargeShare * before.deviation * before.deviation;
   });
 }
 
