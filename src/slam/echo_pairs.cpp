@@ -256,7 +256,7 @@ std::vector<WallMatch> match_walls(std::span<const PlacedEcho> echoes, std::span
                                    const MapWalls& walls, double gate_m) {
   std::vector<WallMatch> matches;
   for (std::uint32_t i = 0; i < echoes.size(); ++i) {
-    const auto wall = walls.nearest(ground[i].at, gate_m);
+    const auto wall = walls.nearest(ground[i].at, ground[i].ray, gate_m);
     if (!wall) continue;
     const double distance_m = wall->normal.dot(ground[i].at - wall->place_m);
     const double across_m = kMapBearing_rad * echoes[i].run.middle_m;

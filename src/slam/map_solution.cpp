@@ -22,7 +22,7 @@ namespace {
 /// How far an echo may be from a wall, in each iteration.
 constexpr std::array<double, 12> kMapGates_m = {1.5, 1.5, 1.5, 1.2, 1.0, 0.8, 0.6, 0.5, 0.5, 0.5, 0.5, 0.5};
 /// An echo is on a wall so near to it; share of a sweep's echoes that have to be where the vehicle is where it seems.
-constexpr double kOnWall_m = 0.15, kMinOnWalls = 0.35;
+constexpr double kOnWall_m = 0.15, kMinOnWalls = 0.6;
 
 /// Knots where a trajectory has them, and headings off by as much as at the first. REQUIRES knots within its time.
 Unknowns begin_near(const SlamProblem& problem, const Trajectory& near, const Eigen::Vector2d& velocity_place) {

@@ -10,7 +10,6 @@
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/slam/distance_field.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
-#include "slam/map_walls.hpp"
 #include "slam/room.hpp"
 
 namespace pingvox::test {
@@ -83,16 +82,6 @@ TEST(MapSmoother, RefusesPosesWhereTheMapDoesNotFit) {
   const auto solution = smoother.solve_in(*DistanceField::make(room.map(), {}), near_truth(1.5, -1.0, 1.5));
   ASSERT_FALSE(solution);
   EXPECT_THAT(solution.error().message, testing::HasSubstr("do not fit the map"));
-}
-
-TEST(MapWalls, AreLinesThroughTheColumnsAround) {
-  const Room room;
-  const MapWalls walls(*DistanceField::make(room.map(), {}));
-  const auto wall = walls.nearest({2.8, -0.5}, 0.5);
-  ASSERT_TRUE(wall);
-  EXPECT_NEAR(std::abs(wall->normal.x()), 1.0, 1e-6);
-  EXPECT_NEAR(wall->place_m.x(), 3.05, 0.03);  // the middle of its thickness
-  EXPECT_FALSE(walls.nearest({0.0, 0.0}, 0.5));
 }
 
 }  // namespace
