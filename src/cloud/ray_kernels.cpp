@@ -65,7 +65,7 @@ IntVec to_integers(DoubleVec whole) {
          hn::BitCast(kInts, hn::Set(kDoubles, kNoFraction));
 }
 
-/// spread_bits (map/tree_order.hpp) for each lane. REQUIRES up to 11 bits
+/// spread_bits (geometry/tree_order.hpp) for each lane. REQUIRES up to 11 bits
 UintVec spread(UintVec words) {
   words = hn::And(hn::Or(words, hn::ShiftLeft<16>(words)), hn::Set(kUints, 0x1F0000FF0000FF));
   words = hn::And(hn::Or(words, hn::ShiftLeft<8>(words)), hn::Set(kUints, 0x100F00F00F00F00F));

@@ -3,19 +3,14 @@
 #include <cmath>
 #include <utility>
 
+#include "pingvox/geometry/tree_order.hpp"
+
 namespace pingvox::detail {
 namespace {
 
 /// Below, opening and emptying a window costs more than it saves.
 constexpr std::size_t kMinRays = 16;
 constexpr int kPageBits = ScanUpdate::kPageBits;
-
-/// Every third bit of a word, next to each other.
-WideWord gather_bits(std::uint64_t word) {
-  std::uint64_t gathered = 0;
-  for (int bit = 0; bit < 21; ++bit) gathered |= (word >> (3 * bit) & 1) << bit;
-  return gathered;
-}
 
 /// Of a window that holds rays of such a reach. More than there may be where it is of no use.
 int window_bits(const Eigen::Vector3d& middle, double reach) {
@@ -58,9 +53,8 @@ void WindowTracer::hand_over(LogOdds hit, ScanUpdate& scan) {
   };
   const WideKey corner{lowest(0), lowest(1), lowest(2)};
   window_.take_touched([&](std::uint64_t number, bool has_hits) {
-    const std::uint32_t page = scan.page_of(WideKey{corner.x + (gather_bits(number) << kPageBits),
-                                                    corner.y + (gather_bits(number >> 1) << kPageBits),
-                                                    corner.z + (gather_bits(number >> 2) << kPageBits)});
+    const BasicKey<std::uint64_t> offset = key_of_code(number << (3 * kPageBits));
+    const std::uint32_t page = scan.page_of(WideKey{corner.x + offset.x, corner.y + offset.y, corner.z + offset.z});
     const std::span<std::uint64_t, 64> missed(window_.missed() + number * 64, 64);
     scan.mark_missed_in(page, missed);
     std::fill(missed.begin(), missed.end(), 0);

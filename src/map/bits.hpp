@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -28,18 +27,6 @@ constexpr std::uint64_t count_bits(std::uint64_t word) {
   word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
   word = (word + (word >> 4)) & 0x0F0F0F0F0F0F0F0F;
   return word * 0x0101010101010101 >> 56;
-}
-
-/// How many bits of 64 words are set. There is nothing in it that a compiler cannot do for several words at once.
-inline std::uint64_t count_bits(const std::array<std::uint64_t, 64>& words) {
-  std::uint64_t quarters = 0;  // four sums of 16 bits: there are 4096 bits in all
-  for (std::uint64_t word : words) {
-    word -= word >> 1 & 0x5555555555555555;
-    word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
-    word = (word + (word >> 4)) & 0x0F0F0F0F0F0F0F0F;
-    quarters += (word + (word >> 8)) & 0x00FF00FF00FF00FF;
-  }
-  return quarters * 0x0001000100010001 >> 48;
 }
 
 }  // namespace pingvox::detail

@@ -14,8 +14,8 @@
 #include "map/bits.hpp"
 #include "map/brick_tree.hpp"
 #include "map/pool.hpp"
-#include "map/tree_order.hpp"
 #include "pingvox/geometry/key.hpp"
+#include "pingvox/geometry/tree_order.hpp"
 
 namespace pingvox::detail {
 

@@ -14,8 +14,8 @@
 #include "map/key_batch.hpp"
 #include "map/map_access.hpp"
 #include "map/page_updates.hpp"
-#include "map/tree_order.hpp"
 #include "pingvox/geometry/cell_counts.hpp"
+#include "pingvox/geometry/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
 
@@ -145,7 +145,8 @@ std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds 
 }
 
 void count_updates(const ScanUpdate::Page& page, ApplyReport& report) {
-  report.cells_freed += detail::count_bits(page.missed);
+  detail::for_each_bit(page.bricks,
+                       [&](std::size_t brick) { report.cells_freed += detail::count_bits(page.missed[brick]); });
   detail::for_each_bit(page.bricks_hit, [&](std::size_t brick) {
     report.cells_freed -= detail::count_bits(page.missed[brick] & page.hit[brick]);
     report.cells_hit += detail::count_bits(page.hit[brick]);

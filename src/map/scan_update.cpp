@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "map/bits.hpp"
-#include "map/tree_order.hpp"
+#include "pingvox/geometry/tree_order.hpp"
 
 namespace pingvox {
 namespace {

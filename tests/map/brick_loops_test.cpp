@@ -117,26 +117,11 @@ TEST(BrickLoops, BitsAreCountedAndVisited) {
   for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    const std::uint64_t used = seed % 10 == 0 ? 0 : random() & random();
+    const std::uint64_t used = seed % 10 == 0 ? 0 : (seed % 10 == 1 ? ~std::uint64_t{0} : random() & random());
     EXPECT_EQ(count_bits(used), static_cast<std::uint64_t>(std::popcount(used)));
     std::uint64_t visited = 0;
     for_each_bit(used, [&](std::size_t bit) { visited |= std::uint64_t{1} << bit; });
     EXPECT_EQ(visited, used);
-  }
-}
-
-TEST(BrickLoops, CellsAreCountedInAllWords) {
-  for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
-    SCOPED_TRACE(seed);
-    std::mt19937_64 random(seed);
-    std::array<std::uint64_t, 64> words{};
-    std::uint64_t count = 0;
-    for (std::uint64_t& word : words) {
-      // Of a page in which nothing is marked, one in which everything is, and those in between.
-      word = seed % 10 == 0 ? 0 : (seed % 10 == 1 ? ~std::uint64_t{0} : random() & random());
-      count += static_cast<std::uint64_t>(std::popcount(word));
-    }
-    EXPECT_EQ(count_bits(words), count);
   }
 }
 

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "map/map_access.hpp"
-#include "map/tree_order.hpp"
+#include "pingvox/geometry/tree_order.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "support/differences.hpp"
 #include "support/oracle_map.hpp"

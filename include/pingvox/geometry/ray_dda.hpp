@@ -43,10 +43,12 @@ class FaceCrossings {
       const double to_face = ahead_[i] ? first_cell + 1.0 - from[axis] : from[axis] - first_cell;
       next_[i] = static_cast<std::uint64_t>(std::ldexp(to_face / std::abs(along), 62));
       // A segment with one crossing may be so short that its inverse is no number.
-      if (left_[i] > 1) apart_[i] = static_cast<WideWord>(std::ldexp(1.0 / std::abs(along), 126));
+      if (left_[i] == 1) continue;
+      const auto apart = static_cast<WideWord>(std::ldexp(1.0 / std::abs(along), 126));
+      apart_[i] = static_cast<std::uint64_t>(apart >> 64);
+      below_apart_[i] = static_cast<std::uint64_t>(apart);
     }
-    if (total_ > kMaxFacesIn64Bits) return;
-    for (WideWord& apart : apart_) apart = apart >> 64 << 64;
+    is_long_ = total_ > kMaxFacesIn64Bits;
   }
 
   /// Faces that are left to cross: the Manhattan distance of the two cells.
@@ -58,9 +60,17 @@ class FaceCrossings {
   /// Crosses the next face, which must be that of `axis`. REQUIRES left() > 0.
   void cross(std::size_t axis) {
     --total_;
-    const WideWord place = (static_cast<WideWord>(next_[axis]) << 64 | below_next_[axis]) + apart_[axis];
-    below_next_[axis] = static_cast<std::uint64_t>(place);
-    next_[axis] = --left_[axis] == 0 ? kNever : static_cast<std::uint64_t>(place >> 64);
+    if (is_long_) {
+      const std::uint64_t before = below_next_[axis];
+      below_next_[axis] += below_apart_[axis];
+      next_[axis] += below_next_[axis] < before ? 1 : 0;
+    }
+    // Which axis comes next is as good as random: there are no branches on it, and each axis stays in its registers.
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::uint64_t is_crossed = a == axis ? 1 : 0;
+      left_[a] -= is_crossed;
+      next_[a] = left_[a] == 0 ? kNever : next_[a] + (apart_[a] & (0 - is_crossed));
+    }
   }
   /// Where the next face lies along the segment, 0..1. REQUIRES left() > 0.
   double share_at_next() const { return std::ldexp(static_cast<double>(next_[next_axis()]), -62); }
@@ -72,14 +82,13 @@ class FaceCrossings {
     std::uint64_t apart = 0;      ///< from face to face; right up to kMaxFacesIn64Bits
     std::uint64_t left = 0;
   };
-  OneAxis along(std::size_t axis) const {
-    return {next_[axis], static_cast<std::uint64_t>(apart_[axis] >> 64), left_[axis]};
-  }
+  OneAxis along(std::size_t axis) const { return {next_[axis], apart_[axis], left_[axis]}; }
 
  private:
   static constexpr std::uint64_t kNever = OneAxis::kNever;
-  std::array<std::uint64_t, 3> next_{kNever, kNever, kNever}, below_next_{}, left_{};
-  std::array<WideWord, 3> apart_{};
+  std::array<std::uint64_t, 3> next_{kNever, kNever, kNever}, apart_{}, left_{};
+  std::array<std::uint64_t, 3> below_next_{}, below_apart_{};  ///< in units of 2^-126: of long segments alone
+  bool is_long_ = false;
   std::array<bool, 3> ahead_{};
   std::uint64_t total_ = 0;
 };
@@ -99,8 +108,11 @@ class DdaStepper {
   bool done() const { return crossings_.left() == 0; }
   void step() {
     const std::size_t axis = crossings_.next_axis();
-    W& word = component(key_, axis);
-    word = static_cast<W>(crossings_.is_ahead(axis) ? word + 1 : word - 1);
+    for (std::size_t a = 0; a < 3; ++a) {
+      W& word = component(key_, a);
+      const W step = static_cast<W>(a == axis ? 1 : 0);
+      word = static_cast<W>(crossings_.is_ahead(a) ? word + step : word - step);
+    }
     crossings_.cross(axis);
   }
 
