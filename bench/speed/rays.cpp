@@ -42,7 +42,8 @@ void for_each_ray(const Lattice& lattice, std::span<const Segment> segments, std
   for (std::size_t i = 0; i < segments.size(); ++i) {
     keys.clear();
     const auto ray = dda<std::uint16_t>(lattice, segments[i].from_m, segments[i].to_m);
-    for (const Key key : *ray) keys.push_back(key);
+    // Number by number: the parts of a whole key are stored, and waited for to be copied at once.
+    for (const Key key : *ray) keys.emplace_back(key.x, key.y, key.z);
     f(i, std::span<const Key>(keys));
   }
 }

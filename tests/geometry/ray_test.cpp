@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <tuple>
@@ -167,6 +168,27 @@ TEST(Dda, ReachesFromCornerToCornerOfTheLattice) {
     EXPECT_FALSE(dda<std::uint16_t>(lattice, {0.0, 0.0, 0.0}, {border, 0.0, 0.0}));
     EXPECT_FALSE(dda<std::uint16_t>(lattice, {std::nextafter(-border, -1e9), 0.0, 0.0}, {0.0, 0.0, 0.0}));
   }
+}
+
+// Kills sums without what is below 2^-62 of the length: they drift by up to a step a face.
+TEST(Dda, OfALongSegmentKeepsTheOrderOfTheFacesToItsEnd) {
+  const Lattice lattice(1.0, 32);
+  constexpr std::int64_t kX = (std::int64_t{1} << 22) - 3, kY = 2'592'302;  // one is odd, the other even
+  const auto ray = dda<std::uint32_t>(lattice, {0.5, 0.5, 0.5}, {0.5 + double{kX}, 0.5 + double{kY}, 0.5});
+  ASSERT_TRUE(ray);
+  std::int64_t x = 0, y = 0;
+  std::optional<BasicKey<std::uint32_t>> before;
+  for (const auto key : *ray) {
+    if (before) {
+      // Face n of x lies at (n + 1/2) / kX of the way: these are compared as whole numbers, and no two are equal.
+      const bool is_x = (2 * x + 1) * kY < (2 * y + 1) * kX;
+      ASSERT_EQ(key.x - before->x, is_x ? 1U : 0U) << x << " " << y;
+      ASSERT_EQ(key.y - before->y, is_x ? 0U : 1U) << x << " " << y;
+      ++(is_x ? x : y);
+    }
+    before = key;
+  }
+  EXPECT_EQ(x + y, kX + kY - 1);
 }
 
 TEST(Dda, OfATinySegmentCrossesTheOneFaceBetweenItsEnds) {

@@ -60,17 +60,10 @@ class FaceCrossings {
   /// Crosses the next face, which must be that of `axis`. REQUIRES left() > 0.
   void cross(std::size_t axis) {
     --total_;
-    if (is_long_) {
-      const std::uint64_t before = below_next_[axis];
-      below_next_[axis] += below_apart_[axis];
-      next_[axis] += below_next_[axis] < before ? 1 : 0;
-    }
-    // Which axis comes next is as good as random: there are no branches on it, and each axis stays in its registers.
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::uint64_t is_crossed = a == axis ? 1 : 0;
-      left_[a] -= is_crossed;
-      next_[a] = left_[a] == 0 ? kNever : next_[a] + (apart_[a] & (0 - is_crossed));
-    }
+    // Which axis comes next is as good as random: there are no branches on it.
+    cross_if<0>(axis);
+    cross_if<1>(axis);
+    cross_if<2>(axis);
   }
   /// Where the next face lies along the segment, 0..1. REQUIRES left() > 0.
   double share_at_next() const { return std::ldexp(static_cast<double>(next_[next_axis()]), -62); }
@@ -86,6 +79,20 @@ class FaceCrossings {
 
  private:
   static constexpr std::uint64_t kNever = OneAxis::kNever;
+
+  /// Crosses the next face of axis A if that is `axis`. No loop over A: so all numbers stay in registers.
+  template <std::size_t A>
+  void cross_if(std::size_t axis) {
+    const std::uint64_t is_crossed = A == axis ? 1 : 0;
+    if (is_long_) {
+      const std::uint64_t before = below_next_[A];
+      below_next_[A] += below_apart_[A] & (0 - is_crossed);
+      next_[A] += below_next_[A] < before ? 1 : 0;
+    }
+    left_[A] -= is_crossed;
+    next_[A] = left_[A] == 0 ? kNever : next_[A] + (apart_[A] & (0 - is_crossed));
+  }
+
   std::array<std::uint64_t, 3> next_{kNever, kNever, kNever}, apart_{}, left_{};
   std::array<std::uint64_t, 3> below_next_{}, below_apart_{};  ///< in units of 2^-126: of long segments alone
   bool is_long_ = false;
@@ -108,11 +115,11 @@ class DdaStepper {
   bool done() const { return crossings_.left() == 0; }
   void step() {
     const std::size_t axis = crossings_.next_axis();
-    for (std::size_t a = 0; a < 3; ++a) {
-      W& word = component(key_, a);
-      const W step = static_cast<W>(a == axis ? 1 : 0);
-      word = static_cast<W>(crossings_.is_ahead(a) ? word + step : word - step);
-    }
+    const auto step_if = [&](std::size_t of, W word) {
+      const W step = static_cast<W>(axis == of ? 1 : 0);
+      return static_cast<W>(crossings_.is_ahead(of) ? word + step : word - step);
+    };
+    key_ = {step_if(0, key_.x), step_if(1, key_.y), step_if(2, key_.z)};
     crossings_.cross(axis);
   }
 
