@@ -21,6 +21,7 @@
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
 #include "stopwatch.hpp"
 
@@ -39,6 +40,7 @@ struct Motion {
   std::optional<NavLog> nav;
   OdometryOptions nav_options;
   std::optional<NavOffset> clock;
+  std::optional<Water> water;  ///< by the navigation log, where it was asked
   std::size_t skipped = 0;
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
 };
@@ -55,6 +57,7 @@ struct Found {
   std::vector<PoseHypothesis> hypotheses;
   std::size_t beams = 0, skipped = 0, most_particles = 0;
   double mean_particles = 0.0, from_s = 0.0, to_s = 0.0;
+  double sound_speed_m_s = kAssumedSoundSpeed_m_s;
 };
 
 Result<OccupancyMap> map_in(const std::string& name) {
@@ -78,6 +81,11 @@ Result<Motion> motion_of(const LocateCommand& command) {
   const Result<NavFiles> nav = read_navs(command.navs, command.damage);
   if (!nav) return tl::unexpected(nav.error());
   motion.skipped = nav->damaged;
+  if (command.nav_salinity) {
+    const Result<Water> water = water_of(water_around(nav->log), *command.nav_salinity);
+    if (!water) return tl::unexpected(water.error());
+    motion.water = *water;
+  }
   Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   OdometryOptions options = command.nav;
@@ -188,6 +196,7 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, const Distan
   LocalizerOptions options = command.localizer;
   if (motion.turns_only) options.noise = MotionNoise::turns_only();
   options.body_from_sonar.pretranslate(motion.sonar_moved_m);
+  if (motion.water) options.sound_speed_ratio = sound_speed_ratio(*motion.water);
   Localizer localizer(field, options);
   std::optional<SlamSmoother> smoother;
   if (command.estimation == Estimation::kBatch && motion.nav && !motion.turns_only) {
@@ -200,6 +209,7 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, const Distan
   }
   Found found;
   found.beams = beams.size();
+  found.sound_speed_m_s = options.sound_speed_ratio * kAssumedSoundSpeed_m_s;
   found.from_s = beams.front().time_s;
   ProgressBar bar(command.output_options);
   bool was_sure = false;
@@ -263,6 +273,7 @@ std::string json_of(const Found& found, const Motion& motion, std::size_t field_
       .add("smoothed", found.smoothed)
       .add("beams", found.beams)
       .add("skipped", found.skipped + motion.skipped)
+      .add("sound_speed_m_s", found.sound_speed_m_s)
       .add("motion", motion.text);
   motion.clock ? json.add("nav_clock", json_of(*motion.clock)) : json.add_null("nav_clock");
   json.add_truth("sure", found.is_sure).add("hypotheses", hypotheses).add("sure_spans", spans);
@@ -282,6 +293,7 @@ std::string text_of(const Found& found, const Motion& motion, const LocateComman
   std::string text = command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
   if (motion.clock) text += report_line("nav clock", text_of(*motion.clock));
+  if (motion.water) text += report_line("water", water_text(*motion.water));
   text += report_line(
       "trajectory",
       fmt::format("{} poses of {} beams, {} by all of the recording; {:.0f} particles on average, {} at most",

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
+#include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
@@ -182,12 +184,7 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
     beams = report_line("beam", beam_text(totals.beam, totals.assumes_beam)) +
             report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
-  if (totals.nav_water) {
-    const auto& [temperature_c, salinity, depth_m] = *totals.nav_water;
-    beams +=
-        report_line("water", fmt::format("{:.1f} degrees C at {:.1f} m by --nav, salinity {:.6g}: sound {:.1f} m/s",
-                                         temperature_c, depth_m, salinity, totals.sound_speed_m_s));
-  }
+  if (totals.nav_water) beams += report_line("water", water_text(*totals.nav_water));
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path)) + report_line("nav clock", text_of(path.nav->offset)) : "") +
          beams + map_text(map, map.counts()) +
@@ -208,10 +205,11 @@ Result<int> run(const MapCommand& command, Console& console) {
   BuildOptions build = command.build;
   Totals totals;
   if (command.nav_salinity) {
-    const Result<Water> water = water_of(*path, *command.nav_salinity);
+    assert(path->nav);
+    const Result<Water> water = water_of(path->nav->water, *command.nav_salinity);
     if (!water) return tl::unexpected(water.error());
     totals.nav_water = *water;
-    build.sound_speed_ratio = sound_speed_m_s(*water) / kAssumedSoundSpeed_m_s;
+    build.sound_speed_ratio = sound_speed_ratio(*water);
   }
   totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bitset>
+#include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -15,6 +16,7 @@
 #include "commands.hpp"
 #include "map_log.hpp"
 #include "mapping_options.hpp"
+#include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/io/file.hpp"
@@ -157,12 +159,22 @@ class CartesianCollector {
   std::pair<std::size_t, std::size_t> fullness_;  ///< directions and beams of the chosen one
 };
 
+/// By the options, or by the water that the navigation logs tell of.
+Result<double> sound_speed_ratio_of(const PanelCommand& panel, Damage damage) {
+  if (!panel.nav_salinity) return panel.build.sound_speed_ratio;
+  const Result<NavFiles> nav = read_navs(panel.path.navs, damage);
+  if (!nav) return tl::unexpected(nav.error());
+  return water_of(water_around(nav->log), *panel.nav_salinity).map(sound_speed_ratio);
+}
+
 template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   const std::string name = file.name;
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
   Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), command.damage, command.topic);
   if (!source) return tl::unexpected(source.error());
+  const Result<double> ratio = sound_speed_ratio_of(panel, command.damage);
+  if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;
   of_head.build = panel.head.apply_to(panel.build, (*source)->device());
   if (panel.background_m) {
@@ -185,7 +197,7 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
     Result<std::optional<Beam>> beam = (*source)->next();
     if (!beam) return tl::unexpected(beam.error());
     if (!*beam) break;
-    (*beam)->bin_length_m *= panel.build.sound_speed_ratio;
+    (*beam)->bin_length_m *= *ratio;
     take(assembler.add(std::move(**beam)));
   }
   take(assembler.finish());
@@ -211,7 +223,14 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const
       !done) {
     return tl::unexpected(done.error());
   }
-  const Result<MappedLog> report = map_log(*log, name, *path, panel.build, panel.head, *map);
+  BuildOptions build = panel.build;
+  if (panel.nav_salinity) {
+    assert(path->nav);
+    const Result<Water> water = water_of(path->nav->water, *panel.nav_salinity);
+    if (!water) return tl::unexpected(water.error());
+    build.sound_speed_ratio = sound_speed_ratio(*water);
+  }
+  const Result<MappedLog> report = map_log(*log, name, *path, build, panel.head, *map);
   if (!report) return tl::unexpected(report.error());
   return map;
 }

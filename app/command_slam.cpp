@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -29,11 +28,19 @@
 #include "pingvox/io/tum.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/slam/scan_slam.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
 namespace {
+
+/// What was read besides beams, velocity and headings.
+struct Inputs {
+  NavOffset nav_offset;
+  std::optional<Water> nav_water;  ///< by the navigation log, where it was asked
+  std::size_t skipped = 0;         ///< records
+};
 
 struct Seconds {
   double read = 0.0, solve = 0.0, map = 0.0, write = 0.0, total = 0.0;
@@ -74,16 +81,16 @@ Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const 
 /// Adds all logs to the map, along the trajectory.
 /// @param calibration  of the sonar's place on the vehicle, which the trajectory goes with; nullptr: it is as mounted
 Result<void> map_along(const Trajectory& trajectory, const SlamCalibration* calibration, const SlamCommand& command,
-                       OccupancyMap& map, Console& console) {
+                       const SlamOptions& slam, OccupancyMap& map, Console& console) {
   VehiclePath path{trajectory, std::nullopt};
   if (calibration != nullptr) {
     path.sonar_moved_m = {calibration->sonar_x_m.value, calibration->sonar_y_m.value, 0.0};
   }
   BuildOptions build = BuildArgs().build;
-  build.filter = command.slam.filter;
-  build.echo = command.slam.echo;
-  build.sound_speed_ratio = command.slam.sound_speed_ratio;
-  build.body_from_sensor = command.slam.body_from_sonar;
+  build.filter = slam.filter;
+  build.echo = slam.echo;
+  build.sound_speed_ratio = slam.sound_speed_ratio;
+  build.body_from_sensor = slam.body_from_sonar;
   for (const std::string& name : command.logs) {
     auto beams = open_beam_log(name, command.damage);
     if (!beams) return tl::unexpected(beams.error());
@@ -181,8 +188,8 @@ JsonObject json_of(const Seconds& seconds) {
       .add("total", round_to_us(seconds.total));
 }
 
-std::string json_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
-                    std::size_t skipped, const Seconds& seconds) {
+std::string json_of(const SlamSolution& solution, const SlamCommand& command, const Inputs& inputs,
+                    const SlamOptions& slam, const Seconds& seconds) {
   const SlamReport& report = solution.report;
   JsonObject loops, submap_loops, velocity, largest, json;
   loops.add("found", report.loops_found).add("kept", report.loops_kept);
@@ -205,7 +212,8 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
       .add("beams", report.beams)
       .add("sweeps", report.sweeps)
       .add("echoes", report.echoes)
-      .add("skipped", skipped)
+      .add("skipped", inputs.skipped)
+      .add("sound_speed_m_s", slam.sound_speed_ratio * kAssumedSoundSpeed_m_s)
       .add("knots", report.knots)
       .add("pairs", report.pairs)
       .add("pair_median_m", report.pair_median_m)
@@ -213,7 +221,7 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
       .add("submap_loops", submap_loops)
       .add("velocity", velocity)
       .add("heading", report.heading)
-      .add("nav_clock", json_of(offset));
+      .add("nav_clock", json_of(inputs.nav_offset));
   command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
   for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
@@ -268,13 +276,14 @@ std::string sensors_text(const SlamSolution& solution) {
                             c.sonar_y_m.value, c.wall_in_echo.value);
 }
 
-std::string text_of(const SlamSolution& solution, const SlamCommand& command, const NavOffset& offset,
+std::string text_of(const SlamSolution& solution, const SlamCommand& command, const Inputs& inputs,
                     const Seconds& seconds) {
   const SlamReport& report = solution.report;
   std::string text = title_of(command);
   text += report_line(
       "read", fmt::format("{} beams, {} complete sweeps, {} echoes", report.beams, report.sweeps, report.echoes));
-  text += report_line("nav clock", text_of(offset));
+  text += report_line("nav clock", text_of(inputs.nav_offset));
+  if (inputs.nav_water) text += report_line("water", water_text(*inputs.nav_water));
   text += report_line("velocity", velocity_text(report));
   text += report_line("trajectory",
                       fmt::format("{} poses over {:.1f} s", solution.trajectory.poses().size(), recorded_s(solution)));
@@ -346,21 +355,27 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Stopwatch read;
   const Result<NavFiles> nav = read_navs(command.navs, command.damage);
   if (!nav) return tl::unexpected(nav.error());
-  const Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
+  Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
+  Inputs inputs;
+  inputs.nav_offset = *std::move(offset);
   SlamOptions options = command.slam;
-  options.nav_offset_s = offset->offset_s;
+  options.nav_offset_s = inputs.nav_offset.offset_s;
+  if (command.nav_salinity) {
+    const Result<Water> water = water_of(water_around(nav->log), *command.nav_salinity);
+    if (!water) return tl::unexpected(water.error());
+    inputs.nav_water = *water;
+    options.sound_speed_ratio = sound_speed_ratio(*water);
+  }
   if (command.known_calibration) {
     if (const auto known = use_calibration(*command.known_calibration, nav->log, options); !known) {
       return tl::unexpected(known.error());
     }
   }
-  const std::map<std::string, Pose> mounts = options.body_from_source;
-  const std::optional<SlamCalibration> known = options.calibration;
-  SlamSmoother smoother(std::move(options));
+  SlamSmoother smoother(options);
   const Result<std::size_t> skipped = read_all(smoother, *nav, command, std::move(first));
   if (!skipped) return tl::unexpected(skipped.error());
+  inputs.skipped = *skipped;
   seconds.read = read.seconds();
 
   ProgressBar bar(command.output_options);
@@ -374,9 +389,10 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (command.map) {
     bar.draw(std::nullopt, "mapping");
     const Stopwatch mapping;
+    const std::optional<SlamCalibration>& known = options.calibration;
     const SlamCalibration* calibration =
-        command.slam.matching == Matching::kPairs ? &solution->calibration : (known ? &*known : nullptr);
-    const Result<void> mapped = map_along(solution->trajectory, calibration, command, *map, console);
+        options.matching == Matching::kPairs ? &solution->calibration : (known ? &*known : nullptr);
+    const Result<void> mapped = map_along(solution->trajectory, calibration, command, options, *map, console);
     if (!mapped) return tl::unexpected(mapped.error());
     seconds.map = mapping.seconds();
   }
@@ -387,7 +403,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!written) return tl::unexpected(written.error());
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
-      out << calibration_toml({solution->calibration, mounts});
+      out << calibration_toml({solution->calibration, options.body_from_source});
       return {};
     });
     if (!calibrated) return tl::unexpected(calibrated.error());
@@ -398,8 +414,8 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   seconds.write = write.seconds();
   seconds.total = total.seconds();
   const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(*solution, command, *offset, *skipped, seconds))
-                                   : console.summarise(text_of(*solution, command, *offset, seconds), command.output);
+                                   ? console.print(json_of(*solution, command, inputs, options, seconds))
+                                   : console.summarise(text_of(*solution, command, inputs, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   return 0;
 }

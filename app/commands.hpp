@@ -175,6 +175,7 @@ struct PanelCommand {
   HeadArgs head;
   std::optional<double> background_m;
   PathArgs path;
+  std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
   std::vector<std::string> drawn_paths;  ///< trajectories drawn over a map
 };
 
@@ -217,6 +218,7 @@ struct SlamCommand {
   double map_resolution_m = MapOptions{}.resolution_m;
   Damage damage = Damage::kSkip;
   SlamOptions slam;
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
   std::optional<double> nav_offset_s;  ///< added to the times of `navs`; nullopt: to be found
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
@@ -241,6 +243,7 @@ struct LocateCommand {
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's
   Damage damage = Damage::kSkip;
   LocalizerOptions localizer;
+  std::optional<double> nav_salinity;          ///< of water whose temperature and depth the navigation log tells
   Estimation estimation = Estimation::kBatch;  ///< of the poses by `navs`
 };
 

@@ -132,15 +132,6 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
                      VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read), {}, {}}};
 }
 
-Result<Water> water_of(const VehiclePath& path, double salinity) {
-  if (!path.nav || !path.nav->water) {
-    return fail(Error::Code::kUnsupported, "--water nav,S: --nav tells no temperature of water: give it as T,S");
-  }
-  const Water water{path.nav->water->temperature_c, salinity, path.nav->water->depth_m};
-  if (const auto valid = water.validate(); !valid) return tl::unexpected(valid.error());
-  return water;
-}
-
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
   const auto& [attitude, position, velocity, damaged, offset, water] = *path.nav;

@@ -11,7 +11,6 @@
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
-#include "pingvox/sonar/sound_speed.hpp"
 
 namespace pingvox::app {
 
@@ -37,8 +36,6 @@ struct VehiclePath {
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage);
 /// Trajectory of one navigation log; positions without an attitude give poses without rotation.
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
-/// The water of a navigation log. kUnsupported when it does not tell the temperature.
-Result<Water> water_of(const VehiclePath& path, double salinity);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
 

@@ -190,15 +190,14 @@ Result<void> check_options(BuildOptions options) {
 }
 
 double EchoArgs::sound_speed_ratio() const {
-  const double speed_m_s =
-      water ? ::pingvox::sound_speed_m_s(*water) : sound_speed_m_s.value_or(kAssumedSoundSpeed_m_s);
-  return speed_m_s / kAssumedSoundSpeed_m_s;
+  if (water) return ::pingvox::sound_speed_ratio(*water);
+  return sound_speed_m_s.value_or(kAssumedSoundSpeed_m_s) / kAssumedSoundSpeed_m_s;
 }
 
-Result<void> EchoArgs::validate(UseOfNav use) const {
+Result<void> EchoArgs::validate(const std::vector<std::string>& navs) const {
   if ((water || nav_salinity) && sound_speed_m_s) return usage_error("--sound-speed and --water: exclude each other");
-  if (nav_salinity && use == UseOfNav::kNone) {
-    return usage_error("--water nav,S: takes the temperature from the log of --nav, which only 'map' does");
+  if (nav_salinity && navs.empty()) {
+    return usage_error("--water nav,S: needs a navigation log (--nav of 'map', 'render', 'slam' and 'locate')");
   }
   return {};
 }
@@ -222,7 +221,7 @@ OptionTable::Group echo_group(EchoArgs& args) {
                store_optional(args.sound_speed_m_s))},
        {"--water", 0, "T,S[,D]|nav,S",
         "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m; nav: "
-        "temperature and depth of the navigation log ('map' only)",
+        "temperature and depth of the log of --nav",
         "none", store_water(args)},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; without it more beams are silent",
               args.filter),

@@ -32,12 +32,9 @@ struct EchoArgs {
   std::optional<Water> water;
   std::optional<double> nav_salinity;  ///< of water whose temperature the navigation log tells
 
-  /// What a command knows of the water from a navigation log.
-  enum class UseOfNav { kNone, kWater };
-
   double sound_speed_ratio() const;
-  /// kBadOption when both say what the speed of sound is, or when the navigation log should and is not asked.
-  Result<void> validate(UseOfNav use = UseOfNav::kNone) const;
+  /// kBadOption when both say what the speed of sound is, or when a navigation log should and there is none.
+  Result<void> validate(const std::vector<std::string>& navs = {}) const;
 
   FilterOptions filter_options() const {
     const FilterOptions usual = default_filter(echo.detector);

@@ -65,6 +65,20 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
   });
 }
 
+Result<Water> water_of(const std::optional<WaterAround>& around, double salinity) {
+  if (!around) {
+    return fail(Error::Code::kUnsupported, "--water nav,S: --nav tells no temperature of water: give it as T,S");
+  }
+  const Water water{around->temperature_c, salinity, around->depth_m};
+  if (const auto valid = water.validate(); !valid) return tl::unexpected(valid.error());
+  return water;
+}
+
+std::string water_text(const Water& water) {
+  return fmt::format("{:.1f} degrees C at {:.1f} m by --nav, salinity {:.6g}: sound {:.1f} m/s", water.temperature_c,
+                     water.depth_m, water.salinity, sound_speed_m_s(water));
+}
+
 void add_nav(JsonObject& json, const NavFile& nav) {
   std::vector<JsonObject> sources;
   for (const NavSource& source : nav.log.sources()) {

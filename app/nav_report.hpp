@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "json.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/sonar/sound_speed.hpp"
 
 namespace pingvox::app {
 
@@ -21,6 +23,12 @@ struct NavFiles {
 /// that cannot be told.
 /// @param names  - is standard input; an empty log without any
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage);
+
+/// The water that navigation logs tell of, with the salinity of --water nav,S. kUnsupported when they do not tell the
+/// temperature.
+Result<Water> water_of(const std::optional<WaterAround>& around, double salinity);
+/// "8.7 degrees C at 12.0 m by --nav, salinity 0: sound 1442.2 m/s"
+std::string water_text(const Water& water);
 
 /// Report of `info` on a navigation log: the members of its JSON object after "kind" and "format", but for the kinds of
 /// damage.

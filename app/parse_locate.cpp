@@ -117,8 +117,9 @@ Result<Command> locate_command(const Args& args) {
        "pingvox locate tank.csv --map tank.bt --start 0.1,0.2,45 -o tank.tum --json"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
-    if (const auto valid = echoes.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = echoes.validate(command.navs); !valid) return tl::unexpected(valid.error());
     localizer.sound_speed_ratio = echoes.sound_speed_ratio();
+    command.nav_salinity = echoes.nav_salinity;
     localizer.filter = echoes.filter_options();
     localizer.echo = echoes.echo;
     if (const auto valid = localizer.validate(); !valid) return tl::unexpected(valid.error());

@@ -108,8 +108,7 @@ Result<Command> map_command(const Args& args) {
     }
     map.thresholds = command.occupancy.apply_to(map.thresholds);
     command.map = map;
-    const auto use_of_nav = build.navs.empty() ? EchoArgs::UseOfNav::kNone : EchoArgs::UseOfNav::kWater;
-    if (const auto valid = build.echoes.validate(use_of_nav); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = build.echoes.validate(build.navs); !valid) return tl::unexpected(valid.error());
     command.build = build.build_options();
     command.head = build.head;
     command.background_m = build.echoes.background_m;

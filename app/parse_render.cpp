@@ -155,10 +155,11 @@ std::string caption_of(const PanelArgs& args, const std::vector<PanelArgs>& all)
 Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size_px) {
   PanelCommand panel = args.panel;
   panel.map = args.build.map;
-  if (const auto valid = args.build.echoes.validate(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = args.build.echoes.validate(args.build.navs); !valid) return tl::unexpected(valid.error());
   panel.build = args.build.build_options();
   panel.head = args.build.head;
   panel.background_m = args.build.echoes.background_m;
+  panel.nav_salinity = args.build.echoes.nav_salinity;
   if (panel.image == ShownImage::kBackground && !panel.background_m) {
     return usage_error("--show background: needs a range (--background M)");
   }

@@ -123,8 +123,9 @@ Result<Command> slam_command(const Args& args) {
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     command.limited = parsed.limited;
-    if (const auto valid = echoes.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = echoes.validate(command.navs); !valid) return tl::unexpected(valid.error());
     slam.sound_speed_ratio = echoes.sound_speed_ratio();
+    command.nav_salinity = echoes.nav_salinity;
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());

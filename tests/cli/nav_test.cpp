@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <numbers>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "call.hpp"
 
@@ -122,6 +124,49 @@ TEST(Nav, TellsHowFastSoundIs) {
   expect_error(here.call({"map", "dive.csv", "--water", "nav,0", "-o", "o.ot"}), 2, {"--water", "--nav"});
   expect_error(here.call({"render", "dive.csv", "--water", "nav,0", "-o", "o.png"}), 2, {"--water", "--nav"});
   expect_error(here.call({"map", "dive.csv", "--nav", "nav.csv", "--water", "nav,90", "-o", "o.ot"}), 2, {"salinity"});
+}
+
+// Kills a command that takes the option and goes on with 1500 m/s.
+TEST(Nav, TellsEachCommandHowFastSoundIs) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "3", "--nav", "n.csv",
+                       "--nav-delay", "0"})
+                .status,
+            0);
+  std::istringstream lines(here.read("n.csv"));
+  std::string dry;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("depth") == std::string::npos) dry += line + "\n";
+  }
+  here.write("dry.csv", dry);
+  here.write("nav.csv", dry + "1,CTD,temperature,8.7,,,,,,1\n");
+  ASSERT_EQ(here.call({"map", "dive.csv", "--poses", "dive.tum", "-o", "tank.bt"}).status, 0);
+  const std::vector<std::vector<std::string>> commands = {
+      {"slam", "-o", "made"},
+      {"slam", "-o", "o.tum", "--matching", "none", "--map", "made.ot"},
+      {"locate", "--start", "0,0,0", "--map", "tank.bt", "-o", "made"},
+      {"render", "--view", "above", "-o", "made.png"},
+      {"render", "--view", "above", "--beside", "--view polar", "-o", "made.png"}};
+  for (std::vector<std::string> words : commands) {
+    SCOPED_TRACE(words[0] + " ... " + words.back());
+    words.insert(words.begin() + 1, {"dive.csv", "--nav", "nav.csv", "--nav-offset", "0"});
+    const auto output = [&](std::vector<std::string> more) {
+      more.insert(more.begin(), words.begin(), words.end());
+      const Outcome made = here.call(more);
+      EXPECT_EQ(made.status, 0) << made.err;
+      return here.read(words.back());
+    };
+    const std::string by_nav = output({"--water", "nav,0"});
+    EXPECT_TRUE(by_nav == output({"--water", "8.7,0"}));
+    EXPECT_FALSE(by_nav == output({}));
+  }
+  for (const char* command : {"slam", "locate"}) {
+    std::vector<std::string> words = {command, "dive.csv", "--nav", "nav.csv", "--water", "nav,0", "-o", "t.tum"};
+    if (words[0] == "locate") words.insert(words.end(), {"--map", "tank.bt"});
+    EXPECT_THAT(here.call(words).out, HasSubstr("8.7 degrees C at 0.0 m by --nav")) << command;
+    words[3] = "dry.csv";
+    expect_error(here.call(words), 1, {"--water", "no temperature"});
+  }
 }
 
 // Kills readers that take the last file alone, or sources of the same name for two.

@@ -17,4 +17,7 @@ struct Water {
 /// 0.1 m/s of Del Grosso's. REQUIRES valid water.
 double sound_speed_m_s(const Water& water);
 
+/// Speed of sound over the one that devices assume, by which their ranges grow. REQUIRES valid water.
+double sound_speed_ratio(const Water& water);
+
 }  // namespace pingvox
