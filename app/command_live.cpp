@@ -31,36 +31,42 @@
 namespace pingvox::app {
 namespace {
 
-/// Ping Viewer's name for a log that begins now, "20261123-175346123", in local time.
-std::string name_by_time() {
-  const auto now = std::chrono::system_clock::now();
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
-  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
+/// When the beams' clock was 0.
+struct Start {
+  double s = 0.0;                   ///< of the stopwatch
+  std::uint64_t since_1970_ms = 0;  ///< the same as a date
+};
+
+/// Ping Viewer's name for a log, "20261123-175346123", in local time.
+std::string name_by_time(const Start& start) {
+  const auto seconds = static_cast<std::time_t>(start.since_1970_ms / 1000);
   std::tm local = {};
   ::localtime_r(&seconds, &local);
-  return fmt::format("{:%Y%m%d-%H%M%S}{:03}", local, ms);
+  return fmt::format("{:%Y%m%d-%H%M%S}{:03}", local, start.since_1970_ms % 1000);
 }
 
 /// The file to record the sonar to; nullopt: none.
-std::optional<std::filesystem::path> record_path(const LiveCommand& command) {
+std::optional<std::filesystem::path> record_path(const LiveCommand& command, const Start& start) {
   if (!command.record) return std::nullopt;
   std::filesystem::path path = *command.record;
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
-    path /= name_by_time() + (command.device.kind == LiveDevice::Kind::kMicron ? ".csv" : ".bin");
+    path /= name_by_time(start) + (command.device.kind == LiveDevice::Kind::kMicron ? ".csv" : ".bin");
   }
   return path;
 }
 
 template <class Recorder>
-Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record) {
+Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record, const Start& start) {
   if (!record) return std::nullopt;
-  return Recorder::create(record->string()).map([](Recorder created) { return std::optional(std::move(created)); });
+  return Recorder::create(record->string(), start.since_1970_ms).map([](Recorder created) {
+    return std::optional(std::move(created));
+  });
 }
 
 /// @param record  nullopt: none
 Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
-                                              const std::optional<std::filesystem::path>& record, double now_s) {
+                                              const std::optional<std::filesystem::path>& record, const Start& start) {
   const LiveDevice& device = command.device;
   if (device.kind == LiveDevice::Kind::kReplay) {
     return ByteStream::open(device.address)
@@ -68,12 +74,12 @@ Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
         .map([&](std::unique_ptr<BeamSource> log) { return replay_source(std::move(log), device.speed); });
   }
   if (device.kind == LiveDevice::Kind::kMicron) {
-    return recorder_of<SeanetRecorder>(record).map([&](std::optional<SeanetRecorder> recorder) {
-      return micron_source(device.address, command.micron, std::move(recorder), now_s);
+    return recorder_of<SeanetRecorder>(record, start).map([&](std::optional<SeanetRecorder> recorder) {
+      return micron_source(device.address, command.micron, std::move(recorder), start.s);
     });
   }
-  return recorder_of<PingViewerRecorder>(record).map([&](std::optional<PingViewerRecorder> recorder) {
-    return ping360_source(device.address, command.ping360, std::move(recorder), now_s);
+  return recorder_of<PingViewerRecorder>(record, start).map([&](std::optional<PingViewerRecorder> recorder) {
+    return ping360_source(device.address, command.ping360, std::move(recorder), start.s);
   });
 }
 
@@ -443,13 +449,16 @@ Result<int> run(const LiveCommand& command, Console& console) {
   const Stopwatch watch;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const std::optional<std::filesystem::path> record = record_path(command);
-  const double start_s = watch.seconds();
-  Result<std::unique_ptr<LiveSource>> source = source_of(command, record, start_s);
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  const auto since_1970_ms = std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count();
+  const Start start{watch.seconds(), static_cast<std::uint64_t>(since_1970_ms)};
+  const std::optional<std::filesystem::path> record = record_path(command, start);
+  Result<std::unique_ptr<LiveSource>> source = source_of(command, record, start);
   if (!source) return tl::unexpected(source.error());
   std::optional<Navigation> nav;
   if (!command.nav.empty()) {
-    Result<Navigation> opened = Navigation::open(command.nav, record, start_s);
+    Result<Navigation> opened =
+        Navigation::open(command.nav, record, start.s, static_cast<double>(start.since_1970_ms) / 1000.0);
     if (!opened) return tl::unexpected(opened.error());
     nav = *std::move(opened);
     for (const NavDevice& device : nav->devices()) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <span>
 
 namespace pingvox::app {
@@ -77,9 +76,8 @@ Result<void> NavDevice::read(double now_s, LivePoses& poses) {
 }
 
 Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from,
-                                    const std::optional<std::filesystem::path>& record, double start_s) {
-  const double since_1970_s =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+                                    const std::optional<std::filesystem::path>& record, double start_s,
+                                    double since_1970_s) {
   std::vector<NavDevice> devices;
   for (std::size_t i = 0; i < from.size(); ++i) {
     std::optional<std::filesystem::path> name;

@@ -51,10 +51,12 @@ class NavDevice {
 /// Pose of the vehicle by all navigation devices.
 class Navigation {
  public:
-  /// @param record   the sonar's log, beside which they are recorded; nullopt: nothing is recorded
-  /// @param start_s  when the beams' clock was 0
+  /// @param record        the sonar's log, beside which they are recorded; nullopt: nothing is recorded
+  /// @param start_s       when the beams' clock was 0
+  /// @param since_1970_s  the same as a date
   static Result<Navigation> open(const std::vector<LiveNavigation>& from,
-                                 const std::optional<std::filesystem::path>& record, double start_s);
+                                 const std::optional<std::filesystem::path>& record, double start_s,
+                                 double since_1970_s);
 
   const std::vector<NavDevice>& devices() const { return devices_; }
   std::string names() const;  ///< of the devices

@@ -1,5 +1,7 @@
 #include "io/date.hpp"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -44,6 +46,16 @@ std::optional<double> date_time_s(std::string_view text) {
   const std::optional<double> time_s = seconds_of(hour, minute, second, millisecond);
   if (!date.ok() || !time_s) return std::nullopt;
   return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) * 86400.0 + *time_s;
+}
+
+std::string date_time_text(std::uint64_t since_1970_ms) {
+  using std::chrono::days;
+  const std::chrono::milliseconds since(since_1970_ms);
+  const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::floor<days>(since))};
+  const std::chrono::hh_mm_ss time(since - std::chrono::floor<days>(since));
+  return fmt::format("{:04}.{:02}.{:02} {:02}.{:02}.{:02}.{:03}", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), time.hours().count(),
+                     time.minutes().count(), time.seconds().count(), time.subseconds().count());
 }
 
 std::optional<double> time_of_day_s(std::string_view text) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/byte_reader.hpp"
+#include "io/date.hpp"
 #include "io/frame_log.hpp"
 #include "io/readers.hpp"
 #include "io/stream_reader.hpp"
@@ -45,6 +46,15 @@ std::optional<std::uint32_t> cut_character(Bytes& text, Encoding encoding) {
   }
   text = text.subspan(size);
   return character;
+}
+
+/// Other characters become '?'.
+std::string ascii_of(Bytes text, Encoding encoding) {
+  std::string ascii;
+  while (const std::optional<std::uint32_t> character = cut_character(text, encoding)) {
+    ascii += *character < 0x80 ? static_cast<char>(*character) : '?';
+  }
+  return ascii;
 }
 
 /// Value of a decimal digit of any script (times use the digits of the writer's locale); -1: no digit.
@@ -105,7 +115,9 @@ std::optional<RecordHeader> record_header_in(Bytes bytes, Encoding encoding) {
 
 class PingViewerRecords : public FrameContainer {
  public:
-  PingViewerRecords(StreamReader reader, Encoding encoding) : reader_(std::move(reader)), encoding_(encoding) {}
+  /// @param start_s  of the log: time 0 of its records
+  PingViewerRecords(StreamReader reader, Encoding encoding, double start_s)
+      : reader_(std::move(reader)), encoding_(encoding), time_s_(start_s), day_s_(start_s) {}
 
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
@@ -148,13 +160,14 @@ class PingViewerRecords : public FrameContainer {
   /// Unwraps times, which restart after a day.
   void set_time(double time_s) {
     constexpr double kDay_s = 86400.0;
-    if (time_s + days_s_ < time_s_ - kDay_s / 2) days_s_ += kDay_s;
-    time_s_ = time_s + days_s_;
+    if (time_s + day_s_ < time_s_ - kDay_s / 2) day_s_ += kDay_s;
+    time_s_ = time_s + day_s_;
   }
 
   StreamReader reader_;
   Encoding encoding_;
-  double time_s_ = 0.0, days_s_ = 0.0;
+  double time_s_;
+  double day_s_;  ///< time at which those of the records began (again)
   bool in_damage_ = false;
 };
 
@@ -178,7 +191,6 @@ bool looks_like_ping_viewer(Bytes beginning) {
 
 Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage) {
   constexpr std::int32_t kPingFamily = 1, kPing1d = 1, kPing360 = 2;
-  constexpr int kStrings = 5;
   constexpr std::uint32_t kNullString = 0xffffffff;
   StreamReader reader(std::move(stream));
   const std::string name = reader.name();
@@ -186,12 +198,17 @@ Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage d
   if (!beginning) return tl::unexpected(beginning.error());
   const std::optional<Encoding> encoding = encoding_of(*beginning);
   ByteReader header(*beginning, std::endian::big);
-  const auto cut_string = [&header] {
+  const auto cut_string = [&header]() -> std::optional<Bytes> {
     const auto size = header.read<std::uint32_t>();
-    return size && (*size == kNullString || header.take(*size));
+    if (!size) return std::nullopt;
+    return *size == kNullString ? Bytes() : header.take(*size);
   };
   bool is_whole = encoding && cut_string() && header.read<std::uint32_t>();
-  for (int i = 0; i < kStrings; ++i) is_whole = is_whole && cut_string();
+  std::array<std::optional<Bytes>, 5> about;  // build, its date, name; name and version of the system
+  for (std::optional<Bytes>& text : about) {
+    if (is_whole) text = cut_string();
+    is_whole = is_whole && text;
+  }
   const auto family = header.read<std::int32_t>(), type = header.read<std::int32_t>();
   if (!is_whole || !family || !type) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", name));
@@ -208,8 +225,10 @@ Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage d
                             "Ping360 hold beams",
                             name, *family, *type));
   }
+  // Our recordings have the date of their start there.
+  const double start_s = date_time_s(ascii_of(*about[1], *encoding)).value_or(0.0);
   reader.skip(header.position());
-  return beams_of(std::make_unique<PingViewerRecords>(std::move(reader), *encoding), ping_protocol(), damage);
+  return beams_of(std::make_unique<PingViewerRecords>(std::move(reader), *encoding, start_s), ping_protocol(), damage);
 }
 
 }  // namespace pingvox

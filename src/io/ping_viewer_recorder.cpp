@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "io/date.hpp"
 
 namespace pingvox {
 namespace {
@@ -40,7 +43,7 @@ class QtBytes {
 
 }  // namespace
 
-Result<PingViewerRecorder> PingViewerRecorder::create(const std::string& path) {
+Result<PingViewerRecorder> PingViewerRecorder::create(const std::string& path, std::uint64_t since_1970_ms) {
   Result<RecordFile> file = RecordFile::create(path);
   if (!file) return tl::unexpected(file.error());
   PingViewerRecorder recorder(*std::move(file));
@@ -48,7 +51,12 @@ Result<PingViewerRecorder> PingViewerRecorder::create(const std::string& path) {
   QtBytes header;
   header.put(std::string_view("PingViewer sensor log file"));
   header.put(kVersion);
-  for (const std::string_view about : {"", "", "pingvox", "", ""}) header.put(about);
+  // Its second string is the date of Ping Viewer's own build.
+  const std::string date = since_1970_ms > 0 ? date_time_text(since_1970_ms) : "";
+  for (const std::string_view about : {std::string_view(), std::string_view(date), std::string_view("pingvox"),
+                                       std::string_view(), std::string_view()}) {
+    header.put(about);
+  }
   header.put(kPingFamily);
   header.put(kPing360);
   if (const auto written = recorder.file_.append(header.bytes()); !written) return tl::unexpected(written.error());

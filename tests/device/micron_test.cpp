@@ -262,6 +262,13 @@ TEST(SeanetRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   EXPECT_NEAR(beams[0].bearing_rad, 359.1 * std::numbers::pi / 180.0, 1e-12);
   EXPECT_EQ(beams[0].intensities, (Bytes{0, 10, 13, 64, 255, 9}));
   EXPECT_FALSE(SeanetRecorder::create(path));
+
+  Result<SeanetRecorder> dated = SeanetRecorder::create(folder.path("dated.csv"), 1'795'456'426'123);
+  ASSERT_TRUE(dated);
+  ASSERT_TRUE(dated->append(2140, kLine));
+  const std::vector<Beam> later = beams_in(folder.path("dated.csv"));
+  ASSERT_EQ(later.size(), 1U);
+  EXPECT_NEAR(later[0].time_s, 1'795'456'428.263, 1e-6);
 }
 
 /// Lets a source and an emulator talk over a real line, in virtual time, until `beams` has this many beams.

@@ -178,6 +178,15 @@ TEST(PingViewerRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   EXPECT_EQ(beams[1].time_s, recorded_time_s(kDay_ms - 1));
   EXPECT_EQ(beams[2].time_s, recorded_time_s(kDay_ms + 59'999));
 
+  // 2026-11-23 17:53:46.123 UTC.
+  Result<PingViewerRecorder> dated = PingViewerRecorder::create(folder.path("dated.bin"), 1'795'456'426'123);
+  ASSERT_TRUE(dated);
+  for (const std::uint64_t time_ms : {kDay_ms - 1, kDay_ms + 59'999}) ASSERT_TRUE(dated->append(time_ms, payload(3)));
+  const std::vector<Beam> later = beams_in(folder.path("dated.bin"));
+  ASSERT_EQ(later.size(), 2U);
+  EXPECT_NEAR(later[0].time_s, 1'795'542'826.122, 1e-6);
+  EXPECT_NEAR(later[1].time_s, 1'795'542'886.122, 1e-6);
+
   const Result<PingViewerRecorder> again = PingViewerRecorder::create(path);
   ASSERT_FALSE(again);
   EXPECT_THAT(again.error().message, HasSubstr(path));

@@ -48,7 +48,7 @@ class LiveSource {
 
 /// A Ping360 at a line that `Link::open` opens. A line that fails or falls silent is opened again after half a second,
 /// then at growing intervals up to ten seconds. Bytes are recorded before they are parsed; reading the recording gives
-/// the same beams.
+/// the same beams, with times from its date on where it has one.
 /// REQUIRES valid settings.
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s);

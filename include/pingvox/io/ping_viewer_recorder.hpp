@@ -14,7 +14,8 @@ namespace pingvox {
 class PingViewerRecorder {
  public:
   /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
-  static Result<PingViewerRecorder> create(const std::string& path);
+  /// @param since_1970_ms  the date of time 0; 0: not known
+  static Result<PingViewerRecorder> create(const std::string& path, std::uint64_t since_1970_ms = 0);
 
   const std::string& path() const { return file_.path(); }
 

@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// Time of a record [s], to the last bit as readers of recordings give it.
+/// Time of a record [s], to the last bit as readers of recordings without a date give it.
 /// @param time_ms  since the start of the recording
 double recorded_time_s(std::uint64_t time_ms);
 

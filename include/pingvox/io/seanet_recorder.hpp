@@ -15,12 +15,13 @@ namespace pingvox {
 class SeanetRecorder {
  public:
   /// Creates the file. An existing one is an error (kIo): recordings are not overwritten.
-  static Result<SeanetRecorder> create(const std::string& path);
+  /// @param since_1970_ms  the date of time 0; 0: not known
+  static Result<SeanetRecorder> create(const std::string& path, std::uint64_t since_1970_ms = 0);
 
   const std::string& path() const { return file_.path(); }
 
   /// Appends the bytes of one read. They are passed to the operating system first, and outlive this process.
-  /// @param time_ms  since the start of the log, which is dated 1 January 1970
+  /// @param time_ms  since the start of the log
   /// @return kIo: the file ends with the last whole record
   Result<void> append(std::uint64_t time_ms, std::span<const std::uint8_t> bytes);
 
@@ -28,9 +29,11 @@ class SeanetRecorder {
   void start_sync() { file_.start_sync(); }
 
  private:
-  explicit SeanetRecorder(RecordFile file) : file_(std::move(file)) {}
+  SeanetRecorder(RecordFile file, std::uint64_t since_1970_ms)
+      : file_(std::move(file)), since_1970_ms_(since_1970_ms) {}
 
   RecordFile file_;
+  std::uint64_t since_1970_ms_;
 };
 
 }  // namespace pingvox
