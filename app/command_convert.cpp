@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "commands.hpp"
@@ -20,6 +21,7 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/io/points.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
@@ -36,9 +38,11 @@ tl::unexpected<Error> conversion_error(const std::string& name, Format from, For
   const bool to_map = is_made_of_maps(kind_of(to));
   const FormatKind kind = kind_of(from);
   const bool is_log = kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud;
-  return fail(Error::Code::kBadOption,
-              fmt::format("convert: {}: is {}, which cannot be written as .{}{}", name, describe(from), name_of(to),
-                          to_map && is_log ? ": 'pingvox map' does that" : ""));
+  const std::string_view hint = to_map && is_log             ? ": 'pingvox map' does that"
+                                : kind == FormatKind::kScans ? ": .ply, .pcd and .xyz hold its points"
+                                                             : "";
+  return fail(Error::Code::kBadOption, fmt::format("convert: {}: is {}, which cannot be written as .{}{}", name,
+                                                   describe(from), name_of(to), hint));
 }
 
 Result<std::string> write_beams(BeamSource& source, std::ostream& out) {
@@ -102,6 +106,27 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
     what += fmt::format("; {} damaged ones skipped, the first: {}", skipped, on_one_line((*source)->first_damage()));
   const DeviceProfile* device = command.echoes ? nullptr : (*source)->device();
   if (device != nullptr) what += fmt::format(" (CSV names no sonar: map it with --device {})", device->name);
+  return what;
+}
+
+/// Writes the points of scans. @return what was written
+Result<std::string> convert_scans(ByteStream stream, const ConvertCommand& command) {
+  Result<std::unique_ptr<ScanSource>> scans = ByteStream::whole(std::move(stream)).and_then([&](FileBytes file) {
+    return open_scans(std::move(file), command.damage);
+  });
+  if (!scans) return tl::unexpected(scans.error());
+  std::size_t points = 0;
+  const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
+    const Result<std::size_t> count = write_points(**scans, command.format, out);
+    if (!count) return tl::unexpected(count.error());
+    points = *count;
+    return {};
+  });
+  if (!written) return tl::unexpected(written.error());
+  std::string what = fmt::format("{} points", points);
+  if (const std::size_t skipped = (*scans)->skipped(); skipped > 0) {
+    what += "; skipped " + damage_text(skipped, (*scans)->first_damage());
+  }
   return what;
 }
 
@@ -207,6 +232,7 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
       return convert_nav(std::move(stream), command);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
+  if (from == FormatKind::kScans && to == FormatKind::kCloud) return convert_scans(std::move(stream), command);
   if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command);
   if (from == FormatKind::kNav && to == FormatKind::kTrajectory)
     return convert_nav_to_poses(std::move(stream), command);

@@ -68,13 +68,16 @@ Result<Command> convert_command(const Args& args) {
   OptionTable table{
       "convert",
       "Writes a file in another format: a log of beams, its echoes or navigation as CSV; navigation as poses;\n"
-      "a map as another map, as points, as a grid for ROS's map_server, or as heights; a mesh as the map of its "
-      "surface.",
+      "point scans as a cloud; a map as another map, as points, as a grid for ROS's map_server, or as heights; a mesh\n"
+      "as the map of its surface.",
       {{"IN", Positional::Count::kOne,
-        "a log of beams or of navigation, a map or a mesh (OFF, PLY, STL); - is standard input", store(command.input)}},
+        "a log of beams, of navigation or of point scans (.graph, .log, .xtf), a map or a mesh (OFF, PLY, STL); - is "
+        "standard input",
+        store(command.input)}},
       {{"Options",
         {output_option(command.output,
-                       "the output: .csv from a log; .tum (poses) from a navigation log; .bt .ot .pvx from a map or a "
+                       "the output: .csv from a log; .tum (poses) from a navigation log; .ply .pcd .xyz from point "
+                       "scans; .bt .ot .pvx from a map or a "
                        "mesh, .ply .pcd .xyz (occupied cells as points), .yaml with its .pgm (map_server), .asc (ESRI "
                        "grid of heights); - is standard "
                        "output"),
@@ -96,8 +99,8 @@ Result<Command> convert_command(const Args& args) {
           "height of a column in .asc: upper face of its highest or its lowest occupied cell",
           choice_name(kSurfaces, command.surface), take_surface}}}},
       {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.mat --echoes -o echoes.csv",
-       "pingvox convert dive.tlog -o dive.tum", "pingvox convert tank.bt -o tank.ply",
-       "pingvox convert tank.bt -o layer.ply --z 0",
+       "pingvox convert dive.tlog -o dive.tum", "pingvox convert line.xtf -o line.ply",
+       "pingvox convert tank.bt -o tank.ply", "pingvox convert tank.bt -o layer.ply --z 0",
        "pingvox convert harbour.bt -o harbour.yaml --min-z -0.5 --max-z 0.5", "pingvox convert seabed.ot -o seabed.asc",
        "pingvox convert hull.stl -o hull.bt --resolution 0.1"},
       "A column of a grid is occupied if any of its cells is, free if one is free and none is occupied, else unknown."};

@@ -1,19 +1,26 @@
 #include "io/pcd.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <vector>
 
 #include "io/occupied_leaves.hpp"
 
 namespace pingvox {
 
+std::string pcd_header(std::string_view comment, std::uint64_t points, std::initializer_list<std::string_view> fields) {
+  const auto repeat = [&](std::string_view word) { return std::vector<std::string_view>(fields.size(), word); };
+  return fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\n# {}\nVERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nCOUNT {}\n"
+      "WIDTH {}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
+      comment, fmt::join(fields, " "), fmt::join(repeat("4"), " "), fmt::join(repeat("F"), " "),
+      fmt::join(repeat("1"), " "), points, points);
+}
+
 Result<void> write_pcd(const OccupancyMap& map, std::ostream& out) {
   ByteWriter writer(out);
-  const std::uint64_t points = occupied_leaves(map);
-  writer.put(
-      fmt::format("# .PCD v0.7 - Point Cloud Data file format\n# occupied leaves of a map with cells of {} m\n"
-                  "VERSION 0.7\nFIELDS x y z log_odds size\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\n"
-                  "WIDTH {}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
-                  map.lattice().resolution_m(), points, points));
+  writer.put(pcd_header(fmt::format("occupied leaves of a map with cells of {} m", map.lattice().resolution_m()),
+                        occupied_leaves(map), {"x", "y", "z", "log_odds", "size"}));
   put_occupied(map, writer);
   return writer.finish();
 }

@@ -98,6 +98,24 @@ TEST(Clouds, OfAMapAreReadAgain) {
   EXPECT_EQ(info(here, "tank.pcd").at("bounds.max"), info(here, "tank.ply").at("bounds.max"));
 }
 
+// Kills points in the frame of their scan: a map of the cloud has other cells then.
+TEST(Clouds, OfScansHaveTheirPoints) {
+  const Workplace here;
+  here.write("scans.log",
+             "NODE 1 0 0 0 0 0\n1 0 0\n2 0.5 0\n\n"
+             "NODE 0 3 0.5 0 0 0\n0 4 0\n");
+  const Outcome written = here.call({"convert", "scans.log", "-o", "scans.ply"});
+  EXPECT_EQ(written.status, 0) << written.err;
+  EXPECT_EQ(written.out, "scans.ply: 3 points\n");
+  expect_done(here, {"convert", "scans.log", "-o", "scans.xyz"});
+  for (const char* cloud : {"scans.ply", "scans.xyz"}) {
+    EXPECT_EQ(info(here, cloud).at("bounds.min"), "[0, 0, 0]");
+    EXPECT_EQ(info(here, cloud).at("bounds.max"), "[3, 7, 0.5]");
+  }
+  expect_error(here.call({"convert", "scans.log", "-o", "scans.csv"}), 2, {"scans.log", ".ply, .pcd and .xyz"});
+  expect_error(here.call({"convert", "scans.log", "-o", "scans.bt"}), 2, {"scans.log", "'pingvox map'"});
+}
+
 TEST(Meshes, BecomeTheMapOfTheirSurface) {
   const Workplace here;
   expect_done(here, {"simulate", "tank", "-o", "tank.csv", "--truth", "truth", "--resolution", "0.1", "--quiet",
