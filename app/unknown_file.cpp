@@ -41,6 +41,7 @@ constexpr std::array kSignatures = {
     Signature{"ncols "sv, "is a grid of heights", kWrittenOnly},
     Signature{kTrueRangesHeader, "has the true ranges of 'pingvox simulate --truth'", kWrittenOnly},
     Signature{"#ROSBAG "sv, "is a ROS bag of a version before 2.0", "convert it with 'rosbag fix'"},
+    Signature{"%time,"sv, "is CSV of 'rostopic echo -p'", "give the bag, which pingvox reads itself"},
     Signature{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
     Signature{"\x7f\x7f"sv, "is a DVL log in PD0, which pingvox does not read", kAsNavCsv},
     Signature{":SA,"sv, "is a DVL log in PD6, which pingvox does not read", kAsNavCsv},

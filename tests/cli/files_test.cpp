@@ -86,6 +86,7 @@ TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
       {"\x1f\x8b\x08 tank.csv"s, {"compressed", "unpack"}},
       {"\xff\xfet\0i\0"s, {"UTF-16", "UTF-8"}},
       {"version https://git-lfs.github.com/spec/v1\n", {"git lfs pull"}},
+      {"%time,field.header.seq,field.header.stamp,field.depth\n1,2,3,4.5\n", {"rostopic echo -p", "bag"}},
       {"time;angle;range\n1;2;3\n", {"is text", "first line", "bin_length_m"}},
       // Taken for counter-clockwise, a map would be its mirror image.
       {"ping,angle,range\n1,2,3\n", {"time_s,bearing_cw_deg,", "clockwise from ahead", "bearing_deg is counter"}},
