@@ -240,7 +240,7 @@ TEST(ScanUpdate, IsRefusedByMapsOfOtherLattices) {
   }
 }
 
-TEST(ScanUpdate, AHitBeatsAMissAndTheSurestHitCounts) {
+TEST(ScanUpdate, AHitBeatsAMissAndTheStrongestHitCounts) {
   ScanUpdate scan(Lattice(MapOptions{}.resolution_m));
   const Key cell{100, 200, 300};
   for (int round = 0; round < 2; ++round) {

@@ -184,8 +184,8 @@ TEST(ScanUpdate, WholePagesAndSingleMarksShareTheirPages) {
         for (std::uint64_t n = random() % 20; n > 0; --n) {
           const std::uint64_t cell = random() % 4096;
           scan.mark_hit_in(page, cell / 64, std::uint64_t{1} << (cell % 64), evidence);
-          std::optional<float>& surest = expected[key_at(cell)];
-          surest = std::max(surest.value_or(evidence.value()), evidence.value());
+          std::optional<float>& greatest = expected[key_at(cell)];
+          greatest = std::max(greatest.value_or(evidence.value()), evidence.value());
         }
       } else {
         for (std::uint64_t n = random() % 100; n > 0; --n) {

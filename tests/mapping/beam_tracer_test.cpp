@@ -37,9 +37,9 @@ HitCells hits_in(const ScanUpdate& scan) {
   return hits;
 }
 
-// Kills evidence of another ray than the surest one, an end in the cell beside it, elevations kept for another number
-// of rays, and the places of one lattice taken for those of another.
-TEST(BeamTracer, HitsAreTheSurestOfTheRaysThatEndInACell) {
+// Kills evidence of another ray than the strongest one, an end in the cell beside it, elevations kept for another
+// number of rays, and the places of one lattice taken for those of another.
+TEST(BeamTracer, HitsAreTheStrongestOfTheRaysThatEndInACell) {
   std::size_t hits = 0, outside = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);

@@ -89,8 +89,8 @@ class ScanUpdate {
     in.hit[brick] |= cells;
     if (in.evidence[brick] == kUsual) return;
     for (std::uint64_t left = cells; left != 0; left &= left - 1) {
-      float& surest = evidence_[in.evidence[brick]][static_cast<std::size_t>(std::countr_zero(left))];
-      surest = std::max(surest, evidence.value());
+      float& greatest = evidence_[in.evidence[brick]][static_cast<std::size_t>(std::countr_zero(left))];
+      greatest = std::max(greatest, evidence.value());
     }
   }
 
