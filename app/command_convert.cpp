@@ -141,9 +141,13 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
     return {};
   });
   if (!written) return tl::unexpected(written.error());
-  const std::size_t skipped = damaged_records(*nav);
-  return fmt::format("{} samples of {} sources{}", samples, nav->log.sources().size(),
-                     skipped > 0 ? fmt::format("; {} damaged records skipped", skipped) : "");
+  std::string what = fmt::format("{} samples of {} sources", samples, nav->log.sources().size());
+  if (const std::size_t skipped = damaged_records(*nav); skipped > 0) {
+    what += fmt::format("; {} damaged records skipped", skipped);
+  }
+  // Samples are written in order of time, where nothing tells it any more.
+  if (const auto checked = check_clocks(nav->log); !checked) what += "; " + on_one_line(checked.error().message);
+  return what;
 }
 
 /// Writes the poses of a navigation log. @return what was written

@@ -382,8 +382,12 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   bar.draw(std::nullopt, "solving");
   const Stopwatch solve;
   const Result<SlamSolution> solution = smoother.solve();
-  if (!solution)
-    return fail(solution.error().code, fmt::format("{}: {}", command.logs.front(), solution.error().message));
+  if (!solution) {
+    const bool lacks_nav = command.navs.empty() && solution.error().code == Error::Code::kUnsupported;
+    return fail(solution.error().code,
+                fmt::format("{}: {}{}", command.logs.front(), solution.error().message,
+                            lacks_nav ? ": give the navigation with --nav, a heading or a turn rate at least" : ""));
+  }
   seconds.solve = solve.seconds();
 
   if (command.map) {

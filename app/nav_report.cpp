@@ -35,6 +35,9 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
     }
     if (!nav) return tl::unexpected(nav.error());
+    if (const auto checked = check_clocks(nav->log); !checked) {
+      return fail(checked.error().code, fmt::format("{}: {}", shown, checked.error().message));
+    }
     damaged += damaged_records(*nav);
     const NavClock own = nav->log.clock();
     clock = clock.value_or(own);
@@ -56,7 +59,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
       if (same == sources.end()) {
         sources.push_back(std::move(source));
       } else {
-        same->samples.insert(same->samples.end(), source.samples.begin(), source.samples.end());
+        add_samples(source, *same);
       }
     }
   }
@@ -91,7 +94,8 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("rate_hz", summary.rate_hz)
         .add("gaps", summary.gaps)
         .add("from_s", summary.from_s)
-        .add("to_s", summary.to_s);
+        .add("to_s", summary.to_s)
+        .add("late", source.step_back ? source.step_back->late : 0);
   }
   json.add("clock", name_of(nav.log.clock()))
       .add("records", nav.records)
@@ -111,6 +115,14 @@ std::string nav_text(const NavFile& nav) {
     text += fmt::format("  {:<{}}  {:<9} {:>8} {:>8} {:>8.2f} {:>5} {:>17.3f} {:>17.3f}\n", on_one_line(source.name),
                         widest, name_of(source.quantity), summary.samples, summary.invalid, summary.rate_hz,
                         summary.gaps, summary.from_s, summary.to_s);
+  }
+  for (const NavSource& source : nav.log.sources()) {
+    if (!source.step_back) continue;
+    const auto& [step_from_s, step_to_s, late] = *source.step_back;
+    text +=
+        report_line("clock back", fmt::format("{} of {} by {:.3f} s, from {:.3f} to {:.3f} s; {} sample(s) come late",
+                                              name_of(source.quantity), on_one_line(source.name),
+                                              step_from_s - step_to_s, step_from_s, step_to_s, late));
   }
   if (damaged_records(nav) > 0) text += report_line("skipped", fmt::format("{} damaged", damaged_records(nav)));
   return text;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -44,6 +45,26 @@ std::optional<double> usual_value(const NavSource& source) {
   }
   if (values.empty()) return std::nullopt;
   return median(std::move(values));
+}
+
+bool is_earlier(const NavSample& a, const NavSample& b) {
+  return a.time_s < b.time_s;
+}
+
+/// Where the clock of samples, in the order in which they came, was set back by most.
+std::optional<ClockStep> step_back_in(const std::vector<NavSample>& samples) {
+  ClockStep step;
+  double latest_s = -std::numeric_limits<double>::infinity();
+  for (const NavSample& sample : samples) {
+    latest_s = std::max(latest_s, sample.time_s);
+    if (!(latest_s - sample.time_s > kMaxLate_s)) continue;
+    ++step.late;
+    if (latest_s - sample.time_s > step.from_s - step.to_s) {
+      step.from_s = latest_s;
+      step.to_s = sample.time_s;
+    }
+  }
+  return step.late > 0 ? std::optional(step) : std::nullopt;
 }
 
 }  // namespace
@@ -97,10 +118,29 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
       return fail(Error::Code::kCorrupt, fmt::format("{} of {}: sample {} has a number that is not finite",
                                                      name_of(source.quantity), source.name, i));
     }
-    std::stable_sort(source.samples.begin(), source.samples.end(),
-                     [](const NavSample& a, const NavSample& b) { return a.time_s < b.time_s; });
+    if (const auto step = step_back_in(source.samples)) source.step_back = step;
+    std::stable_sort(source.samples.begin(), source.samples.end(), is_earlier);
   }
   return NavLog(std::move(sources), clock);
+}
+
+void add_samples(const NavSource& from, NavSource& to) {
+  const auto before = static_cast<std::ptrdiff_t>(to.samples.size());
+  to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
+  std::inplace_merge(to.samples.begin(), to.samples.begin() + before, to.samples.end(), is_earlier);
+  if (!to.step_back) to.step_back = from.step_back;
+}
+
+Result<void> check_clocks(const NavLog& log) {
+  for (const NavSource& source : log.sources()) {
+    if (!source.step_back) continue;
+    const auto& [from_s, to_s, late] = *source.step_back;
+    return fail(Error::Code::kCorrupt,
+                fmt::format("the clock of {} of {} runs back by {:.3f} s, from {:.3f} to {:.3f} s: which of its times "
+                            "are right cannot be told, so cut the log there",
+                            name_of(source.quantity), source.name, from_s - to_s, from_s, to_s));
+  }
+  return {};
 }
 
 const NavSource* NavLog::best(NavQuantity quantity) const {

@@ -97,6 +97,7 @@ Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3
 }
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
+  if (const auto checked = check_clocks(log); !checked) return tl::unexpected(checked.error());
   const Result<std::optional<NavSource>> position = position_source(log);
   if (!position) return tl::unexpected(position.error());
   // A source of both has them in one frame, which need not be that of others.
@@ -137,6 +138,7 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
 }
 
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
+  if (const auto checked = check_clocks(log); !checked) return tl::unexpected(checked.error());
   const Result<std::optional<NavSource>> position = position_source(log);
   if (!position) return tl::unexpected(position.error());
   if (!*position) return fail(Error::Code::kUnsupported, "has no valid position");

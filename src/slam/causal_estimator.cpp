@@ -84,14 +84,7 @@ void CausalEstimator::add_sweep(HeardSweep sweep) {
 }
 
 Result<void> CausalEstimator::add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample) {
-  Result<std::size_t> to = pingvox::add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
-  if (!to) return tl::unexpected(to.error());
-  // A late one goes to its place.
-  std::vector<NavSample>& samples = sources_[*to].samples;
-  const auto place =
-      std::ranges::upper_bound(samples.begin(), samples.end() - 1, samples.back().time_s, {}, &NavSample::time_s);
-  std::rotate(place, samples.end() - 1, samples.end());
-  return {};
+  return pingvox::add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
 }
 
 Result<void> CausalEstimator::solve() {

@@ -15,6 +15,9 @@ constexpr double kClip = 2.0;                ///< robust standard deviations
 constexpr double kMadToDeviation = 1.4826;   ///< of normal noise
 constexpr double kMinDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
+/// Data sheets of DVLs give 1 to 2 mm/s, beside a share of the speed, that do not average out: the noise is not less
+/// than what drifts as far as 2 mm/s in 100 s.
+constexpr double kMinDensity = 0.002 * 10.0;
 /// Errors of a compass, and for how long they stay alike; usual bias of a gyro.
 constexpr double kCompass_rad = 3.0 * std::numbers::pi / 180.0, kCompassAlike_s = 10.0;
 constexpr double kGyroBias_rad_s = 0.1 * std::numbers::pi / 180.0;
@@ -68,7 +71,7 @@ std::vector<double> noise_density(const std::vector<double>& times_s, std::span<
     const double noise = seconds.empty() ? 0.0 : kMadToDeviation * median(seconds) / std::sqrt(6.0);
     const double step_s =
         end - first > 1 ? (times_s[end - 1] - times_s[first]) / static_cast<double>(end - first - 1) : 1.0;
-    density[i] = std::max(noise, kMinDeviation_m_s) * std::sqrt(step_s);
+    density[i] = std::max(noise * std::sqrt(step_s), kMinDensity);
   }
   return density;
 }
@@ -100,19 +103,22 @@ double TimeSeries::at(double time_s) const {
   return values_[i - 1] + share * (values_[i] - values_[i - 1]);
 }
 
-double TimeSeries::gap_s(double from_s, double to_s) const {
-  double gap_s = 0.0;
-  const auto add = [&](double begin_s, double end_s) {
-    gap_s += std::max(0.0, std::min(end_s, to_s) - std::max(begin_s, from_s));
-  };
-  add(from_s, times_s_.front());
-  add(times_s_.back(), to_s);
+std::vector<TimeSeries::Gap> TimeSeries::gaps(double from_s, double to_s) const {
+  std::vector<Gap> found;
+  if (from_s < times_s_.front()) found.push_back({from_s, times_s_.front()});
   auto next = std::ranges::upper_bound(times_s_, from_s);
   if (next == times_s_.begin()) ++next;
   for (; next != times_s_.end() && *(next - 1) < to_s; ++next) {
-    if (*next - *(next - 1) > usual_limit_s_) add(*(next - 1), *next);
+    if (*next - *(next - 1) > usual_limit_s_) found.push_back({*(next - 1), *next});
   }
-  return gap_s;
+  if (to_s > times_s_.back()) found.push_back({times_s_.back(), to_s});
+  return found;
+}
+
+double TimeSeries::gap_s(double from_s, double to_s) const {
+  double sum_s = 0.0;
+  for (const Gap& gap : gaps(from_s, to_s)) sum_s += gap.within(from_s, to_s);
+  return sum_s;
 }
 
 double TimeSeries::longest_step_s() const {

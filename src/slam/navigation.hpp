@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -28,8 +29,17 @@ class TimeSeries {
   const std::vector<double>& values() const { return values_; }
   /// The first and last value go on outside.
   double at(double time_s) const;
-  /// The part of a stretch of time that lies between samples farther apart than five times their median step, and than
-  /// half a second, or outside of them.
+  struct Gap {
+    double from_s, to_s;
+    /// The part of it that lies in a stretch of time.
+    double within(double begin_s, double end_s) const {
+      return std::max(0.0, std::min(to_s, end_s) - std::max(from_s, begin_s));
+    }
+  };
+  /// Where a stretch of time lies between samples farther apart than five times their median step, and than half a
+  /// second, or outside of the samples.
+  std::vector<Gap> gaps(double from_s, double to_s) const;
+  /// How long that is in the stretch, all in all.
   double gap_s(double from_s, double to_s) const;
   double longest_step_s() const;
 

@@ -55,6 +55,7 @@ Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
 }  // namespace
 
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
+  if (const auto checked = check_clocks(log); !checked) return tl::unexpected(checked.error());
   std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
   std::optional<VelocitySource> velocity;

@@ -15,6 +15,16 @@ namespace {
 
 /// As many samples as around, but earlier ones.
 constexpr OutlierWindow kEarlier = {10, 0};
+constexpr double kFastest_m_s = 30.0;
+
+/// Median over the samples.
+double usual_speed_m_s(const VelocitySource& velocity) {
+  std::vector<double> speeds_m_s;
+  for (std::size_t i = 0; i < velocity.ahead.size(); ++i) {
+    speeds_m_s.push_back(std::hypot(velocity.ahead.values()[i], velocity.left.values()[i]));
+  }
+  return median(std::move(speeds_m_s));
+}
 
 /// The time that is common to all that is needed.
 Result<Span> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
@@ -44,6 +54,11 @@ Pose mount_of(const SlamOptions& options, const std::string& source) {
   return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
 }
 
+SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options) {
+  const Eigen::Vector3d place = mount_of(options, velocity.name).translation();
+  return sonar_mount(Pose(Eigen::Translation3d(-place)) * options.body_from_sonar);
+}
+
 HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
   HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
                    echo_runs(sweep, options.filter, options.echo)};
@@ -64,21 +79,25 @@ double sweep_duration_s(std::span<const HeardSweep> sweeps) {
   return median(complete_s.empty() ? std::move(all_s) : std::move(complete_s));
 }
 
-Result<std::size_t> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
-                               std::vector<NavSource>& sources) {
+NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, NavQuantity quantity) {
+  const auto known =
+      std::ranges::find_if(sources, [&](const NavSource& s) { return s.quantity == quantity && s.name == name; });
+  return known != sources.end() ? *known : sources.emplace_back(NavSource{std::string(name), quantity, {}});
+}
+
+Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
+                        std::vector<NavSource>& sources) {
   if (!std::isfinite(sample.time_s) || !sample.value.allFinite()) {
     return fail(Error::Code::kCorrupt,
                 fmt::format("{} of {}: a sample has a number that is not finite", name_of(quantity), source));
   }
-  auto known =
-      std::ranges::find_if(sources, [&](const NavSource& s) { return s.quantity == quantity && s.name == source; });
-  if (known == sources.end()) {
-    sources.push_back({std::string(source), quantity, {}});
-    known = sources.end() - 1;
-  }
-  known->samples.push_back(sample);
-  known->samples.back().time_s += offset_s;
-  return static_cast<std::size_t>(known - sources.begin());
+  NavSource& to = source_in(sources, source, quantity);
+  NavSample added = sample;
+  added.time_s += offset_s;
+  // A late one goes to its place.
+  const auto place = std::ranges::upper_bound(to.samples, added.time_s, {}, &NavSample::time_s);
+  to.samples.insert(place, added);
+  return {};
 }
 
 std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options) {
@@ -128,6 +147,11 @@ Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptio
                                                               : !velocity                   ? "velocity over ground"
                                                                                             : "heading or attitude"));
   }
+  if (const double speed_m_s = usual_speed_m_s(*velocity); !(speed_m_s < kFastest_m_s)) {
+    return fail(Error::Code::kUnsupported, fmt::format("the velocity of {} is {:.3g} m/s in the median: no vehicle "
+                                                       "that a scanning sonar follows is as fast",
+                                                       velocity->name, speed_m_s));
+  }
   if (options.calibration && options.calibration->velocity != velocity->name) {
     return fail(Error::Code::kBadOption, fmt::format("the calibration is of the velocity of {}, not of {}",
                                                      options.calibration->velocity, velocity->name));
@@ -173,11 +197,8 @@ Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSw
 
 SlamSolver solver_of(SlamProblem problem, const Recording& recording, const SlamOptions& options, Unknowns start,
                      Before before) {
-  const Pose velocity_from_sonar =
-      Pose(Eigen::Translation3d(-mount_of(options, recording.navigation.velocity.name).translation())) *
-      options.body_from_sonar;
-  return SlamSolver(std::move(problem), sonar_mount(velocity_from_sonar), recording.sweeps, options.seed,
-                    std::move(start), std::move(before));
+  const SonarMount mount = velocity_from_sonar(recording.navigation.velocity, options);
+  return SlamSolver(std::move(problem), mount, recording.sweeps, options.seed, std::move(start), std::move(before));
 }
 
 }  // namespace pingvox

@@ -27,15 +27,20 @@ SonarMount sonar_mount(const Pose& body_from_sonar);
 /// How a source of navigation is mounted.
 Pose mount_of(const SlamOptions& options, const std::string& source);
 
+/// How the sonar is mounted, seen from the source of the velocity.
+SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options);
+
 /// The echoes of a sweep, by the options.
 HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options);
 /// Usual time of a sweep: of complete ones, where there are any. REQUIRES a sweep.
 double sweep_duration_s(std::span<const HeardSweep> sweeps);
 
-/// Adds a sample to its source, on the clock of the beams.
-/// @return the place of the source; kCorrupt when a number is not finite
-Result<std::size_t> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
-                               std::vector<NavSource>& sources);
+/// The source of that name and quantity; a new one where there is none yet.
+NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, NavQuantity quantity);
+/// Adds a sample to its source, on the clock of the beams and in order of time.
+/// @return kCorrupt when a number is not finite
+Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
+                        std::vector<NavSource>& sources);
 
 /// What is used of the navigation, the heading with most samples first.
 struct Navigation {
@@ -48,8 +53,8 @@ struct Navigation {
 std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options);
 /// All headings, the one with the most samples first. Without any, how the turn rates turn.
 std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options);
-/// @return kUnsupported without a velocity or a heading; kBadOption when a mounted source is not there, or the
-/// calibration is of another velocity
+/// @return kUnsupported without a velocity or a heading, or when the velocity is that of no vehicle; kBadOption when a
+/// mounted source is not there, or the calibration is of another velocity
 Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptions& options);
 
 /// A stretch of time.

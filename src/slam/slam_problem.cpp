@@ -22,8 +22,8 @@ constexpr double kConstant_rad = 3.0 * kDegree_rad, kHarmonic_rad = 5.0 * kDegre
 constexpr double kRelative_rad = 20.0 * kDegree_rad;
 /// Of a heading at a knot, and of its change over one second; the change where the source is silent.
 constexpr double kHeading_rad = 2.0 * kDegree_rad, kTurn_rad = 0.3 * kDegree_rad, kTurnInGap_rad = 20.0 * kDegree_rad;
-/// Of the velocity where its source is silent.
-constexpr double kVelocityInGap_m_s = 0.3;
+/// Of the velocity where its source is silent: from knot to knot, and of a motion that is the same for all of a gap.
+constexpr double kVelocityInGap_m_s = 0.3, kSteadyInGap_m_s = 0.1;
 /// Longest step of the integration.
 constexpr double kStep_s = 0.25;
 constexpr double kMaxSteps = 64.0;
@@ -107,6 +107,22 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
     }
     nodes_.push_back(std::move(nodes));
   }
+  for (const TimeSeries::Gap& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
+    silent_.push_back({gap, farthest_way_s(gap)});
+  }
+}
+
+double SlamProblem::farthest_way_s(const TimeSeries::Gap& gap) const {
+  constexpr double kSteps = 1000.0;
+  const double step_s = (gap.to_s - gap.from_s) / kSteps;
+  Eigen::Vector2d way_s = Eigen::Vector2d::Zero();
+  double farthest_s = 0.0;
+  for (double i = 0.5; i < kSteps; i += 1.0) {
+    const double yaw_rad = main_yaw_rad(gap.from_s + i * step_s);
+    way_s += step_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
+    farthest_s = std::max(farthest_s, way_s.norm());
+  }
+  return farthest_s;
 }
 
 std::optional<std::pair<std::size_t, double>> SlamProblem::between_knots(double time_s) const {
@@ -186,7 +202,12 @@ std::vector<SlamProblem::Way> SlamProblem::ways(const Unknowns& unknowns) const 
     way.measured /= to_s - from_s;
     const double density = velocity_.density.at(0.5 * (from_s + to_s));
     const double gap_m = kVelocityInGap_m_s * velocity_.ahead.gap_s(from_s, to_s);
-    way.deviation_m = std::sqrt(density * density * (to_s - from_s) + gap_m * gap_m);
+    double steady_m2 = 0.0;
+    for (const SilentTime& silent : silent_) {
+      steady_m2 += std::pow(kSteadyInGap_m_s * silent.way_s, 2) * silent.gap.within(from_s, to_s) /
+                   (silent.gap.to_s - silent.gap.from_s);
+    }
+    way.deviation_m = std::sqrt(density * density * (to_s - from_s) + std::max(gap_m * gap_m, steady_m2));
   }
   return ways;
 }

@@ -121,6 +121,12 @@ class SlamProblem {
     double time_s, share, main_yaw_rad;
     Eigen::Vector2d velocity;
   };
+  /// Where the velocity is silent, and how far from where that begins a vehicle gets that goes ahead at 1 m/s.
+  struct SilentTime {
+    TimeSeries::Gap gap;
+    double way_s;
+  };
+  double farthest_way_s(const TimeSeries::Gap& gap) const;
   Row row(std::size_t knot, double residual) const;
   double deviation_rad(const Unknowns& unknowns, std::size_t source, double yaw_rad) const;
   /// Residual of a heading at a knot [rad], with derivatives by the error of the knot and the globals of the source.
@@ -136,6 +142,7 @@ class SlamProblem {
   SlamCalibration calibration_;  ///< but for its headings
   std::vector<HeadingPrior> heading_priors_;
   bool has_prior_ = false;
+  std::vector<SilentTime> silent_;
   std::vector<std::vector<Node>> nodes_;  ///< of each interval, both ends included
 };
 

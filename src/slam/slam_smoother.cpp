@@ -92,23 +92,46 @@ void SlamSmoother::add(Beam beam) {
 }
 
 Result<void> SlamSmoother::add(std::string_view source, NavQuantity quantity, const NavSample& sample) {
-  return add_sample(source, quantity, sample, state_->options.nav_offset_s, state_->sources).map([](std::size_t) {});
+  return add_sample(source, quantity, sample, state_->options.nav_offset_s, state_->sources);
 }
 
 Result<void> SlamSmoother::add(const NavLog& log) {
-  for (const NavSource& source : log.sources()) {
-    for (const NavSample& sample : source.samples) {
-      if (const auto added = add(source.name, source.quantity, sample); !added) return added;
-    }
+  if (const auto checked = check_clocks(log); !checked) return checked;
+  for (NavSource source : log.sources()) {
+    for (NavSample& sample : source.samples) sample.time_s += state_->options.nav_offset_s;
+    add_samples(source, source_in(state_->sources, source.name, source.quantity));
   }
   return {};
 }
 
 namespace {
 
+/// @return kUnsupported where no heading is known for long while beams come
+Result<void> check_headings(std::span<const HeadingSource> headings, std::span<const double> beam_times_s) {
+  // Over a longer time the turns of a vehicle are no more than a guess.
+  constexpr double kLongest_s = 30.0;
+  const TimeSeries& main = headings.front().yaw_rad;
+  for (const TimeSeries::Gap& gap : main.gaps(main.from_s(), main.to_s())) {
+    const bool is_known = std::ranges::any_of(headings, [&](const HeadingSource& heading) {
+      return heading.yaw_rad.gap_s(gap.from_s, gap.to_s) <= kLongest_s;
+    });
+    const auto beams =
+        std::ranges::upper_bound(beam_times_s, gap.to_s) - std::ranges::lower_bound(beam_times_s, gap.from_s);
+    if (is_known || beams == 0) continue;
+    return fail(
+        Error::Code::kUnsupported,
+        fmt::format("no heading is known from {:.3f} to {:.3f} s, where there are {} beams: did the clock of {} "
+                    "jump?",
+                    gap.from_s, gap.to_s, beams, headings.front().name));
+  }
+  return {};
+}
+
 Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& options) {
   Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
   if (!times_s) return tl::unexpected(times_s.error());
+  const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
+  if (!checked) return tl::unexpected(checked.error());
   SlamProblem problem(*std::move(times_s), recording.navigation.velocity, recording.navigation.headings,
                       options.calibration);
   Unknowns start = problem.dead_reckoning();
@@ -140,6 +163,18 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
     solution->report.submap_loops_kept = loops->kept;
   }
   return solution;
+}
+
+/// How far a velocity that the sonar contradicts may be from the truth, instead of how much it scatters.
+void allow_noise(double density, VelocitySource& velocity) {
+  std::vector<double> densities = velocity.density.values();
+  for (double& each : densities) each = std::max(each, density);
+  velocity.density = TimeSeries(velocity.density.times_s(), std::move(densities));
+}
+
+void report_contradiction(const VelocityCheck& check, SlamReport& report) {
+  report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
+                                           report.velocity, check.difference_m_s, check.matched));
 }
 
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
@@ -174,12 +209,26 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   return sources;
 }
 
+/// What the sonar says of a measured velocity, where sweeps are matched.
+std::optional<VelocityCheck> velocity_check(const VelocitySource& velocity, const HeadingSource& heading,
+                                            std::span<const HeardSweep> sweeps, const SlamOptions& options) {
+  constexpr std::size_t kSweeps = 60;  // those in the middle: they tell a sensor that is wrong
+  if (options.matching == Matching::kNone || velocity.by_sonar || sweeps.size() < 2) return std::nullopt;
+  const std::size_t count = std::min(kSweeps, sweeps.size());
+  return check_velocity(velocity, sweeps.subspan((sweeps.size() - count) / 2, count),
+                        velocity_from_sonar(velocity, options), heading);
+}
+
 /// All that was recorded, as it came.
 Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
                                   std::vector<NavSource> sources, SlamOptions options) {
   const Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
   options.nav_offset_s = 0.0;  // the sources are on the clock of the beams
+  const std::vector<HeadingSource> headings = headings_of(*log, options);
+  if (!headings.empty()) {
+    if (const auto checked = check_headings(headings, beam_times_s); !checked) return tl::unexpected(checked.error());
+  }
   const std::optional<VelocitySource> velocity = velocity_of(*log, options);
   if (!velocity) options.motion = MotionSource::kSonar;
   CausalEstimator estimator(options);
@@ -206,7 +255,10 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
   estimator.add_sweep(sweeps.back());
   Result<SlamSolution> solution = estimator.finish();
   // Of all, not of the window.
-  if (solution && !solution->report.by_sonar && velocity) report_velocity(*velocity, solution->report);
+  if (!solution || solution->report.by_sonar || !velocity) return solution;
+  report_velocity(*velocity, solution->report);
+  const auto check = velocity_check(*velocity, headings.front(), sweeps, options);
+  if (check && check->contradicts) report_contradiction(*check, solution->report);
   return solution;
 }
 
@@ -232,9 +284,15 @@ Result<SlamSolution> SlamSmoother::solve() const {
   if (options.estimation == Estimation::kCausal) return solve_causal(times_s, sweeps, state_->sources, options);
   const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
   if (!sources) return tl::unexpected(sources.error());
-  const Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
+  Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
   if (!recording) return tl::unexpected(recording.error());
-  return solve_batch(*recording, options);
+  const std::optional<VelocityCheck> check =
+      velocity_check(recording->navigation.velocity, recording->navigation.headings.front(), sweeps, options);
+  const bool contradicts = check && check->contradicts;
+  if (contradicts) allow_noise(check->difference_m_s * std::sqrt(check->over_s), recording->navigation.velocity);
+  Result<SlamSolution> solution = solve_batch(*recording, options);
+  if (solution && contradicts) report_contradiction(*check, solution->report);
+  return solution;
 }
 
 }  // namespace pingvox

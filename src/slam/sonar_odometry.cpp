@@ -36,6 +36,9 @@ constexpr double kMaxSpread_cells = 2.3;
 constexpr double kMinWay = 0.3;
 /// The fewest sweeps that match, as a share, with a heading and without: a sonar that sees less tells no trajectory.
 constexpr double kMinMatched = 0.5, kMinMatchedAlone = 0.9;
+/// Without a heading a turn that is missed or mistaken bends all that comes after it: in a square tank two sweeps in a
+/// row fit after a wrong one, but not many.
+constexpr std::size_t kFewestAlone = 5;
 /// Standard deviation of the way after one second [m / sqrt(s)]: how unevenly a vehicle moves.
 constexpr double kDensity = 0.1;
 
@@ -192,6 +195,21 @@ Steps refine(const Steps& steps, std::span<const HeardSweep> sweeps, double cell
   return refined;
 }
 
+/// Median time from the middle of a sweep to that of the next. REQUIRES two sweeps.
+double sweep_step_s(std::span<const HeardSweep> sweeps) {
+  std::vector<double> steps_s;
+  for (std::size_t k = 0; k + 1 < sweeps.size(); ++k) steps_s.push_back(middle_s(sweeps[k + 1]) - middle_s(sweeps[k]));
+  return median(std::move(steps_s));
+}
+
+/// Whether a sweep did not match between others that did.
+bool misses_one_within(const Steps& steps) {
+  const auto known = [](const std::optional<Motion>& step) { return step.has_value(); };
+  const auto first = std::ranges::find_if(steps, known);
+  const auto last = std::ranges::find_if(steps.rbegin(), steps.rend(), known).base();
+  return first < last && !std::all_of(first, last, known);
+}
+
 std::size_t least_matched(std::size_t steps, bool has_heading) {
   const double share = has_heading ? kMinMatched : kMinMatchedAlone;
   return static_cast<std::size_t>(std::max(1.0, std::ceil(share * static_cast<double>(steps) - 1e-9)));
@@ -244,12 +262,43 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMoun
     velocities.push_back(sample_at(0.5 * (from_s + to_s), {velocity.x(), velocity.y(), 0.0}));
   }
   odometry.tells = odometry.matched >= least_matched(steps.size(), heading != nullptr);
+  if (heading == nullptr && (odometry.matched < kFewestAlone || misses_one_within(steps))) odometry.tells = false;
   if (velocities.empty()) return odometry;
   // The first and the last motion go on to the ends.
   velocities.insert(velocities.begin(), sample_at(begin_s, velocities.front().value));
   velocities.push_back(sample_at(end_s, velocities.back().value));
   headings.push_back(sample_at(end_s, {yaw_rad + turn_rad_s * (end_s - since_s), 0.0, 0.0}));
   return odometry;
+}
+
+std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
+                                            const SonarMount& velocity_from_sonar, const HeadingSource& heading) {
+  constexpr std::size_t kFewest = 5;
+  constexpr double kNoise_m_s = 0.05, kShareOfSpeed = 0.35;
+  constexpr int kParts = 16;
+  const SonarOdometry odometry = sonar_odometry(sweeps, velocity_from_sonar, &heading);
+  if (!odometry.tells || odometry.matched < kFewest) return std::nullopt;
+  const double over_s = sweep_step_s(sweeps);
+  std::vector<double> differences_m_s, measured_m_s, seen_m_s;
+  // The first and the last sample go on to the ends.
+  for (std::size_t i = 1; i + 1 < odometry.velocity.samples.size(); ++i) {
+    const auto& [time_s, seen, deviation, valid] = odometry.velocity.samples[i];
+    const double from_s = time_s - 0.5 * over_s, part_s = over_s / kParts;
+    if (velocity.ahead.gap_s(from_s, from_s + over_s) > 0.0) continue;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (int part = 0; part < kParts; ++part) {
+      const double at_s = from_s + (part + 0.5) * part_s;
+      mean += Eigen::Vector2d(velocity.ahead.at(at_s), velocity.left.at(at_s)) / kParts;
+    }
+    differences_m_s.push_back((seen.head<2>() - mean).norm());
+    measured_m_s.push_back(mean.norm());
+    seen_m_s.push_back(seen.head<2>().norm());
+  }
+  if (differences_m_s.size() < kFewest) return std::nullopt;
+  const std::size_t compared = differences_m_s.size();
+  const double difference_m_s = median(std::move(differences_m_s));
+  const double speed_m_s = std::max(median(std::move(measured_m_s)), median(std::move(seen_m_s)));
+  return VelocityCheck{compared, difference_m_s, over_s, difference_m_s > kNoise_m_s + kShareOfSpeed * speed_m_s};
 }
 
 void GrowingOdometry::extend(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,7 +22,8 @@ struct SonarOdometry {
   NavSource velocity;       ///< in the frame of the body, in the middle between sweeps that match
   NavSource heading;        ///< what it turned, from 0; only of a vehicle whose heading is not known
   std::size_t matched = 0;  ///< sweeps that match the ones before
-  bool tells = false;       ///< enough do to tell a trajectory: half of them, without a heading nine of ten
+  bool tells = false;       ///< enough do to tell a trajectory: half of them; without a heading five or more, and
+                            ///< all but some at the ends, nine of ten
 };
 
 /// Matches each sweep with the two before by correlation. Echoes are placed by the heading and by how the vehicle
@@ -30,6 +32,18 @@ struct SonarOdometry {
 /// @param heading  of the body; nullptr: not known
 SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
                              const HeadingSource* heading);
+
+/// How a measured velocity differs from what the sonar says of the motion.
+struct VelocityCheck {
+  std::size_t matched = 0;      ///< sweeps that match the ones before
+  double difference_m_s = 0.0;  ///< median over these; of each the mean velocity from sweep to sweep
+  double over_s = 0.0;          ///< median time from sweep to sweep
+  bool contradicts = false;     ///< by more than a mount that is wrong by some 20 degrees explains
+};
+/// nullopt: too few sweeps match to tell.
+/// @param velocity_from_sonar  seen from where the velocity is measured
+std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
+                                            const SonarMount& velocity_from_sonar, const HeadingSource& heading);
 
 /// Such odometry of sweeps as they come: what it said of earlier ones stays.
 class GrowingOdometry {

@@ -247,7 +247,7 @@ TEST(Slam, SaysWhatTellsTheVelocityWhereNoneWasMeasured) {
   EXPECT_THAT(json.out, HasSubstr(R"("by_sonar": {"matched": )"));
   EXPECT_THAT(json.out, HasSubstr(R"("drift_m": )"));
   here.write("silent.csv", "time_s,bearing_rad,bin_length_m,intensities\n0,0,0.1,0,0\n1,3,0.1,0,0\n2,0.1,0.1,0,0\n");
-  expect_error(here.call({"slam", "silent.csv", "-o", "silent.tum"}), 1, {"silent.csv", "sweeps match"});
+  expect_error(here.call({"slam", "silent.csv", "-o", "silent.tum"}), 1, {"silent.csv", "sweeps match", "--nav"});
   EXPECT_FALSE(here.has("silent.tum"));
 }
 
@@ -260,6 +260,26 @@ TEST(Slam, SaysWhatIsMissingInTheNavigation) {
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "--nav-offset", "5000", "-o", "o.tum"}), 1,
                {"do not overlap in time"});
   EXPECT_FALSE(here.has("o.tum"));
+}
+
+// Kills a map along samples of two clocks, put in order of time.
+TEST(Slam, RefusesNavigationWhoseClockRunsBack) {
+  const Workplace here;
+  write_basin(here);
+  here.write("back.csv",
+             "time_s,source,quantity,x,y,z\n1,dvl,velocity,0,0,0\n31,dvl,velocity,0,0,0\n11,dvl,velocity,0,0,0\n"
+             "1,imu,heading,0,,\n60,imu,heading,0,,\n");
+  for (const char* command : {"slam", "map"}) {
+    expect_error(
+        here.call({command, "beams.csv", "--nav", "back.csv", "-o", command == std::string("map") ? "o.bt" : "o.tum"}),
+        1, {"back.csv", "velocity of dvl runs back by 20.000 s, from 31.000 to 11.000 s"});
+  }
+  EXPECT_FALSE(here.has("o.tum") || here.has("o.bt"));
+  const Outcome info = here.call({"info", "back.csv"});
+  EXPECT_EQ(info.status, 0);
+  EXPECT_THAT(info.out, HasSubstr("velocity of dvl by 20.000 s, from 31.000 to 11.000 s; 1 sample"));
+  EXPECT_THAT(here.call({"info", "back.csv", "--json"}).out, HasSubstr(R"("late": 1)"));
+  EXPECT_THAT(here.call({"convert", "back.csv", "-o", "sorted.csv"}).out, HasSubstr("runs back by 20.000 s"));
 }
 
 /// A drive there and back in an odd room, as scans.log.

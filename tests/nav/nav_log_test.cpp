@@ -43,6 +43,30 @@ TEST(NavLog, PutsSamplesInOrderAndKeepsThatOfEqualTimes) {
   EXPECT_THAT(came, testing::ElementsAre(1, 3, 2, 0));
 }
 
+// Kills a clock that is put in order without a word, one that is found in every queue, and a step between two logs.
+TEST(NavLog, NotesWhereAClockWasSetBack) {
+  const auto log =
+      NavLog::make({depths("late", {1, 2, 3, 2.5, 4}), depths("back", {9, 10, 5, 6, 7, 11})}, NavClock::kBoot);
+  ASSERT_TRUE(log);
+  EXPECT_FALSE(log->sources()[0].step_back);
+  const auto& step = log->sources()[1].step_back;
+  ASSERT_TRUE(step);
+  EXPECT_EQ(step->from_s, 10.0);
+  EXPECT_EQ(step->to_s, 5.0);
+  EXPECT_EQ(step->late, 3U);
+  const auto checked = check_clocks(*log);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message,
+              testing::HasSubstr("depth of back runs back by 5.000 s, from 10.000 to 5.000 s"));
+
+  NavSource both = depths("a", {11, 12});
+  add_samples(depths("a", {1, 2}), both);
+  const auto joined = NavLog::make({both}, NavClock::kBoot);
+  ASSERT_TRUE(joined);
+  EXPECT_TRUE(check_clocks(*joined));
+  EXPECT_EQ(joined->sources()[0].samples.front().time_s, 1.0);
+}
+
 TEST(NavLog, RefusesWhatIsNotFinite) {
   const auto log = NavLog::make({depths("a", {1, std::nan("")})}, NavClock::kBoot);
   ASSERT_FALSE(log);

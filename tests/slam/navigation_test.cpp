@@ -60,6 +60,14 @@ TEST(VelocitySource, MeasuresNoiseWhateverTheVehicleDoes) {
   EXPECT_NEAR(velocity->density.at(75.0), 0.1 * std::sqrt(0.25), 0.012);
 }
 
+// Kills a velocity that is believed to the millimetre because it stays the same.
+TEST(VelocitySource, IsNotSurerThanDataSheetsAre) {
+  const auto velocity = velocity_source(
+      velocities(100, 0.1, [](std::size_t) { return Eigen::Vector3d(0.5, 0.0, 0.0); }), Pose::Identity());
+  ASSERT_TRUE(velocity);
+  EXPECT_DOUBLE_EQ(velocity->density.at(5.0), 0.02);
+}
+
 TEST(VelocitySource, IsTurnedByItsMount) {
   const NavSource ahead = velocities(5, 0.5, [](std::size_t) { return Eigen::Vector3d(1.0, 0.0, 0.0); });
   const auto velocity = velocity_source(ahead, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, kPi / 2.0));

@@ -123,6 +123,31 @@ TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
   }
 }
 
+/// Standard deviation of the way over all knots, 4 s apart, where the velocity is silent for 1000 s.
+double deviation_after_gap(double turn_rad_s) {
+  const auto two = [](double first, double second) {
+    return TimeSeries({0.0, 1.0, 2.0, 1002.0, 1003.0, 1004.0}, {first, first, first, second, second, second});
+  };
+  std::vector<double> knots_s, times_s, yaws_rad;
+  for (double time_s = 0.0; time_s <= 1004.0; time_s += 4.0) knots_s.push_back(time_s);
+  for (double time_s = 0.0; time_s <= 1004.0; time_s += 0.5) {
+    times_s.push_back(time_s);
+    yaws_rad.push_back(turn_rad_s * time_s);
+  }
+  const SlamProblem problem(knots_s, {"dvl", two(0.5, 0.5), two(0.0, 0.0), two(0.02, 0.02)},
+                            {{"imu", TimeSeries(times_s, yaws_rad), {}, {}}});
+  double variance_m2 = 0.0;
+  for (const auto& way : problem.ways(problem.dead_reckoning())) variance_m2 += way.deviation_m * way.deviation_m;
+  return std::sqrt(variance_m2);
+}
+
+// Kills errors that average out over a gap: on a straight way 0.1 m/s that is the same all the time adds up.
+TEST(SlamProblem, AGapOfTheVelocityIsAsUncertainAsAVehicleThatMovesSteadily) {
+  EXPECT_NEAR(deviation_after_gap(0.0), 100.0, 1.0);
+  // Going round in a circle, 0.3 m/s from knot to knot.
+  EXPECT_NEAR(deviation_after_gap(0.1), 0.3 * 4.0 * std::sqrt(250.0), 0.5);
+}
+
 TEST(SlamProblem, TheBulgeBringsTheWayBackToTheIntegratedVelocity) {
   // A quarter circle of radius 2 m in one interval: the vehicle is off the chord by its sagitta in the middle.
   constexpr double kTurn_s = 10.0, kRate = std::numbers::pi / 2.0 / kTurn_s;

@@ -366,6 +366,29 @@ TEST(SlamSmoother, SaysWhatOfTheCalibrationIsFarFromWhatWasBelieved) {
   EXPECT_THAT(solved->report.implausible, testing::ElementsAre("scale of the velocity"));
 }
 
+// Kills a wrong trajectory that is believed to the centimetre: a DVL that says that the vehicle stands still.
+TEST(SlamSmoother, SaysThatTheSonarContradictsTheVelocity) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
+  const Basin basin{.duration_s = 200.0};
+  std::vector<NavSource> sources = basin.sources(1);
+  for (NavSample& sample : sources[0].samples) sample.value *= 1e-3;
+  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
+    SlamOptions options;
+    options.estimation = estimation;
+    SlamSmoother smoother = smoother_of(basin, options);
+    add(smoother, sources);
+    for (const Beam& beam : basin.beams()) smoother.add(beam);
+    const auto solved = smoother.solve();
+    ASSERT_TRUE(solved) << solved.error().message;
+    EXPECT_THAT(solved->report.implausible, testing::Contains(testing::StartsWith("velocity of dvl (")));
+    if (estimation == Estimation::kCausal) continue;
+    double squares_m2 = 0.0;
+    for (const PoseCovariance& pose : solved->covariances) squares_m2 += pose.covariance.topLeftCorner<2, 2>().trace();
+    const double believed_m = std::sqrt(squares_m2 / static_cast<double>(solved->covariances.size()));
+    EXPECT_LT(error_m(solved->trajectory), 3.0 * believed_m);
+  }
+}
+
 // Kills a calibration that is not used, or used with the wrong sign: another drive of the same sensors, without pairs.
 TEST(SlamSmoother, CalibrationOfOneDriveMakesDeadReckoningOfAnotherBetter) {
   PINGVOX_SKIP_UNDER_SANITIZERS();
@@ -582,6 +605,36 @@ TEST(SlamSmoother, RefusesBeamsThatJumpInTime) {
   expect_refused(smoother, "times jump");
 }
 
+// Kills turns that are made up where the clock of the navigation jumps ahead.
+TEST(SlamSmoother, RefusesBeamsWhereNoHeadingIsKnown) {
+  const Basin basin{.duration_s = 200.0};
+  std::vector<NavSource> sources = basin.sources();
+  for (NavSource& source : sources) {
+    for (NavSample& sample : source.samples) sample.time_s += sample.time_s > 100.0 ? 3600.0 : 0.0;
+  }
+  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
+    SlamOptions options;
+    options.estimation = estimation;
+    SlamSmoother smoother = smoother_of(basin, options);
+    add(smoother, sources);
+    for (const Beam& beam : basin.beams()) smoother.add(beam);
+    expect_refused(smoother, "no heading is known from 100.000 to 3700.200 s, where there are 1000 beams");
+  }
+}
+
+// Kills a log whose clock was set back, added as a whole.
+TEST(SlamSmoother, RefusesNavigationWhoseClockWasSetBack) {
+  const Basin basin{.duration_s = 60.0};
+  std::vector<NavSource> sources = basin.sources();
+  for (NavSample& sample : sources[1].samples) sample.time_s -= sample.time_s > 30.0 ? 20.0 : 0.0;
+  const auto log = NavLog::make(sources, NavClock::kUnknown);
+  ASSERT_TRUE(log);
+  SlamSmoother smoother = smoother_of(basin, {});
+  const auto added = smoother.add(*log);
+  ASSERT_FALSE(added);
+  EXPECT_THAT(added.error().message, HasSubstr("heading of compass runs back"));
+}
+
 // Kills a solution without any step, whose calibration has no deviations.
 TEST(SlamSmoother, ReckonsAlongOneSweepAlone) {
   const Basin basin{.duration_s = 10.0};
@@ -600,10 +653,10 @@ TEST(SlamSmoother, ReckonsAlongOneSweepAlone) {
   expect_refused(without, "only one sweep");
 }
 
-TEST(SlamSmoother, RefusesVelocitiesThatNoNumbersHold) {
+TEST(SlamSmoother, RefusesVelocitiesThatNoVehicleHas) {
   const Basin basin{.duration_s = 60.0};
   for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
-    for (const double velocity_m_s : {1e6, 1e300}) {
+    for (const double velocity_m_s : {40.0, 1e6, 1e300}) {
       SlamOptions options;
       options.estimation = estimation;
       SlamSmoother smoother = smoother_of(basin, options);
@@ -611,7 +664,7 @@ TEST(SlamSmoother, RefusesVelocitiesThatNoNumbersHold) {
       for (NavSample& sample : sources[0].samples) sample.value.x() = velocity_m_s;
       add(smoother, sources);
       for (const Beam& beam : basin.beams()) smoother.add(beam);
-      expect_refused(smoother, "does not determine");
+      expect_refused(smoother, "m/s in the median");
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -69,6 +70,33 @@ TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
     const double turned_rad = Basin::at(sample.time_s).yaw_rad - start_rad;
     EXPECT_NEAR(std::remainder(sample.value.x() - turned_rad, 2.0 * std::numbers::pi), 0.0, 0.2) << sample.time_s;
   }
+}
+
+// Kills a trajectory that is bent by a turn which nothing saw.
+TEST(SonarOdometry, WithoutAHeadingNoTurnMayBeMissed) {
+  const Basin basin{.duration_s = 200.0};
+  std::vector<HeardSweep> sweeps = sweeps_of(basin);
+  ASSERT_TRUE(sonar_odometry(sweeps, mount_of(basin), nullptr).tells);
+  EXPECT_FALSE(sonar_odometry(std::span(sweeps).first(4), mount_of(basin), nullptr).tells) << "too few";
+  sweeps[9].runs.clear();
+  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), nullptr).tells);
+  const HeadingSource heading = heading_of(basin);
+  EXPECT_TRUE(sonar_odometry(sweeps, mount_of(basin), &heading).tells);
+}
+
+// Kills a check that a wrong compass, a turned DVL or noise fails, and one that a DVL which stands still passes.
+TEST(VelocityCheck, TellsAVelocityThatTheSonarContradicts) {
+  const Basin basin{.duration_s = 200.0, .velocity_yaw_rad = 0.15, .velocity_noise_m_s = 0.2};
+  const HeadingSource heading = heading_of(basin);
+  const auto check = [&](NavSource source, double by) {
+    for (NavSample& sample : source.samples) sample.value *= by;
+    return check_velocity(*velocity_source(source, Pose::Identity()), sweeps_of(basin), mount_of(basin), heading);
+  };
+  const auto right = check(basin.sources()[0], 1.0), still = check(basin.sources()[0], 0.0);
+  ASSERT_TRUE(right && still);
+  EXPECT_FALSE(right->contradicts) << right->difference_m_s;
+  EXPECT_TRUE(still->contradicts) << still->difference_m_s;
+  EXPECT_NEAR(still->difference_m_s, Basin::velocity_at(50.0).norm(), 0.2);
 }
 
 // Kills a velocity that is told although nothing was seen.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -43,11 +44,21 @@ struct NavSample {
   bool valid = true;  ///< false: marked as invalid by the device
 };
 
+/// How late a sample may come [s]: devices that share a line, and programs with queues, mix the order up by less.
+inline constexpr double kMaxLate_s = 1.0;
+
+/// A clock that was set back while samples came.
+struct ClockStep {
+  double from_s = 0.0, to_s = 0.0;  ///< the latest time until then, and that of the sample farthest behind it
+  std::size_t late = 0;             ///< samples that are more than kMaxLate_s behind one that came before
+};
+
 /// The samples of one quantity by one sensor, in order of time.
 struct NavSource {
   std::string name;  ///< as the log names it: "ATTITUDE", "DISTANCE_SENSOR 1/194"
   NavQuantity quantity = NavQuantity::kVelocity;
   std::vector<NavSample> samples;
+  std::optional<ClockStep> step_back = std::nullopt;  ///< nullopt: no sample came too late
 };
 
 /// Origin of the times of a log.
@@ -61,8 +72,8 @@ std::string_view name_of(NavClock clock);
 /// All navigation of a log: where a vehicle was and how it moved.
 class NavLog {
  public:
-  /// Takes samples in any order; those of a source are put in order of time, equal times as they came. Sources without
-  /// samples are left out.
+  /// Takes samples as they came; those of a source are put in order of time, equal times as they came, and where its
+  /// clock was set back is noted. Sources without samples are left out.
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 
@@ -77,6 +88,12 @@ class NavLog {
   std::vector<NavSource> sources_;
   NavClock clock_;
 };
+
+/// Adds samples of the same source, of another log or part of it: they are no step back of its clock.
+void add_samples(const NavSource& from, NavSource& to);
+
+/// @return kCorrupt naming the first source whose clock was set back: which times are right cannot be told
+Result<void> check_clocks(const NavLog& log);
 
 /// Depth by the source with most valid samples; in a log without depth by the highest pressure, if it exceeds 1100 hPa,
 /// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.
