@@ -207,7 +207,9 @@ std::vector<SlamProblem::Way> SlamProblem::ways(const Unknowns& unknowns) const 
       steady_m2 += std::pow(kSteadyInGap_m_s * silent.way_s, 2) * silent.gap.within(from_s, to_s) /
                    (silent.gap.to_s - silent.gap.from_s);
     }
-    way.deviation_m = std::sqrt(density * density * (to_s - from_s) + std::max(gap_m * gap_m, steady_m2));
+    const double noise_m2 = density * density * (to_s - from_s);
+    way.deviation_m = std::sqrt(noise_m2 + gap_m * gap_m);
+    way.with_steady_m = std::sqrt(noise_m2 + std::max(gap_m * gap_m, steady_m2));
   }
   return ways;
 }

@@ -98,6 +98,9 @@ class SlamProblem {
     Eigen::Vector2d weighted = Eigen::Vector2d::Zero();  ///< each part of it times its share of the time
     Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< mean velocity as measured, in the frame of the body [m/s]
     double deviation_m = 0.0;                            ///< of either axis
+    /// The same where the error in a gap of the velocity is alike all along it. Solved is without it: knots in a gap
+    /// that are as free as that are led astray by wrong pairs.
+    double with_steady_m = 0.0;
   };
   std::vector<Way> ways(const Unknowns& unknowns) const;
   /// How far the integrated velocity, at a time within an interval, is off the straight line between its ends.

@@ -139,7 +139,8 @@ bool SlamSolver::step(std::optional<double> gate_m) {
 }
 
 std::optional<std::vector<Eigen::Matrix3d>> SlamSolver::knot_covariances() const {
-  const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
+  std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
+  for (SlamProblem::Way& way : ways) way.deviation_m = way.with_steady_m;
   std::vector<EchoOnGround> ground;
   if (!pairs_.pairs.empty() || !wall_matches_.empty()) {
     ground = place_echoes(problem_, mount_, unknowns_, ways, echoes_, sweeps_);

@@ -90,7 +90,7 @@ SlamReport report_of(const SlamSolver& solver) {
   if (velocity.by_sonar) {
     double variance_m2 = 0.0;
     for (const SlamProblem::Way& way : solver.problem().ways(solver.unknowns())) {
-      variance_m2 += way.deviation_m * way.deviation_m;
+      variance_m2 += way.with_steady_m * way.with_steady_m;
     }
     // The first and the last sample go on to the ends of the recording.
     report.by_sonar = {velocity.ahead.size() - 2, velocity.density.values().front(), std::sqrt(variance_m2)};

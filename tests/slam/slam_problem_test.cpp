@@ -137,7 +137,7 @@ double deviation_after_gap(double turn_rad_s) {
   const SlamProblem problem(knots_s, {"dvl", two(0.5, 0.5), two(0.0, 0.0), two(0.02, 0.02)},
                             {{"imu", TimeSeries(times_s, yaws_rad), {}, {}}});
   double variance_m2 = 0.0;
-  for (const auto& way : problem.ways(problem.dead_reckoning())) variance_m2 += way.deviation_m * way.deviation_m;
+  for (const auto& way : problem.ways(problem.dead_reckoning())) variance_m2 += way.with_steady_m * way.with_steady_m;
   return std::sqrt(variance_m2);
 }
 
