@@ -208,6 +208,13 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
   } else {
     velocity.add_null("by_sonar");
   }
+  if (report.velocity_check) {
+    JsonObject check;
+    check.add("sweeps", report.velocity_check->sweeps).add("difference_m_s", report.velocity_check->difference_m_s);
+    velocity.add("check", check);
+  } else {
+    velocity.add_null("check");
+  }
   json.add("poses", solution.trajectory.poses().size())
       .add("beams", report.beams)
       .add("sweeps", report.sweeps)
@@ -261,8 +268,11 @@ std::string velocity_text(const SlamReport& report) {
         "without pairs it drifts by {:.1f} m",
         sonar->matched, report.sweeps, report.longest_gap_s, sonar->drift_m);
   }
-  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s", on_one_line(report.velocity),
-                     report.velocities, report.velocities_clipped, report.longest_gap_s);
+  const std::string check =
+      report.velocity_check ? fmt::format("{:.2f} m/s from what the sonar sees", report.velocity_check->difference_m_s)
+                            : std::string("not checked by the sonar");
+  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s; {}", on_one_line(report.velocity),
+                     report.velocities, report.velocities_clipped, report.longest_gap_s, check);
 }
 
 std::string sensors_text(const SlamSolution& solution) {

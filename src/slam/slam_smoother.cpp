@@ -172,9 +172,12 @@ void allow_noise(double density, VelocitySource& velocity) {
   velocity.density = TimeSeries(velocity.density.times_s(), std::move(densities));
 }
 
-void report_contradiction(const VelocityCheck& check, SlamReport& report) {
+void report_check(const std::optional<VelocityCheck>& check, SlamReport& report) {
+  if (!check) return;
+  report.velocity_check = SonarCheck{check->matched, check->difference_m_s};
+  if (!check->contradicts) return;
   report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
-                                           report.velocity, check.difference_m_s, check.matched));
+                                           report.velocity, check->difference_m_s, check->matched));
 }
 
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
@@ -257,8 +260,7 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
   // Of all, not of the window.
   if (!solution || solution->report.by_sonar || !velocity) return solution;
   report_velocity(*velocity, solution->report);
-  const auto check = velocity_check(*velocity, headings.front(), sweeps, options);
-  if (check && check->contradicts) report_contradiction(*check, solution->report);
+  report_check(velocity_check(*velocity, headings.front(), sweeps, options), solution->report);
   return solution;
 }
 
@@ -288,10 +290,11 @@ Result<SlamSolution> SlamSmoother::solve() const {
   if (!recording) return tl::unexpected(recording.error());
   const std::optional<VelocityCheck> check =
       velocity_check(recording->navigation.velocity, recording->navigation.headings.front(), sweeps, options);
-  const bool contradicts = check && check->contradicts;
-  if (contradicts) allow_noise(check->difference_m_s * std::sqrt(check->over_s), recording->navigation.velocity);
+  if (check && check->contradicts) {
+    allow_noise(check->difference_m_s * std::sqrt(check->over_s), recording->navigation.velocity);
+  }
   Result<SlamSolution> solution = solve_batch(*recording, options);
-  if (solution && contradicts) report_contradiction(*check, solution->report);
+  if (solution) report_check(check, solution->report);
   return solution;
 }
 

@@ -347,6 +347,8 @@ TEST(SlamSmoother, SaysWhatTheRecordingDoesNotTell) {
   EXPECT_THAT(unknown, testing::Not(testing::Contains("angle of the velocity")));
   EXPECT_THAT(unknown, testing::Not(testing::Contains("cos1 of heading compass")));
   EXPECT_TRUE(solved->report.implausible.empty());
+  ASSERT_TRUE(solved->report.velocity_check);
+  EXPECT_LT(solved->report.velocity_check->difference_m_s, 0.1);
 }
 
 // Kills limits of another unknown, and a limit that nothing passes.
@@ -644,6 +646,7 @@ TEST(SlamSmoother, ReckonsAlongOneSweepAlone) {
     const auto solved = solve(basin, options);
     ASSERT_TRUE(solved) << solved.error().message;
     EXPECT_EQ(solved->report.pairs, 0U);
+    EXPECT_FALSE(solved->report.velocity_check);
     EXPECT_GT(solved->calibration.velocity_yaw_rad.deviation, 0.0);
     EXPECT_LT(error_m(solved->trajectory), 0.5);
   }

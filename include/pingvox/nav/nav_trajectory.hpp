@@ -26,12 +26,13 @@ struct NavTrajectory {
 /// one, fixes become metres east and north of the first fix, at the depth if the log has it, else at the altitude
 /// relative to that fix.
 /// @param offset_s  added to all times
-/// @return kUnsupported when the log has no valid attitude or position, or never both at a time
+/// @return kUnsupported when the log has no valid attitude or position, or never both at a time; kCorrupt when a clock
+///         was set back
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
 
 /// The positions alone, as poses without rotation: a reference of fixes for another trajectory.
 /// The result's `attitude` is empty.
-/// @return kUnsupported when the log has no valid position
+/// @return kUnsupported when the log has no valid position; kCorrupt when a clock was set back
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s = 0.0);
 
 }  // namespace pingvox

@@ -88,6 +88,12 @@ struct SonarMotion {
   double drift_m = 0.0;         ///< standard deviation of the last position by this motion alone, without pairs
 };
 
+/// How a measured velocity agrees with how sweeps match those before them.
+struct SonarCheck {
+  std::size_t sweeps = 0;       ///< that match
+  double difference_m_s = 0.0;  ///< median over these
+};
+
 /// The greatest of each that a solution with Estimation::kCausal had: they do not grow with the log.
 struct LargestSolution {
   std::size_t knots = 0;   ///< three unknowns each
@@ -111,14 +117,16 @@ struct SlamReport {
   std::size_t submap_loops_found = 0, submap_loops_kept = 0;
   std::size_t velocities = 0;  ///< valid samples
   std::size_t velocities_clipped = 0;
-  double longest_gap_s = 0.0;     ///< between valid velocities
+  double longest_gap_s = 0.0;  ///< between valid velocities
+  /// nullopt: too few sweeps match to tell, or none was asked to.
+  std::optional<SonarCheck> velocity_check;
   double least_on_walls = 0.0;    ///< in a map: of all sweeps the least share of echoes that are on walls of it
   std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
   std::vector<std::string> not_observable;
   /// What of the calibration ended more than four standard deviations from what was believed beforehand: a mount, the
-  /// navigation of another vehicle, or the clock may be wrong.
+  /// navigation of another vehicle, or the clock may be wrong. Also a velocity that the sonar contradicts.
   std::vector<std::string> implausible;
   LargestSolution largest;
   std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity, and longest_gap_s is between matches
@@ -147,13 +155,13 @@ class SlamSmoother {
   /// heading; others are passed over, as are samples that are not valid.
   /// @return kCorrupt when a number is not finite
   Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
+  /// @return kCorrupt when a clock of it was set back
   Result<void> add(const NavLog& log);
 
   /// Solves for all that was added so far. May be called again after more was added.
   /// Without a velocity, the sonar tells how the vehicle moved.
-  /// @return kUnsupported saying what is missing: beams, a velocity or sweeps that match each other, a heading, or a
-  /// time
-  ///         at which all were recorded;
+  /// @return kUnsupported saying what is missing: beams, a velocity or sweeps that match each other, a heading
+  ///         wherever there are beams, or a time at which all were recorded;
   ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke, or the
   ///         calibration is of another velocity
   Result<SlamSolution> solve() const;
