@@ -92,6 +92,7 @@ Result<SlamSolution> solve_in_map(Recording recording, const NavLog& log, const 
   SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start), std::move(before));
   const MapWalls walls(map);
   solver.set_walls(walls);
+  solver.expect_steady_motion();
   bool determined = true;
   for (const double gate_m : kMapGates_m) determined = determined && solver.step(gate_m);
   std::optional<std::vector<Eigen::Matrix3d>> of_knots;

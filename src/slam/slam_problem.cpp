@@ -261,10 +261,11 @@ SlamProblem::HeadingResidual SlamProblem::heading_residual(const Unknowns& unkno
 
 std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const std::vector<Way>& ways) const {
   std::vector<Row> rows;
-  // Motion.
+  // Motion: the deviation is of the way as measured. As corrected, a smaller scale would make noise seem smaller.
+  const double scale = 1.0 + unknowns.globals[global::kVelocityScale];
   for (std::size_t k = 0; k < ways.size(); ++k) {
     const Way& way = ways[k];
-    const double weight = 1.0 / way.deviation_m;
+    const double weight = 1.0 / (scale * way.deviation_m);
     const Eigen::Vector2d off = unknowns.knots[k + 1].head<2>() - unknowns.knots[k].head<2>() - way.moved;
     const Eigen::Vector2d by_angle = quarter_turn(way.moved), by_next = quarter_turn(way.weighted);
     for (int axis = 0; axis < 2; ++axis) {
@@ -274,8 +275,7 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
       r.by_knot[2] = -weight * (by_angle - by_next)[axis];
       r.by_next[2] = -weight * by_next[axis];
       r.by_globals[global::kVelocityYaw] = -weight * by_angle[axis];
-      r.by_globals[global::kVelocityScale] =
-          -weight * way.moved[axis] / (1.0 + unknowns.globals[global::kVelocityScale]);
+      r.by_globals[global::kVelocityScale] = -weight * (way.moved + off)[axis] / scale;
       rows.push_back(std::move(r));
     }
   }

@@ -127,15 +127,35 @@ Result<void> check_headings(std::span<const HeadingSource> headings, std::span<c
   return {};
 }
 
-Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& options) {
+/// How far a velocity that the sonar contradicts may be from the truth, instead of how much it scatters.
+void allow_noise(double density, VelocitySource& velocity) {
+  std::vector<double> densities = velocity.density.values();
+  for (double& each : densities) each = std::max(each, density);
+  velocity.density = TimeSeries(velocity.density.times_s(), std::move(densities));
+}
+
+void report_check(const std::optional<VelocityCheck>& check, SlamReport& report) {
+  if (!check) return;
+  report.velocity_check = SonarCheck{check->matched, check->difference_m_s};
+  if (!check->contradicts) return;
+  report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
+                                           report.velocity, check->difference_m_s, check->matched));
+}
+
+/// @param check  what the sonar says of the velocity
+Result<SlamSolution> solve_batch(Recording recording, const std::optional<VelocityCheck>& check,
+                                 const SlamOptions& options) {
   Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
   if (!times_s) return tl::unexpected(times_s.error());
   const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
   if (!checked) return tl::unexpected(checked.error());
-  SlamProblem problem(*std::move(times_s), recording.navigation.velocity, recording.navigation.headings,
-                      options.calibration);
+  VelocitySource& velocity = recording.navigation.velocity;
+  const bool contradicts = check && check->contradicts;
+  if (contradicts) allow_noise(check->difference_m_s * std::sqrt(check->over_s), velocity);
+  SlamProblem problem(*std::move(times_s), velocity, recording.navigation.headings, options.calibration);
   Unknowns start = problem.dead_reckoning();
   SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start));
+  if (!contradicts && !velocity.by_sonar) solver.expect_steady_motion();
   bool determined = true;
   std::optional<SweepLoops> loops;
   if (options.matching == Matching::kPairs) {
@@ -158,26 +178,12 @@ Result<SlamSolution> solve_batch(const Recording& recording, const SlamOptions& 
   solution->report.sweeps = static_cast<std::size_t>(
       std::ranges::count_if(recording.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
   solution->covariances = covariances_of(solver, *of_knots, options);
+  report_check(check, solution->report);
   if (loops) {
     solution->report.submap_loops_found = loops->found;
     solution->report.submap_loops_kept = loops->kept;
   }
   return solution;
-}
-
-/// How far a velocity that the sonar contradicts may be from the truth, instead of how much it scatters.
-void allow_noise(double density, VelocitySource& velocity) {
-  std::vector<double> densities = velocity.density.values();
-  for (double& each : densities) each = std::max(each, density);
-  velocity.density = TimeSeries(velocity.density.times_s(), std::move(densities));
-}
-
-void report_check(const std::optional<VelocityCheck>& check, SlamReport& report) {
-  if (!check) return;
-  report.velocity_check = SonarCheck{check->matched, check->difference_m_s};
-  if (!check->contradicts) return;
-  report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
-                                           report.velocity, check->difference_m_s, check->matched));
 }
 
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
@@ -290,12 +296,7 @@ Result<SlamSolution> SlamSmoother::solve() const {
   if (!recording) return tl::unexpected(recording.error());
   const std::optional<VelocityCheck> check =
       velocity_check(recording->navigation.velocity, recording->navigation.headings.front(), sweeps, options);
-  if (check && check->contradicts) {
-    allow_noise(check->difference_m_s * std::sqrt(check->over_s), recording->navigation.velocity);
-  }
-  Result<SlamSolution> solution = solve_batch(*recording, options);
-  if (solution) report_check(check, solution->report);
-  return solution;
+  return solve_batch(*std::move(recording), check, options);
 }
 
 }  // namespace pingvox

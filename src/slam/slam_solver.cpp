@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "slam/pose_edges.hpp"
@@ -99,8 +100,7 @@ std::vector<EchoOnGround> SlamSolver::ground() const {
   return place_echoes(problem_, mount_, unknowns_, problem_.ways(unknowns_), echoes_, sweeps_);
 }
 
-void SlamSolver::set_walls(const MapWalls& walls) {
-  walls_ = &walls;
+void SlamSolver::expect_steady_motion() {
   velocity_change_ = velocity_change(problem_.velocity());
 }
 
@@ -155,7 +155,7 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
   };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;
   for (std::uint32_t k = 0; k + 1 < problem_.knots(); ++k) shared.emplace_back(k, k + 1);
-  for (std::uint32_t k = 0; walls_ != nullptr && k + 2 < problem_.knots(); ++k) shared.emplace_back(k, k + 2);
+  for (std::uint32_t k = 0; velocity_change_ && k + 2 < problem_.knots(); ++k) shared.emplace_back(k, k + 2);
   for (std::size_t i = 0; i < pairs_.pairs.size(); ++i) {
     const auto [a, b] = joined(pairs_.pairs[i]);
     if (i > 0 && joined(pairs_.pairs[i - 1]) == std::pair{a, b}) continue;
@@ -169,10 +169,8 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
   NormalEquations equations(problem_.knots(), problem_.globals(), shared);
   for (const SlamProblem::Row& row : problem_.rows(unknowns_, ways)) add_row(row, equations);
   add_pairs(ground, equations);
-  if (walls_ != nullptr) {
-    add_walls(ground, equations);
-    add_steady_motion(problem_, unknowns_, ways, velocity_change_, equations);
-  }
+  add_walls(ground, equations);
+  if (velocity_change_) add_steady_motion(problem_, unknowns_, ways, *velocity_change_, equations);
   for (const PoseEdge& loop : loops_) {
     const Pose2 a = pose_of_knot(loop.a), b = pose_of_knot(loop.b);
     add_edge(loop, a, b, loop_weight(loop, a, b), equations);
@@ -196,6 +194,7 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
 
 std::optional<WindowPrior> SlamSolver::prior_at(std::size_t knot) const {
   constexpr std::size_t kAtOnce = 16;  // few, for the equations are dense
+  assert(!velocity_change_);
   const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
   const std::vector<SlamProblem::Row> rows = problem_.rows(unknowns_, ways);
   std::vector<EchoOnGround> ground;

@@ -48,9 +48,11 @@ class SlamSolver {
   SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
              Unknowns start, Before before = {});
 
-  /// In the steps to come, echoes are matched with the walls of a known map instead of each other, and the vehicle is
-  /// taken to move as steadily as its velocity says. The walls must outlive the solver.
-  void set_walls(const MapWalls& walls);
+  /// In the steps to come, echoes are matched with the walls of a known map instead of each other. They must outlive
+  /// the solver.
+  void set_walls(const MapWalls& walls) { walls_ = &walls; }
+  /// In the steps to come, the vehicle is taken to move as steadily as its velocity says. Not for `prior_at`.
+  void expect_steady_motion();
 
   /// One Gauss-Newton step. False: the problem does not determine its unknowns, and they stay.
   /// @param gate_m  how far apart the echoes of a pair may be; nullopt: without pairs. Without a measured velocity it
@@ -118,7 +120,7 @@ class SlamSolver {
   double reach_m_ = 0.0, scale_ = 1.0;
   EchoPairs pairs_;
   const MapWalls* walls_ = nullptr;
-  double velocity_change_ = 0.0;  ///< with walls
+  std::optional<double> velocity_change_;  ///< of a vehicle that moves steadily
   std::vector<WallMatch> wall_matches_;
   std::vector<PoseEdge> loops_;
   std::vector<HeldLoop> held_loops_;

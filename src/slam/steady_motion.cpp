@@ -57,19 +57,22 @@ void add_steady_motion(const SlamProblem& problem, const Unknowns& unknowns, con
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t from = k + i, to = from + 1;
       const SlamProblem::Way& way = ways[from];
-      const double yaw_rad = problem.main_yaw_rad(0.5 * (times_s[from] + times_s[to])) + unknowns.at(from, 0.5).z();
-      // Its own derivative is left out: it is small, as the error of the way is.
-      const Eigen::Matrix2d body_from_map = (i == 0 ? -1.0 : 1.0) / (times_s[to] - times_s[from]) * rotation2(-yaw_rad);
-      off += body_from_map * (unknowns.knots[to] - unknowns.knots[from]).head<2>() - body_from_map * way.moved;
-      const Eigen::Vector2d by_angle = quarter_turn(way.moved), by_next = quarter_turn(way.weighted);
+      const double yaw_rad = problem.main_yaw_rad(0.5 * (times_s[from] + times_s[to])) + unknowns.at(from, 0.5).z() +
+                             unknowns.globals[global::kVelocityYaw];
+      const double scale = 1.0 + unknowns.globals[global::kVelocityScale];
+      const Eigen::Matrix2d source_from_map =
+          (i == 0 ? -1.0 : 1.0) / (scale * (times_s[to] - times_s[from])) * rotation2(-yaw_rad);
+      const Eigen::Vector2d missed = (unknowns.knots[to] - unknowns.knots[from]).head<2>() - way.moved;
+      off += source_from_map * missed;
+      const Eigen::Vector2d by_angle = quarter_turn(way.moved), by_next = quarter_turn(way.weighted),
+                            by_frame = quarter_turn(missed);
       const auto at = static_cast<Eigen::Index>(3 * i);
-      by_knots.block<2, 2>(0, at) -= body_from_map;
-      by_knots.block<2, 2>(0, at + 3) += body_from_map;
-      by_knots.col(at + 2) -= body_from_map * (by_angle - by_next);
-      by_knots.col(at + 5) -= body_from_map * by_next;
-      by_globals.col(global::kVelocityYaw) -= body_from_map * by_angle;
-      by_globals.col(global::kVelocityScale) -=
-          body_from_map * way.moved / (1.0 + unknowns.globals[global::kVelocityScale]);
+      by_knots.block<2, 2>(0, at) -= source_from_map;
+      by_knots.block<2, 2>(0, at + 3) += source_from_map;
+      by_knots.col(at + 2) -= source_from_map * (by_angle - by_next + 0.5 * by_frame);
+      by_knots.col(at + 5) -= source_from_map * (by_next + 0.5 * by_frame);
+      by_globals.col(global::kVelocityYaw) -= source_from_map * (by_angle + by_frame);
+      by_globals.col(global::kVelocityScale) -= source_from_map * (way.moved + missed) / scale;
     }
     // Between the means over two intervals that follow each other lie two thirds of their length.
     const double between_s = 0.5 * (times_s[k + 2] - times_s[k]) * 2.0 / 3.0;

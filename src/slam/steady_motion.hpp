@@ -12,8 +12,8 @@ namespace pingvox {
 /// one second [m/s / sqrt(s)], 0.0005..1. The one that makes the measured velocities most likely.
 double velocity_change(const VelocitySource& velocity);
 
-/// Adds that the velocity of the body, as measured and corrected by the knots, changes by no more from the time between
-/// two knots to the next. REQUIRES equations with blocks for each knot and the next but one.
+/// Adds that the velocity, as measured and corrected by the knots, in the frame of its source, changes by no more from
+/// the time between two knots to the next. REQUIRES equations with blocks for each knot and the next but one.
 void add_steady_motion(const SlamProblem& problem, const Unknowns& unknowns, const std::vector<SlamProblem::Way>& ways,
                        double change, NormalEquations& equations);
 

@@ -60,5 +60,45 @@ TEST(SteadyMotion, PullsAKnotBackThatIsOffASteadyWay) {
   EXPECT_NEAR(gradient()[6], -375.0, 1.0);
 }
 
+// How fast the velocity changes does not depend on where north is, on how the DVL is turned, nor on its scale.
+// Kills derivatives that are left out: those of the frame, by which north or scale crept away over many knots.
+TEST(SteadyMotion, DoesNotPullAtWhatItSaysNothingOf) {
+  const VelocitySource velocity = measured([](double time_s) { return 0.3 + 0.1 * std::sin(0.2 * time_s); });
+  const HeadingSource heading{"compass", TimeSeries({0.0, 300.0}, {0.0, 12.0}), std::nullopt, std::nullopt};
+  std::vector<double> times_s;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    times_s.push_back(7.0 * k + (k % 3));
+    if (k > 0) pairs.emplace_back(k - 1, k);
+    if (k > 1) pairs.emplace_back(k - 2, k);
+  }
+  const SlamProblem problem(times_s, velocity, {heading});
+  Random random(5);
+  for (int round = 0; round < 20; ++round) {
+    SCOPED_TRACE(round);
+    Unknowns unknowns = problem.dead_reckoning();
+    for (Eigen::Vector3d& knot : unknowns.knots) {
+      knot += Eigen::Vector3d(0.3 * random.normal(), 0.3 * random.normal(), 0.1 * random.normal());
+    }
+    const double scale = 1.0 + 0.02 * random.normal();
+    unknowns.globals[global::kVelocityYaw] = 0.2 * random.normal();
+    unknowns.globals[global::kVelocityScale] = scale - 1.0;
+    NormalEquations equations(problem.knots(), problem.globals(), pairs);
+    add_steady_motion(problem, unknowns, problem.ways(unknowns), 0.01, equations);
+    const auto knots = static_cast<Eigen::Index>(3 * problem.knots());
+    double by_turn = 0.0, by_north = 0.0, by_size = 0.0;
+    for (std::size_t k = 0; k < problem.knots(); ++k) {
+      const Eigen::Vector3d pull = equations.gradient.segment<3>(static_cast<Eigen::Index>(3 * k));
+      by_turn += pull.z() + unknowns.knots[k].x() * pull.y() - unknowns.knots[k].y() * pull.x();
+      by_north += pull.z();
+      by_size += unknowns.knots[k].head<2>().dot(pull.head<2>()) / scale;
+    }
+    const double least = 1e-9 * equations.gradient.cwiseAbs().sum();
+    EXPECT_NEAR(by_turn, 0.0, 100.0 * least);
+    EXPECT_NEAR(by_north, equations.gradient[knots + Eigen::Index{global::kVelocityYaw}], least);
+    EXPECT_NEAR(by_size, -equations.gradient[knots + Eigen::Index{global::kVelocityScale}], 100.0 * least);
+  }
+}
+
 }  // namespace
 }  // namespace pingvox::test
