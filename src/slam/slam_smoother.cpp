@@ -155,10 +155,10 @@ Result<SlamSolution> solve_batch(Recording recording, const std::optional<Veloci
   SlamProblem problem(*std::move(times_s), velocity, recording.navigation.headings, options.calibration);
   Unknowns start = problem.dead_reckoning();
   SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start));
-  if (!contradicts && !velocity.by_sonar) solver.expect_steady_motion();
   bool determined = true;
   std::optional<SweepLoops> loops;
   if (options.matching == Matching::kPairs) {
+    if (!contradicts && !velocity.by_sonar) solver.expect_steady_motion();
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
     if (determined) loops = close_sweep_loops(solver);
     determined = determined && loops;
