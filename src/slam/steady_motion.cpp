@@ -13,6 +13,8 @@ namespace {
 constexpr double kLeast = 5e-4, kMost = 1.0, kStep = 1.5;
 constexpr double kFirst_m_s = 1.0;      ///< deviation of the first velocity
 constexpr double kRounding_m_s = 1e-4;  ///< of a difference, for equations that can be solved
+/// A change that was measured counts a quarter, and a greater one less, from so many standard deviations on.
+constexpr double kSteady = 1.5;
 
 /// Log-likelihood of measured velocities, by a Kalman filter of a random walk.
 double log_likelihood(const TimeSeries& measured, const TimeSeries& density, double change) {
@@ -76,7 +78,15 @@ void add_steady_motion(const SlamProblem& problem, const Unknowns& unknowns, con
     }
     // Between the means over two intervals that follow each other lie two thirds of their length.
     const double between_s = 0.5 * (times_s[k + 2] - times_s[k]) * 2.0 / 3.0;
-    const double weight = 1.0 / (change * change * between_s + kRounding_m_s * kRounding_m_s);
+    const double variance = change * change * between_s + kRounding_m_s * kRounding_m_s;
+    // A vehicle that starts or stops does so at once. Told by what was measured alone, so that each step minimises the
+    // same sum.
+    const double density = problem.velocity().density.at(times_s[k + 1]);
+    const double noise =
+        density * density * (1.0 / (times_s[k + 1] - times_s[k]) + 1.0 / (times_s[k + 2] - times_s[k + 1]));
+    const double square = 0.5 * (ways[k + 1].measured - ways[k].measured).squaredNorm() / (variance + noise);
+    const double share = kSteady * kSteady / (kSteady * kSteady + square);
+    const double weight = share * share / variance;
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         equations.add_block(k + a, k + b,

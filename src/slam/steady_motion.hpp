@@ -13,7 +13,8 @@ namespace pingvox {
 double velocity_change(const VelocitySource& velocity);
 
 /// Adds that the velocity, as measured and corrected by the knots, in the frame of its source, changes by no more from
-/// the time between two knots to the next. REQUIRES equations with blocks for each knot and the next but one.
+/// the time between two knots to the next, unless it was measured to. REQUIRES equations with blocks for each knot and
+/// the next but one.
 void add_steady_motion(const SlamProblem& problem, const Unknowns& unknowns, const std::vector<SlamProblem::Way>& ways,
                        double change, NormalEquations& equations);
 

@@ -60,6 +60,22 @@ TEST(SteadyMotion, PullsAKnotBackThatIsOffASteadyWay) {
   EXPECT_NEAR(gradient()[6], -375.0, 1.0);
 }
 
+// Kills a stop that is smoothed away.
+TEST(SteadyMotion, HardlyCountsWhereTheVehicleStops) {
+  const VelocitySource velocity = measured([](double) { return 0.3; });
+  const HeadingSource heading{"compass", TimeSeries({0.0, 300.0}, {0.0, 0.0}), std::nullopt, std::nullopt};
+  const VelocitySource stops{"dvl", TimeSeries({0.0, 150.0, 150.01, 300.0}, {0.3, 0.3, 0.0, 0.0}),
+                             TimeSeries({0.0, 300.0}, {0.0, 0.0}), velocity.density};
+  const SlamProblem problem({148.0, 150.0, 152.0}, stops, {heading});
+  const Unknowns unknowns = problem.dead_reckoning();
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs = {{0, 1}, {1, 2}, {0, 2}};
+  NormalEquations equations(3, problem.globals(), pairs);
+  add_steady_motion(problem, unknowns, problem.ways(unknowns), 0.01, equations);
+  // 0.3 m/s slower, with a weight as above, it would be 2250.
+  EXPECT_LT(std::abs(equations.gradient[3]), 100.0);
+  EXPECT_GT(std::abs(equations.gradient[3]), 10.0);
+}
+
 // How fast the velocity changes does not depend on where north is, on how the DVL is turned, nor on its scale.
 // Kills derivatives that are left out: those of the frame, by which north or scale crept away over many knots.
 TEST(SteadyMotion, DoesNotPullAtWhatItSaysNothingOf) {
