@@ -49,7 +49,7 @@ void MapWalls::Columns::visit_near(const Eigen::Vector2d& point_m, double reach_
 
 MapWalls::MapWalls(const DistanceField& field) : cell_m_(field.cell_m()) {
   const auto is_occupied = [&](const Eigen::Vector2d& place_m) {
-    return (field.value_at(place_m.x(), place_m.y()) & DistanceField::kFar) == 0;
+    return field.classify(place_m) == Occupancy::kOccupied;
   };
   for (const Eigen::Vector2d& column : field.occupied()) {
     all_.add(column);

@@ -107,8 +107,15 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
     }
     nodes_.push_back(std::move(nodes));
   }
+  steady_m2_.assign(nodes_.size(), 0.0);
   for (const TimeSeries::Gap& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
-    silent_.push_back({gap, farthest_way_s(gap)});
+    const double variance_m2 = std::pow(kSteadyInGap_m_s * farthest_way_s(gap), 2);
+    const auto after = std::ranges::upper_bound(knot_times_s_, gap.from_s);
+    auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - knot_times_s_.begin() - 1, 0));
+    for (; k < nodes_.size() && knot_times_s_[k] < gap.to_s; ++k) {
+      const double share = gap.within(knot_times_s_[k], knot_times_s_[k + 1]) / (gap.to_s - gap.from_s);
+      steady_m2_[k] += variance_m2 * share;
+    }
   }
 }
 
@@ -202,14 +209,9 @@ std::vector<SlamProblem::Way> SlamProblem::ways(const Unknowns& unknowns) const 
     way.measured /= to_s - from_s;
     const double density = velocity_.density.at(0.5 * (from_s + to_s));
     const double gap_m = kVelocityInGap_m_s * velocity_.ahead.gap_s(from_s, to_s);
-    double steady_m2 = 0.0;
-    for (const SilentTime& silent : silent_) {
-      steady_m2 += std::pow(kSteadyInGap_m_s * silent.way_s, 2) * silent.gap.within(from_s, to_s) /
-                   (silent.gap.to_s - silent.gap.from_s);
-    }
     const double noise_m2 = density * density * (to_s - from_s);
     way.deviation_m = std::sqrt(noise_m2 + gap_m * gap_m);
-    way.with_steady_m = std::sqrt(noise_m2 + std::max(gap_m * gap_m, steady_m2));
+    way.with_steady_m = std::sqrt(noise_m2 + std::max(gap_m * gap_m, steady_m2_[k]));
   }
   return ways;
 }

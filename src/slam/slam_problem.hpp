@@ -96,8 +96,9 @@ class SlamProblem {
   struct Way {
     Eigen::Vector2d moved = Eigen::Vector2d::Zero();     ///< [m]
     Eigen::Vector2d weighted = Eigen::Vector2d::Zero();  ///< each part of it times its share of the time
-    Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< mean velocity as measured, in the frame of the body [m/s]
-    double deviation_m = 0.0;                            ///< of either axis
+    Eigen::Vector2d measured =
+        Eigen::Vector2d::Zero();  ///< mean velocity as measured, in the frame of its source [m/s]
+    double deviation_m = 0.0;     ///< of either axis
     /// The same where the error in a gap of the velocity is alike all along it. Solved is without it: knots in a gap
     /// that are as free as that are led astray by wrong pairs.
     double with_steady_m = 0.0;
@@ -124,11 +125,7 @@ class SlamProblem {
     double time_s, share, main_yaw_rad;
     Eigen::Vector2d velocity;
   };
-  /// Where the velocity is silent, and how far from where that begins a vehicle gets that goes ahead at 1 m/s.
-  struct SilentTime {
-    TimeSeries::Gap gap;
-    double way_s;
-  };
+  /// How far from where a gap begins a vehicle gets in it that goes ahead at 1 m/s.
   double farthest_way_s(const TimeSeries::Gap& gap) const;
   Row row(std::size_t knot, double residual) const;
   double deviation_rad(const Unknowns& unknowns, std::size_t source, double yaw_rad) const;
@@ -145,8 +142,8 @@ class SlamProblem {
   SlamCalibration calibration_;  ///< but for its headings
   std::vector<HeadingPrior> heading_priors_;
   bool has_prior_ = false;
-  std::vector<SilentTime> silent_;
   std::vector<std::vector<Node>> nodes_;  ///< of each interval, both ends included
+  std::vector<double> steady_m2_;         ///< of each interval: variance of a motion that is the same for all of a gap
 };
 
 }  // namespace pingvox
