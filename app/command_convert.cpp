@@ -85,11 +85,11 @@ Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& comma
 
 /// Writes the beams of a log, or their echoes. @return what was written
 Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command) {
-  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage, command.topic);
+  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage, command.bag.beams);
   if (!source) return tl::unexpected(source.error());
   if (command.background_m) {
     Result<Background> background =
-        learn_background(command.input, *command.background_m, command.damage, command.topic);
+        learn_background(command.input, *command.background_m, command.damage, command.bag.beams);
     if (!background) return tl::unexpected(background.error());
     *source = subtract_background(std::move(*source), *std::move(background));
   }
@@ -131,28 +131,29 @@ Result<std::string> convert_scans(ByteStream stream, const ConvertCommand& comma
 }
 
 Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command) {
-  const Result<NavFile> nav = read_nav(std::move(stream), command.damage);
-  if (!nav) return tl::unexpected(nav.error());
+  const Result<BagContents> contents = read_nav_log(std::move(stream), command.damage, command.bag.nav);
+  if (!contents) return tl::unexpected(contents.error());
+  const NavFile& nav = contents->nav;
   std::size_t samples = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
-    const Result<std::size_t> count = write_nav_csv(nav->log, out);
+    const Result<std::size_t> count = write_nav_csv(nav.log, out);
     if (!count) return tl::unexpected(count.error());
     samples = *count;
     return {};
   });
   if (!written) return tl::unexpected(written.error());
-  std::string what = fmt::format("{} samples of {} sources", samples, nav->log.sources().size());
-  if (const std::size_t skipped = damaged_records(*nav); skipped > 0) {
+  std::string what = fmt::format("{} samples of {} sources", samples, nav.log.sources().size());
+  if (const std::size_t skipped = damaged_records(nav); skipped > 0) {
     what += fmt::format("; {} damaged records skipped", skipped);
   }
   // Samples are written in order of time, where nothing tells it any more.
-  if (const auto checked = check_clocks(nav->log); !checked) what += "; " + on_one_line(checked.error().message);
+  if (const auto checked = check_clocks(nav.log); !checked) what += "; " + on_one_line(checked.error().message);
   return what;
 }
 
 /// Writes the poses of a navigation log. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command) {
-  const Result<VehiclePath> path = vehicle_positions(std::move(stream), command.damage);
+  const Result<VehiclePath> path = vehicle_positions(std::move(stream), command.damage, command.bag.nav);
   if (!path) return tl::unexpected(path.error());
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
@@ -230,9 +231,9 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   }
   if (is_bag(format) && to == FormatKind::kTrajectory) return convert_nav_to_poses(std::move(stream), command);
   if (is_bag(format) && to == FormatKind::kBeams) {
-    const Result<BagContents> bag = bag_contents(stream, command.damage);
+    const Result<BagContents> bag = bag_contents(stream, command.damage, command.bag.nav);
     if (!bag) return tl::unexpected(bag.error());
-    if (!has_beams(*bag) && !command.topic.fields && !bag->nav.log.sources().empty())
+    if (!has_beams(*bag) && !command.bag.beams.fields && !bag->nav.log.sources().empty())
       return convert_nav(std::move(stream), command);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);

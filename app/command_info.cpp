@@ -354,29 +354,47 @@ void add_topics(Summary& summary, const std::vector<BagTopicSummary>& topics) {
   for (const BagTopicSummary& topic : topics) {
     JsonObject& json = list.emplace_back().add("name", topic.name).add("type", topic.type);
     json.add("messages", topic.messages).add("read_as", name_of(topic.use));
+    if (!topic.fields.empty()) json.add("fields", topic.fields);
     summary.text += fmt::format("  {:<{}} {:>9}  {:<10}  {}\n", on_one_line(topic.name), widest, topic.messages,
                                 name_of(topic.use), on_one_line(topic.type));
   }
   summary.json.add("topics", std::span<const JsonObject>(list));
 }
 
+/// What --fields can name.
+std::string other_fields_text(const std::vector<BagTopicSummary>& topics) {
+  std::string text;
+  for (const BagTopicSummary& topic : topics) {
+    if (topic.fields.empty()) continue;
+    text += fmt::format("  {}: {}\n", on_one_line(topic.name), on_one_line(topic.fields));
+  }
+  return text.empty() ? text : "fields in the messages of other topics (for --fields):\n" + text;
+}
+
 /// A bag: its beams, or what else it holds, then its topics and its navigation.
 Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoCommand& command) {
   const std::string name = stream.name();
   // --strict refuses the beams with the same words.
-  const Result<BagContents> bag = bag_contents(stream, command.damage);
+  Result<BagContents> bag = bag_contents(stream, command.damage, command.bag.nav);
   if (!bag) return tl::unexpected(bag.error());
+  const std::string by_fields = command.bag.beams.fields ? command.bag.beams.name : "";
+  for (BagTopicSummary& topic : bag->topics) {
+    if (topic.name != by_fields) continue;
+    topic.use = BagTopicSummary::Use::kBeams;
+    topic.fields.clear();
+  }
   const bool is_navigated = !bag->nav.log.sources().empty();
-  if (!has_beams(*bag) && !command.topic.fields) {
+  if (!has_beams(*bag) && !command.bag.beams.fields) {
     Summary summary;
     summary.json.add("kind", "nav").add("format", name_of(format));
     add_nav(summary.json, bag->nav);
     summary.text = headline(name, format) + nav_text(bag->nav);
     add_damage(summary, bag->nav.damage);
     add_topics(summary, bag->topics);
+    summary.text += other_fields_text(bag->topics);
     return summary;
   }
-  Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.topic);
+  Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
   if (!summary) return summary;
   add_topics(*summary, bag->topics);
   if (is_navigated) {
@@ -385,6 +403,7 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
     summary->json.add("nav", nav);
     summary->text += "navigation (--nav):\n" + nav_text(bag->nav);
   }
+  summary->text += other_fields_text(bag->topics);
   return summary;
 }
 

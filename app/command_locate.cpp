@@ -78,7 +78,7 @@ Result<Motion> motion_of(const LocateCommand& command) {
     return motion;
   }
   if (command.navs.empty()) return motion;
-  const Result<NavFiles> nav = read_navs(command.navs, command.damage);
+  const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
   if (!nav) return tl::unexpected(nav.error());
   motion.skipped = nav->damaged;
   if (command.nav_salinity) {
@@ -86,7 +86,8 @@ Result<Motion> motion_of(const LocateCommand& command) {
     if (!water) return tl::unexpected(water.error());
     motion.water = *water;
   }
-  Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
+  Result<NavOffset> offset =
+      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), command.bag.beams}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   OdometryOptions options = command.nav;
   options.offset_s = offset->offset_s;
@@ -118,7 +119,7 @@ Result<std::vector<Beam>> beams_of(const LocateCommand& command, std::size_t& sk
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
-    Result<Log> log = open_log(std::move(*stream), command.damage);
+    Result<Log> log = open_log(std::move(*stream), command.damage, std::nullopt, command.bag.beams);
     if (!log) return tl::unexpected(log.error());
     auto* source = std::get_if<std::unique_ptr<BeamSource>>(&*log);
     if (source == nullptr) {

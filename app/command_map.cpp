@@ -200,7 +200,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   const Stopwatch total;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const Result<VehiclePath> path = vehicle_path(command.path, {command.logs.front(), command.topic}, command.damage);
+  const Result<VehiclePath> path = vehicle_path(command.path, command.logs.front(), command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
   BuildOptions build = command.build;
   Totals totals;
@@ -232,10 +232,10 @@ Result<int> run(const MapCommand& command, Console& console) {
           return fail(used.error().code, fmt::format("map: {}", used.error().message));
         }
       }
-      Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m, command.topic);
+      Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m, command.bag.beams);
       if (!log) return tl::unexpected(log.error());
       if (const auto done =
-              subtract_background(*log, command.logs[i], command.background_m, command.damage, command.topic);
+              subtract_background(*log, command.logs[i], command.background_m, command.damage, command.bag.beams);
           !done) {
         return tl::unexpected(done.error());
       }

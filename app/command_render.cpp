@@ -160,9 +160,9 @@ class CartesianCollector {
 };
 
 /// By the options, or by the water that the navigation logs tell of.
-Result<double> sound_speed_ratio_of(const PanelCommand& panel, Damage damage) {
+Result<double> sound_speed_ratio_of(const PanelCommand& panel, const RenderCommand& command) {
   if (!panel.nav_salinity) return panel.build.sound_speed_ratio;
-  const Result<NavFiles> nav = read_navs(panel.path.navs, damage);
+  const Result<NavFiles> nav = read_navs(panel.path.navs, command.damage, command.bag.nav);
   if (!nav) return tl::unexpected(nav.error());
   return water_of(water_around(nav->log), *panel.nav_salinity).map(sound_speed_ratio);
 }
@@ -171,14 +171,15 @@ template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   const std::string name = file.name;
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
-  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), command.damage, command.topic);
+  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), command.damage, command.bag.beams);
   if (!source) return tl::unexpected(source.error());
-  const Result<double> ratio = sound_speed_ratio_of(panel, command.damage);
+  const Result<double> ratio = sound_speed_ratio_of(panel, command);
   if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;
   of_head.build = panel.head.apply_to(panel.build, (*source)->device());
   if (panel.background_m) {
-    Result<Background> background = learn_background(panel.input, *panel.background_m, command.damage, command.topic);
+    Result<Background> background =
+        learn_background(panel.input, *panel.background_m, command.damage, command.bag.beams);
     if (!background) return tl::unexpected(background.error());
     if (panel.image == ShownImage::kBackground) {
       *source = std::make_unique<BeamsInMemory>(background->beams());
@@ -214,12 +215,12 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
 Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   Result<OccupancyMap> map = OccupancyMap::make(panel.map);
   if (!map) return map;
-  const Result<VehiclePath> path = vehicle_path(panel.path, {panel.input, command.topic}, command.damage);
+  const Result<VehiclePath> path = vehicle_path(panel.path, panel.input, command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
   const std::string name = file.name;
-  Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.topic);
+  Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
-  if (const auto done = subtract_background(*log, panel.input, panel.background_m, command.damage, command.topic);
+  if (const auto done = subtract_background(*log, panel.input, panel.background_m, command.damage, command.bag.beams);
       !done) {
     return tl::unexpected(done.error());
   }

@@ -46,13 +46,14 @@ struct Seconds {
   double read = 0.0, solve = 0.0, map = 0.0, write = 0.0, total = 0.0;
 };
 
-Result<Log> open(const std::string& file, Damage damage) {
-  return ByteStream::open(file).and_then([&](ByteStream stream) { return open_log(std::move(stream), damage); });
+Result<Log> open(const std::string& file, const SlamCommand& command) {
+  return ByteStream::open(file).and_then(
+      [&](ByteStream stream) { return open_log(std::move(stream), command.damage, std::nullopt, command.bag.beams); });
 }
 
 /// Opens a log of beams.
-Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, Damage damage) {
-  Result<Log> log = open(file, damage);
+Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, const SlamCommand& command) {
+  Result<Log> log = open(file, command);
   if (!log) return tl::unexpected(log.error());
   if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) return std::move(*beams);
   return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", file));
@@ -65,7 +66,7 @@ Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const 
   if (const auto added = smoother.add(nav.log); !added) return tl::unexpected(added.error());
   std::size_t skipped = nav.damaged;
   for (const std::string& name : command.logs) {
-    const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command.damage);
+    const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command);
     if (!log) return tl::unexpected(log.error());
     for (;;) {
       Result<std::optional<Beam>> beam = (*log)->next();
@@ -92,7 +93,7 @@ Result<void> map_along(const Trajectory& trajectory, const SlamCalibration* cali
   build.sound_speed_ratio = slam.sound_speed_ratio;
   build.body_from_sensor = slam.body_from_sonar;
   for (const std::string& name : command.logs) {
-    auto beams = open_beam_log(name, command.damage);
+    auto beams = open_beam_log(name, command);
     if (!beams) return tl::unexpected(beams.error());
     const Result<MappedLog> mapped = map_log(Log(std::move(*beams)), name, path, build, {}, map);
     if (!mapped) return tl::unexpected(mapped.error());
@@ -363,9 +364,10 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
   if (!map) return tl::unexpected(map.error());
   const Stopwatch read;
-  const Result<NavFiles> nav = read_navs(command.navs, command.damage);
+  const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
   if (!nav) return tl::unexpected(nav.error());
-  Result<NavOffset> offset = nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), {}}, command.damage);
+  Result<NavOffset> offset =
+      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), command.bag.beams}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   Inputs inputs;
   inputs.nav_offset = *std::move(offset);
@@ -457,7 +459,7 @@ class MovedScans : public ScanSource {
 };
 
 Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command, OccupancyMap& map) {
-  Result<Log> log = open(command.logs.front(), command.damage);
+  Result<Log> log = open(command.logs.front(), command);
   if (!log) return tl::unexpected(log.error());
   auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
   if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));
@@ -546,7 +548,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
 }  // namespace
 
 Result<int> run(const SlamCommand& command, Console& console) {
-  Result<Log> first = open(command.logs.front(), command.damage);
+  Result<Log> first = open(command.logs.front(), command);
   if (!first) return tl::unexpected(first.error());
   const bool is_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*first);
   if (const auto used = check_limited(command.limited, {kind_text(is_beams ? FormatKind::kBeams : FormatKind::kScans)});

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "bag_args.hpp"
 #include "console.hpp"
 #include "option_table.hpp"
 #include "pingvox/analysis/slice.hpp"
@@ -97,7 +98,7 @@ struct MapCommand {
   PathArgs path;
   std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
-  BeamTopic topic;  ///< of a bag
+  BagArgs bag;
   MapOptions map;
   OccupancyArgs occupancy;  ///< of the finished map
   BuildOptions build;
@@ -113,7 +114,7 @@ struct InfoCommand {
   std::string file;
   std::vector<LimitedOption> limited;
   Damage damage = Damage::kSkip;
-  BeamTopic topic;  ///< of a bag
+  BagArgs bag;
 };
 
 struct CompareCommand {
@@ -135,7 +136,7 @@ struct ConvertCommand {
   std::string input, output;
   Format format = Format::kCsv;
   Damage damage = Damage::kSkip;
-  BeamTopic topic;                     ///< of a bag
+  BagArgs bag;
   std::optional<double> resolution_m;  ///< of a mesh's map; nullopt: the default
   OccupancyArgs occupancy;             ///< of a map
   SliceOptions slice;                  ///< of a map
@@ -183,7 +184,7 @@ struct RenderCommand {
   OutputOptions output_options;
   std::string output, title;
   Damage damage = Damage::kSkip;
-  BeamTopic topic;                     ///< of a bag
+  BagArgs bag;
   std::vector<PanelCommand> panels;    ///< at least one
   std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs that are mapped"
 };
@@ -217,6 +218,7 @@ struct SlamCommand {
   Format map_format = Format::kBt;
   double map_resolution_m = MapOptions{}.resolution_m;
   Damage damage = Damage::kSkip;
+  BagArgs bag;
   SlamOptions slam;
   std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
   std::optional<double> nav_offset_s;  ///< added to the times of `navs`; nullopt: to be found
@@ -242,6 +244,7 @@ struct LocateCommand {
   std::optional<StartPose> start;          ///< nullopt: anywhere
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's
   Damage damage = Damage::kSkip;
+  BagArgs bag;
   LocalizerOptions localizer;
   std::optional<double> nav_salinity;          ///< of water whose temperature and depth the navigation log tells
   Estimation estimation = Estimation::kBatch;  ///< of the poses by `navs`

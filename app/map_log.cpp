@@ -76,15 +76,15 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, describe(*format)));
 }
 
-Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage) {
+Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, const BagArgs& bag, Damage damage) {
   if (path.navs.empty()) {
     return trajectory_of(path.poses).map([](Trajectory trajectory) {
       return VehiclePath{std::move(trajectory), std::nullopt};
     });
   }
-  const Result<NavFiles> nav = read_navs(path.navs, damage);
+  const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav);
   if (!nav) return tl::unexpected(nav.error());
-  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, sonar, damage);
+  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, {log, bag.beams}, damage);
   if (!offset) return tl::unexpected(offset.error());
   const std::optional<WaterAround> water = water_around(nav->log);
   const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
@@ -121,15 +121,16 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Da
       .map_error(name_files);
 }
 
-Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage) {
+Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields) {
   const std::string name = nav.name();
-  const Result<NavFile> read = read_nav(std::move(nav), damage);
-  if (!read) return tl::unexpected(read.error());
-  const bool has_attitude = read->log.best(NavQuantity::kAttitude) != nullptr;
-  Result<NavTrajectory> made = has_attitude ? nav_trajectory(read->log) : nav_positions(read->log);
+  const Result<BagContents> contents = read_nav_log(std::move(nav), damage, fields);
+  if (!contents) return tl::unexpected(contents.error());
+  const NavFile& read = contents->nav;
+  const bool has_attitude = read.log.best(NavQuantity::kAttitude) != nullptr;
+  Result<NavTrajectory> made = has_attitude ? nav_trajectory(read.log) : nav_positions(read.log);
   if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
   return VehiclePath{std::move(made->trajectory),
-                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(*read), {}, {}}};
+                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(read), {}, {}}};
 }
 
 std::string nav_text(const VehiclePath& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "commands.hpp"
@@ -32,10 +33,11 @@ struct VehiclePath {
 };
 /// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
 /// reckoning.
-/// @param sonar  the log whose clock its times are to be on
-Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& sonar, Damage damage);
+/// @param log  whose clock its times are to be on
+Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, const BagArgs& bag, Damage damage);
 /// Trajectory of one navigation log; positions without an attitude give poses without rotation.
-Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage);
+/// @param fields  as for read_nav_log
+Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
 

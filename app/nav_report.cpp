@@ -1,6 +1,6 @@
 #include "nav_report.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "map_report.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/slam/clock_offset.hpp"
 #include "unknown_file.hpp"
 
@@ -20,7 +21,35 @@ std::size_t damaged_records(const NavFile& nav) {
   return count;
 }
 
-Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage) {
+namespace {
+
+/// Any navigation log, with its topics if it is a bag.
+Result<BagContents> read_contents(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
+  const std::optional<Format> format = streamed_format_of(stream.beginning());
+  if (format && is_bag(*format)) return read_bag(std::move(stream), damage, fields);
+  return read_nav(std::move(stream), damage).map([](NavFile nav) { return BagContents{{}, std::move(nav)}; });
+}
+
+/// Names what `fields` miss in the topics of bags; nothing is expected of other logs.
+Result<void> check_contents(std::span<const NavFields> fields, const std::vector<BagTopicSummary>& topics,
+                            const std::string& names) {
+  if (topics.empty()) return {};
+  const Result<void> there = check_topics(fields, topics);
+  return there ? there : fail(there.error().code, fmt::format("{}: {}", names, there.error().message));
+}
+
+}  // namespace
+
+Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
+  const std::string name = stream.name();
+  Result<BagContents> contents = read_contents(std::move(stream), damage, fields);
+  if (!contents) return contents;
+  if (const auto there = check_contents(fields, contents->topics, name); !there) return tl::unexpected(there.error());
+  return contents;
+}
+
+Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields) {
+  std::vector<BagTopicSummary> topics;
   std::vector<NavSource> sources;
   std::optional<NavClock> clock;
   std::vector<YawChange> first_turns;
@@ -30,11 +59,13 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
-    const Result<NavFile> nav = read_nav(std::move(*stream), damage);
-    if (!nav && unread && nav.error().code == Error::Code::kUnsupported) {
+    const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
+    if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
     }
-    if (!nav) return tl::unexpected(nav.error());
+    if (!contents) return tl::unexpected(contents.error());
+    topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());
+    const NavFile* nav = &contents->nav;
     if (const auto checked = check_clocks(nav->log); !checked) {
       return fail(checked.error().code, fmt::format("{}: {}", shown, checked.error().message));
     }
@@ -63,6 +94,8 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
       }
     }
   }
+  const auto there = check_contents(fields, topics, fmt::format("{}", fmt::join(names, ", ")));
+  if (!there) return tl::unexpected(there.error());
   return NavLog::make(std::move(sources), clock.value_or(NavClock::kUnknown)).map([&](NavLog log) {
     return NavFiles{std::move(log), damaged};
   });

@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "json.hpp"
+#include "pingvox/io/bag.hpp"
+#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/sonar/sound_speed.hpp"
 
@@ -21,8 +24,13 @@ struct NavFiles {
 };
 /// A log that counts from another start is aligned with the first by how the vehicle turned in both; kUnsupported when
 /// that cannot be told.
-/// @param names  - is standard input; an empty log without any
-Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage);
+/// @param names   - is standard input; an empty log without any
+/// @param fields  of messages in ROS bags; if one of the logs is a bag, there must be messages of each
+Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields);
+
+/// One navigation log, with its topics if it is a bag.
+/// @param fields  as above
+Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<const NavFields> fields);
 
 /// The water that navigation logs tell of, with the salinity of --water nav,S. kUnsupported when they do not tell the
 /// temperature.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mapping_options.hpp"
+#include "nav_report.hpp"
 #include "option_values.hpp"
 #include "unknown_file.hpp"
 
@@ -23,14 +24,14 @@ Result<Format> identify_format(ByteStream& stream) {
   return identify_format(stream.held());
 }
 
-Result<BagContents> bag_contents(ByteStream& stream, Damage damage) {
+Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<const NavFields> fields) {
   if (const std::optional<std::string> path = stream.path()) {
     Result<ByteStream> again = ByteStream::open(*path);
     if (!again) return tl::unexpected(again.error());
-    return read_bag(std::move(*again), damage);
+    return read_nav_log(std::move(*again), damage, fields);
   }
   if (const Result<void> held = stream.load_all(); !held) return tl::unexpected(held.error());
-  return read_bag(ByteStream(stream.held()), damage);
+  return read_nav_log(ByteStream(stream.held()), damage, fields);
 }
 
 bool has_beams(const BagContents& bag) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -37,7 +38,8 @@ Result<Log> open_log(ByteStream stream, Damage damage,
                      const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt, const BeamTopic& topic = {});
 
 /// What a bag holds; the stream can still be read afterwards. A pipe is loaded into memory for that.
-Result<BagContents> bag_contents(ByteStream& stream, Damage damage);
+/// @param fields  of messages; there must be some of each
+Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<const NavFields> fields);
 bool has_beams(const BagContents& bag);
 
 /// What each direction of the log at a path always hears nearer than `range_m`.

@@ -14,8 +14,8 @@ Result<Command> info_command(const Args& args) {
       "Files are recognised by their content, not by their name.",
       {{"FILE", Positional::Count::kOne, "the file; - is standard input", store(command.file)}},
       {{"Options",
-        {json_option(command.output_options), strict_option(command.damage), topic_option(command.topic),
-         fields_option(command.topic)}}},
+        {json_option(command.output_options), strict_option(command.damage), topic_option(command.bag),
+         fields_option(command.bag)}}},
       {"pingvox info tank.mat", "pingvox info tank.bt --json"},
       ""};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {

@@ -112,7 +112,8 @@ Result<Command> locate_command(const Args& args) {
               Estimation::kCausal),
          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}}},
        std::move(echo_options),
-       {"Input", {strict_option(command.damage), config_option()}}},
+       {"Input",
+        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
       {"pingvox locate dive.csv --map harbour.bt --nav dvl.csv -o dive.tum",
        "pingvox locate tank.csv --map tank.bt --start 0.1,0.2,45 -o tank.tum --json"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};

@@ -87,7 +87,7 @@ Result<Command> map_command(const Args& args) {
        sensor_options,
        echo_group(build.echoes),
        {"Input",
-        {strict_option(command.damage), topic_option(command.topic), fields_option(command.topic), config_option()}}},
+        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
       {"pingvox map tank.csv -o tank.bt",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses dive.tum --mount 0.4,0,-0.2,180,0,0",
        "pingvox map dive.csv -o reef.ot --nav dive.tlog --nav-offset -1712333808.974",

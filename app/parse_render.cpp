@@ -247,8 +247,8 @@ Result<Command> render_command(const Args& args) {
                      "none", store_each(beside), Repeats::kEachCounts});
   options.push_back({"--title", 0, "TEXT", "text above the picture", "none", store(command.title)});
   options.push_back(strict_option(command.damage));
-  options.push_back(topic_option(command.topic));
-  options.push_back(fields_option(command.topic));
+  options.push_back(topic_option(command.bag));
+  options.push_back(fields_option(command.bag));
   options.push_back(quiet_option(command.output_options));
   options.push_back(config_option());
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {

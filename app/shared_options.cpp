@@ -4,10 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <filesystem>
-#include <numbers>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -24,59 +22,6 @@ tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
   const bool is_named = error.message.starts_with(table.command + ":");
   if (error.code != Error::Code::kBadOption || is_named) return tl::unexpected(error);
   return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
-}
-
-enum class AngleUnit { kRadian, kDegree, kGradian };
-enum class Turn { kCounterClockwise, kClockwise };
-constexpr std::array kAngleUnits = {Choice<AngleUnit>{"rad", AngleUnit::kRadian},
-                                    Choice<AngleUnit>{"deg", AngleUnit::kDegree},
-                                    Choice<AngleUnit>{"grad", AngleUnit::kGradian}};
-constexpr std::array kTurns = {Choice<Turn>{"ccw", Turn::kCounterClockwise}, Choice<Turn>{"cw", Turn::kClockwise}};
-
-double radians_of(AngleUnit unit) {
-  if (unit == AngleUnit::kDegree) return std::numbers::pi / 180.0;
-  return unit == AngleUnit::kGradian ? std::numbers::pi / 200.0 : 1.0;
-}
-
-/// "angle=heading,unit=deg,turn=cw,range=max_range,intensities=data"
-Result<BeamFields> fields_from(std::string_view text) {
-  BeamFields fields;
-  double unit_rad = 1.0, sense = 1.0;
-  while (!text.empty()) {
-    const std::string_view part = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(part.size() + 1, text.size()));
-    const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string_view key = part.substr(0, equals);
-    const std::string value(part.substr(std::min(equals + 1, part.size())));
-    if (value.empty()) return usage_error(fmt::format("'{}': must be KEY=VALUE", part));
-    if (key == "angle") {
-      fields.angle = value;
-    } else if (key == "range" || key == "bin") {
-      fields.length = value;
-      fields.length_of = key == "bin" ? BeamFields::Length::kBin : BeamFields::Length::kBeam;
-    } else if (key == "intensities") {
-      fields.intensities = value;
-    } else if (key == "unit") {
-      const Result<AngleUnit> unit = choice_value(kAngleUnits, value);
-      if (!unit) return tl::unexpected(unit.error());
-      unit_rad = radians_of(*unit);
-    } else if (key == "turn") {
-      const Result<Turn> turn = choice_value(kTurns, value);
-      if (!turn) return tl::unexpected(turn.error());
-      sense = *turn == Turn::kClockwise ? -1.0 : 1.0;
-    } else if (key == "ahead") {
-      const auto ahead = numbers_from<1>(value);
-      if (!ahead) return tl::unexpected(ahead.error());
-      fields.ahead = (*ahead)[0];
-    } else {
-      return usage_error(fmt::format("'{}': must be one of angle, range, bin, intensities, unit, turn, ahead", key));
-    }
-  }
-  if (fields.angle.empty() || fields.length.empty() || fields.intensities.empty()) {
-    return usage_error("must name the fields of angle, range or bin, and intensities");
-  }
-  fields.angle_unit_rad = sense * unit_rad;
-  return fields;
 }
 
 }  // namespace
@@ -100,27 +45,23 @@ Option strict_option(Damage& damage) {
   return option;
 }
 
-Option topic_option(BeamTopic& topic) {
-  Option option{"--topic",        0, "NAME", "topic of a ROS bag to read beams from", "the only one with beams",
-                store(topic.name)};
+Option topic_option(BagArgs& bag) {
+  Option option{
+      "--topic", 0, "NAME", "topic of a ROS bag to read beams from", "the only one with beams", store(bag.beams.name)};
   option.only_for = {std::string(kBeamLogs)};
   return option;
 }
 
-Option fields_option(BeamTopic& topic) {
+Option fields_option(BagArgs& bag) {
   Option option{
       "--fields",
       0,
-      "KEY=VALUE,...",
-      "fields of a message of --topic that make it a beam, for unknown drivers: angle, range (of the beam in m) "
-      "or bin (length of one in m), intensities; and unit=rad|deg|grad, turn=ccw|cw, ahead=N of the angle",
+      "FILE|KEY=VALUE,...",
+      "fields of messages in ROS bags, for unknown drivers: a TOML file with those of beams and navigation "
+      "(docs/formats.md); or of a message of --topic that makes it a beam: angle, range (of the beam in m) or bin "
+      "(length of one in m), intensities; and unit=rad|deg|grad, turn=ccw|cw, ahead=N of the angle",
       "by the type of the message; unit=rad,turn=ccw,ahead=0",
-      [&topic](const std::string& text) -> Result<void> {
-        const Result<BeamFields> fields = fields_from(text);
-        if (!fields) return tl::unexpected(fields.error());
-        topic.fields = *fields;
-        return {};
-      }};
+      [&bag](const std::string& text) { return take_fields(text, bag); }};
   option.only_for = {std::string(kBeamLogs)};
   return option;
 }

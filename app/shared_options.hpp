@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "bag_args.hpp"
 #include "commands.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -16,9 +17,8 @@ namespace pingvox::app {
 Option output_option(std::string& target, std::string help);
 Option config_option();
 Option strict_option(Damage& damage);
-Option topic_option(BeamTopic& topic);
-/// --fields: how the messages of that topic are beams.
-Option fields_option(BeamTopic& topic);
+Option topic_option(BagArgs& bag);
+Option fields_option(BagArgs& bag);
 Option json_option(OutputOptions& output_options);
 Option quiet_option(OutputOptions& output_options);
 

@@ -43,12 +43,12 @@ _pingvox_options() {
       ;;
     slam)
       options+=(--output --map --resolution --calibration --covariance --graph --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --matching)
-      options+=(--causal --seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
+      options+=(--causal --seed --strict --topic --fields --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
     locate)
       options+=(--output --map --min-z --max-z --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --odometry --start)
-      options+=(--causal --seed --strict --config --min-range --min-bin --max-range --sound-speed --water)
+      options+=(--causal --seed --strict --topic --fields --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
     live)
@@ -133,7 +133,7 @@ _pingvox() {
         --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
-        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --to | --obstacles | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside | --fields)
+        --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --to | --obstacles | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside)
         return # a number or a text: nothing to offer
         ;;
     esac

@@ -243,7 +243,7 @@ class BagBeams final : public DeviceLog {
     return fail(Error::Code::kBadOption,
                 fmt::format("{}: {} ({}) lacks a field of {}, {}, {}{}", bag_->name(), topic.name, topic.type,
                             fields_->angle, fields_->length, fields_->intensities,
-                            layout ? fmt::format(": it has {}", fmt::join(layout->paths(), ", "))
+                            layout ? fmt::format(": it has {}", fields_text(*layout))
                                    : std::string(" and cannot be read: its definition is not in the bag")));
   }
 

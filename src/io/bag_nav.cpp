@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 #include "io/bag_topics.hpp"
 #include "io/dvl_a50.hpp"
+#include "io/nav_fields.hpp"
 #include "io/nav_sources.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
@@ -59,18 +60,11 @@ Eigen::Vector3d three(const RosFields& message, std::size_t first) {
   return {message.number(first), message.number(first + 1), message.number(first + 2)};
 }
 
-/// Roll, pitch, yaw of a rotation.
-Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
-  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
-}
-
-/// An attitude from x, y, z, w. Drivers without one send zeros.
+/// An attitude from x, y, z, w, if it is one.
 void add_attitude(const RosFields& message, std::size_t first, bool valid, Samples& samples) {
-  const Eigen::Quaterniond q(message.number(first + 3), message.number(first), message.number(first + 1),
-                             message.number(first + 2));
-  constexpr double kTolerance = 1e-2;
-  if (!(std::fabs(q.norm() - 1.0) <= kTolerance)) return;
-  samples.add(NavQuantity::kAttitude, rpy_of(q.normalized().toRotationMatrix()), valid);
+  const auto rpy = rpy_of_quaternion(
+      {message.number(first), message.number(first + 1), message.number(first + 2), message.number(first + 3)});
+  if (rpy) samples.add(NavQuantity::kAttitude, *rpy, valid);
 }
 
 /// Pressure in Pa, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
@@ -249,21 +243,26 @@ constexpr std::array kNavTypes = {
 /// Gathers the topics and the navigation of a bag.
 class BagSurvey {
  public:
-  explicit BagSurvey(Bag& bag) : bag_(bag) {}
+  BagSurvey(Bag& bag, std::span<const NavFields> fields) : bag_(bag), fields_(fields) {}
 
-  void add(const BagMessage& message) {
-    add_topics();
+  Result<void> add(const BagMessage& message) {
+    if (const auto added = add_topics(); !added) return added;
     Topic& topic = topics_[message.topic];
     ++summaries_[topic.summary].messages;
-    if (!topic.known) return;
+    if (!topic.known) return {};
     if (!message_.read(topic.known->layout, message.bytes)) {
       add_damage(unusable_, "message that does not fit its definition", message.file_byte);
-      return;
+      return {};
     }
     ++records_;
-    Samples samples(sources_, summaries_[topic.summary].name, topic.known->time_of(message_, message.time_s),
-                    topic.frame);
+    const std::string& name = summaries_[topic.summary].name;
+    for (const NavReader& reader : topic.readers) {
+      reader.add(message_, *topic.known, message.time_s, name, sources_);
+    }
+    if (!topic.readers.empty()) return {};
+    Samples samples(sources_, name, topic.known->time_of(message_, message.time_s), topic.frame);
     kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
+    return {};
   }
 
   std::vector<DamageKind> damage() const {
@@ -273,7 +272,7 @@ class BagSurvey {
   }
 
   Result<BagContents> finish() {
-    add_topics();
+    if (const auto added = add_topics(); !added) return tl::unexpected(added.error());
     Result<NavLog> log = NavLog::make(sources_.take(), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
     return BagContents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}};
@@ -283,24 +282,52 @@ class BagSurvey {
   struct Topic {
     std::size_t summary;
     std::optional<KnownTopic> known;
+    std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
     DeadReckoningFrame frame;
   };
 
-  void add_topics() {
+  Result<void> add_topics() {
     while (topics_.size() < bag_.topics().size()) {
       const BagTopic& topic = bag_.topics()[topics_.size()];
       const auto [place, is_new] = places_.try_emplace(topic.name, summaries_.size());
-      std::optional<KnownTopic> known = known_topic(topic, kNavTypes);
-      if (is_new) {
-        using Use = BagTopicSummary::Use;
-        const Use use = is_sonar(topic) ? Use::kBeams : known ? Use::kNavigation : Use::kNone;
-        summaries_.push_back({topic.name, topic.type, 0, use});
-      }
-      topics_.push_back({place->second, std::move(known), {}});
+      Result<std::vector<NavReader>> readers = readers_of(topic);
+      if (!readers) return tl::unexpected(readers.error());
+      std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, kNavTypes) : topic_with(topic, {});
+      if (is_new) summaries_.push_back(summary_of(topic, known.has_value()));
+      topics_.push_back({place->second, std::move(known), *std::move(readers), {}});
     }
+    return {};
+  }
+
+  /// By the fields that were named.
+  Result<std::vector<NavReader>> readers_of(const BagTopic& topic) const {
+    std::vector<NavReader> readers;
+    for (const NavFields& fields : fields_) {
+      if (!is_of(fields, topic.name, topic.type)) continue;
+      const auto known = topic.is_readable ? topic_with(topic, {}) : std::nullopt;
+      const Result<NavReader> reader = known ? NavReader::make(fields, known->layout)
+                                             : fail(Error::Code::kBadOption, "its definition is not in the bag");
+      if (!reader) {
+        return fail(reader.error().code,
+                    fmt::format("{}: {} ({}): {}", bag_.name(), topic.name, topic.type, reader.error().message));
+      }
+      readers.push_back(*reader);
+    }
+    return readers;
+  }
+
+  static BagTopicSummary summary_of(const BagTopic& topic, bool has_navigation) {
+    using Use = BagTopicSummary::Use;
+    BagTopicSummary summary{topic.name, topic.type, 0, is_sonar(topic) ? Use::kBeams : Use::kNone, {}};
+    if (summary.use == Use::kNone && has_navigation) summary.use = Use::kNavigation;
+    if (summary.use == Use::kNone && topic.is_readable) {
+      if (const auto known = topic_with(topic, {})) summary.fields = fields_text(known->layout);
+    }
+    return summary;
   }
 
   Bag& bag_;
+  std::span<const NavFields> fields_;
   std::vector<Topic> topics_;
   std::vector<BagTopicSummary> summaries_;
   std::map<std::string, std::size_t> places_;  ///< in summaries_
@@ -312,23 +339,40 @@ class BagSurvey {
 
 }  // namespace
 
-Result<BagContents> read_bag(ByteStream stream, Damage damage) {
+Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
   const std::span<const std::uint8_t> beginning = stream.beginning();
   if (!looks_like_ros1_bag(beginning) && !looks_like_sqlite(beginning) && !looks_like_mcap(beginning)) {
     return fail(Error::Code::kUnsupported, fmt::format("{}: is not a ROS bag", stream.name()));
   }
   const Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
   if (!bag) return tl::unexpected(bag.error());
-  BagSurvey survey(**bag);
+  BagSurvey survey(**bag, fields);
   for (;;) {
     const Result<std::optional<BagMessage>> message = (*bag)->next();
     if (!message) return tl::unexpected(message.error());
-    if (*message) survey.add(**message);
+    if (*message) {
+      if (const auto added = survey.add(**message); !added) return tl::unexpected(added.error());
+    }
     if (const auto kinds = survey.damage(); damage == Damage::kFail && !kinds.empty()) {
       return fail(Error::Code::kCorrupt, fmt::format("{}: {}", (*bag)->name(), first_damage_text(kinds.front())));
     }
     if (!*message) return survey.finish();
   }
+}
+
+Result<void> check_topics(std::span<const NavFields> fields, std::span<const BagTopicSummary> topics) {
+  for (const NavFields& wanted : fields) {
+    const auto is_there = [&](const BagTopicSummary& topic) { return is_of(wanted, topic.name, topic.type); };
+    if (std::ranges::any_of(topics, is_there)) continue;
+    std::vector<std::string> names;
+    for (const BagTopicSummary& topic : topics) names.push_back(fmt::format("{} ({})", topic.name, topic.type));
+    const std::string name = wanted.topic.empty() ? "" : fmt::format(" '{}'", wanted.topic);
+    const std::string type = wanted.type.empty() ? "" : fmt::format(" of type '{}'", wanted.type);
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}{}there is no topic{}{}, but {}", wanted.stated_in, wanted.stated_in.empty() ? "" : ": ",
+                            name, type, names.empty() ? "none at all" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  return {};
 }
 
 }  // namespace pingvox

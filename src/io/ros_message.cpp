@@ -142,12 +142,17 @@ class LayoutMaker {
   std::optional<RosLayout> make(std::string_view type) {
     const auto [package, name] = package_and_name(type);
     const Section* section = find(package, name, {});
-    if (section == nullptr || !add_record(*section, "", 0)) return std::nullopt;
+    if (section == nullptr || !add_record(*section, {}, 0)) return std::nullopt;
     return std::move(layout_);
   }
 
  private:
   using Array = RosLayout::Array;
+
+  /// Where a record is: what stands before the paths and behind the types of its fields.
+  struct Outer {
+    std::string prefix, arrays;
+  };
 
   const Section* find(std::string_view package, std::string_view name, std::string_view inside) const {
     const auto in_package = [&](std::string_view wanted) {
@@ -161,7 +166,7 @@ class LayoutMaker {
   }
 
   /// @return its number; nullopt as make()
-  std::optional<std::size_t> add_record(const Section& section, const std::string& prefix, int depth) {
+  std::optional<std::size_t> add_record(const Section& section, const Outer& outer, int depth) {
     constexpr int kMaxDepth = 16;
     if (depth > kMaxDepth) return std::nullopt;
     RosLayout::Record record;
@@ -169,7 +174,7 @@ class LayoutMaker {
     while (!text.empty()) {
       const std::optional<FieldLine> line = field_in(cut_line(text));
       if (!line) continue;
-      const std::optional<RosLayout::Member> member = member_of(*line, section.package, prefix, depth);
+      const std::optional<RosLayout::Member> member = member_of(*line, section.package, outer, depth);
       if (!member) return std::nullopt;
       record.members.push_back(*member);
     }
@@ -178,31 +183,34 @@ class LayoutMaker {
     return layout_.records_.size() - 1;
   }
 
-  std::optional<RosLayout::Member> member_of(const FieldLine& line, std::string_view package, const std::string& prefix,
+  std::optional<RosLayout::Member> member_of(const FieldLine& line, std::string_view package, const Outer& outer,
                                              int depth) {
     constexpr std::size_t kMaxMembers = 4096;
     if (++members_ > kMaxMembers) return std::nullopt;
     RosLayout::Member member;
     if (line.is_array) member.array = line.size ? Array::kFixed : Array::kVariable;
     member.size = line.size.value_or(1);
-    const std::string path = prefix + std::string(line.name);
+    const std::string path = outer.prefix + std::string(line.name);
+    std::string arrays = outer.arrays;
+    if (line.is_array) arrays += line.size ? "[" + std::to_string(*line.size) + "]" : "[]";
     const auto number = std::ranges::find(kNumbers, line.type, [](const auto& known) { return known.first; });
     if (number != kNumbers.end()) {
       member.type = number->second;
-      member.field = layout_.paths_.size();
-      layout_.paths_.push_back(path);
+      member.field = layout_.fields_.size();
+      layout_.fields_.push_back(
+          {path, std::string(line.type) + arrays, outer.arrays.empty() ? line.size : std::nullopt});
       return member;
     }
     if (layout_.encoding_ == RosEncoding::kRos1 && (line.type == "time" || line.type == "duration")) {
       const bool is_time = line.type == "time";
       member.record = add_record({"", line.type, is_time ? "uint32 sec\nuint32 nanosec" : "int32 sec\nint32 nanosec"},
-                                 path + ".", depth + 1);
+                                 {path + ".", arrays}, depth + 1);
       return member;
     }
     const auto [named, name] = package_and_name(line.type);
     const Section* section = find(named, name, package);
     if (section == nullptr) return std::nullopt;
-    member.record = add_record(*section, path + ".", depth + 1);
+    member.record = add_record(*section, {path + ".", arrays}, depth + 1);
     if (!member.record) return std::nullopt;
     return member;
   }
@@ -258,9 +266,19 @@ std::optional<RosLayout> RosLayout::make(std::string_view type, std::string_view
 }
 
 std::optional<std::size_t> RosLayout::field(std::string_view path) const {
-  const auto found = std::ranges::find(paths_, path);
-  if (found == paths_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - paths_.begin());
+  const auto found = std::ranges::find(fields_, path, &RosField::path);
+  if (found == fields_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - fields_.begin());
+}
+
+std::string fields_text(const RosLayout& layout) {
+  std::string text;
+  for (const RosField& field : layout.fields()) {
+    if (field.is_text() || field.path.starts_with("header.")) continue;
+    if (!text.empty()) text += ", ";
+    text += field.path + " " + field.type;
+  }
+  return text;
 }
 
 /// Walks through the bytes of a message.
@@ -363,7 +381,7 @@ class RosMessage::Walk {
 };
 
 bool RosMessage::read(const RosLayout& layout, std::span<const std::uint8_t> bytes) {
-  values_.assign(layout.fields(), RosValues{});
+  values_.assign(layout.fields().size(), RosValues{});
   order_ = std::endian::little;
   if (layout.encoding() == RosEncoding::kCdr) {
     // Plain CDR; others have tags or other rules of alignment.

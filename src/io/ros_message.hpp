@@ -26,6 +26,16 @@ struct RosValues {
   std::size_t first = 0, count = 0, stride = 1;
 };
 
+/// A field of numbers or text.
+struct RosField {
+  std::string path;  ///< as in "header.stamp.sec"
+  std::string type;  ///< as in the definition: "float64", "uint8[]"; "float32[][3]" within an array
+  std::optional<std::size_t> size = std::nullopt;  ///< of an array that is fixed; nullopt: another field
+
+  bool is_array() const { return type.ends_with(']'); }
+  bool is_text() const { return type.starts_with("string"); }
+};
+
 /// The fields of a type of message: those of messages in it have paths, as in "header.stamp.sec".
 class RosLayout {
  public:
@@ -36,9 +46,7 @@ class RosLayout {
 
   /// The number of a field; nullopt: there is none of that path.
   std::optional<std::size_t> field(std::string_view path) const;
-  std::size_t fields() const { return paths_.size(); }
-  /// Of all fields.
-  const std::vector<std::string>& paths() const { return paths_; }
+  const std::vector<RosField>& fields() const { return fields_; }
   RosEncoding encoding() const { return encoding_; }
 
  private:
@@ -67,8 +75,11 @@ class RosLayout {
 
   RosEncoding encoding_ = RosEncoding::kRos1;
   std::vector<Record> records_;  ///< the last one is the message
-  std::vector<std::string> paths_;
+  std::vector<RosField> fields_;
 };
+
+/// The numbers of a message, without those of its header: "x float64, valid bool".
+std::string fields_text(const RosLayout& layout);
 
 /// Reads messages of a layout. Of an array of messages whose size varies (with texts or arrays in them) only the first
 /// has values.

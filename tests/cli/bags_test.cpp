@@ -98,9 +98,85 @@ TEST(Bags, BeamsOfAnUnknownDriverAreReadByTheirFields) {
       here.call({"map", kMcap, "-o", "map.bt", "--topic", "/echo", "--fields", "angle=a,range=b,intensities=c"}), 2,
       {"/echo", "lacks a field", "transmit_frequency"});
   expect_error(here.call({"map", kMcap, "-o", "map.bt", "--fields", fields}), 2, {"--topic"});
-  for (const char* wrong : {"angle=a,range=b", "angle=a,range=b,intensities=c,unit=turns", "angle", "heading=a"}) {
+  for (const char* wrong : {"angle=a,range=b", "angle=a,range=b,intensities=c,unit=turns", "angle=", "heading=a"}) {
     expect_error(here.call({"map", kMcap, "-o", "map.bt", "--topic", "/echo", "--fields", wrong}), 2, {"--fields"});
   }
+}
+
+// A file for an unknown driver: here the topics of a bag that we know, read by its fields.
+TEST(Bags, AFileNamesTheFieldsOfBeamsAndNavigation) {
+  const Workplace here;
+  here.write("driver.toml",
+             "# A sonar and a pose.\n"
+             "[[beams]]\ntopic = \"/scan_line\"\nangle = \"angle\"\nunit = \"deg\"\nturn = \"cw\"\n"
+             "bin = \"bin_distance_step\"\nintensities = \"bins.intensity\"\n\n"
+             "[[nav]]\ntopic = \"/pose\"\nquantity = \"position\"\n"
+             "fields = \"pose.position.x, pose.position.y, pose.position.z\"\n\n"
+             "[[nav]]\ntype = \"geometry_msgs/PoseStamped\"\nquantity = \"attitude\"\n"
+             "fields = \"pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w\"\n");
+  const Outcome known = here.call({"map", kBag, "--nav", kBag, "-o", "known.bt", "--json"});
+  const Outcome named = here.call(
+      {"map", kBag, "--nav", kBag, "--fields", "driver.toml", "-o", "named.bt", "--device", "micron", "--json"});
+  ASSERT_EQ(named.status, 0) << named.err;
+  EXPECT_THAT(named.out, HasSubstr(R"("attitude": "/pose", "position": "/pose", "poses": 6)"));
+  EXPECT_EQ(here.read("named.bt"), here.read("known.bt")) << known.err;
+  const Outcome info = here.call({"info", kBag, "--fields", "driver.toml", "--json"});
+  EXPECT_THAT(info.out, HasSubstr(R"("messages": 6, "read_as": "beams")"));
+  EXPECT_THAT(info.out, HasSubstr(R"("records": 12)")) << "the depths by their type";
+  for (const char* output : {"named.tum", "named.csv"}) {
+    EXPECT_EQ(here.call({"convert", kBag, "--fields", "driver.toml", "-o", output}).status, 0);
+  }
+  // Not enough to go by for these two, but they have read it.
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"slam", kBag, "-o", "slam.tum"},
+        std::vector<std::string>{"locate", kBag, "--map", "known.bt", "-o", "locate.tum"}}) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"--nav", kBag, "--fields", "other.toml"});
+    here.write("other.toml", "[[nav]]\ntopic = \"/pose\"\nquantity = \"depth\"\nfields = \"pose.z\"\n");
+    expect_error(here.call(words), 2, {"/pose (geometry_msgs/PoseStamped)", "no field 'pose.z'", "pose.position.z"});
+  }
+}
+
+TEST(Bags, WhatIsWrongInAFileOfFieldsIsNamed) {
+  const Workplace here;
+  const std::string depth = "[[nav]]\ntopic = \"/pose\"\nquantity = \"depth\"\nfields = \"-pose.position.z\"\n";
+  const auto error = [&](const std::string& text, int status, const std::vector<std::string>& texts) {
+    SCOPED_TRACE(text);
+    here.write("driver.toml", text);
+    expect_error(here.call({"info", kBag, "--fields", "driver.toml"}), status, texts);
+  };
+  error(depth + "units = \"m\"\n", 1, {"driver.toml: line 5: units: is unknown"});
+  error(depth + "unit = \"deg\"\n", 1, {"driver.toml: line 5: unit: must be m or cm or mm, not 'deg'"});
+  error(depth + "frame = \"ned\"\n", 1, {"line 5: frame: depth has none"});
+  error(depth + "time-unit = \"us\"\n", 1, {"line 5: time-unit: needs time"});
+  error(depth + "sd = \"a\"\nvariance = \"a\"\n", 1, {"line 6: variance: excludes sd"});
+  error("[[nav]]\ntopic = \"/pose\"\nquantity = \"depht\"\nfields = \"z\"\n", 1,
+        {"line 3: quantity: must be velocity or", "did you mean 'depth'"});
+  error("[[nav]]\ntopic = \"/pose\"\nquantity = \"velocity\"\nfields = \"z\"\n", 1,
+        {"line 1: velocity must be of 2 or 3 fields, not of 1"});
+  error("[[nav]]\nquantity = \"depth\"\nfields = \"z\"\n", 1, {"line 1:", "neither a topic nor a type"});
+  error("[[nav]]\ntopic = \"/pose\"\nquantity = \"attitude\"\nfields = \"x,y,z,w\"\nunit = \"deg\"\n", 1,
+        {"line 5: unit: a quaternion has none"});
+  error("[[nav]]\ntopic = \"/pose\"\nquantity = \"depth\"\nfields = 3\n", 1, {"line 4: fields: must be a text"});
+  error("[[beams]]\ntopic = \"/s\"\nangle = \"a\"\nrange = \"r\"\n", 1, {"line 1: [[beams]]: must name the fields"});
+  error("[[beams]]\nangle = \"a\"\nrange = \"r\"\nintensities = \"i\"\n", 1, {"line 1: topic: is missing"});
+  error("[[beams]]\ntopic = \"/s\"\nturn = \"left\"\n", 1, {"line 3: turn: must be ccw or cw, not 'left'"});
+  error("[[imu]]\n", 1, {"line 1: [[imu]]: is unknown: must be [[beams]] or [[nav]]"});
+  error("topic = \"/pose\"\n", 1, {"line 1: keys must be below [[beams]] or [[nav]]"});
+  error("# nothing\n", 1, {"has neither [[beams]] nor [[nav]]"});
+  error("[[nav]]\ntopic = \"/dvl\"\nquantity = \"depth\"\nfields = \"z\"\n", 2,
+        {"none: driver.toml: line 1: there is no topic '/dvl', but", "/pose (geometry_msgs/PoseStamped)"});
+  error("[[nav]]\ntopic = \"/pose\"\nquantity = \"depth\"\nfields = \"z\"\n", 2,
+        {"driver.toml: line 1: fields: there is no field 'z', but pose.position.x float64"});
+  expect_error(here.call({"info", kBag, "--fields", "missing.toml"}), 1, {"missing.toml"});
+  here.write("driver.toml", "[[beams]]\ntopic = \"/s\"\nangle = \"a\"\nrange = \"r\"\nintensities = \"i\"\n");
+  expect_error(here.call({"info", kBag, "--fields", "driver.toml", "--topic", "/other"}), 2,
+               {"are of /s, not of --topic"});
+  // A topic may be in any of the logs of a dive.
+  here.write("driver.toml", depth);
+  EXPECT_EQ(here.call({"map", kBag, "--nav", kBag, "--nav", kMcap, "--fields", "driver.toml", "-o", "m.bt"})
+                .err.find("there is no topic"),
+            std::string::npos);
 }
 
 // The DVL of this vehicle looks ahead: at the net of a fish farm, 1.02 m to 1.06 m away while the head looks there.

@@ -197,8 +197,9 @@ TEST(RosBag, ReadsBeamsOfAnUnknownTypeByTheirFields) {
   fields.angle = "bearing";
   const auto lacking = open_beams(file, Damage::kSkip, {"/sonar", fields});
   ASSERT_FALSE(lacking);
-  EXPECT_THAT(lacking.error().message, testing::AllOf(HasSubstr("lacks a field of bearing"), HasSubstr("it has"),
-                                                      HasSubstr("bin_distance_step, bins.distance, bins.intensity")));
+  EXPECT_THAT(lacking.error().message,
+              testing::AllOf(HasSubstr("lacks a field of bearing"), HasSubstr("it has"),
+                             HasSubstr("bin_distance_step float32, bins.distance float32[], bins.intensity uint8[]")));
   EXPECT_THAT(open_beams(file, Damage::kSkip, {"", fields}).error().message, HasSubstr("--topic"));
 }
 

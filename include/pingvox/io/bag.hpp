@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/io/nav_fields.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -18,6 +20,7 @@ struct BagTopicSummary {
   std::string name, type;
   std::size_t messages = 0;
   Use use = Use::kNone;
+  std::string fields = {};  ///< numbers in a message that is not used: "x float64, valid bool"; empty: none are known
 };
 
 /// What a ROS bag holds: its topics in the order in which they were met, and its navigation.
@@ -27,7 +30,12 @@ struct BagContents {
 };
 
 /// Reads a bag of ROS 1 or ROS 2 once, one chunk in memory at a time.
-/// @return kUnsupported when it is none; with Damage::kFail, kCorrupt naming the first damage
-Result<BagContents> read_bag(ByteStream stream, Damage damage = Damage::kSkip);
+/// @param fields  of messages that are read by them, whatever their type
+/// @return kUnsupported when it is none; with Damage::kFail, kCorrupt naming the first damage; kBadOption naming a
+///         field that messages lack, and those that they have
+Result<BagContents> read_bag(ByteStream stream, Damage damage = Damage::kSkip, std::span<const NavFields> fields = {});
+
+/// @return kBadOption naming the first of `fields` whose messages are in none of the topics, and what topics there are
+Result<void> check_topics(std::span<const NavFields> fields, std::span<const BagTopicSummary> topics);
 
 }  // namespace pingvox
