@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ Result<Motion> motion_of(const LocateCommand& command) {
   }
   Result<Odometry> odometry = odometry_of(nav->log, options);
   if (!odometry)
-    return fail(odometry.error().code, fmt::format("{}: {}", command.navs.front(), odometry.error().message));
+    return fail(odometry.error().code, fmt::format("{}: {}", fmt::join(command.navs, ", "), odometry.error().message));
   motion.text = odometry->velocity.empty()
                     ? fmt::format("heading of {}, no velocity", on_one_line(odometry->heading))
                     : fmt::format("velocity of {} along the heading of {}", on_one_line(odometry->velocity),

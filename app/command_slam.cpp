@@ -59,11 +59,20 @@ Result<std::unique_ptr<BeamSource>> open_beam_log(const std::string& file, const
   return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", file));
 }
 
+/// The files that a solution is made of: "dive.csv, nav.csv"
+std::string inputs_text(const SlamCommand& command) {
+  std::string text = command.logs.front();
+  for (const std::string& nav : command.navs) text += ", " + nav;
+  return text;
+}
+
 /// Gives the smoother all beams and navigation. Returns how many records were skipped.
 /// @param first  the first log, opened
 Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCommand& command,
                              std::unique_ptr<BeamSource> first) {
-  if (const auto added = smoother.add(nav.log); !added) return tl::unexpected(added.error());
+  if (const auto added = smoother.add(nav.log); !added) {
+    return fail(added.error().code, fmt::format("{}: {}", fmt::join(command.navs, ", "), added.error().message));
+  }
   std::size_t skipped = nav.damaged;
   for (const std::string& name : command.logs) {
     const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command);
@@ -397,7 +406,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!solution) {
     const bool lacks_nav = command.navs.empty() && solution.error().code == Error::Code::kUnsupported;
     return fail(solution.error().code,
-                fmt::format("{}: {}{}", command.logs.front(), solution.error().message,
+                fmt::format("{}: {}{}", inputs_text(command), solution.error().message,
                             lacks_nav ? ": give the navigation with --nav, a heading or a turn rate at least" : ""));
   }
   seconds.solve = solve.seconds();

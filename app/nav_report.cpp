@@ -52,7 +52,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   std::vector<BagTopicSummary> topics;
   std::vector<NavSource> sources;
   std::optional<NavClock> clock;
-  std::vector<YawChange> first_turns;
+  Result<std::vector<YawChange>> first_turns;
   std::size_t damaged = 0;
   for (const std::string& name : names) {
     Result<ByteStream> stream = ByteStream::open(name);
@@ -65,16 +65,14 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     }
     if (!contents) return tl::unexpected(contents.error());
     topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());
-    const NavFile* nav = &contents->nav;
-    if (const auto checked = check_clocks(nav->log); !checked) {
-      return fail(checked.error().code, fmt::format("{}: {}", shown, checked.error().message));
-    }
-    damaged += damaged_records(*nav);
-    const NavClock own = nav->log.clock();
+    const NavLog& log = contents->nav.log;
+    damaged += damaged_records(contents->nav);
+    const NavClock own = log.clock();
     clock = clock.value_or(own);
     double offset_s = 0.0;
     if (own != *clock && own != NavClock::kUnknown && *clock != NavClock::kUnknown) {
-      const Result<ClockOffset> offset = clock_offset(first_turns, nav->log);
+      const Result<ClockOffset> offset =
+          first_turns.and_then([&](const std::vector<YawChange>& turns) { return clock_offset(turns, log); });
       if (!offset) {
         return fail(offset.error().code,
                     fmt::format("{}: the offset between its clock and that of {} cannot be found: {}", name,
@@ -82,8 +80,8 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
       }
       offset_s = offset->offset_s;
     }
-    if (names.size() > 1 && sources.empty()) first_turns = yaw_changes(nav->log);
-    for (NavSource source : nav->log.sources()) {
+    if (names.size() > 1 && sources.empty()) first_turns = yaw_changes(log);
+    for (NavSource source : log.sources()) {
       for (NavSample& sample : source.samples) sample.time_s += offset_s;
       const auto same = std::ranges::find_if(
           sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });

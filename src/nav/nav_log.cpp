@@ -131,14 +131,26 @@ void add_samples(const NavSource& from, NavSource& to) {
   if (!to.step_back) to.step_back = from.step_back;
 }
 
+Result<void> check_clock(const NavSource& source) {
+  if (!source.step_back) return {};
+  const auto& [from_s, to_s, late] = *source.step_back;
+  return fail(Error::Code::kCorrupt,
+              fmt::format("the clock of {} of {} runs back by {:.3f} s, from {:.3f} to {:.3f} s: which of its times "
+                          "are right cannot be told, so cut the log there",
+                          name_of(source.quantity), source.name, from_s - to_s, from_s, to_s));
+}
+
+Result<void> check_clocks(const NavLog& log, std::span<const NavQuantity> quantities) {
+  for (const NavSource& source : log.sources()) {
+    if (std::ranges::find(quantities, source.quantity) == quantities.end()) continue;
+    if (const auto checked = check_clock(source); !checked) return checked;
+  }
+  return {};
+}
+
 Result<void> check_clocks(const NavLog& log) {
   for (const NavSource& source : log.sources()) {
-    if (!source.step_back) continue;
-    const auto& [from_s, to_s, late] = *source.step_back;
-    return fail(Error::Code::kCorrupt,
-                fmt::format("the clock of {} of {} runs back by {:.3f} s, from {:.3f} to {:.3f} s: which of its times "
-                            "are right cannot be told, so cut the log there",
-                            name_of(source.quantity), source.name, from_s - to_s, from_s, to_s));
+    if (const auto checked = check_clock(source); !checked) return checked;
   }
   return {};
 }

@@ -18,9 +18,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kMainEstimates = {"ATTITUDE", "ATT", "LOCAL_POSITION_NED",
                                                             "GLOBAL_POSITION_INT"};
 
-/// Only its valid samples; nullopt: there are none.
+/// Only its valid samples; nullopt: there are none. kCorrupt when its clock was set back.
 /// @param preferred  name of a source that is taken before all others
-std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity, std::string_view preferred = {}) {
+Result<std::optional<NavSource>> main_source(const NavLog& log, NavQuantity quantity, std::string_view preferred = {}) {
   const NavSource* chosen = log.best(quantity);
   if (chosen == nullptr) return std::nullopt;
   for (const NavSource& source : log.sources()) {
@@ -31,6 +31,7 @@ std::optional<NavSource> main_source(const NavLog& log, NavQuantity quantity, st
     }
     if (std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end()) chosen = &source;
   }
+  if (const auto checked = check_clock(*chosen); !checked) return tl::unexpected(checked.error());
   NavSource valid = *chosen;
   std::erase_if(valid.samples, [](const NavSample& sample) { return !sample.valid; });
   return valid;
@@ -73,16 +74,19 @@ Result<void> set_depths(NavSource& positions, const NavSource& depth) {
 
 /// nullopt: the log has no position.
 Result<std::optional<NavSource>> position_source(const NavLog& log) {
-  if (auto position = main_source(log, NavQuantity::kPosition)) return position;
-  std::optional<NavSource> fixes = main_source(log, NavQuantity::kFix);
-  if (!fixes) return std::nullopt;
-  make_positions(*fixes);
+  Result<std::optional<NavSource>> position = main_source(log, NavQuantity::kPosition);
+  if (!position || *position) return position;
+  Result<std::optional<NavSource>> found = main_source(log, NavQuantity::kFix);
+  if (!found || !*found) return found;
+  NavSource& fixes = **found;
+  make_positions(fixes);
   if (auto depth = depth_source(log)) {
+    if (const auto checked = check_clock(*depth); !checked) return tl::unexpected(checked.error());
     std::erase_if(depth->samples, [](const NavSample& sample) { return !sample.valid; });
-    if (const auto done = set_depths(*fixes, *depth); !done) return tl::unexpected(done.error());
+    if (const auto done = set_depths(fixes, *depth); !done) return tl::unexpected(done.error());
   }
-  if (fixes->samples.empty()) return std::nullopt;
-  return fixes;
+  if (fixes.samples.empty()) return std::nullopt;
+  return found;
 }
 
 }  // namespace
@@ -97,12 +101,13 @@ Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3
 }
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
-  if (const auto checked = check_clocks(log); !checked) return tl::unexpected(checked.error());
   const Result<std::optional<NavSource>> position = position_source(log);
   if (!position) return tl::unexpected(position.error());
   // A source of both has them in one frame, which need not be that of others.
-  const std::optional<NavSource> attitude =
+  const Result<std::optional<NavSource>> turned =
       main_source(log, NavQuantity::kAttitude, *position ? std::string_view((*position)->name) : std::string_view());
+  if (!turned) return tl::unexpected(turned.error());
+  const std::optional<NavSource>& attitude = *turned;
   if (!attitude || !*position) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
@@ -138,7 +143,6 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
 }
 
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
-  if (const auto checked = check_clocks(log); !checked) return tl::unexpected(checked.error());
   const Result<std::optional<NavSource>> position = position_source(log);
   if (!position) return tl::unexpected(position.error());
   if (!*position) return fail(Error::Code::kUnsupported, "has no valid position");

@@ -164,8 +164,9 @@ std::vector<YawChange> thin(const std::vector<YawChange>& changes) {
 
 }  // namespace
 
-std::vector<YawChange> yaw_changes(const NavLog& log) {
+Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
   constexpr double kStep_s = 1.0;
+  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
   std::vector<YawChange> changes;
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s) return changes;
@@ -181,6 +182,7 @@ std::vector<YawChange> yaw_changes(const NavLog& log) {
 }
 
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog& log) {
+  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading) return cannot_tell("the navigation has no valid heading or attitude");
   if (all.size() < kMinChanges) return cannot_tell("too few sweeps show the same surroundings clearly");

@@ -55,7 +55,7 @@ Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
 }  // namespace
 
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
-  if (const auto checked = check_clocks(log); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = check_clocks(log, kReckoningQuantities); !checked) return tl::unexpected(checked.error());
   std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
   std::optional<VelocitySource> velocity;
@@ -72,7 +72,10 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
     }
   }
   std::optional<TimeSeries> depth;
-  if (const auto source = depth_source(log)) depth = number_source(*source);
+  if (const auto source = depth_source(log)) {
+    if (const auto checked = check_clock(*source); !checked) return tl::unexpected(checked.error());
+    depth = number_source(*source);
+  }
 
   double from_s = heading->yaw_rad.from_s(), to_s = heading->yaw_rad.to_s();
   std::vector<double> times_s = heading->yaw_rad.times_s();

@@ -157,7 +157,10 @@ Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptio
                                                      options.calibration->velocity, velocity->name));
   }
   Navigation navigation{*std::move(velocity), std::move(headings), std::nullopt};
-  if (const auto depth = depth_source(log)) navigation.depth = number_source(*depth);
+  if (const auto depth = depth_source(log)) {
+    if (const auto checked = check_clock(*depth); !checked) return tl::unexpected(checked.error());
+    navigation.depth = number_source(*depth);
+  }
   return navigation;
 }
 

@@ -280,6 +280,10 @@ TEST(Slam, RefusesNavigationWhoseClockRunsBack) {
   EXPECT_THAT(info.out, HasSubstr("velocity of dvl by 20.000 s, from 31.000 to 11.000 s; 1 sample"));
   EXPECT_THAT(here.call({"info", "back.csv", "--json"}).out, HasSubstr(R"("late": 1)"));
   EXPECT_THAT(here.call({"convert", "back.csv", "-o", "sorted.csv"}).out, HasSubstr("runs back by 20.000 s"));
+  // What is not used may be at any time.
+  here.write("range.csv", here.read("nav.csv") + "31,altimeter,range,3,,\n11,altimeter,range,3,,\n");
+  const Outcome mapped = here.call({"map", "beams.csv", "--nav", "range.csv", "-o", "o.bt"});
+  EXPECT_EQ(mapped.status, 0) << mapped.err;
 }
 
 /// A drive there and back in an odd room, as scans.log.

@@ -51,6 +51,25 @@ TEST(NavTrajectory, HasAPoseAtEachTimeOfEitherSourceWhereBothAreKnown) {
   EXPECT_TRUE(half.isApprox(pose_from_rpy({1.25, 2, 3}, 0, 0, 0.75), 1e-12)) << half.matrix();
 }
 
+// Kills a log that is refused for a clock that no pose depends on, and poses by one that was set back.
+TEST(NavTrajectory, IsRefusedForTheClocksThatItUses) {
+  const std::vector<Said> back = {{0, {0, 0, 0}}, {20, {0, 0, 0}}, {1, {0, 0, 0}}};
+  const NavSource place = source_of("dvl", NavQuantity::kPosition, {{0.5, {1, 2, 3}}, {1.5, {2, 2, 3}}});
+  EXPECT_TRUE(trajectory_of({kLevel, place, source_of("dvl", NavQuantity::kVelocity, back),
+                             source_of("other", NavQuantity::kAttitude, back)}));
+  const auto refused = [](std::vector<NavSource> sources) {
+    const auto made = trajectory_of(std::move(sources));
+    return made ? std::string("not refused") : made.error().message;
+  };
+  EXPECT_THAT(refused({kLevel, source_of("dvl", NavQuantity::kPosition, back)}),
+              testing::HasSubstr("position of dvl runs back by 19.000 s"));
+  EXPECT_THAT(refused({source_of("imu", NavQuantity::kAttitude, back), place}),
+              testing::HasSubstr("attitude of imu runs back"));
+  const NavSource fix = source_of("gps", NavQuantity::kFix, {{0.5, {0.1, 0.2, 0}}, {1.5, {0.1, 0.2, 0}}});
+  EXPECT_THAT(refused({kLevel, fix, source_of("bar", NavQuantity::kDepth, back)}),
+              testing::HasSubstr("depth of bar runs back"));
+}
+
 TEST(NavTrajectory, TurnsRollPitchAndYawAsPosesDo) {
   const auto made = trajectory_of({source_of("a", NavQuantity::kAttitude, {{0, {0.1, -0.2, 2.5}}}),
                                    source_of("p", NavQuantity::kPosition, {{0, {1, 2, 3}}})});

@@ -101,7 +101,7 @@ TEST(ClockOffset, IsRefusedWhereItCannotBeTold) {
 }
 
 TEST(ClockOffset, OfTwoLogsOfOneVehicle) {
-  const auto changes = yaw_changes(log_of(wander, 0.0, 300.0, 0.05, 0.0));
+  const auto changes = *yaw_changes(log_of(wander, 0.0, 300.0, 0.05, 0.0));
   ASSERT_GT(changes.size(), 290U);
   const auto offset = clock_offset(changes, log_of(wander, 100.0, 250.0, 0.1, -50.0));
   ASSERT_TRUE(offset) << offset.error().message;
@@ -110,7 +110,7 @@ TEST(ClockOffset, OfTwoLogsOfOneVehicle) {
 }
 
 TEST(ClockOffset, TimesThatStepsCannotMoveComeToAnEnd) {
-  const auto changes = yaw_changes(log_of(wander, 0.0, 90.0, 16.0, 1e17));
+  const auto changes = *yaw_changes(log_of(wander, 0.0, 90.0, 16.0, 1e17));
   EXPECT_LE(changes.size(), 100U);
   EXPECT_FALSE(clock_offset(changes, log_of(wander, 0.0, 90.0, 0.05, 0.0)));
 }
@@ -126,7 +126,7 @@ TEST(ClockOffset, OfAnAutopilotAndItsGroundStation) {
   if (!std::filesystem::exists(tlog) || !std::filesystem::exists(own)) GTEST_SKIP() << "no recording";
   const auto ground = read_nav(*read_file(tlog.string())), autopilot = read_nav(*read_file(own.string()));
   ASSERT_TRUE(ground && autopilot);
-  const auto offset = clock_offset(yaw_changes(ground->log), autopilot->log);
+  const auto offset = clock_offset(*yaw_changes(ground->log), autopilot->log);
   ASSERT_TRUE(offset) << offset.error().message;
   EXPECT_NEAR(offset->offset_s, 1712333650.395, 0.02);
   EXPECT_LT(offset->deviation_s, 0.02);

@@ -52,6 +52,25 @@ TEST(Odometry, TurnsByTheTurnRateIfAskedTo) {
   EXPECT_GT(turned_rad(TurnsBy::kTurnRate), 0.05);  // 0.1, less what the heading says of the bias
 }
 
+// Kills a log that is refused for a clock that the way does not depend on, and a way by one that was set back.
+TEST(Odometry, IsRefusedForTheClocksThatItUses) {
+  const auto with = [](NavQuantity quantity) {
+    NavSource back = source("other", quantity, 0.0, {0.5, 0.0, 0.0});
+    back.samples.back().time_s = 1.0;
+    return odometry_of(log_of({source("dvl", NavQuantity::kVelocity, 0.0, {0.5, 0.1, 0.0}),
+                               source("compass", NavQuantity::kHeading, 0.0, {0.0, 0.0, 0.0}), std::move(back)}),
+                       {});
+  };
+  for (const NavQuantity quantity : {NavQuantity::kRange, NavQuantity::kFix, NavQuantity::kTemperature}) {
+    EXPECT_TRUE(with(quantity)) << name_of(quantity);
+  }
+  for (const NavQuantity quantity : {NavQuantity::kVelocity, NavQuantity::kAttitude, NavQuantity::kDepth}) {
+    const auto refused = with(quantity);
+    ASSERT_FALSE(refused) << name_of(quantity);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("of other runs back by 8.500 s"));
+  }
+}
+
 TEST(Odometry, StaysWithoutVelocityAndNeedsAHeading) {
   const auto turns = odometry_of(log_of({source("imu", NavQuantity::kAttitude, 0.0, {0.0, 0.0, 1.0})}), {});
   ASSERT_TRUE(turns);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -92,8 +94,17 @@ class NavLog {
 /// Adds samples of the same source, of another log or part of it: they are no step back of its clock.
 void add_samples(const NavSource& from, NavSource& to);
 
-/// @return kCorrupt naming the first source whose clock was set back: which times are right cannot be told
+/// @return kCorrupt when its clock was set back: which times are right cannot be told
+Result<void> check_clock(const NavSource& source);
+/// The same of all sources of these quantities, those that something is computed from; kCorrupt names the first.
+Result<void> check_clocks(const NavLog& log, std::span<const NavQuantity> quantities);
+/// The same of all sources.
 Result<void> check_clocks(const NavLog& log);
+
+/// What the turns of a vehicle are known by, and what dead reckoning is computed from besides the depth.
+inline constexpr std::array kHeadingQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude};
+inline constexpr std::array kReckoningQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude,
+                                                    NavQuantity::kTurnRate, NavQuantity::kVelocity};
 
 /// Depth by the source with most valid samples; in a log without depth by the highest pressure, if it exceeds 1100 hPa,
 /// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.

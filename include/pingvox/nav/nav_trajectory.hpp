@@ -26,13 +26,14 @@ struct NavTrajectory {
 /// one, fixes become metres east and north of the first fix, at the depth if the log has it, else at the altitude
 /// relative to that fix.
 /// @param offset_s  added to all times
-/// @return kUnsupported when the log has no valid attitude or position, or never both at a time; kCorrupt when a clock
-///         was set back
+/// @return kUnsupported when the log has no valid attitude or position, or never both at a time; kCorrupt when the
+/// clock
+///         of one that is used was set back
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
 
 /// The positions alone, as poses without rotation: a reference of fixes for another trajectory.
 /// The result's `attitude` is empty.
-/// @return kUnsupported when the log has no valid position; kCorrupt when a clock was set back
+/// @return kUnsupported when the log has no valid position; kCorrupt when its clock was set back
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s = 0.0);
 
 }  // namespace pingvox

@@ -35,7 +35,8 @@ class PictureTurns {
 };
 
 /// How the vehicle turned, by its heading or attitude with most samples: a change for each second.
-std::vector<YawChange> yaw_changes(const NavLog& log);
+/// @return kCorrupt when the clock of a heading was set back
+Result<std::vector<YawChange>> yaw_changes(const NavLog& log);
 
 struct ClockOffset {
   double offset_s = 0.0;     ///< to add to the times of the navigation
@@ -46,7 +47,7 @@ struct ClockOffset {
 /// The offset with which the heading (or attitude) with most samples explains changes of yaw best, whatever the overlap
 /// of the two recordings.
 /// @return kUnsupported saying why when it cannot be told: no heading, too few changes, a vehicle that turns too little
-///         or evenly, or another offset that is nearly as good
+///         or evenly, or another offset that is nearly as good; kCorrupt when the clock of a heading was set back
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
 
 }  // namespace pingvox

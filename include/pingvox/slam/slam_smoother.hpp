@@ -155,7 +155,7 @@ class SlamSmoother {
   /// heading; others are passed over, as are samples that are not valid.
   /// @return kCorrupt when a number is not finite
   Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
-  /// @return kCorrupt when a clock of it was set back
+  /// @return kCorrupt when the clock of a velocity, an attitude, a heading or a turn rate was set back
   Result<void> add(const NavLog& log);
 
   /// Solves for all that was added so far. May be called again after more was added.
