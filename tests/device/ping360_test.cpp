@@ -3,12 +3,14 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +22,7 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/ping_viewer_recorder.hpp"
+#include "pingvox/sonar/sweep.hpp"
 #include "tests/device/recording.hpp"
 
 namespace pingvox {
@@ -154,6 +157,107 @@ TEST(Ping360Driver, GetsEachPingOverALineThatLosesDoublesAndDamagesBytes) {
   }
 }
 
+/// What a host sends to scan from one angle to another, with 8 samples.
+std::vector<std::uint8_t> scan_request(int start_grad, int stop_grad, int step_grad) {
+  std::vector<std::uint8_t> payload = {1, 1, 11, 0, 88, 0, 0xee, 2, 8, 0};
+  for (const int angle : {start_grad, stop_grad}) {
+    payload.push_back(static_cast<std::uint8_t>(angle & 255));
+    payload.push_back(static_cast<std::uint8_t>(angle >> 8));
+  }
+  payload.push_back(static_cast<std::uint8_t>(step_grad));
+  payload.push_back(0);
+  return make_ping_frame(PingMessage::kAutoTransmit, 0, 2, payload);
+}
+
+/// The pings of a scan, recorded and read.
+std::vector<Beam> scanned(int start_grad, int stop_grad, int step_grad, int pings) {
+  const Folder folder;
+  Ping360Emulator head({}, hear_angle);
+  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("scan.bin"));
+  EXPECT_TRUE(recorder);
+  head.take(scan_request(start_grad, stop_grad, step_grad), 0.0);
+  for (int i = 0; i < pings; ++i) {
+    const double now_s = head.due_s();
+    EXPECT_TRUE(recorder->append(static_cast<std::uint64_t>(std::lround(now_s * 1e3)), head.send(now_s)));
+  }
+  return beams_in(folder.path("scan.bin"));
+}
+
+int angle_of(const Beam& beam) {
+  return (600 - static_cast<int>(std::lround(beam.bearing_rad / std::numbers::pi * 200.0))) % 400;
+}
+
+struct Steps {
+  std::size_t skipped = 0, repeated = 0, turns = 0;
+};
+
+/// How the head went, by the angles of its beams.
+Steps steps_of(const std::vector<Beam>& beams, int step_grad) {
+  Steps steps;
+  int before = 0;
+  for (std::size_t i = 1; i < beams.size(); ++i) {
+    const int by = (angle_of(beams[i]) - angle_of(beams[i - 1]) + 600) % 400 - 200;
+    if (std::abs(by) == 2 * step_grad) ++steps.skipped;
+    if (by == 0) ++steps.repeated;
+    if (by * before < 0) ++steps.turns;
+    if (by != 0) before = by;
+  }
+  return steps;
+}
+
+// The head's own scan leaves angles out and goes too far: no sweep may end or go on for that.
+TEST(Ping360Emulator, ScansOfAHeadThatSkipsAndOvershootsGiveWholeSweeps) {
+  constexpr int kPings = 4000;
+  const auto sector = scanned(150, 250, 2, kPings);
+  ASSERT_EQ(sector.size(), static_cast<std::size_t>(kPings));
+  const Steps to_and_fro = steps_of(sector, 2);
+  EXPECT_GT(to_and_fro.skipped, 20U);
+  const auto [first, last] = std::ranges::minmax(sector, {}, angle_of);
+  EXPECT_EQ(angle_of(first), 148) << "a step before the start";
+  EXPECT_EQ(angle_of(last), 252) << "a step beyond the end";
+  const std::vector<Sweep> passes = sweeps_of(sector);
+  EXPECT_EQ(passes.size(), to_and_fro.turns + 1);
+  EXPECT_GT(passes.size(), 70U);
+  for (std::size_t i = 0; i + 1 < passes.size(); ++i) EXPECT_EQ(passes[i].extent, Sweep::Extent::kSector) << i;
+
+  const auto circle = scanned(0, 399, 1, kPings);
+  const Steps around = steps_of(circle, 1);
+  EXPECT_GT(around.skipped, 20U);
+  EXPECT_GT(around.repeated, 0U) << "beyond the end is the start";
+  EXPECT_EQ(around.turns, 0U);
+  const std::vector<Sweep> turns = sweeps_of(circle);
+  EXPECT_EQ(turns.size(), 11U);
+  for (std::size_t i = 0; i + 1 < turns.size(); ++i) EXPECT_EQ(turns[i].extent, Sweep::Extent::kTurn) << i;
+
+  // Wider than half a turn it flies back.
+  const std::vector<Sweep> wide = sweeps_of(scanned(350, 250, 5, kPings));
+  EXPECT_GT(wide.size(), 60U);
+  for (std::size_t i = 0; i + 1 < wide.size(); ++i) {
+    EXPECT_EQ(wide[i].extent, Sweep::Extent::kSector) << i;
+    EXPECT_EQ(angle_of(wide[i].beams.front()), 350) << i;
+  }
+}
+
+TEST(Ping360Emulator, ScansUntilMotorOff) {
+  Ping360Emulator head({.pings_per_s = 10.0}, hear_angle);
+  head.take(scan_request(10, 20, 11), 0.0);
+  EXPECT_TRUE(std::isfinite(head.due_s()));
+  EXPECT_EQ(ping_message(head.send(head.due_s())), PingMessage::kNack) << "a step of 11";
+  EXPECT_TRUE(std::isinf(head.due_s()));
+  head.take(scan_request(10, 10, 5), 1.0);
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_NEAR(head.due_s(), 1.0 + 0.1 * i, 1e-9);
+    const auto frame = head.send(head.due_s());
+    EXPECT_EQ(ping_message(frame), PingMessage::kAutoDeviceData);
+    EXPECT_EQ(ping360_ping(frame)->angle_grad, 10) << "a sector without a width";
+    EXPECT_EQ(ping360_ping(frame)->samples, 8);
+    EXPECT_EQ(ping360_ping(frame)->period_25ns, 88);
+  }
+  head.take(Ping360Driver::motor_off(), 1.35);
+  EXPECT_EQ(ping_message(head.send(1.35)), PingMessage::kAck);
+  EXPECT_TRUE(std::isinf(head.due_s()));
+}
+
 TEST(PingViewerRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   const Folder folder;
   const std::string path = folder.path("dive.bin");
@@ -229,6 +333,25 @@ TEST_P(OverALine, TheRecordingHasTheBeamsOfTheLiveSource) {
   ASSERT_GE(beams.size(), 40U);
   source->finish(beams);
   EXPECT_GT(source->status().damaged, 0U);
+  expect_equal(beams, beams_in(folder.path("dive.bin")));
+}
+
+// Another host left it scanning: its pings come between those that are asked for.
+TEST_P(OverALine, AHeadThatScansByItselfAnswersAllTheSame) {
+  const Folder folder;
+  Result<Link> line = Link::listen(GetParam());
+  ASSERT_TRUE(line) << line.error().message;
+  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
+  ASSERT_TRUE(recorder);
+  Ping360Emulator head({}, hear_angle);
+  head.take(scan_request(200, 300, 1), 5.0);
+  double now_s = 5.0;
+  const auto source = ping360_source(line->address(), {.range_m = 1.0, .timeout_s = 1.0}, std::move(*recorder), now_s);
+  std::vector<Beam> beams;
+  run(*source, *line, head, now_s, beams, 60);
+  source->finish(beams);
+  EXPECT_GT(std::ranges::count_if(beams, [](const Beam& beam) { return beam.intensities.size() == 8; }), 10);
+  EXPECT_GT(std::ranges::count_if(beams, [](const Beam& beam) { return beam.intensities.size() > 8; }), 10);
   expect_equal(beams, beams_in(folder.path("dive.bin")));
 }
 

@@ -5,16 +5,22 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "pingvox/device/head_emulator.hpp"
+#include "pingvox/geometry/random.hpp"
 #include "pingvox/io/frame_finder.hpp"
 
 namespace pingvox {
 
-/// A Ping360 at the other end of a line: answers requests for its information, pings and motor_off. It has no line and
-/// no clock of its own: the caller carries the bytes.
+/// A Ping360 at the other end of a line: answers requests for its information, pings, a scan (auto_transmit) and
+/// motor_off. It has no line and no clock of its own: the caller carries the bytes.
+///
+/// A scan is as users of the head describe it (discuss.bluerobotics.com/t/21935): to and fro over up to half a turn,
+/// else in one sense; some angles are left out, and at its ends the head sometimes goes a step too far. It ends by
+/// motor_off.
 class Ping360Emulator {
  public:
   /// Returns of the world at an angle (of 400 a turn, clockwise, 200 ahead): the intensities of some bins of a length.
@@ -35,17 +41,32 @@ class Ping360Emulator {
 
  private:
   struct Answer {
+    enum class Kind { kReply, kPing, kPingOfScan };
     double due_s;
     std::vector<std::uint8_t> frame;
-    bool is_ping;
+    Kind kind;
+  };
+  struct Scan {
+    std::vector<std::uint8_t> settings;  ///< payload of auto_transmit
+    int start_grad, width_grad, step_grad;
+    double interval_s;
+    int place_grad = 0, sense = 1;  ///< from the start, clockwise
+    int beyond_grad = 0;            ///< how far this pass goes over the end
   };
   void answer(std::span<const std::uint8_t> frame, double now_s);
-  std::vector<std::uint8_t> ping(std::span<const std::uint8_t> transducer);
+  std::vector<std::uint8_t> hear(int angle_grad, std::uint16_t samples, std::uint16_t period_25ns) const;
+  std::vector<std::uint8_t> ping(std::span<const std::uint8_t> transducer) const;
+  std::vector<std::uint8_t> ping_of_scan() const;
+  void start_scan(std::span<const std::uint8_t> settings, double now_s);
+  void stop_scan();
+  void turn(Scan& scan);
 
   HeadEmulatorOptions options_;
   Hear hear_;
   FrameFinder finder_;
   std::deque<Answer> answers_;
+  std::optional<Scan> scan_;
+  Random scan_faults_;
   std::size_t pings_ = 0;
   double silent_until_s_ = -std::numeric_limits<double>::infinity();
   LineFaults faults_;

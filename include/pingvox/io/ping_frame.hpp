@@ -28,6 +28,7 @@ enum class PingMessage : std::uint16_t {
   kDeviceData = 2300,
   kAutoDeviceData = 2301,
   kTransducer = 2601,
+  kAutoTransmit = 2602,
   kMotorOff = 2903,
 };
 
