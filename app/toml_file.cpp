@@ -39,6 +39,15 @@ std::optional<TomlValue> value_from(std::string_view text) {
   return value;
 }
 
+/// Of "[[name]]", which a comment may follow; nullopt: another line.
+std::optional<std::string_view> section_name(std::string_view line) {
+  const std::size_t end = line.find("]]");
+  if (!line.starts_with("[[") || end == std::string_view::npos) return std::nullopt;
+  const std::string_view rest = trim(line.substr(end + 2));
+  if (!rest.empty() && !rest.starts_with('#')) return std::nullopt;
+  return trim(line.substr(2, end - 2));
+}
+
 }  // namespace
 
 tl::unexpected<Error> toml_error(const std::string& file, std::size_t line, std::string_view what) {
@@ -53,8 +62,8 @@ Result<std::vector<TomlSection>> read_toml(const FileBytes& file) {
     const std::string_view line = trim(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty() || line.starts_with('#')) continue;
-    if (line.starts_with("[[") && line.ends_with("]]")) {
-      sections.push_back({std::string(trim(line.substr(2, line.size() - 4))), number, {}});
+    if (const std::optional<std::string_view> name = section_name(line)) {
+      sections.push_back({std::string(*name), number, {}});
       continue;
     }
     const std::size_t equals = line.find('=');

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -135,6 +136,24 @@ TEST(Bags, AFileNamesTheFieldsOfBeamsAndNavigation) {
     here.write("other.toml", "[[nav]]\ntopic = \"/pose\"\nquantity = \"depth\"\nfields = \"pose.z\"\n");
     expect_error(here.call(words), 2, {"/pose (geometry_msgs/PoseStamped)", "no field 'pose.z'", "pose.position.z"});
   }
+}
+
+// Kills an example that nobody can copy.
+TEST(Bags, TheFileInTheDocumentationIsOne) {
+  std::ifstream page(PINGVOX_SOURCE_DIR "/docs/formats.md");
+  std::string example;
+  for (std::string line; std::getline(page, line);) {
+    const bool is_indented = line.starts_with("    ") || (line.empty() && !example.empty());
+    if (example.empty() ? line.starts_with("    # dive.toml") : is_indented) {
+      example += (line.empty() ? line : line.substr(4)) + "\n";
+    } else if (!example.empty()) {
+      break;
+    }
+  }
+  const Workplace here;
+  here.write("dive.toml", example);
+  expect_error(here.call({"info", kBag, "--fields", "dive.toml"}), 2,
+               {"dive.toml: line 10: there is no topic '/dvl', but /scan_line"});
 }
 
 TEST(Bags, WhatIsWrongInAFileOfFieldsIsNamed) {

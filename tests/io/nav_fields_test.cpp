@@ -18,6 +18,7 @@
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
 #include "support/bag_writer.hpp"
 
 namespace pingvox {
@@ -365,8 +366,26 @@ TEST(NavFieldsRecordings, EqualTheReadersOfKnownTypes) {
       compared += source.samples.size();
     }
   }
-  // Velocity, then three of the depth sensor, then two of the attitude; position and attitude of the DVL itself.
+  // Velocity, three of the depth sensor, two of the attitude; position and attitude of the DVL by their type.
   EXPECT_EQ(compared, 834U + 3 * 1412U + 2 * 1498U + 2 * 427U);
+}
+
+// The lake's bag has its attitude as a Vector3: without it there are fixes and depths, but no poses.
+TEST(NavFieldsRecordings, MakePosesOfABagThatHadNone) {
+  const std::string path = PINGVOX_SHARED_DATA "/micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01.bag";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no recording";
+  EXPECT_FALSE(nav_trajectory(read_bag(*ByteStream::open(path))->nav.log));
+  NavFields attitude;
+  attitude.topic = "/xsens/imu";
+  attitude.quantity = NavQuantity::kAttitude;
+  attitude.values = {"x", "y", "z"};
+  attitude.unit = kRadPerDeg;
+  const auto bag = read_bag(*ByteStream::open(path), Damage::kSkip, std::vector{attitude});
+  ASSERT_TRUE(bag) << bag.error().message;
+  const auto made = nav_trajectory(bag->nav.log);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->attitude, "/xsens/imu");
+  EXPECT_EQ(bag->nav.log.best(NavQuantity::kAttitude)->samples.size(), 1352U);
 }
 
 }  // namespace
