@@ -1,18 +1,11 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "pingvox/sonar/polar_image.hpp"
 #include "sonar/bin_window.hpp"
 
 namespace pingvox {
-
-/// Maximum length of a rise: longer than a wall's, shorter than that of a background that grows with the range.
-inline constexpr std::size_t kRise_bins = 48;
-
-/// Beams to either side that affect one beam's contrast.
-inline constexpr std::size_t kContrastReach_beams = 16;
 
 /// Contrast of each beam: the rise of intensity that makes an echo at the beam's gain. Half of the upper quartile of
 /// the largest rises of the beams around, about 70 in the paper's recording. If that quartile is below 9.7 times the

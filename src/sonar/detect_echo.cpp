@@ -10,10 +10,12 @@
 #include <string>
 #include <string_view>
 
+#include "sonar/beam_rises.hpp"
 #include "sonar/bin_window.hpp"
 #include "sonar/canny.hpp"
 #include "sonar/cfar.hpp"
 #include "sonar/contrast.hpp"
+#include "sonar/noise_floor.hpp"
 
 namespace pingvox {
 namespace {
@@ -64,8 +66,10 @@ Echo echo_from(Bins bins, BinWindow window, std::size_t first, int contrast) {
   return echo;
 }
 
+/// @param floor    that a rise has to reach, too; nullptr: none
 /// @param longest  maximum length of a rise [bins]
-std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold, std::size_t longest) {
+std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold, const NoiseFloor* floor,
+                                      std::size_t longest) {
   // The sum of the differences since the valley is the height above it.
   std::size_t valley = window.begin;
   std::size_t top = window.begin;
@@ -74,7 +78,8 @@ std::optional<std::size_t> first_rise(Bins bins, BinWindow window, int threshold
       const auto recent = bins.subspan(i - longest, longest);
       valley = i - longest + static_cast<std::size_t>(std::ranges::min_element(recent) - recent.begin());
     }
-    if (bins[i] - bins[valley] >= threshold) return i;
+    const int rise = bins[i] - bins[valley];
+    if (rise >= threshold && (floor == nullptr || rise >= floor->at(i))) return i;
     if (bins[i] <= bins[valley] || has_ended(bins, top, i, threshold)) {
       valley = top = i;
     } else if (bins[i] > bins[top]) {
@@ -119,6 +124,7 @@ class FirstBins {
   FirstBins(const PolarImage& image, const std::vector<BinWindow>& heard, const std::vector<BinWindow>& windows,
             const std::vector<int>& contrasts, const EchoOptions& options)
       : heard_(heard), contrasts_(contrasts), options_(options) {
+    if (options.detector == Detector::kRise && !options.threshold) floors_ = noise_floors(image, heard);
     if (options.detector == Detector::kCfar) scale_ = cfar_scale(options.cfar);
     if (options.detector != Detector::kCanny) return;
     std::vector<int> strong;
@@ -127,13 +133,13 @@ class FirstBins {
     edges_ = first_edges(image, windows, strong, options.canny);
   }
 
-  /// The threshold of one beam. REQUIRES a window that is not empty.
-  int threshold_of(std::size_t n, Bins bins) const {
+  /// The threshold of one beam, at the bin where an echo begins. REQUIRES a window that is not empty.
+  int threshold_of(std::size_t n, Bins bins, std::size_t first) const {
     if (options_.threshold) return *options_.threshold;
     const Detector detector = options_.detector;
     if (detector == Detector::kCanny) return default_gradient(contrasts_[n]);
     if (detector == Detector::kLevel || detector == Detector::kMax) return level_of(n, bins, contrasts_[n]);
-    return contrasts_[n];
+    return detector == Detector::kRise ? std::max(contrasts_[n], floors_[n].at(first)) : contrasts_[n];
   }
 
   /// @param window  part of the beam's bins that is searched. REQUIRES that it is not empty
@@ -142,7 +148,8 @@ class FirstBins {
     switch (options_.detector) {
       case Detector::kRise:
         // A given threshold may be reached over any number of bins.
-        return first_rise(bins, window, contrast, options_.threshold ? bins.size() : kRise_bins);
+        if (options_.threshold) return first_rise(bins, window, contrast, nullptr, bins.size());
+        return first_rise(bins, window, contrast, &floors_[n], kRise_bins);
       case Detector::kLevel:
         return first_at_level(bins, window, level_of(n, bins, contrast));
       case Detector::kMax:
@@ -171,6 +178,7 @@ class FirstBins {
   const std::vector<BinWindow>& heard_;
   const std::vector<int>& contrasts_;
   const EchoOptions& options_;
+  std::vector<NoiseFloor> floors_;                 ///< kRise, without a given threshold
   double scale_ = 0.0;                             ///< kCfar
   std::vector<std::optional<std::size_t>> edges_;  ///< kCanny
 };
@@ -209,7 +217,7 @@ void for_each_echo(const PolarImage& image, const Sweep& sweep, const EchoOption
       if (!first) break;
       Echo echo = echo_from(bins, window, *first, contrasts[n]);
       echo.intensity = bins[echo.peak];
-      echo.threshold = first_bins.threshold_of(n, bins);
+      echo.threshold = first_bins.threshold_of(n, bins, *first);
       echo.range_m = wall_of(sweep.beams[n].intensities, echo, contrasts[n]) * sweep.beams[n].bin_length_m;
       window.begin = echo.last + 1;
       if (f(n, echo) == Search::kStop) break;

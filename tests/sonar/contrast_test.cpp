@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pingvox/sonar/detect_echo.hpp"
+#include "sonar/beam_rises.hpp"
 
 namespace pingvox {
 namespace {
@@ -66,7 +67,10 @@ TEST(Contrast, IsMoreThanNoiseAloneRises) {
       }
     }
     const Sweep sweep = turn_of(beams);
-    for (const auto& echo : detect_echoes(PolarImage(sweep), sweep, {.min_range_m = 0.5})) echoes += echo ? 1U : 0U;
+    for (const Detector detector : {Detector::kRise, Detector::kMax}) {
+      const EchoOptions options{.detector = detector, .min_range_m = 0.5};
+      for (const auto& echo : detect_echoes(PolarImage(sweep), sweep, options)) echoes += echo ? 1U : 0U;
+    }
   }
   EXPECT_LE(echoes, 5U);
 }

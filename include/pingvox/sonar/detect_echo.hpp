@@ -82,7 +82,8 @@ struct EchoOptions {
   /// kRise: minimum height of a rise, 1..255. kLevel, kMax: minimum intensity, 1..255. kCanny: gradient that a strong
   /// edge must exceed, 1..2040. kCfar: minimum height above the noise around, 1..255.
   /// nullopt: automatic, from the contrast of the 33 beams around. kRise: half of the upper quartile of their largest
-  /// rises within 48 bins (70 in the tank recording); where they are mostly noise, 15 times the noise. kLevel, kMax:
+  /// rises within 48 bins (70 in the tank recording); where they are mostly noise, 15 times the noise; and where no
+  /// beam around hears a wall at about that range, at least 12 times the noise there. kLevel, kMax:
   /// the lower quartile of the beam plus that. kCanny: 1.6 times that. kCfar: that.
   std::optional<int> threshold = std::nullopt;
   CannyOptions canny = {};

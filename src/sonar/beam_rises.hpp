@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "pingvox/sonar/polar_image.hpp"
+
+/// What contrast and noise floor of a beam are made of.
+namespace pingvox {
+
+/// Maximum length of a rise: longer than a wall's, shorter than that of a background that grows with the range.
+inline constexpr std::size_t kRise_bins = 48;
+
+/// Beams to either side that affect one beam's contrast and noise floor.
+inline constexpr std::size_t kContrastReach_beams = 16;
+
+/// Calls f(bin, rise) for each bin: its height above the lowest of the kRise_bins before it.
+template <class F>
+void for_each_rise(std::span<const std::uint8_t> bins, F&& f) {
+  std::deque<std::size_t> valleys;  // within the last kRise_bins, in ascending order
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    while (!valleys.empty() && bins[valleys.back()] >= bins[i]) valleys.pop_back();
+    valleys.push_back(i);
+    if (i - valleys.front() > kRise_bins) valleys.pop_front();
+    f(i, bins[i] - bins[valleys.front()]);
+  }
+}
+
+/// The noise of bins: their median difference to the one six before, which is beyond the default filter's window.
+/// Interpolated between integers, since smoothed noise is often less than 2.
+double noise_of(std::span<const std::uint8_t> bins);
+
+/// Calls f(m) for each beam m that affects beam n, itself included, across the seam of a full turn.
+template <class F>
+void for_each_beam_around(const PolarImage& image, std::size_t n, F&& f) {
+  const auto rows = static_cast<std::ptrdiff_t>(image.rows()), middle = static_cast<std::ptrdiff_t>(n);
+  constexpr auto kReach = static_cast<std::ptrdiff_t>(kContrastReach_beams);
+  for (std::ptrdiff_t at = middle - kReach; at <= middle + kReach; ++at) {
+    const bool is_inside = at >= 0 && at < rows;
+    if (is_inside || image.wrap() == PolarImage::Wrap::kAround) f(static_cast<std::size_t>((at % rows + rows) % rows));
+  }
+}
+
+template <class T>
+T nth_smallest(std::vector<T>& values, std::size_t rank) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::ranges::nth_element(values, place);
+  return *place;
+}
+
+}  // namespace pingvox
