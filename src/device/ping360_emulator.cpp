@@ -107,10 +107,14 @@ std::vector<std::uint8_t> Ping360Emulator::ping_of_scan() const {
   const std::vector<std::uint8_t>& settings = scan_->settings;
   const int angle_grad = (scan_->start_grad + scan_->place_grad + kTurn_grad) % kTurn_grad;
   const std::vector<std::uint8_t> heard = hear(angle_grad, get_u16(settings, 8), get_u16(settings, 4));
-  std::vector<std::uint8_t> payload(settings.begin(), settings.begin() + 2);
+  std::vector<std::uint8_t> payload;
+  const auto put_settings = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) payload.push_back(settings[i]);
+  };
+  put_settings(0, 2);
   put_u16(payload, static_cast<std::uint16_t>(angle_grad));
-  payload.insert(payload.end(), settings.begin() + 2, settings.begin() + 8);
-  payload.insert(payload.end(), settings.begin() + 10, settings.end());
+  put_settings(2, 8);
+  put_settings(10, settings.size());
   put_u16(payload, get_u16(settings, 8));
   put_u16(payload, static_cast<std::uint16_t>(heard.size()));
   payload.insert(payload.end(), heard.begin(), heard.end());

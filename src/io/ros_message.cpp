@@ -192,7 +192,7 @@ class LayoutMaker {
     member.size = line.size.value_or(1);
     const std::string path = outer.prefix + std::string(line.name);
     std::string arrays = outer.arrays;
-    if (line.is_array) arrays += line.size ? "[" + std::to_string(*line.size) + "]" : "[]";
+    if (line.is_array) arrays += line.size ? fmt::format("[{}]", *line.size) : "[]";
     const auto number = std::ranges::find(kNumbers, line.type, [](const auto& known) { return known.first; });
     if (number != kNumbers.end()) {
       member.type = number->second;
