@@ -305,6 +305,12 @@ Result<PathArgs> BuildArgs::path() const {
   return path;
 }
 
+void BuildArgs::name_files(CommandFiles& files) const {
+  files.read("--poses", poses);
+  files.read("--nav", navs);
+  files.read("--use-calibration", calibration);
+}
+
 OptionTable::Group map_group(BuildArgs& args) {
   MapOptions& map = args.map;
   BeamModelOptions& model = args.build.model;

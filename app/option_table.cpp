@@ -248,7 +248,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& g
   } catch (const CLI::Error& error) {
     return parse_error(table, error.what());
   }
-  if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}};
+  if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}};
 
   for (const std::string& word : app.remaining()) {
     if (word.size() > 1 && word.front() == '-') {
@@ -266,12 +266,13 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& g
     }
   }
 
+  Parsed parsed;
   for (const Found& entry : std::vector<Found>(found)) {
     if (!entry.option || entry.option->name != kConfig || entry.parsed->count() == 0) continue;
-    const Result<void> applied = apply_config(table, entry.parsed->results().back(), found);
+    parsed.config = entry.parsed->results().back();
+    const Result<void> applied = apply_config(table, parsed.config, found);
     if (!applied) return tl::unexpected(applied.error());
   }
-  Parsed parsed;
   for (const Found& entry : found) {
     if (entry.parsed->count() == 0) continue;
     const std::vector<std::string>& values = entry.parsed->results();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -136,6 +137,10 @@ Result<Command> convert_command(const Args& args) {
       if (const auto lattice = Lattice::make(*command.resolution_m); !lattice) return tl::unexpected(lattice.error());
     }
     if (is_grid && command.output == "-") return usage_error("-o -: a grid is two files: give the name of one");
+    CommandFiles files;
+    files.read("IN", command.input);
+    files.write("-o", command.output);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;
   });
