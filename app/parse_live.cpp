@@ -191,7 +191,8 @@ Result<Command> live_command(const Args& args) {
   OptionTable table{
       "live",
       "Maps with a scanning sonar while it runs: drives the head, records its bytes, and writes the map periodically.\n"
-      "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; a second one ends at once.",
+      "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; another one, at least a second later,\n"
+      "ends at once.",
       {{"DEVICE", Positional::Count::kOne,
         "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD] or micron:tcp://HOST:PORT (a "
         "SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log at the pace of its times (SPEED max: as fast "
