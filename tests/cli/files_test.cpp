@@ -184,7 +184,8 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
   const std::vector<Case> cases = {
       {{"--min-range", "100"}, {"the map is empty: no echoes and no free space", "--min-range"}},
       {{"--resolution", "1e-5", "--beam", "ray"},
-       {"skipped 400 beams outside of the map", "0.328 m from its origin", "larger", "out.bt: the map is empty\n"}},
+       {"skipped 400 of 800 beams outside of the map", "0.328 m from its origin", "larger",
+        "out.bt: the map is empty\n"}},
   };
   const Workplace here;
   here.simulate_tank();
@@ -209,7 +210,7 @@ TEST(Map, BeamsOutsideOfItAreCalledThat) {
   const Outcome outcome = here.call({"map", "a.txt", "-o", "a.bt"});
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("; 2 skipped\n"));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("a.txt: skipped 1 damaged record, the first: line 4: is not a point"));
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("1 point outside of the map"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("1 of 3 points outside of the map"));
 }
 
 TEST(Output, AFailedCallKeepsTheOldFile) {
