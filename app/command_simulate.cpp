@@ -69,31 +69,42 @@ struct Journey {
 Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, const SonarOptions& sonar) {
   constexpr std::size_t kMaxTurns = 10'000;
   const double turn_s = static_cast<double>(sonar.beams_per_turn) / sonar.beams_per_s;
-  const auto turns_in = [&](double seconds) {
-    return static_cast<std::size_t>(std::clamp(std::ceil(seconds / turn_s), 1.0, static_cast<double>(kMaxTurns)));
+  const auto turns_in = [&](double seconds) -> Result<std::size_t> {
+    if (command.turns) return *command.turns;
+    const double turns = std::max(1.0, std::ceil(seconds / turn_s));
+    if (turns <= static_cast<double>(kMaxTurns)) return static_cast<std::size_t>(turns);
+    return fail(
+        Error::Code::kBadOption,
+        fmt::format("simulate: the path takes {:.3g} turns of the head, more than {}: make it shorter or faster, or "
+                    "give --turns",
+                    turns, kMaxTurns));
   };
   if (command.poses) {
     Result<Trajectory> way = trajectory_of(command.poses);
     if (!way) return tl::unexpected(way.error());
     const double duration = way->poses().back().time_s - way->poses().front().time_s;
     // A beam is sent at the last pose, too.
-    return Journey{*std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
+    return turns_in(duration + turn_s).map([&](std::size_t turns) { return Journey{*std::move(way), turns}; });
   }
   const Route* route = scene.route(command.motion);
   if (!route) return Journey{Trajectory::still(Pose::Identity()), command.turns.value_or(5)};
-  if (command.motion == Motion::kByHand) {
-    Trajectory way = drive_by_hand(*route, command.travel, sonar.seed);
-    const double duration = way.poses().back().time_s;
-    return Journey{std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
-  }
-  const std::size_t turns = command.turns.value_or(turns_in(length_m(*route) / command.travel.speed_m_s));
-  const double duration = static_cast<double>(turns) * turn_s;
+  const double least_s = length_m(*route) / command.travel.speed_m_s;
+  const Result<std::size_t> turns = turns_in(least_s);
+  if (!turns) return tl::unexpected(turns.error());
+  // By hand the whole route is driven, whatever the turns.
+  const double duration = command.motion == Motion::kByHand ? least_s : static_cast<double>(*turns) * turn_s;
   constexpr double kMaxPoses = 1e6;
   if (duration / command.travel.pose_every_s > kMaxPoses) {
     return fail(Error::Code::kBadOption,
-                fmt::format("simulate: {} turns take {:.0f} s: longer than a built-in path", turns, duration));
+                fmt::format("simulate: the path takes {:.0f} s, longer than a built-in one: {:.0f} s", duration,
+                            kMaxPoses * command.travel.pose_every_s));
   }
-  return Journey{follow_route(*route, duration, command.travel), turns};
+  if (command.motion == Motion::kByHand) {
+    Trajectory way = drive_by_hand(*route, command.travel, sonar.seed);
+    const double until_s = way.poses().back().time_s + turn_s;
+    return turns_in(until_s).map([&](std::size_t to_its_end) { return Journey{std::move(way), to_its_end}; });
+  }
+  return Journey{follow_route(*route, duration, command.travel), *turns};
 }
 
 Result<void> write_trajectory(const std::string& path, const Trajectory& trajectory) {

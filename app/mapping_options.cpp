@@ -316,7 +316,8 @@ OptionTable::Group map_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Map",
-      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m), store_number(map.resolution_m)},
+      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m),
+        within(kResolutions, store_number(map.resolution_m))},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
         store_number(map.depth)},
        {"--hit", 0, "P",

@@ -91,7 +91,7 @@ Result<Command> convert_command(const Args& args) {
        std::move(echo_options),
        {"Meshes",
         {{"--resolution", 0, "M", "edge length of a cell", number_text(MapOptions{}.resolution_m),
-          store_optional(command.resolution_m)}}},
+          within(kResolutions, store_optional(command.resolution_m))}}},
        {"Maps and meshes",
         {{"--z", 0, "M", "write only the layer of cells at this height", "all layers", store_optional(layer_m)},
          {"--min-z", 0, "M", "lowest height that is written", "none", store_optional(command.slice.min_z_m)},

@@ -61,7 +61,7 @@ Result<Command> simulate_command(const Args& args) {
           "measurements of the vehicle's navigation sensors, as CSV: a DVL, a compass, gyros, depth", "none",
           store(nav)},
          {"--resolution", 0, "M", "edge length of a cell of world.bt", "0.05; marina 0.2",
-          store_optional(command.truth_resolution_m)},
+          within(kResolutions, store_optional(command.truth_resolution_m))},
          quiet_option(command.output_options)}},
        {"World and vehicle",
         {{"--side", 0, "M", "side of the square tank", number_text(tank.side_m),

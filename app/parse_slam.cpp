@@ -34,7 +34,7 @@ Result<Command> slam_command(const Args& args) {
                     "M",
                     "edge length of a cell of the map",
                     number_text(command.map_resolution_m),
-                    store_number(command.map_resolution_m)};
+                    within(kResolutions, store_number(command.map_resolution_m))};
   resolution.only_with = {{"--map"}};
   Option nav{"--nav", 0,
              "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)",

@@ -214,6 +214,7 @@ TEST(Usage, ANumberOutsideOfItsLimitsIsRefusedByTheNameOfItsOption) {
   const std::vector<Case> cases = {
       {"map", "--min-range", {"0", "100", "auto"}, {"-0.1", "inf"}},
       {"map", "--max-range", {"0.8", "inf"}, {"0", "-1"}},
+      {"map", "--resolution", {"0.0001", "1000"}, {"0", "1001", "1e300", "inf"}},
       {"map", "--sound-speed", {"151", "14999"}, {"150", "15000", "1"}},
       {"map", "--kernel", {"1", "99"}, {"-1", "2", "101"}},
       {"map", "--sigma", {"0.01", "1000"}, {"0", "1001"}},
