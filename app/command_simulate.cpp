@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "map_log.hpp"
 #include "option_values.hpp"
@@ -150,20 +151,30 @@ Result<SimulatedNav> navigation_of(const Journey& journey, const SonarOptions& s
   return simulate_nav(journey.way, from_s, from_s + duration_s, sensors);
 }
 
-/// Names and signs are those of the calibration that `slam` writes.
-Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& e, const NavSensorOptions& sensors) {
+/// The errors that are constant, as what `slam` should find. The place of the wall in an echo is not an error.
+SlamCalibration calibration_of(const NavSensorErrors& errors) {
+  constexpr double kKnown_rad = 1e-4, kKnown = 1e-4, kKnown_m = 1e-3, kUnknown = 0.5;
+  const auto angle = [](double value_rad) { return Estimate{value_rad, kKnown_rad}; };
+  return {.velocity = "DVL",
+          .velocity_yaw_rad = angle(errors.dvl_yaw_rad),
+          .velocity_scale = {errors.dvl_scale, kKnown},
+          .wall_in_echo = {0.0, kUnknown},
+          .sonar_x_m = {0.0, kKnown_m},
+          .sonar_y_m = {0.0, kKnown_m},
+          .headings = {{.source = "IMU",
+                        .constant_rad = angle(errors.constant_rad),
+                        .sin1_rad = angle(errors.sin1_rad),
+                        .cos1_rad = angle(errors.cos1_rad),
+                        .sin2_rad = angle(errors.sin2_rad),
+                        .cos2_rad = angle(errors.cos2_rad)}}};
+}
+
+Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& errors, const NavSensorOptions& sensors) {
   return write_file(path, [&](std::ostream& out) -> Result<void> {
-    out << "# Errors of the simulated navigation.\n"
-        << fmt::format("nav-offset = {:.6g}\nvelocity-yaw-deg = {:.6g}\nvelocity-scale = {:.6g}\n", -sensors.delay_s,
-                       e.dvl_yaw_rad / kDegree_rad, e.dvl_scale)
-        << fmt::format("turn-rate-bias-start-deg-s = {:.6g}\nturn-rate-bias-end-deg-s = {:.6g}\n",
-                       e.gyro_bias_start_rad_s / kDegree_rad, e.gyro_bias_end_rad_s / kDegree_rad)
-        << "\n[[heading]]\nsource = \"IMU\"\n"
-        << fmt::format(
-               "constant-deg = {:.6g}\nsin1-deg = {:.6g}\ncos1-deg = {:.6g}\nsin2-deg = {:.6g}\n"
-               "cos2-deg = {:.6g}\n",
-               e.constant_rad / kDegree_rad, e.sin1_rad / kDegree_rad, e.cos1_rad / kDegree_rad,
-               e.sin2_rad / kDegree_rad, e.cos2_rad / kDegree_rad);
+    out << fmt::format("# Errors of the simulated navigation.\n# nav-offset = {:.6g}\n", -sensors.delay_s)
+        << fmt::format("# turn-rate-bias-start-deg-s = {:.6g}\n# turn-rate-bias-end-deg-s = {:.6g}\n",
+                       errors.gyro_bias_start_rad_s / kDegree_rad, errors.gyro_bias_end_rad_s / kDegree_rad)
+        << calibration_toml({calibration_of(errors), {}});
     if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: could not be written", path));
     return {};
   });

@@ -153,6 +153,11 @@ TEST(Simulate, WritesNavigationThatInfoAndSlamRead) {
     EXPECT_THAT(truth, HasSubstr(name));
     EXPECT_THAT(found, HasSubstr(name)) << "the same names";
   }
+  for (const std::string command : {"slam", "map"}) {
+    const Outcome known = here.call({command, "dive.csv", "--nav", "nav.csv", "--use-calibration", "truth/nav.toml",
+                                     "-o", command == "map" ? "dive.bt" : "known.tum"});
+    EXPECT_EQ(known.status, 0) << known.err;
+  }
 
   expect_error(here.call({"simulate", "tank", "-o", "tank.csv", "--dvl-noise", "0.2"}), 2, {"--dvl-noise", "--nav"});
   expect_error(here.call({"simulate", "tank", "-o", "tank.csv", "--nav", "nav.csv", "--dvl-lost", "1"}), 2,
