@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "map_report.hpp"
+#include "open_log.hpp"
 #include "pingvox/slam/clock_offset.hpp"
 #include "unknown_file.hpp"
 
@@ -30,9 +31,15 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage)
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
+    const Result<Format> format = identify_format(*stream);
     const Result<NavFile> nav = read_nav(std::move(*stream), damage);
     if (!nav && unread && nav.error().code == Error::Code::kUnsupported) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
+    }
+    if (!nav && format && kind_of(*format) == FormatKind::kTrajectory) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a navigation log: 'map' and 'render' take it "
+                                                         "by --poses, 'locate' by --odometry",
+                                                         shown, describe(*format)));
     }
     if (!nav) return tl::unexpected(nav.error());
     if (const auto checked = check_clocks(nav->log); !checked) {

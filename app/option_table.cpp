@@ -146,10 +146,10 @@ Result<void> check_conditions(const OptionTable& table, const Option& option, co
   for (const Condition& condition : option.only_with) needed.push_back(text_of(condition));
   const Condition& first = option.only_with.front();
   const auto value = first.values.empty() ? std::nullopt : value_of(first.name, found);
-  return parse_error(
-      table, fmt::format("{}: has no effect {}, only with {}", option.name,
-                         value ? fmt::format("with {} {}", first.name, *value) : fmt::format("without {}", first.name),
-                         fmt::join(needed, " or ")));
+  const std::string any = fmt::format("{}", fmt::join(needed, " or "));
+  return parse_error(table, fmt::format("{}: has no effect {}", option.name,
+                                        value ? fmt::format("with {} {}, only with {}", first.name, *value, any)
+                                              : fmt::format("without {}", any)));
 }
 
 std::string label_of(const Option& option) {

@@ -125,6 +125,7 @@ Result<Command> locate_command(const Args& args) {
     localizer.echo = echoes.echo;
     if (const auto valid = localizer.validate(); !valid) return tl::unexpected(valid.error());
     if (command.map.empty()) return usage_error("--map is missing: the map to find the vehicle in");
+    if (output.empty()) return usage_error("-o FILE is missing");
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
     }

@@ -130,6 +130,7 @@ Result<Command> slam_command(const Args& args) {
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
+    if (output.empty()) return usage_error("-o FILE is missing");
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
     }

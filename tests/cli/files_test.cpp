@@ -66,6 +66,15 @@ TEST(Files, TheWrongKindIsNamed) {
   const auto files_before = here.files();
   expect_error(here.call({"map", "good.ot", "-o", "out.bt"}), 1, {"good.ot", "a map", "not a log"});
   expect_error(here.call({"map", "poses.txt", "-o", "out.bt"}), 1, {"poses.txt", "a trajectory", "not a log"});
+  here.write("nav.csv", "time_s,source,quantity,x,y,z\n0,imu,heading,0,,\n1,imu,heading,0,,\n");
+  expect_error(here.call({"map", "nav.csv", "-o", "out.bt"}), 1,
+               {"nav.csv: is a navigation log (.csv), not a log of a sonar: give it with --nav\n"});
+  for (const std::string command : {"map", "slam", "locate"}) {
+    Words words = {command, "tank.csv", "-o", "out.bt", "--nav", "poses.txt"};
+    if (command == "locate") words.insert(words.end(), {"--map", "good.ot"});
+    expect_error(here.call(words), 1, {"poses.txt: is a trajectory (.tum), not a navigation log: ", "--poses"});
+  }
+  fs::remove(here.folder() / "nav.csv");
   expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1,
                {"good.ot: is a map (.ot), not a trajectory"});
   expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "tank.csv"}), 1,
