@@ -280,6 +280,7 @@ TEST(Output, IsNeverAnInputOrAnotherOutputOfTheSameCommand) {
   for (const auto& [words, text] : cases) {
     SCOPED_TRACE(::testing::PrintToString(words));
     expect_error(here.call(words), 2, {words.front() + ": ", text});
+    if (::testing::Test::HasFailure()) return;  // a device that is not there is waited for
   }
   EXPECT_EQ(here.files(), files_before);
   for (const std::string& name : files_before) {
