@@ -93,7 +93,7 @@ void take_estimates(TomlKeys& keys, Of& of, const std::array<Key<Of>, N>& names)
 
 std::string calibration_toml(const CalibrationFile& file) {
   std::string toml =
-      fmt::format("# Estimated by pingvox slam; -sd is the standard deviation of the line above.\n{} = {}\n",
+      fmt::format("# Calibration for --use-calibration; -sd is the standard deviation of the line above.\n{} = {}\n",
                   kVelocitySource, toml_string(file.calibration.velocity)) +
       toml_lines(file.calibration, kKeys);
   for (const HeadingCalibration& heading : file.calibration.headings) {

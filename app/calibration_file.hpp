@@ -11,7 +11,7 @@
 
 namespace pingvox::app {
 
-/// What 'slam --calibration' writes and --use-calibration reads, as TOML.
+/// What 'slam --calibration' and 'simulate --truth' write and --use-calibration reads, as TOML.
 struct CalibrationFile {
   SlamCalibration calibration;
   /// How the sources of navigation were said to be mounted (--nav-mount): what the calibration is relative to.

@@ -198,7 +198,9 @@ class LiveRun {
         tell_at_s = now_s + kTell_s;
       }
       if (now_s >= write_at_s) {
-        if (const auto written = writer_.write(map_); !written) note(written.error());
+        if (has_mapped()) {
+          if (const auto written = writer_.write(map_); !written) note(written.error());
+        }
         write_at_s = now_s + command_.write_every_s;
       }
     }
@@ -231,6 +233,9 @@ class LiveRun {
   bool can_map_one() const {
     return !waiting_.empty() && !(nav_ && !cannot_map_ && nav_->may_come(waiting_.front().beam.time_s));
   }
+
+  /// Without a beam there is no map, and an older one stays.
+  bool has_mapped() const { return mapper_.report().beams > 0; }
 
   /// The latest one that is known.
   std::optional<Pose> last_pose() const {
@@ -273,7 +278,11 @@ class LiveRun {
       if (const auto finished = mapper_.finish(); !finished) note(finished.error());
     }
     tell_changes();
-    if (const auto written = writer_.finish(map_); !written) return tl::unexpected(written.error());
+    if (has_mapped()) {
+      if (const auto written = writer_.finish(map_); !written) return tl::unexpected(written.error());
+    } else if (!cannot_map_) {
+      note({Error::Code::kIo, fmt::format("{}: not written: no beam was mapped", command_.output)});
+    }
     bar_.clear();
     const LiveStatus status = source_->status();
     const auto printed = command_.output_options.report == Report::kJson
@@ -409,7 +418,7 @@ class LiveRun {
   std::string text_of(const LiveStatus& status) const {
     const BuildReport& report = mapper_.report();
     std::string text =
-        on_one_line(command_.output) + "\n" +
+        (has_mapped() ? on_one_line(command_.output) : "no map") + "\n" +
         report_line("heard", fmt::format("{} beams, {} complete sweeps, {} echoes; {} not mapped", beams_,
                                          report.sweeps, report.echoes, unmapped_ + report.skipped)) +
         report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered, status.damaged,
@@ -418,7 +427,7 @@ class LiveRun {
       text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->messages(),
                                              nav_->damaged(), report.no_pose.count));
     }
-    return text + map_text(map_, map_.counts());
+    return has_mapped() ? text + map_text(map_, map_.counts()) : text;
   }
 
   const LiveCommand& command_;

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "commands.hpp"
 #include "json.hpp"
@@ -33,25 +35,30 @@ struct Totals {
   BuildReport report;
   std::size_t scans = 0, points = 0;  ///< scans of points, and their points
   std::size_t damaged = 0;
-  bool assumes_beam = false;  ///< the size of the first log's beams is a default
-  bool has_beams = false;
-  BeamModelOptions beam;  ///< of the first log of beams
+  struct UsedBeam {
+    std::string log;
+    BeamModelOptions model;
+    bool is_assumed;  ///< its size is a default
+  };
+  std::vector<UsedBeam> used_beams;  ///< of logs of beams, those that differ
   double sound_speed_m_s = kAssumedSoundSpeed_m_s;
   std::optional<Water> nav_water;  ///< by the navigation log, where it was asked
   double write_s = 0.0, total_s = 0.0;
 
-  void add(const MappedLog& mapped, const Log& source) {
+  void add(const MappedLog& mapped, const Log& source, const std::string& name) {
     const BuildReport& log = mapped.report;
     damaged += mapped.damaged;
     if (log.min_threshold) {
       report.min_threshold = std::min(report.min_threshold.value_or(*log.min_threshold), *log.min_threshold);
       report.max_threshold = std::max(report.max_threshold.value_or(*log.max_threshold), *log.max_threshold);
     }
-    if (!has_beams) {
-      beam = mapped.beam;
-      assumes_beam = mapped.assumes_beam;
+    const auto is_same = [&](const UsedBeam& used) {
+      return used.model.width_rad == mapped.beam.width_rad && used.model.height_rad == mapped.beam.height_rad &&
+             used.is_assumed == mapped.assumes_beam;
+    };
+    if (std::holds_alternative<std::unique_ptr<BeamSource>>(source) && std::ranges::none_of(used_beams, is_same)) {
+      used_beams.push_back({name, mapped.beam, mapped.assumes_beam});
     }
-    has_beams = has_beams || std::holds_alternative<std::unique_ptr<BeamSource>>(source);
     if (std::holds_alternative<std::unique_ptr<ScanSource>>(source)) {
       scans += log.sweeps;
       points += log.beams;
@@ -139,6 +146,9 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("occupied_cells", counts.occupied_cells)
       .add("free_cells", counts.free_cells)
       .add("bounds", bounds_json(map.bounds()));
+  std::vector<JsonObject> other_beams;
+  for (const auto& used : totals.used_beams) other_beams.push_back(beam_json(used.model).add("log", used.log));
+  if (!other_beams.empty()) other_beams.erase(other_beams.begin());
   JsonObject json;
   JsonObject skipped_for;
   skipped_for.add("damage", totals.damaged)
@@ -150,13 +160,14 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("echoes", report.echoes)
       .add("skipped", report.skipped)
       .add("skipped_for", skipped_for)
-      .add("beam", beam_json(totals.beam))
+      .add("beam", beam_json(totals.used_beams.empty() ? BeamModelOptions{} : totals.used_beams.front().model))
       .add("threshold", threshold_json(report))
       .add("sound_speed_m_s", totals.sound_speed_m_s)
       .add("cells_freed", report.cells_freed)
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
       .add("map", held);
+  if (!other_beams.empty()) json.add("other_beams", other_beams);
   if (path.nav) json.add("nav", nav_json(path));
   return json.text() + "\n";
 }
@@ -179,10 +190,13 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   if (report.skipped > 0) read += fmt::format("; {} skipped", report.skipped);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
   std::string beams;
-  if (totals.has_beams) {
+  for (const auto& [log, model, is_assumed] : totals.used_beams) {
+    const std::string of_log = totals.used_beams.size() > 1 ? on_one_line(log) + ": " : "";
+    beams += report_line("beam", of_log + beam_text(model, is_assumed));
+  }
+  if (!totals.used_beams.empty()) {
     const ThresholdRange thresholds{report.min_threshold, report.max_threshold};
-    beams = report_line("beam", beam_text(totals.beam, totals.assumes_beam)) +
-            report_line("threshold", thresholds.text(command.build.echo.threshold));
+    beams += report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
   if (totals.nav_water) beams += report_line("water", water_text(*totals.nav_water));
   return name + "\n" + report_line("read", read) +
@@ -251,7 +265,7 @@ Result<int> run(const MapCommand& command, Console& console) {
       };
       const Result<MappedLog> mapped = map_log(*log, name, *path, build, command.head, *map, progress);
       if (!mapped) return tl::unexpected(mapped.error());
-      totals.add(*mapped, *log);
+      totals.add(*mapped, *log, name);
       if (!mapped->skipped_text.empty()) {
         bar.clear();
         console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "map_log.hpp"
 #include "option_values.hpp"
@@ -69,31 +70,42 @@ struct Journey {
 Result<Journey> journey_of(const SimulateCommand& command, const Scene& scene, const SonarOptions& sonar) {
   constexpr std::size_t kMaxTurns = 10'000;
   const double turn_s = static_cast<double>(sonar.beams_per_turn) / sonar.beams_per_s;
-  const auto turns_in = [&](double seconds) {
-    return static_cast<std::size_t>(std::clamp(std::ceil(seconds / turn_s), 1.0, static_cast<double>(kMaxTurns)));
+  const auto turns_in = [&](double seconds) -> Result<std::size_t> {
+    if (command.turns) return *command.turns;
+    const double turns = std::max(1.0, std::ceil(seconds / turn_s));
+    if (turns <= static_cast<double>(kMaxTurns)) return static_cast<std::size_t>(turns);
+    return fail(
+        Error::Code::kBadOption,
+        fmt::format("simulate: the path takes {:.3g} turns of the head, more than {}: make it shorter or faster, or "
+                    "give --turns",
+                    turns, kMaxTurns));
   };
   if (command.poses) {
     Result<Trajectory> way = trajectory_of(command.poses);
     if (!way) return tl::unexpected(way.error());
     const double duration = way->poses().back().time_s - way->poses().front().time_s;
     // A beam is sent at the last pose, too.
-    return Journey{*std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
+    return turns_in(duration + turn_s).map([&](std::size_t turns) { return Journey{*std::move(way), turns}; });
   }
   const Route* route = scene.route(command.motion);
   if (!route) return Journey{Trajectory::still(Pose::Identity()), command.turns.value_or(5)};
-  if (command.motion == Motion::kByHand) {
-    Trajectory way = drive_by_hand(*route, command.travel, sonar.seed);
-    const double duration = way.poses().back().time_s;
-    return Journey{std::move(way), command.turns.value_or(turns_in(duration + turn_s))};
-  }
-  const std::size_t turns = command.turns.value_or(turns_in(length_m(*route) / command.travel.speed_m_s));
-  const double duration = static_cast<double>(turns) * turn_s;
+  const double least_s = length_m(*route) / command.travel.speed_m_s;
+  const Result<std::size_t> turns = turns_in(least_s);
+  if (!turns) return tl::unexpected(turns.error());
+  // By hand the whole route is driven, whatever the turns.
+  const double duration = command.motion == Motion::kByHand ? least_s : static_cast<double>(*turns) * turn_s;
   constexpr double kMaxPoses = 1e6;
   if (duration / command.travel.pose_every_s > kMaxPoses) {
     return fail(Error::Code::kBadOption,
-                fmt::format("simulate: {} turns take {:.0f} s: longer than a built-in path", turns, duration));
+                fmt::format("simulate: the path takes {:.0f} s, longer than a built-in one: {:.0f} s", duration,
+                            kMaxPoses * command.travel.pose_every_s));
   }
-  return Journey{follow_route(*route, duration, command.travel), turns};
+  if (command.motion == Motion::kByHand) {
+    Trajectory way = drive_by_hand(*route, command.travel, sonar.seed);
+    const double until_s = way.poses().back().time_s + turn_s;
+    return turns_in(until_s).map([&](std::size_t to_its_end) { return Journey{std::move(way), to_its_end}; });
+  }
+  return Journey{follow_route(*route, duration, command.travel), *turns};
 }
 
 Result<void> write_trajectory(const std::string& path, const Trajectory& trajectory) {
@@ -139,20 +151,30 @@ Result<SimulatedNav> navigation_of(const Journey& journey, const SonarOptions& s
   return simulate_nav(journey.way, from_s, from_s + duration_s, sensors);
 }
 
-/// Names and signs are those of the calibration that `slam` writes.
-Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& e, const NavSensorOptions& sensors) {
+/// The errors that are constant, as what `slam` should find. The place of the wall in an echo is not an error.
+SlamCalibration calibration_of(const NavSensorErrors& errors) {
+  constexpr double kKnown_rad = 1e-4, kKnown = 1e-4, kKnown_m = 1e-3, kUnknown = 0.5;
+  const auto angle = [](double value_rad) { return Estimate{value_rad, kKnown_rad}; };
+  return {.velocity = "DVL",
+          .velocity_yaw_rad = angle(errors.dvl_yaw_rad),
+          .velocity_scale = {errors.dvl_scale, kKnown},
+          .wall_in_echo = {0.0, kUnknown},
+          .sonar_x_m = {0.0, kKnown_m},
+          .sonar_y_m = {0.0, kKnown_m},
+          .headings = {{.source = "IMU",
+                        .constant_rad = angle(errors.constant_rad),
+                        .sin1_rad = angle(errors.sin1_rad),
+                        .cos1_rad = angle(errors.cos1_rad),
+                        .sin2_rad = angle(errors.sin2_rad),
+                        .cos2_rad = angle(errors.cos2_rad)}}};
+}
+
+Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& errors, const NavSensorOptions& sensors) {
   return write_file(path, [&](std::ostream& out) -> Result<void> {
-    out << "# Errors of the simulated navigation.\n"
-        << fmt::format("nav-offset = {:.6g}\nvelocity-yaw-deg = {:.6g}\nvelocity-scale = {:.6g}\n", -sensors.delay_s,
-                       e.dvl_yaw_rad / kDegree_rad, e.dvl_scale)
-        << fmt::format("turn-rate-bias-start-deg-s = {:.6g}\nturn-rate-bias-end-deg-s = {:.6g}\n",
-                       e.gyro_bias_start_rad_s / kDegree_rad, e.gyro_bias_end_rad_s / kDegree_rad)
-        << "\n[[heading]]\nsource = \"IMU\"\n"
-        << fmt::format(
-               "constant-deg = {:.6g}\nsin1-deg = {:.6g}\ncos1-deg = {:.6g}\nsin2-deg = {:.6g}\n"
-               "cos2-deg = {:.6g}\n",
-               e.constant_rad / kDegree_rad, e.sin1_rad / kDegree_rad, e.cos1_rad / kDegree_rad,
-               e.sin2_rad / kDegree_rad, e.cos2_rad / kDegree_rad);
+    out << fmt::format("# Errors of the simulated navigation.\n# nav-offset = {:.6g}\n", -sensors.delay_s)
+        << fmt::format("# turn-rate-bias-start-deg-s = {:.6g}\n# turn-rate-bias-end-deg-s = {:.6g}\n",
+                       errors.gyro_bias_start_rad_s / kDegree_rad, errors.gyro_bias_end_rad_s / kDegree_rad)
+        << calibration_toml({calibration_of(errors), {}});
     if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: could not be written", path));
     return {};
   });

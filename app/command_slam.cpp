@@ -35,11 +35,17 @@
 namespace pingvox::app {
 namespace {
 
+/// Beams of all logs, on the map and left out of it.
+struct MappedBeams {
+  std::size_t beams = 0, skipped = 0;
+};
+
 /// What was read besides beams, velocity and headings.
 struct Inputs {
   NavOffset nav_offset;
-  std::optional<Water> nav_water;  ///< by the navigation log, where it was asked
-  std::size_t skipped = 0;         ///< records
+  std::optional<Water> nav_water;     ///< by the navigation log, where it was asked
+  std::size_t skipped = 0;            ///< records
+  std::optional<MappedBeams> mapped;  ///< nullopt: there is no map
 };
 
 struct Seconds {
@@ -66,14 +72,18 @@ std::string inputs_text(const SlamCommand& command) {
   return text;
 }
 
-/// Gives the smoother all beams and navigation. Returns how many records were skipped.
+struct Read {
+  std::size_t beams = 0, skipped = 0;
+};
+
+/// Gives the smoother all beams and navigation.
 /// @param first  the first log, opened
-Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCommand& command,
-                             std::unique_ptr<BeamSource> first) {
+Result<Read> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCommand& command,
+                      std::unique_ptr<BeamSource> first) {
   if (const auto added = smoother.add(nav.log); !added) {
     return fail(added.error().code, fmt::format("{}: {}", fmt::join(command.navs, ", "), added.error().message));
   }
-  std::size_t skipped = nav.damaged;
+  Read read{.skipped = nav.damaged};
   for (const std::string& name : command.logs) {
     const auto log = first ? std::exchange(first, nullptr) : open_beam_log(name, command);
     if (!log) return tl::unexpected(log.error());
@@ -82,17 +92,20 @@ Result<std::size_t> read_all(SlamSmoother& smoother, const NavFiles& nav, const 
       if (!beam) return tl::unexpected(beam.error());
       if (!*beam) break;
       smoother.add(std::move(**beam));
+      ++read.beams;
     }
-    skipped += (*log)->skipped();
+    read.skipped += (*log)->skipped();
   }
-  return skipped;
+  return read;
 }
 
 /// Adds all logs to the map, along the trajectory.
 /// @param calibration  of the sonar's place on the vehicle, which the trajectory goes with; nullptr: it is as mounted
-Result<void> map_along(const Trajectory& trajectory, const SlamCalibration* calibration, const SlamCommand& command,
-                       const SlamOptions& slam, OccupancyMap& map, Console& console) {
+Result<MappedBeams> map_along(const Trajectory& trajectory, const SlamCalibration* calibration,
+                              const SlamCommand& command, const SlamOptions& slam, OccupancyMap& map,
+                              Console& console) {
   VehiclePath path{trajectory, std::nullopt};
+  path.advice = VehiclePath::kNavMustCover;
   if (calibration != nullptr) {
     path.sonar_moved_m = {calibration->sonar_x_m.value, calibration->sonar_y_m.value, 0.0};
   }
@@ -101,14 +114,19 @@ Result<void> map_along(const Trajectory& trajectory, const SlamCalibration* cali
   build.echo = slam.echo;
   build.sound_speed_ratio = slam.sound_speed_ratio;
   build.body_from_sensor = slam.body_from_sonar;
+  MappedBeams all;
   for (const std::string& name : command.logs) {
     auto beams = open_beam_log(name, command);
     if (!beams) return tl::unexpected(beams.error());
     const Result<MappedLog> mapped = map_log(Log(std::move(*beams)), name, path, build, {}, map);
     if (!mapped) return tl::unexpected(mapped.error());
-    if (!mapped->skipped_text.empty()) console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));
+    if (!mapped->skipped_text.empty()) {
+      console.say(fmt::format("{}: left out of the map: {}", name, mapped->skipped_text));
+    }
+    all.beams += mapped->report.beams;
+    all.skipped += mapped->report.skipped;
   }
-  return {};
+  return all;
 }
 
 double to_degrees(double angle_rad) {
@@ -253,6 +271,12 @@ std::string json_of(const SlamSolution& solution, const SlamCommand& command, co
   } else {
     json.add_null("calibration");
   }
+  if (inputs.mapped) {
+    JsonObject mapped;
+    json.add("map", mapped.add("beams", inputs.mapped->beams).add("skipped", inputs.mapped->skipped));
+  } else {
+    json.add_null("map");
+  }
   json.add("recorded_s", recorded_s(solution)).add("seconds", json_of(seconds));
   json.add("real_time_factor", recorded_s(solution) / seconds.total);
   return json.text() + "\n";
@@ -394,9 +418,9 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
     }
   }
   SlamSmoother smoother(options);
-  const Result<std::size_t> skipped = read_all(smoother, *nav, command, std::move(first));
-  if (!skipped) return tl::unexpected(skipped.error());
-  inputs.skipped = *skipped;
+  const Result<Read> all = read_all(smoother, *nav, command, std::move(first));
+  if (!all) return tl::unexpected(all.error());
+  inputs.skipped = all->skipped;
   seconds.read = read.seconds();
 
   ProgressBar bar(command.output_options);
@@ -404,7 +428,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Stopwatch solve;
   const Result<SlamSolution> solution = smoother.solve();
   if (!solution) {
-    const bool lacks_nav = command.navs.empty() && solution.error().code == Error::Code::kUnsupported;
+    const bool lacks_nav = command.navs.empty() && all->beams > 0 && solution.error().code == Error::Code::kUnsupported;
     return fail(solution.error().code,
                 fmt::format("{}: {}{}", inputs_text(command), solution.error().message,
                             lacks_nav ? ": give the navigation with --nav, a heading or a turn rate at least" : ""));
@@ -417,8 +441,9 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
     const std::optional<SlamCalibration>& known = options.calibration;
     const SlamCalibration* calibration =
         options.matching == Matching::kPairs ? &solution->calibration : (known ? &*known : nullptr);
-    const Result<void> mapped = map_along(solution->trajectory, calibration, command, options, *map, console);
+    const Result<MappedBeams> mapped = map_along(solution->trajectory, calibration, command, options, *map, console);
     if (!mapped) return tl::unexpected(mapped.error());
+    inputs.mapped = *mapped;
     seconds.map = mapping.seconds();
   }
   bar.clear();

@@ -7,12 +7,14 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "calibration_file.hpp"
 #include "console.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
+#include "pingvox/io/bag.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
@@ -34,28 +36,29 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
 }
 
-/// "3036 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover the log,
-/// with times in seconds of the same clock)"
+/// "3036 of 4000 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover
+/// the log, with times in seconds of the same clock)"
 std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, const Lattice& lattice) {
   std::string text;
-  const auto add = [&text](const LeftOut& left_out, std::string_view unit, const std::string& reason,
-                           std::string_view advice) {
+  const auto& [no_pose, blocked, outside] =
+      std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.outside);
+  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count + outside.count;
+  const auto add = [&text, all](const LeftOut& left_out, std::string_view unit, const std::string& reason,
+                                std::string_view advice) {
     if (left_out.count == 0) return;
-    text += fmt::format("{}{} {}{} {}", text.empty() ? "" : "; ", left_out.count, unit, left_out.count == 1 ? "" : "s",
-                        reason);
+    text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit, reason);
     if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
     text += fmt::format(" ({})", advice);
   };
   if (mapped.damaged > 0) text = damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
   const auto& poses = path.trajectory.poses();
-  add(mapped.report.no_pose, "beam",
+  add(no_pose, "beam",
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
                   path.trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
-      path.nav ? "--nav must cover the log; --nav-offset corrects its clock"
-               : "--poses must cover the log, with times in seconds of the same clock");
-  add(mapped.report.blocked, "beam", "towards an obstacle of the map that is nearer than --min-range",
+      path.advice);
+  add(blocked, "beam", "towards an obstacle of the map that is nearer than --min-range",
       "they would record its second echo, or what lies around it");
-  add(mapped.report.outside, mapped.report.outside.first_s ? "beam" : "point",
+  add(outside, outside.first_s ? "beam" : "point",
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
       "lengths are in metres; a larger --resolution reaches farther");
@@ -104,7 +107,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
         .map([&](Odometry odometry) {
           return VehiclePath{std::move(odometry.odometry_from_body),
                              VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water},
-                             sonar_moved_m};
+                             sonar_moved_m, VehiclePath::kNavMustCover};
         })
         .map_error(name_files);
   }
@@ -116,7 +119,8 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
   return nav_trajectory(nav->log, offset->offset_s)
       .map([&](NavTrajectory made) {
         return VehiclePath{std::move(made.trajectory),
-                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water}};
+                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water},
+                           Eigen::Vector3d::Zero(), VehiclePath::kNavMustCover};
       })
       .map_error(name_files);
 }
@@ -205,7 +209,12 @@ std::string hint_at_path(const std::string& log, Format format) {
   if (std::filesystem::is_regular_file(beside, error)) {
     return "its trajectory may be --poses " + quote_for_shell(beside);
   }
-  return is_bag(format) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
+  if (!is_bag(format)) return {};
+  const Result<BagContents> bag =
+      ByteStream::open(log).and_then([](ByteStream stream) { return read_bag(std::move(stream)); });
+  const auto has = [&](NavQuantity quantity) { return bag && bag->nav.log.best(quantity) != nullptr; };
+  const bool tells_path = has(NavQuantity::kPosition) || has(NavQuantity::kFix) || has(NavQuantity::kVelocity);
+  return tells_path ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
 }
 
 }  // namespace pingvox::app

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "nav_clock.hpp"
@@ -30,6 +31,10 @@ struct VehiclePath {
   };
   std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
+  std::string_view advice = kPosesMustCover;                ///< where beams have no pose
+  static constexpr std::string_view kPosesMustCover =
+      "--poses must cover the log, with times in seconds of the same clock";
+  static constexpr std::string_view kNavMustCover = "--nav must cover the log; --nav-offset corrects its clock";
 };
 /// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
 /// reckoning.
@@ -64,7 +69,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
 
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum"
-/// (a file beside it), or "navigation in the bag is used with --nav dive.db3"; empty: nowhere.
+/// (a file beside it), or "navigation in the bag is used with --nav dive.db3"; empty: nowhere. Reads a bag once.
 std::string hint_at_path(const std::string& log, Format format);
 
 }  // namespace pingvox::app

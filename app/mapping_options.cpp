@@ -305,12 +305,19 @@ Result<PathArgs> BuildArgs::path() const {
   return path;
 }
 
+void BuildArgs::name_files(CommandFiles& files) const {
+  files.read("--poses", poses);
+  files.read("--nav", navs);
+  files.read("--use-calibration", calibration);
+}
+
 OptionTable::Group map_group(BuildArgs& args) {
   MapOptions& map = args.map;
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Map",
-      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m), store_number(map.resolution_m)},
+      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m),
+        within(kResolutions, store_number(map.resolution_m))},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
         store_number(map.depth)},
        {"--hit", 0, "P",

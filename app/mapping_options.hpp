@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "command_files.hpp"
 #include "commands.hpp"
 #include "option_table.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -66,6 +67,7 @@ struct BuildArgs {
   }
   /// kBadOption when both are given.
   Result<PathArgs> path() const;
+  void name_files(CommandFiles& files) const;
 };
 
 /// Validates options, except the minimum range, which scans of points do not have: see `check_ranges`.

@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "map_report.hpp"
+#include "open_log.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/slam/clock_offset.hpp"
 #include "unknown_file.hpp"
@@ -59,9 +60,15 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
+    const Result<Format> format = identify_format(*stream);
     const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
     if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
+    }
+    if (!contents && format && kind_of(*format) == FormatKind::kTrajectory) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a navigation log: 'map' and 'render' take it "
+                                                         "by --poses, 'locate' by --odometry",
+                                                         shown, describe(*format)));
     }
     if (!contents) return tl::unexpected(contents.error());
     topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());

@@ -112,8 +112,10 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
         .map([](auto source) { return Log(std::move(source)); });
   }
   return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a log{}", stream.name(), describe(*format),
-                          kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface" : ""));
+              fmt::format("{}: is {}, not a log of a sonar{}", stream.name(), describe(*format),
+                          kind == FormatKind::kMesh  ? ": 'pingvox convert' makes a map of its surface"
+                          : kind == FormatKind::kNav ? ": give it with --nav"
+                                                     : ""));
 }
 
 Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic) {

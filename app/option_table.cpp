@@ -146,10 +146,10 @@ Result<void> check_conditions(const OptionTable& table, const Option& option, co
   for (const Condition& condition : option.only_with) needed.push_back(text_of(condition));
   const Condition& first = option.only_with.front();
   const auto value = first.values.empty() ? std::nullopt : value_of(first.name, found);
-  return parse_error(
-      table, fmt::format("{}: has no effect {}, only with {}", option.name,
-                         value ? fmt::format("with {} {}", first.name, *value) : fmt::format("without {}", first.name),
-                         fmt::join(needed, " or ")));
+  const std::string any = fmt::format("{}", fmt::join(needed, " or "));
+  return parse_error(table, fmt::format("{}: has no effect {}", option.name,
+                                        value ? fmt::format("with {} {}, only with {}", first.name, *value, any)
+                                              : fmt::format("without {}", any)));
 }
 
 std::string label_of(const Option& option) {
@@ -248,7 +248,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& g
   } catch (const CLI::Error& error) {
     return parse_error(table, error.what());
   }
-  if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}};
+  if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}};
 
   for (const std::string& word : app.remaining()) {
     if (word.size() > 1 && word.front() == '-') {
@@ -266,12 +266,13 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& g
     }
   }
 
+  Parsed parsed;
   for (const Found& entry : std::vector<Found>(found)) {
     if (!entry.option || entry.option->name != kConfig || entry.parsed->count() == 0) continue;
-    const Result<void> applied = apply_config(table, entry.parsed->results().back(), found);
+    parsed.config = entry.parsed->results().back();
+    const Result<void> applied = apply_config(table, parsed.config, found);
     if (!applied) return tl::unexpected(applied.error());
   }
-  Parsed parsed;
   for (const Found& entry : found) {
     if (entry.parsed->count() == 0) continue;
     const std::vector<std::string>& values = entry.parsed->results();

@@ -78,6 +78,7 @@ struct LimitedOption {
 struct Parsed {
   bool is_help_wanted = false;
   std::vector<LimitedOption> limited;  ///< options that were given and whose `only_for` is not empty
+  std::string config;                  ///< the configuration file that was read; empty: none
 };
 
 /// Passes the arguments to the `take` functions of the table: first those of a --config file (TOML, names without

@@ -109,6 +109,9 @@ struct Limits {
   std::string text() const;  ///< "0..1", "above 0 and at most 100"
 };
 
+/// Of cells [m].
+inline constexpr Limits kResolutions{0.0, 1000.0, Limits::Ends::kLowOut};
+
 inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
 
 /// Refuses numbers outside of the limits, then calls `take`, which also refuses other text.

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -68,8 +69,11 @@ Result<Command> compare_command(const Args& args) {
        "pingvox compare dive.tum gps.tum --json"},
       "Exit status: 0 equal, 1 different, 2 failed."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
-    if (const auto once = check_standard_input({command.a, command.b, visible_from}); !once)
-      return tl::unexpected(once.error());
+    CommandFiles files;
+    files.read("A", command.a);
+    files.read("B", command.b);
+    files.read("--visible-from", visible_from);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     command.limited = parsed.limited;
     if (!visible_from.empty()) command.visible_from = visible_from;
     if (!(command.view.max_range_m > command.view.min_range_m)) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -90,7 +91,7 @@ Result<Command> convert_command(const Args& args) {
        std::move(echo_options),
        {"Meshes",
         {{"--resolution", 0, "M", "edge length of a cell", number_text(MapOptions{}.resolution_m),
-          store_optional(command.resolution_m)}}},
+          within(kResolutions, store_optional(command.resolution_m))}}},
        {"Maps and meshes",
         {{"--z", 0, "M", "write only the layer of cells at this height", "all layers", store_optional(layer_m)},
          {"--min-z", 0, "M", "lowest height that is written", "none", store_optional(command.slice.min_z_m)},
@@ -136,6 +137,10 @@ Result<Command> convert_command(const Args& args) {
       if (const auto lattice = Lattice::make(*command.resolution_m); !lattice) return tl::unexpected(lattice.error());
     }
     if (is_grid && command.output == "-") return usage_error("-o -: a grid is two files: give the name of one");
+    CommandFiles files;
+    files.read("IN", command.input);
+    files.write("-o", command.output);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;
   });

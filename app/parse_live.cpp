@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "command_files.hpp"
 #include "map_log.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
@@ -190,7 +191,8 @@ Result<Command> live_command(const Args& args) {
   OptionTable table{
       "live",
       "Maps with a scanning sonar while it runs: drives the head, records its bytes, and writes the map periodically.\n"
-      "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; a second one ends at once.",
+      "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; another one, at least a second later,\n"
+      "ends at once.",
       {{"DEVICE", Positional::Count::kOne,
         "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD] or micron:tcp://HOST:PORT (a "
         "SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log at the pace of its times (SPEED max: as fast "
@@ -247,7 +249,7 @@ Result<Command> live_command(const Args& args) {
   for (OptionTable::Group& group : table.groups) {
     for (Option& option : group.options) option.only_for.clear();  // there are no others than beams
   }
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
@@ -283,6 +285,12 @@ Result<Command> live_command(const Args& args) {
     if (!command.nav.empty() && command.device.kind == LiveDevice::Kind::kReplay) {
       return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
     }
+    CommandFiles files;
+    if (command.device.kind == LiveDevice::Kind::kReplay) files.read("DEVICE", command.device.address);
+    files.read("--config", parsed.config);
+    files.write("-o", output);
+    files.write("--record", record);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.made_by = "pingvox " PINGVOX_VERSION " live";
     for (const std::string& word : args) {

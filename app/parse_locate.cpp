@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -117,7 +118,7 @@ Result<Command> locate_command(const Args& args) {
       {"pingvox locate dive.csv --map harbour.bt --nav dvl.csv -o dive.tum",
        "pingvox locate tank.csv --map tank.bt --start 0.1,0.2,45 -o tank.tum --json"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     if (const auto valid = echoes.validate(command.navs); !valid) return tl::unexpected(valid.error());
     localizer.sound_speed_ratio = echoes.sound_speed_ratio();
     command.nav_salinity = echoes.nav_salinity;
@@ -125,6 +126,7 @@ Result<Command> locate_command(const Args& args) {
     localizer.echo = echoes.echo;
     if (const auto valid = localizer.validate(); !valid) return tl::unexpected(valid.error());
     if (command.map.empty()) return usage_error("--map is missing: the map to find the vehicle in");
+    if (output.empty()) return usage_error("-o FILE is missing");
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
     }
@@ -133,12 +135,15 @@ Result<Command> locate_command(const Args& args) {
       command.odometry = odometry;
     }
     if (!calibration.empty()) command.calibration = calibration;
-    Args inputs = command.logs;
-    inputs.push_back(command.map);
-    inputs.insert(inputs.end(), command.navs.begin(), command.navs.end());
-    if (command.odometry) inputs.push_back(*command.odometry);
-    if (command.calibration) inputs.push_back(*command.calibration);
-    if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
+    CommandFiles files;
+    files.read("LOG", command.logs);
+    files.read("--map", command.map);
+    files.read("--nav", command.navs);
+    files.read("--odometry", odometry);
+    files.read("--use-calibration", calibration);
+    files.read("--config", parsed.config);
+    files.write("-o", output);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;
     return command;

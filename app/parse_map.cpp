@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -125,10 +126,12 @@ Result<Command> map_command(const Args& args) {
     const Result<PathArgs> path = build.path();
     if (!path) return tl::unexpected(path.error());
     command.path = *path;
-    Args inputs = command.logs;
-    inputs.push_back(build.poses);
-    inputs.insert(inputs.end(), build.navs.begin(), build.navs.end());
-    if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
+    CommandFiles files;
+    files.read("LOG", command.logs);
+    files.read("--config", parsed.config);
+    build.name_files(files);
+    files.write("-o", output);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;
     command.made_by = "pingvox " PINGVOX_VERSION " map";

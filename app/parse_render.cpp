@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -291,13 +292,15 @@ Result<Command> render_command(const Args& args) {
         }
       }
     }
-    Args files = inputs;
+    CommandFiles files;
+    files.read("FILE", inputs);
+    files.read("--config", parsed.config);
     for (const PanelArgs& setting : settings) {
-      files.push_back(setting.build.poses);
-      files.insert(files.end(), setting.build.navs.begin(), setting.build.navs.end());
-      files.insert(files.end(), setting.panel.drawn_paths.begin(), setting.panel.drawn_paths.end());
+      setting.build.name_files(files);
+      files.read("--path", setting.panel.drawn_paths);
     }
-    if (const auto once = check_standard_input(files); !once) return tl::unexpected(once.error());
+    files.write("-o", command.output);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;
   });

@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -60,7 +61,7 @@ Result<Command> simulate_command(const Args& args) {
           "measurements of the vehicle's navigation sensors, as CSV: a DVL, a compass, gyros, depth", "none",
           store(nav)},
          {"--resolution", 0, "M", "edge length of a cell of world.bt", "0.05; marina 0.2",
-          store_optional(command.truth_resolution_m)},
+          within(kResolutions, store_optional(command.truth_resolution_m))},
          quiet_option(command.output_options)}},
        {"World and vehicle",
         {{"--side", 0, "M", "side of the square tank", number_text(tank.side_m),
@@ -158,7 +159,7 @@ Result<Command> simulate_command(const Args& args) {
       if (option.name == "--drift" || option.name == "--heading-drift") option.only_with = {moves, follows};
     }
   }
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     const Result<Format> output_as = output_format(command.output, std::nullopt, kCsvOnly);
     if (!output_as) return tl::unexpected(output_as.error());
     if (!poses.empty()) command.poses = poses;
@@ -196,7 +197,22 @@ Result<Command> simulate_command(const Args& args) {
     if (const auto valid = command.travel.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.drift.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = sensors.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto once = check_standard_input({command.world, poses}); !once) return tl::unexpected(once.error());
+    CommandFiles files;
+    files.read("WORLD", command.world);
+    files.read("--poses", poses);
+    files.read("--config", parsed.config);
+    files.write("-o", command.output);
+    if (command.poses || command.motion != Motion::kStill) {
+      files.write("the trajectory beside -o,",
+                  std::filesystem::path(command.output).replace_extension(".tum").string());
+    }
+    files.write("--nav", nav);
+    if (command.truth) {
+      for (const char* name : {"poses.tum", "ranges.csv", "world.ply", "world.bt", "nav.toml"}) {
+        files.write("--truth", (std::filesystem::path(truth) / name).string());
+      }
+    }
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     if (nav == "-") return usage_error("--nav -: give the name of a file");
     if (command.nav) {

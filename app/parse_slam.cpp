@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
@@ -33,7 +34,7 @@ Result<Command> slam_command(const Args& args) {
                     "M",
                     "edge length of a cell of the map",
                     number_text(command.map_resolution_m),
-                    store_number(command.map_resolution_m)};
+                    within(kResolutions, store_number(command.map_resolution_m))};
   resolution.only_with = {{"--map"}};
   Option nav{"--nav", 0,
              "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)",
@@ -130,43 +131,42 @@ Result<Command> slam_command(const Args& args) {
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
+    if (output.empty()) return usage_error("-o FILE is missing");
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
     }
-    Args inputs = command.logs;
-    inputs.insert(inputs.end(), command.navs.begin(), command.navs.end());
-    if (!known_calibration.empty()) inputs.push_back(known_calibration);
-    if (const auto once = check_standard_input(inputs); !once) return tl::unexpected(once.error());
-    Args outputs = {output};
+    CommandFiles files;
+    files.read("LOG", command.logs);
+    files.read("--nav", command.navs);
+    files.read("--use-calibration", known_calibration);
+    files.read("--config", parsed.config);
+    files.write("-o", output);
+    files.write("--map", map);
+    files.write("--calibration", calibration);
+    files.write("--covariance", covariance);
+    files.write("--graph", graph);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (!map.empty()) {
       const Result<Format> format = output_format(map, std::nullopt, kMapFormats);
       if (!format) return tl::unexpected(format.error());
       command.map = map;
       command.map_format = *format;
-      outputs.push_back(map);
       if (std::ranges::find(command.logs, "-") != command.logs.end()) {
         return usage_error("--map: reads each log twice, and standard input can be read only once");
       }
     }
     if (!known_calibration.empty()) command.known_calibration = known_calibration;
-    if (!calibration.empty()) {
-      command.calibration = calibration;
-      outputs.push_back(calibration);
-    }
+    if (!calibration.empty()) command.calibration = calibration;
     if (!covariance.empty()) {
       if (slam.estimation == Estimation::kCausal) {
         return usage_error("--covariance and --causal: exclude each other: covariances need the whole log");
       }
       command.covariance = covariance;
-      outputs.push_back(covariance);
     }
-    if (!graph.empty()) {
-      command.graph = graph;
-      outputs.push_back(graph);
-    }
-    for (const std::string& file : outputs) {
+    if (!graph.empty()) command.graph = graph;
+    for (const std::string& file : {output, map, calibration, covariance, graph}) {
+      if (file.empty()) continue;
       if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
-      if (file == "-" && outputs.size() > 1) return usage_error("-: only one output can be standard output");
     }
     command.output = output;
     command.made_by = "pingvox " PINGVOX_VERSION " slam";

@@ -1,10 +1,8 @@
 #include "shared_options.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -99,32 +97,6 @@ Result<Format> output_format(const std::string& path, const std::optional<Format
   const std::string ending = std::filesystem::path(path).extension().string();
   return usage_error(
       fmt::format("{}: its suffix must be {}{}", path, fmt::join(suffixes, " or "), did_you_mean(ending, suffixes)));
-}
-
-Result<void> check_folder_of(const std::string& path) {
-  if (path == "-") return {};
-  std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  if (folder.empty()) folder = ".";
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) {
-    return fail(Error::Code::kIo, fmt::format("{}: no such folder '{}'", path, folder.string()));
-  }
-  const auto status = std::filesystem::symlink_status(path, error);
-  if (std::filesystem::is_directory(path, error)) {
-    return fail(Error::Code::kIo, fmt::format("{}: is a folder, not a file", path));
-  }
-  // Devices and pipes are written in place, and links lead to another folder; other files are created.
-  const bool is_made = !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
-  if (is_made && ::access(folder.c_str(), W_OK) != 0) {
-    const std::string reason = std::system_category().message(errno);
-    return fail(Error::Code::kIo, fmt::format("{}: {} in the folder '{}'", path, reason, folder.string()));
-  }
-  return {};
-}
-
-Result<void> check_standard_input(const Args& files) {
-  if (std::count(files.begin(), files.end(), "-") < 2) return {};
-  return usage_error("'-' given twice: standard input can be read only once");
 }
 
 Result<Command> parse_command(const OptionTable& table, const Args& args,

@@ -11,7 +11,7 @@
 #include "option_values.hpp"
 #include "pingvox/result.hpp"
 
-/// Options shared by commands, and early checks.
+/// Options shared by commands.
 namespace pingvox::app {
 
 Option output_option(std::string& target, std::string help);
@@ -26,11 +26,6 @@ Option quiet_option(OutputOptions& output_options);
 /// kBadOption when format and suffix contradict each other.
 Result<Format> output_format(const std::string& path, const std::optional<Format>& asked,
                              std::span<const Choice<Format>> known);
-
-/// Checks before the work that a file can be created here.
-Result<void> check_folder_of(const std::string& path);
-
-Result<void> check_standard_input(const Args& files);
 
 /// Parses the arguments of a command: returns its help if requested, else the result of `make`. Errors are prefixed
 /// with the command's name.

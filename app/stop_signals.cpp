@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 
 namespace pingvox::app {
 
@@ -20,6 +21,14 @@ Result<StopSignals> StopSignals::make() {
 bool StopSignals::has_arrived() {
   signalfd_siginfo signal = {};
   if (::read(file_.get(), &signal, sizeof signal) != sizeof signal) return false;
+  // GNU timeout signals a process and then its group: what comes within a second means the same.
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
+  std::signal(SIGALRM, [](int) {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+  });
+  ::alarm(1);
   ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
   return true;
 }

@@ -15,7 +15,7 @@ class StopSignals {
 
   /// For poll().
   int descriptor() const { return file_.get(); }
-  /// Whether a signal has arrived. After that, another one ends the process at once.
+  /// Whether a signal has arrived. A second after that, another one ends the process at once.
   bool has_arrived();
 
  private:

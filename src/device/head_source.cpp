@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,7 +15,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kSync_s = 1.0;
+constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kSync_s = 1.0, kRest_s = 0.1;
 
 /// Properties of a head that HeadSource needs.
 struct Ping360Head {
@@ -23,6 +24,7 @@ struct Ping360Head {
   using Recorder = PingViewerRecorder;
   static constexpr const char* kDevice = "ping360";
   static constexpr CheckFrame kCheck = check_ping_frame;
+  static constexpr bool kIsBrokenWhole = true;  ///< a damaged frame is known by its checksum, which comes last
 
   /// nullopt: another message; error: why it is not valid.
   static tl::expected<std::optional<Beam>, std::string> beam_in(std::span<const std::uint8_t> frame, double time_s) {
@@ -40,6 +42,7 @@ struct MicronHead {
   using Recorder = SeanetRecorder;
   static constexpr const char* kDevice = "micron";
   static constexpr CheckFrame kCheck = check_seanet_frame;
+  static constexpr bool kIsBrokenWhole = false;
 
   static tl::expected<std::optional<Beam>, std::string> beam_in(std::span<const std::uint8_t> frame, double time_s) {
     const std::optional<SeanetLine> line = seanet_line(frame);
@@ -144,11 +147,28 @@ class HeadSource final : public LiveSource {
     received_ += bytes.size();
     pieces_.push_back({received_, recorded_time_s(time_ms)});
     finder_.push(bytes);
-    take_frames(beams);
+    const std::size_t broken = broken_frames();
+    // The bytes of an answer come without a break.
+    double rest_until_s = now_s + kRest_s;
+    if (take_frames(beams)) {
+      rest_until_s = std::numeric_limits<double>::infinity();
+    } else if (Head::kIsBrokenWhole && broken_frames() > broken) {
+      rest_until_s = now_s;
+    }
+    driver_.expect_rest(rest_until_s);
   }
 
-  void take_frames(std::vector<Beam>& beams) {
+  std::size_t broken_frames() const {
+    std::size_t count = 0;
+    for (const DamageKind& kind : finder_.damage()) count += kind.what != FrameFinder::kBetween ? kind.count : 0;
+    return count;
+  }
+
+  /// Whether there were any.
+  bool take_frames(std::vector<Beam>& beams) {
+    bool has_frame = false;
     while (const std::optional<FrameFinder::Frame> frame = finder_.next()) {
+      has_frame = true;
       const bool was_connected = driver_.is_connected();
       driver_.take(frame->bytes);
       if (driver_.is_connected() && !was_connected) ++status_.connections;
@@ -158,6 +178,7 @@ class HeadSource final : public LiveSource {
       beam ? beams.push_back(*std::move(*beam)) : void(++unusable_);
     }
     while (pieces_.size() > 1 && pieces_.front().end <= finder_.position()) pieces_.pop_front();
+    return has_frame;
   }
 
   /// Time of the read that brought the frame's last byte, as readers of the recording have it.

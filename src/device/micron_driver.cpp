@@ -102,10 +102,15 @@ void MicronDriver::take(std::span<const std::uint8_t> frame) {
   }
 }
 
+void MicronDriver::expect_rest(double until_s) {
+  // A head that finds its centre is not to begin again.
+  if (state_ == State::kScanning) rest_until_s_ = until_s;
+}
+
 std::optional<std::vector<std::uint8_t>> MicronDriver::message(double now_s) {
   // A head sends mtAlive once a second; it finds its centre before it takes parameters.
   constexpr double kAnswer_s = 1.0, kCentre_s = 10.0;
-  if (is_waiting_ && now_s < deadline_s_) return std::nullopt;
+  if (is_waiting_ && now_s < due_s()) return std::nullopt;
   if (is_waiting_ && state_ == State::kAsking) {
     enter(State::kConfiguring);  // not all heads answer
   } else if (is_waiting_) {
@@ -113,6 +118,7 @@ std::optional<std::vector<std::uint8_t>> MicronDriver::message(double now_s) {
     ++unanswered_in_a_row_;
   }
   is_waiting_ = true;
+  rest_until_s_ = std::numeric_limits<double>::infinity();
   switch (state_) {
     case State::kLooking:
       // A serial-to-UDP converter learns here where to send the bytes of the head.

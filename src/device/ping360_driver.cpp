@@ -86,14 +86,19 @@ void Ping360Driver::take(std::span<const std::uint8_t> frame) {
   }
 }
 
+void Ping360Driver::expect_rest(double until_s) {
+  rest_until_s_ = until_s;
+}
+
 std::optional<std::vector<std::uint8_t>> Ping360Driver::message(double now_s) {
-  if (is_waiting_ && now_s < deadline_s_) return std::nullopt;
+  if (is_waiting_ && now_s < due_s()) return std::nullopt;
   if (is_waiting_) {
     ++unanswered_;
     ++unanswered_in_a_row_;
   }
   is_waiting_ = true;
   deadline_s_ = now_s + settings_.timeout_s;
+  rest_until_s_ = std::numeric_limits<double>::infinity();
   if (is_known_) return ping();
   std::vector<std::uint8_t> wanted;
   put_u16(wanted, static_cast<std::uint16_t>(PingMessage::kDeviceInformation));

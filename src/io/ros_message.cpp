@@ -1,5 +1,7 @@
 #include "io/ros_message.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -57,6 +57,8 @@ TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
   EXPECT_THAT(here.call({"map", kBag, "-o", "net.bt"}).err,
               HasSubstr("did not move; navigation in the bag is used with --nav"));
   EXPECT_THAT(here.call({"map", kBag, "--nav", kBag, "-o", "net.bt"}).err, Not(HasSubstr("did not move")));
+  const std::string without = PINGVOX_SOURCE_DIR "/fuzz/corpus/mcap/image_without_chunk";
+  EXPECT_THAT(here.call({"map", without, "-o", "net.bt"}).err, Not(HasSubstr("--nav")));
 }
 
 TEST(Bags, ATopicIsChosenByName) {

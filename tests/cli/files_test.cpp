@@ -66,6 +66,15 @@ TEST(Files, TheWrongKindIsNamed) {
   const auto files_before = here.files();
   expect_error(here.call({"map", "good.ot", "-o", "out.bt"}), 1, {"good.ot", "a map", "not a log"});
   expect_error(here.call({"map", "poses.txt", "-o", "out.bt"}), 1, {"poses.txt", "a trajectory", "not a log"});
+  here.write("nav.csv", "time_s,source,quantity,x,y,z\n0,imu,heading,0,,\n1,imu,heading,0,,\n");
+  expect_error(here.call({"map", "nav.csv", "-o", "out.bt"}), 1,
+               {"nav.csv: is a navigation log (.csv), not a log of a sonar: give it with --nav\n"});
+  for (const std::string command : {"map", "slam", "locate"}) {
+    Words words = {command, "tank.csv", "-o", "out.bt", "--nav", "poses.txt"};
+    if (command == "locate") words.insert(words.end(), {"--map", "good.ot"});
+    expect_error(here.call(words), 1, {"poses.txt: is a trajectory (.tum), not a navigation log: ", "--poses"});
+  }
+  fs::remove(here.folder() / "nav.csv");
   expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "good.ot"}), 1,
                {"good.ot: is a map (.ot), not a trajectory"});
   expect_error(here.call({"map", "tank.csv", "-o", "out.bt", "--poses", "tank.csv"}), 1,
@@ -184,7 +193,8 @@ TEST(Map, ThatKnowsNothingSaysWhy) {
   const std::vector<Case> cases = {
       {{"--min-range", "100"}, {"the map is empty: no echoes and no free space", "--min-range"}},
       {{"--resolution", "1e-5", "--beam", "ray"},
-       {"skipped 400 beams outside of the map", "0.328 m from its origin", "larger", "out.bt: the map is empty\n"}},
+       {"skipped 400 of 800 beams outside of the map", "0.328 m from its origin", "larger",
+        "out.bt: the map is empty\n"}},
   };
   const Workplace here;
   here.simulate_tank();
@@ -209,7 +219,7 @@ TEST(Map, BeamsOutsideOfItAreCalledThat) {
   const Outcome outcome = here.call({"map", "a.txt", "-o", "a.bt"});
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("; 2 skipped\n"));
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("a.txt: skipped 1 damaged record, the first: line 4: is not a point"));
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("1 point outside of the map"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("1 of 3 points outside of the map"));
 }
 
 TEST(Output, AFailedCallKeepsTheOldFile) {
@@ -234,6 +244,52 @@ TEST(Output, AFailedCallKeepsTheOldFile) {
 }
 
 // Kills an hour of mapping for a place that could not be written from the start.
+// A command that wrote over its own input, or one output over another, ended with 0.
+TEST(Output, IsNeverAnInputOrAnotherOutputOfTheSameCommand) {
+  const Workplace here;
+  const std::string kept = "# never to be lost\n";
+  for (const char* name :
+       {"log.csv", "nav.csv", "c.xyz", "way.tum", "m.bt", "s.toml", "a.png", "dive", "d/poses.tum"}) {
+    fs::create_directories((here.folder() / name).parent_path());
+    here.write(name, kept);
+  }
+  fs::create_symlink("log.csv", here.folder() / "link.csv");
+  fs::create_hard_link(here.folder() / "log.csv", here.folder() / "other.csv");
+  const auto files_before = here.files();
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{"slam", "log.csv", "--nav", "nav.csv", "-o", "nav.csv"}, "-o nav.csv: is the same file as --nav nav.csv"},
+      {{"slam", "log.csv", "-o", "./log.csv"}, "-o ./log.csv: is the same file as LOG log.csv"},
+      {{"slam", "link.csv", "-o", "log.csv"}, "-o log.csv: is the same file as LOG link.csv"},
+      {{"slam", "log.csv", "-o", "other.csv"}, "-o other.csv: is the same file as LOG log.csv"},
+      {{"slam", "log.csv", "-o", "s.tum", "--covariance", "log.csv"}, "--covariance log.csv: is the same file as LOG"},
+      {{"slam", "log.csv", "-o", "s.tum", "--calibration", "d/../s.tum"}, "--calibration d/../s.tum: is the same file"},
+      {{"slam", "log.csv", "-o", "s.tum", "--config", "s.toml", "--calibration", "s.toml"}, "as --config s.toml"},
+      {{"locate", "log.csv", "--map", "m.bt", "--odometry", "way.tum", "-o", "way.tum"}, "as --odometry way.tum"},
+      {{"map", "c.xyz", "-o", "c.xyz"}, "-o c.xyz: is the same file as LOG c.xyz"},
+      {{"map", "log.csv", "--format", "bt", "--poses", "dive", "-o", here.path("dive")}, "as --poses dive"},
+      {{"render", "log.csv", "m.bt", "--path", "a.png", "-o", "./a.png"}, "as --path a.png"},
+      {{"convert", "log.csv", "-o", "log.csv", "--echoes"}, "-o log.csv: is the same file as IN log.csv"},
+      {{"convert", "m.bt", "-o", "m.bt"}, "-o m.bt: is the same file as IN m.bt"},
+      {{"simulate", "tank", "-o", "w.csv", "--nav", "w.csv"}, "--nav w.csv: is the same file as -o w.csv"},
+      {{"simulate", "tank", "-o", "w.csv", "--nav", "w.tum", "--trajectory", "loop"},
+       "the trajectory beside -o, w.tum"},
+      {{"simulate", "tank", "-o", "way.csv", "--poses", "way.tum"}, "as --poses way.tum"},
+      {{"simulate", "tank", "-o", "w.csv", "--poses", "d/poses.tum", "--truth", "d"}, "--truth d/poses.tum: is the"},
+      {{"live", "replay:dive", "--format", "bt", "-o", "dive"}, "as DEVICE dive"},
+      {{"live", "ping360:udp://127.0.0.1:1", "-o", "same.bt", "--record", "same.bt"}, "--record same.bt: is the same"}};
+  for (const auto& [words, text] : cases) {
+    SCOPED_TRACE(::testing::PrintToString(words));
+    expect_error(here.call(words), 2, {words.front() + ": ", text});
+    if (::testing::Test::HasFailure()) return;  // a device that is not there is waited for
+  }
+  EXPECT_EQ(here.files(), files_before);
+  for (const std::string& name : files_before) {
+    EXPECT_EQ(here.read(name == "d" ? "d/poses.tum" : name), kept) << name;
+  }
+  // Devices take any number of outputs, and several commands may share them.
+  EXPECT_EQ(here.call({"simulate", "tank", "-o", "/dev/null", "--nav", "/dev/null", "--turns", "1"}).status, 0);
+}
+
 TEST(Output, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
   const Workplace here;
   fs::create_directory(here.folder() / "folder.bt");

@@ -39,15 +39,16 @@ TEST(FirstUse, BeamsThatAreSkippedHaveAReason) {
   const Outcome outcome = here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err, HasSubstr("a.csv: skipped 1 damaged record, the first: line 82: "));
-  EXPECT_THAT(outcome.err,
-              HasSubstr("59 beams outside the time of the poses, 0.000 s to 20.000 s, the first at 21.000 s (--poses"));
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr("59 of 80 beams outside the time of the poses, 0.000 s to 20.000 s, the first at 21.000 s (--poses"));
   FlatJson json = json_of(here.call({"map", "a.csv", "-o", "a.bt", "--poses", "poses.txt", "--json"}));
   EXPECT_EQ(json["skipped_for.damage"], "1");
   EXPECT_EQ(json["skipped_for.no_pose"], "59");
   here.write("late.txt", "900 0 0 0 0 0 0 1\n901 0 0 0 0 0 0 1\n");
   expect_error(
       here.call({"map", "a.csv", "-o", "b.bt", "--poses", "late.txt"}), 1,
-      {"a.csv: nothing could be mapped: 1 damaged record", "80 beams outside the time of the poses, 900.000 s"});
+      {"a.csv: nothing could be mapped: 1 damaged record", "80 of 80 beams outside the time of the poses, 900.000 s"});
 }
 
 TEST(FirstUse, ATrajectoryBesideALogIsNamedWhenItIsNotUsed) {
@@ -175,6 +176,18 @@ TEST(FirstUse, AMapIsMadeOfConesAndSaysSo) {
   EXPECT_EQ(json["beam.height_deg"], "35");
   EXPECT_EQ(here.call({"map", "tank.csv", "-o", "b.ot", "--beam", "cone", "--quiet"}).status, 0);
   EXPECT_EQ(here.read("a.ot"), here.read("b.ot"));
+}
+
+TEST(FirstUse, TheBeamsOfAllHeadsAreNamed) {
+  const Workplace here;
+  here.simulate_tank();
+  const std::string other = PINGVOX_SOURCE_DIR "/fuzz/corpus/pingviewer/utf8.bin";
+  const Outcome text = here.call({"map", "tank.csv", other, "tank.csv", "-o", "a.bt"});
+  EXPECT_THAT(text.out, HasSubstr("tank.csv: cone, 3 degrees wide, 35 high, assumed"));
+  EXPECT_THAT(text.out, HasSubstr(other + ": cone, 2 degrees wide, 25 high\n"));
+  const Outcome json = here.call({"map", "tank.csv", other, "-o", "a.bt", "--json"});
+  EXPECT_THAT(json.out, HasSubstr(R"("beam": {"shape": "cone", "width_deg": 3, "height_deg": 35})"));
+  EXPECT_THAT(json.out, HasSubstr(R"({"shape": "cone", "width_deg": 2, "height_deg": 25, "log": )"));
 }
 
 TEST(FirstUse, TheThresholdThatWasUsedIsShown) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -119,6 +121,36 @@ TEST(Live, FinishesRecordAndMapOnASignal) {
     EXPECT_THAT(here.files(), ElementsAre("dive.bin", "live.bt"));
     expect_map_of_record(here);
   }
+}
+
+// GNU timeout signals the process and then its group.
+TEST(Live, ASecondSignalRightAfterTheFirstSaysTheSame) {
+  const Head head;
+  for (int i = 0; i < 5; ++i) {
+    const Workplace here;
+    const pid_t child = here.start(live(head.address(), {"--quiet"}));
+    EXPECT_TRUE(wait_until([&] { return here.has("dive.bin") && here.read("dive.bin").size() > 40'000; }));
+    ::kill(child, SIGINT);
+    ::kill(child, SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ::kill(child, SIGINT);
+    EXPECT_EQ(status_of(child), 0);
+    EXPECT_TRUE(here.has("live.bt"));
+  }
+}
+
+TEST(Live, ALaterSignalEndsAtOnce) {
+  const Head head;
+  const Workplace here;
+  ASSERT_EQ(::mkfifo(here.path("live.bt").c_str(), 0600), 0);  // that nobody reads: the map is never written
+  const pid_t child = here.start(live(head.address(), {"--quiet"}));
+  EXPECT_TRUE(wait_until([&] { return here.has("dive.bin") && here.read("dive.bin").size() > 40'000; }));
+  int status = 0;
+  EXPECT_TRUE(wait_until([&] {
+    ::kill(child, SIGINT);
+    return ::waitpid(child, &status, WNOHANG) == child;
+  }));
+  EXPECT_TRUE(WIFSIGNALED(status)) << status;
 }
 
 // The first moment is before the record begins or early in it, the last one after many maps were written.
@@ -321,10 +353,26 @@ TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
   const std::string silent = "mavlink:udp://127.0.0.1:0";
   const Outcome outcome =
       here.call(live(head.address(), {"--nav", silent, "--nav", silent, "--beams", "50", "--json"}));
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr(R"("mapped": 0)"));
   EXPECT_THAT(outcome.out, HasSubstr(R"("messages": 0, "damaged": 0, "recording_failed": false)"));
-  EXPECT_EQ(here.files(), (std::vector<std::string>{"dive-2.tlog", "dive.bin", "dive.tlog", "live.bt"}));
+  EXPECT_THAT(outcome.err, HasSubstr("live.bt: not written: no beam was mapped"));
+  EXPECT_EQ(here.files(), (std::vector<std::string>{"dive-2.tlog", "dive.bin", "dive.tlog"}));
+}
+
+// An empty map replaced that of an earlier dive.
+TEST(Live, WithoutABeamTheOldMapStays) {
+  const Workplace here;
+  here.write("live.bt", "of an earlier dive");
+  const pid_t child = here.start({"live", "ping360:udp://127.0.0.1:1", "-o", "live.bt", "--write-every", "0.1"},
+                                 {.out_path = here.path("said"), .err_path = here.path("notes")});
+  EXPECT_TRUE(wait_until([&] { return here.has("notes") && !here.read("notes").empty(); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // in which maps would be written
+  ::kill(child, SIGINT);
+  EXPECT_EQ(status_of(child), 1);
+  EXPECT_THAT(here.read("said"), HasSubstr("no map\n"));
+  EXPECT_THAT(here.read("notes"), HasSubstr("live.bt: not written: no beam was mapped"));
+  EXPECT_EQ(here.read("live.bt"), "of an earlier dive");
 }
 
 TEST(Live, AReplayMapsAsMapDoes) {

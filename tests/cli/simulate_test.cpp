@@ -106,6 +106,23 @@ TEST(Simulate, MakesTheSameFilesAgain) {
   }
 }
 
+// It wrote until the disk was full.
+TEST(Simulate, RefusesPathsOfMoreTurnsThanMayBeAskedFor) {
+  const Workplace here;
+  here.write("long.tum", "0 0 0 0 0 0 0 1\n1e7 1 0 0 0 0 0 1\n");
+  for (const std::vector<std::string>& path : {std::vector<std::string>{"--trajectory", "loop", "--speed", "1e-6"},
+                                               {"--trajectory", "by-hand", "--speed", "1e-5"},
+                                               {"--poses", "long.tum"}}) {
+    std::vector<std::string> words = {"simulate", "harbour", "-o", "slow.csv"};
+    words.insert(words.end(), path.begin(), path.end());
+    expect_error(here.call(words), 2, {"turns of the head, more than 10000", "--turns"});
+  }
+  expect_error(here.call({"simulate", "harbour", "-o", "slow.csv", "--trajectory", "by-hand", "--speed", "1e-6",
+                          "--turns", "1"}),
+               2, {"longer than a built-in one"});
+  EXPECT_FALSE(here.has("slow.csv"));
+}
+
 TEST(Simulate, WritesNavigationThatInfoAndSlamRead) {
   const Workplace here;
   std::vector<std::string> made;
@@ -135,6 +152,11 @@ TEST(Simulate, WritesNavigationThatInfoAndSlamRead) {
                            "\nsin1-deg = ", "\ncos2-deg = "}) {
     EXPECT_THAT(truth, HasSubstr(name));
     EXPECT_THAT(found, HasSubstr(name)) << "the same names";
+  }
+  for (const std::string command : {"slam", "map"}) {
+    const Outcome known = here.call({command, "dive.csv", "--nav", "nav.csv", "--use-calibration", "truth/nav.toml",
+                                     "-o", command == "map" ? "dive.bt" : "known.tum"});
+    EXPECT_EQ(known.status, 0) << known.err;
   }
 
   expect_error(here.call({"simulate", "tank", "-o", "tank.csv", "--dvl-noise", "0.2"}), 2, {"--dvl-noise", "--nav"});

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -251,6 +252,24 @@ TEST(Slam, SaysWhatTellsTheVelocityWhereNoneWasMeasured) {
   EXPECT_FALSE(here.has("silent.tum"));
 }
 
+// The advice named an option of `map`, and the JSON that nothing was skipped.
+TEST(Slam, CountsTheBeamsThatAreLeftOutOfTheMap) {
+  const Workplace here;
+  write_basin(here);
+  const Outcome outcome = here.call({"slam", "beams.csv", "--nav", "nav.csv", "--nav-offset", "40", "-o", "out.tum",
+                                     "--map", "out.bt", "--resolution", "0.5", "--matching", "none", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::smatch counts;
+  ASSERT_TRUE(std::regex_search(outcome.out, counts, std::regex(R"("map": \{"beams": (\d+), "skipped": (\d+)\})")))
+      << outcome.out;
+  const std::string left_out = counts[2];
+  EXPECT_GT(std::stoi(left_out), 100);
+  EXPECT_THAT(outcome.err, HasSubstr("beams.csv: left out of the map: " + left_out + " of "));
+  EXPECT_THAT(outcome.err, HasSubstr("(--nav must cover the log"));
+  const int all = std::stoi(left_out) + std::stoi(counts[1]);
+  EXPECT_THAT(outcome.err, HasSubstr(fmt::format(" of {} beams", all)));
+}
+
 TEST(Slam, SaysWhatIsMissingInTheNavigation) {
   const Workplace here;
   write_basin(here);
@@ -259,6 +278,9 @@ TEST(Slam, SaysWhatIsMissingInTheNavigation) {
                {"beams.csv", "no valid heading"});
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "--nav-offset", "5000", "-o", "o.tum"}), 1,
                {"do not overlap in time"});
+  here.write("header.csv", "time_s,bearing_rad,bin_length_m,intensities\n");
+  const Outcome none = here.call({"slam", "header.csv", "-o", "o.tum"});
+  expect_error(none, 1, {"header.csv: there are no beams\n"});
   EXPECT_FALSE(here.has("o.tum"));
 }
 

@@ -358,6 +358,25 @@ TEST_P(OverALine, AHeadThatScansByItselfAnswersAllTheSame) {
 INSTANTIATE_TEST_SUITE_P(Device, OverALine, testing::Values("udp://127.0.0.1:0", "pty"),
                          [](const auto& line) { return line.index == 0 ? "Udp" : "Pty"; });
 
+// One damaged or lost byte cost the whole timeout, in which the head may have to turn.
+TEST(Ping360Source, AsksAgainSoonWhereAnAnswerIsDamaged) {
+  const auto seconds_of = [](const HeadEmulatorOptions& line_of_head) {
+    Result<Link> line = Link::listen("udp://127.0.0.1:0");
+    EXPECT_TRUE(line);
+    double now_s = 0.0;
+    const auto source = ping360_source(line->address(), {.range_m = 4.0, .timeout_s = 4.0}, std::nullopt, now_s);
+    Ping360Emulator head(line_of_head, hear_angle);
+    std::vector<Beam> beams;
+    run(*source, *line, head, now_s, beams, 200);
+    EXPECT_EQ(beams.size(), 200U);
+    EXPECT_EQ(source->status().damaged > 0, line_of_head.damaged + line_of_head.lost > 0.0);
+    return now_s;
+  };
+  const double clean_s = seconds_of({});
+  EXPECT_LT(seconds_of({.damaged = 1e-4}), 1.4 * clean_s);
+  EXPECT_LT(seconds_of({.lost = 1e-4}), 1.8 * clean_s);
+}
+
 // Each time another socket, as a head that is switched off and on.
 TEST(Ping360Source, FindsTheHeadAgainAHundredTimes) {
   const Folder folder;

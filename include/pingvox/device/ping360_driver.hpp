@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -52,10 +53,14 @@ class Ping360Driver {
   void connect();
   /// Takes a valid frame of the Ping protocol from the line.
   void take(std::span<const std::uint8_t> frame);
+  /// Of an answer that has begun: what is missing comes by then, or was lost.
+  void expect_rest(double until_s);
   /// The message to send now; nullopt while an answer may still come.
   std::optional<std::vector<std::uint8_t>> message(double now_s);
   /// When `message` has to be called again, unless a frame comes before.
-  double due_s() const { return is_waiting_ ? deadline_s_ : -std::numeric_limits<double>::infinity(); }
+  double due_s() const {
+    return is_waiting_ ? std::min(deadline_s_, rest_until_s_) : -std::numeric_limits<double>::infinity();
+  }
 
   /// Whether a Ping360 answered since `connect`.
   bool is_connected() const { return is_known_; }
@@ -78,6 +83,7 @@ class Ping360Driver {
   int sense_ = 1;       ///< of turning in the sector: 1 clockwise, -1 counter-clockwise
   bool is_known_ = false, is_waiting_ = false;
   double deadline_s_ = 0.0;
+  double rest_until_s_ = 0.0;  ///< for the rest of an answer that has begun
   int unanswered_in_a_row_ = 0;
   std::size_t unanswered_ = 0;
 };

@@ -34,7 +34,7 @@ struct TrajectoryScore {
 
 /// The trajectory is interpolated at the reference's times. Rotations of the reference are not used: it may be of
 /// fixes.
-/// @return kUnsupported when the two are never known at the same time
+/// @return kUnsupported when the two are never known at the same time, or when an error is not finite
 Result<TrajectoryScore> score_trajectory(const Trajectory& trajectory, const Trajectory& reference);
 
 }  // namespace pingvox
