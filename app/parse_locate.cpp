@@ -84,11 +84,13 @@ Result<Command> locate_command(const Args& args) {
   const OptionTable table{
       "locate",
       "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
-      "several places fit equally well, all are reported.",
+      "several places fit equally well, all are reported. Where it is not sure, no poses are written.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
+         flag("--all-poses", "write also poses that may be wrong: while several places fit, or none does",
+              command.written, WrittenPoses::kAll),
          json_option(command.output_options), quiet_option(command.output_options)}},
        {"Map",
         {std::move(map),
@@ -115,7 +117,7 @@ Result<Command> locate_command(const Args& args) {
        {"Input", {strict_option(command.damage), config_option()}}},
       {"pingvox locate dive.csv --map harbour.bt --nav dvl.csv -o dive.tum",
        "pingvox locate tank.csv --map tank.bt --start 0.1,0.2,45 -o tank.tum --json"},
-      "Exit status: 0 done, 1 failed, 2 invalid usage."};
+      "Exit status: 0 done, 1 failed or never sure, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
     if (const auto valid = echoes.validate(command.navs); !valid) return tl::unexpected(valid.error());
     localizer.sound_speed_ratio = echoes.sound_speed_ratio();

@@ -49,8 +49,8 @@ TEST(Locate, AllOfTheRecordingTellsMoreThanWhatWasKnownThen) {
                 .status,
             0);
   const auto locate = [&](std::vector<std::string> more) {
-    std::vector<std::string> call = {"locate",       "a.csv", "--map", "t/world.bt", "--nav", "nav.csv",
-                                     "--nav-offset", "0",     "-o",    "a.tum",      "--json"};
+    std::vector<std::string> call = {"locate",       "a.csv", "--map", "t/world.bt", "--nav",  "nav.csv",
+                                     "--nav-offset", "0",     "-o",    "a.tum",      "--json", "--all-poses"};
     call.insert(call.end(), more.begin(), more.end());
     const Outcome found = here.call(call);
     EXPECT_EQ(found.status, 0) << found.err;
@@ -73,6 +73,25 @@ TEST(Locate, TheSameSeedWritesTheSameBytesAndAStartNeedsNoSearch) {
   }
   EXPECT_EQ(here.read("a.tum"), here.read("b.tum"));
   EXPECT_THAT(here.read("a.tum"), HasSubstr("\n0.000000000 "));
+}
+
+// Kills poses that are written as if they were right although several places fit.
+TEST(Locate, WritesNoPosesWhereItIsNeverSure) {
+  const Workplace here;
+  // One turn of the head: no other one says the same.
+  ASSERT_EQ(
+      here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t", "--resolution", "0.1"}).status, 0);
+  const std::vector<std::string> call = {"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum"};
+  const Outcome unsure = here.call(call);
+  EXPECT_EQ(unsure.status, 1);
+  EXPECT_THAT(unsure.err,
+              testing::AllOf(testing::StartsWith("pingvox: a.csv: it is never sure"), HasSubstr("--all-poses")));
+  EXPECT_THAT(unsure.out, testing::StartsWith("no trajectory is written\n"));
+  EXPECT_FALSE(here.has("o.tum"));
+  std::vector<std::string> all = call;
+  all.emplace_back("--all-poses");
+  EXPECT_EQ(here.call(all).status, 0);
+  EXPECT_TRUE(here.has("o.tum"));
 }
 
 TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
