@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <ostream>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -48,7 +51,11 @@ struct Motion {
 /// What was found.
 struct Found {
   std::vector<StampedPose> poses;
-  std::size_t smoothed = 0;  ///< of these, by all of the recording
+  std::vector<bool> was_sure;     ///< of each pose, when it was known
+  std::vector<std::size_t> ways;  ///< where the poses of each way begin: from one to the next the vehicle cannot go
+  std::vector<bool> is_smoothed;  ///< of each pose: by all of the recording
+  std::size_t smoothed = 0;       ///< of these
+  bool fits_always = false;       ///< the map, with the poses by all of the recording
   struct Span {
     double from_s, to_s;
   };
@@ -143,40 +150,85 @@ DistanceFieldOptions layer_of(const LocateCommand& command, const std::optional<
   return {command.min_z_m.value_or(z_m - kHalf_m), command.max_z_m.value_or(z_m + kHalf_m)};
 }
 
-/// Puts the poses by all of the recording in the place of those that were found, where the map fits.
-void smooth(const SlamSmoother& smoother, const DistanceField& field, std::vector<StampedPose>& poses,
-            std::size_t& smoothed) {
-  const Result<Trajectory> near = Trajectory::make(poses);
-  if (!near) return;
+/// Puts the poses by all of the recording in the place of those that were found, from one to another, where the map
+/// fits. False: it does not.
+bool smooth(const SlamSmoother& smoother, const DistanceField& field, std::size_t from, std::size_t to, Found& found) {
+  const auto first = found.poses.begin() + static_cast<std::ptrdiff_t>(from);
+  const Result<Trajectory> near = Trajectory::make({first, found.poses.begin() + static_cast<std::ptrdiff_t>(to)});
+  if (!near) return false;
   const Result<SlamSolution> solution = smoother.solve_in(field, *near);
-  if (!solution) return;
-  for (StampedPose& pose : poses) {
-    const auto better = solution->trajectory.at(pose.time_s);
+  if (!solution) return false;
+  for (std::size_t i = from; i < to; ++i) {
+    const auto better = solution->trajectory.at(found.poses[i].time_s);
     if (!better) continue;
-    pose.map_from_body = *better;
-    ++smoothed;
+    found.poses[i].map_from_body = *better;
+    found.is_smoothed[i] = true;
+    ++found.smoothed;
+  }
+  return true;
+}
+
+/// Where the poses jump, as when the vehicle was carried away or was lost and is found.
+std::vector<std::size_t> ways_of(const std::vector<StampedPose>& poses) {
+  constexpr double kJump_m = 0.5, kFastest_m_s = 2.0;
+  std::vector<std::size_t> ways = {0};
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const double way_m =
+        (poses[i].map_from_body.translation() - poses[i - 1].map_from_body.translation()).head<2>().norm();
+    if (way_m > kJump_m + kFastest_m_s * (poses[i].time_s - poses[i - 1].time_s)) ways.push_back(i);
+  }
+  return ways;
+}
+
+/// The same of all poses, or else of each way.
+void smooth(const SlamSmoother& smoother, const DistanceField& field, Found& found) {
+  const std::size_t count = found.poses.size();
+  found.fits_always = smooth(smoother, field, 0, count, found);
+  if (found.fits_always) found.ways = {0};
+  if (found.ways.size() == 1) return;
+  for (std::size_t w = 0; w < found.ways.size(); ++w) {
+    smooth(smoother, field, found.ways[w], w + 1 < found.ways.size() ? found.ways[w + 1] : count, found);
   }
 }
 
-/// The same of all poses, or else, as when the vehicle was carried away, of those between jumps, each for themselves.
-void smooth(const SlamSmoother& smoother, const DistanceField& field, Found& found) {
-  constexpr double kJump_m = 0.5, kFastest_m_s = 2.0;
-  smooth(smoother, field, found.poses, found.smoothed);
-  if (found.smoothed > 0) return;
-  std::vector<StampedPose> all;
-  const auto is_jump = [](const StampedPose& a, const StampedPose& b) {
-    const double way_m = (b.map_from_body.translation() - a.map_from_body.translation()).head<2>().norm();
-    return way_m > kJump_m + kFastest_m_s * (b.time_s - a.time_s);
-  };
-  for (auto first = found.poses.begin(); first != found.poses.end();) {
-    auto end = std::adjacent_find(first, found.poses.end(), is_jump);
-    if (end != found.poses.end()) ++end;
-    std::vector<StampedPose> part(first, end);
-    if (part.size() < found.poses.size()) smooth(smoother, field, part, found.smoothed);
-    all.insert(all.end(), part.begin(), part.end());
-    first = end;
+/// The poses that are known to be right: those that were sure. With all of the recording also those of the same way
+/// before them, and after them where the map fits; and all where it fits all the time and one place is left at the end.
+std::vector<bool> known_poses(const Found& found, Estimation estimation) {
+  if (estimation == Estimation::kCausal) return found.was_sure;
+  constexpr double kOne = 0.95;  // as for Localizer::is_sure()
+  const bool is_one = !found.hypotheses.empty() && found.hypotheses.front().weight >= kOne;
+  std::vector<bool> known(found.poses.size(), is_one && found.fits_always);
+  for (std::size_t w = 0; w < found.ways.size(); ++w) {
+    const std::size_t first = found.ways[w], end = w + 1 < found.ways.size() ? found.ways[w + 1] : known.size();
+    bool is_known = false;
+    for (std::size_t i = end; i-- > first;) {
+      is_known = is_known || found.was_sure[i];
+      known[i] = known[i] || is_known;
+    }
+    for (std::size_t i = first; i < end; ++i) known[i] = known[i] || (is_known && found.is_smoothed[i]);
   }
-  found.poses = std::move(all);
+  return known;
+}
+
+/// The poses that are known to be right, with gaps between them. nullopt: none.
+std::optional<Trajectory> sure_trajectory(const Found& found, const std::vector<bool>& known) {
+  constexpr double kUsualSteps = 5.0, kLeast_s = 0.5;  // as of navigation (docs/formats.md)
+  std::vector<StampedPose> poses;
+  std::vector<double> steps_s;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (!known[i]) continue;
+    poses.push_back(found.poses[i]);
+    if (i > 0) steps_s.push_back(found.poses[i].time_s - found.poses[i - 1].time_s);
+  }
+  if (poses.empty()) return std::nullopt;
+  double longest_s = std::numeric_limits<double>::infinity();
+  if (poses.size() < found.poses.size() && !steps_s.empty()) {
+    const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+    std::ranges::nth_element(steps_s, middle);
+    longest_s = std::max(kLeast_s, kUsualSteps * *middle);
+  }
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_s);
+  return trajectory ? std::optional(*std::move(trajectory)) : std::nullopt;
 }
 
 SlamOptions smoother_options(const Motion& motion, const LocalizerOptions& localizer) {
@@ -218,9 +270,13 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, const Distan
   const auto note = [&](double time_s) {
     const std::optional<Localizer::Located> located = localizer.pose();
     if (!located) return;
-    if (!found.poses.empty() && found.poses.back().time_s >= time_s) found.poses.pop_back();
+    if (!found.poses.empty() && found.poses.back().time_s >= time_s) {
+      found.poses.pop_back();
+      found.was_sure.pop_back();
+    }
     found.poses.push_back({time_s, located->map_from_body});
     found.is_sure = localizer.is_sure();
+    found.was_sure.push_back(found.is_sure);
     if (found.is_sure && !was_sure) found.sure.push_back({time_s, time_s});
     if (found.is_sure) found.sure.back().to_s = time_s;
     was_sure = found.is_sure;
@@ -246,6 +302,8 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, const Distan
   if (found.poses.empty()) {
     return fail(Error::Code::kUnsupported, fmt::format("{}: no echo fits anywhere in the map", command.logs.front()));
   }
+  found.is_smoothed.assign(found.poses.size(), false);
+  found.ways = ways_of(found.poses);
   if (smoother) smooth(*smoother, field, found);
   return found;
 }
@@ -260,7 +318,9 @@ JsonObject hypothesis_json(const PoseHypothesis& h) {
       .add("weight", h.weight);
 }
 
-std::string json_of(const Found& found, const Motion& motion, std::size_t field_bytes, const Seconds& seconds) {
+/// @param unsure  poses that may be wrong
+std::string json_of(const Found& found, std::size_t written, std::size_t unsure, const Motion& motion,
+                    std::size_t field_bytes, const Seconds& seconds) {
   std::vector<JsonObject> hypotheses, spans;
   for (const PoseHypothesis& h : found.hypotheses) hypotheses.push_back(hypothesis_json(h));
   for (const Found::Span& span : found.sure) spans.emplace_back().add("from_s", span.from_s).add("to_s", span.to_s);
@@ -270,7 +330,8 @@ std::string json_of(const Found& found, const Motion& motion, std::size_t field_
       .add("field", round_to_us(seconds.field))
       .add("locate", round_to_us(seconds.locate))
       .add("total", round_to_us(seconds.total));
-  json.add("poses", found.poses.size())
+  json.add("poses", written)
+      .add("unsure", unsure)
       .add("smoothed", found.smoothed)
       .add("beams", found.beams)
       .add("skipped", found.skipped + motion.skipped)
@@ -290,24 +351,41 @@ std::string json_of(const Found& found, const Motion& motion, std::size_t field_
   return json.text() + "\n";
 }
 
-std::string text_of(const Found& found, const Motion& motion, const LocateCommand& command, const Seconds& seconds) {
-  std::string text = command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
+std::string sure_text(const Found& found) {
+  constexpr std::size_t kShown = 8;
+  if (found.sure.empty()) return "never";
+  std::string text = found.is_sure ? "at the end" : "not at the end";
+  for (std::size_t i = 0; i < std::min(kShown, found.sure.size()); ++i) {
+    text += fmt::format("{} {:.1f} to {:.1f}", i == 0 ? "; from" : ",", found.sure[i].from_s, found.sure[i].to_s);
+  }
+  text += " s";
+  if (found.sure.size() > kShown) text += fmt::format(", and {} times more", found.sure.size() - kShown);
+  return text;
+}
+
+std::string text_of(const Found& found, std::size_t written, std::size_t unsure, const Motion& motion,
+                    const LocateCommand& command, const Seconds& seconds) {
+  std::string text = written == 0            ? "no trajectory is written\n"
+                     : command.output == "-" ? "standard output\n"
+                                             : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
   if (motion.clock) text += report_line("nav clock", text_of(*motion.clock));
   if (motion.water) text += report_line("water", water_text(*motion.water));
   text += report_line(
       "trajectory",
-      fmt::format("{} poses of {} beams, {} by all of the recording; {:.0f} particles on average, {} at most",
-                  found.poses.size(), found.beams, found.smoothed, found.mean_particles, found.most_particles));
-  for (const PoseHypothesis& h : found.hypotheses) {
+      fmt::format("{} poses of {} beams, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",
+                  written, found.beams, unsure, written == found.poses.size() ? "may be wrong" : "left out",
+                  found.smoothed, found.mean_particles, found.most_particles));
+  constexpr std::size_t kShown = 8;
+  for (const PoseHypothesis& h : std::span(found.hypotheses).first(std::min(kShown, found.hypotheses.size()))) {
     text += report_line("at the end",
                         fmt::format("{:.3f} {:.3f} m +- {:.3f}, {:.1f} +- {:.1f} degrees, weight {:.3f}", h.x_m, h.y_m,
                                     h.deviation_m, h.yaw_rad / kDegree_rad, h.deviation_rad / kDegree_rad, h.weight));
   }
-  text +=
-      report_line("sure", found.sure.empty() ? std::string("never")
-                                             : fmt::format("{} at the end, first at {:.3f} s",
-                                                           found.is_sure ? "yes" : "no", found.sure.front().from_s));
+  if (found.hypotheses.size() > kShown) {
+    text += report_line("at the end", fmt::format("{} places more", found.hypotheses.size() - kShown));
+  }
+  text += report_line("sure", sure_text(found));
   return text +
          report_line("seconds", fmt::format("{:.3f} = {:.3f} read + {:.3f} distance field + {:.3f} locate + rest",
                                             seconds.total, seconds.read, seconds.field, seconds.locate));
@@ -357,15 +435,37 @@ Result<int> run(const LocateCommand& command, Console& console) {
   found->skipped = skipped;
   seconds.locate = locating.seconds();
 
-  const Result<Trajectory> trajectory = Trajectory::make(found->poses);
-  if (!trajectory) return tl::unexpected(trajectory.error());
-  const auto written = write_file(command.output, [&](std::ostream& out) { return write_tum(*trajectory, out); });
-  if (!written) return tl::unexpected(written.error());
+  const std::vector<bool> known = known_poses(*found, command.estimation);
+  const auto unsure = static_cast<std::size_t>(std::ranges::count(known, false));
+  std::optional<Trajectory> trajectory;
+  if (command.written == WrittenPoses::kSure) {
+    trajectory = sure_trajectory(*found, known);
+  } else {
+    Result<Trajectory> all = Trajectory::make(found->poses);
+    if (!all) return tl::unexpected(all.error());
+    trajectory = *std::move(all);
+    if (unsure > 0) {
+      console.say(
+          fmt::format("{}: {} of {} poses may be wrong, while several places fit, or none does: --only-sure "
+                      "leaves them out",
+                      command.logs.front(), unsure, found->poses.size()));
+    }
+  }
+  const std::size_t written = trajectory ? trajectory->poses().size() : 0;
+  if (trajectory) {
+    const auto done = write_file(command.output, [&](std::ostream& out) { return write_tum(*trajectory, out); });
+    if (!done) return tl::unexpected(done.error());
+  }
   seconds.total = total.seconds();
-  const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(*found, *motion, field_bytes, seconds))
-                                   : console.summarise(text_of(*found, *motion, command, seconds), command.output);
+  const Result<void> summary =
+      command.output_options.report == Report::kJson
+          ? console.print(json_of(*found, written, unsure, *motion, field_bytes, seconds))
+          : console.summarise(text_of(*found, written, unsure, *motion, command, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
+  if (!trajectory) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: it is never sure where the vehicle was", command.logs.front()));
+  }
   return 0;
 }
 

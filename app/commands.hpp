@@ -231,6 +231,12 @@ struct StartPose {
   double deviation_m = 0.5, deviation_rad = 10.0 * std::numbers::pi / 180.0;
 };
 
+/// Which poses `locate` writes.
+enum class WrittenPoses {
+  kAll,   ///< also those that are the most likely of several, or do not fit
+  kSure,  ///< those that are known to be right
+};
+
 struct LocateCommand {
   OutputOptions output_options;
   std::vector<std::string> logs;  ///< at least one; "-" is standard input
@@ -248,6 +254,7 @@ struct LocateCommand {
   LocalizerOptions localizer;
   std::optional<double> nav_salinity;          ///< of water whose temperature and depth the navigation log tells
   Estimation estimation = Estimation::kBatch;  ///< of the poses by `navs`
+  WrittenPoses written = WrittenPoses::kAll;
 };
 
 /// What `live` listens to.

@@ -85,11 +85,13 @@ Result<Command> locate_command(const Args& args) {
   const OptionTable table{
       "locate",
       "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
-      "several places fit equally well, all are reported.",
+      "several places fit equally well, all are reported. Where it is not sure, no poses are written.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
+         flag("--only-sure", "leave out poses that may be wrong: while several places fit, or none does",
+              command.written, WrittenPoses::kSure),
          json_option(command.output_options), quiet_option(command.output_options)}},
        {"Map",
         {std::move(map),

@@ -47,7 +47,7 @@ _pingvox_options() {
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
     locate)
-      options+=(--output --map --min-z --max-z --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --odometry --start)
+      options+=(--output --only-sure --map --min-z --max-z --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --odometry --start)
       options+=(--causal --seed --strict --topic --fields --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +39,22 @@ tl::expected<StampedPose, std::string> pose_in(std::string_view line) {
   pose.map_from_body.linear() = rotation.normalized().toRotationMatrix();
   pose.map_from_body.translation() = Eigen::Vector3d(n[1], n[2], n[3]);
   return pose;
+}
+
+/// A comment before the poses: it is followed by a time in seconds and kGapEnd.
+constexpr std::string_view kGapBegin = "# steps of more than ", kGapEnd = " s are gaps";
+
+/// How long a step is at the most that is no gap, by the comments before the poses.
+double longest_step_in(std::string_view text) {
+  while (text.starts_with('#')) {
+    std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+    text.remove_prefix(std::min(text.size(), text.find('\n') == text.npos ? text.size() : text.find('\n') + 1));
+    if (!line.starts_with(kGapBegin) || !line.ends_with(kGapEnd)) continue;
+    line.remove_prefix(kGapBegin.size());
+    line.remove_suffix(std::min(line.size(), kGapEnd.size()));
+    if (const auto step_s = number_in(line); step_s && *step_s > 0.0) return *step_s;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 /// With nine decimals, as usual, or more if needed to be read back exactly.
@@ -80,11 +98,12 @@ Result<Trajectory> read_tum(const FileBytes& file) {
     poses.push_back(*pose);
   }
   if (poses.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: holds no poses", file.name));
-  return Trajectory::make(std::move(poses));
+  return Trajectory::make(std::move(poses), longest_step_in(text_of(file.view())));
 }
 
 Result<void> write_tum(const Trajectory& trajectory, std::ostream& out) {
   out << "# timestamp tx ty tz qx qy qz qw\n";
+  if (trajectory.gaps() > 0) out << fmt::format("{}{}{}\n", kGapBegin, trajectory.longest_step_s(), kGapEnd);
   for (const StampedPose& pose : trajectory.poses()) {
     const Eigen::Vector3d at = pose.map_from_body.translation();
     const Eigen::Quaterniond q = Eigen::Quaterniond(pose.map_from_body.linear()).normalized();

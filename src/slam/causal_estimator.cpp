@@ -129,7 +129,8 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
     std::optional<SweepLoops> loops;
     if (determined) loops = close_new_loops(solver);
     determined = determined && loops;
-    for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
+    const double widest_m = kGateOfReach * solver.reach_m();
+    for (const double gate_m : kGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
     if (!determined) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
     loops_.found += loops->found;
     loops_.kept += loops->kept;

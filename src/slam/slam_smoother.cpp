@@ -158,11 +158,14 @@ Result<SlamSolution> solve_batch(Recording recording, const std::optional<Veloci
   bool determined = true;
   std::optional<SweepLoops> loops;
   if (options.matching == Matching::kPairs) {
-    if (!contradicts && !velocity.by_sonar) solver.expect_steady_motion();
+    const bool is_believed = !contradicts && !velocity.by_sonar;
+    if (is_believed) solver.expect_steady_motion();
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
     if (determined) loops = close_sweep_loops(solver);
     determined = determined && loops;
-    for (const double gate_m : kGates_m) determined = determined && solver.step(gate_m);
+    const bool leads_near = is_believed && velocity.ahead.longest_step_s() <= sweep_duration_s(recording.sweeps);
+    const double widest_m = leads_near ? kGateOfReach * solver.reach_m() : kInfinity;
+    for (const double gate_m : kGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
   }
   std::optional<std::vector<Eigen::Matrix3d>> of_knots;
   if (determined) of_knots = solver.knot_covariances();

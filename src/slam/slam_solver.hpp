@@ -26,6 +26,10 @@ struct HeardSweep {
   std::vector<EchoRun> runs;
 };
 
+/// The widest gate of pairs where the velocity leads from sweep to sweep, as a share of the sonar's reach: echoes that
+/// are farther apart are of two things, as of two boulders.
+inline constexpr double kGateOfReach = 0.2;
+
 /// The range that nine of ten echoes are within; 0 without echoes.
 double reach_of(std::span<const HeardSweep> sweeps);
 

@@ -75,6 +75,26 @@ TEST(Locate, TheSameSeedWritesTheSameBytesAndAStartNeedsNoSearch) {
   EXPECT_THAT(here.read("a.tum"), HasSubstr("\n0.000000000 "));
 }
 
+// Kills poses that are written as if they were right although several places fit.
+TEST(Locate, SaysWhichPosesMayBeWrongAndLeavesThemOut) {
+  const Workplace here;
+  // One turn of the head: no other one says the same.
+  ASSERT_EQ(
+      here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1", "--truth", "t", "--resolution", "0.1"}).status, 0);
+  std::vector<std::string> call = {"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum"};
+  const Outcome all = here.call(call);
+  EXPECT_EQ(all.status, 0);
+  EXPECT_THAT(all.err, testing::AllOf(HasSubstr("1 of 1 poses may be wrong"), HasSubstr("--only-sure")));
+  EXPECT_TRUE(here.has("o.tum"));
+  call[5] = "sure.tum";
+  call.emplace_back("--only-sure");
+  const Outcome sure = here.call(call);
+  EXPECT_EQ(sure.status, 1);
+  EXPECT_THAT(sure.err, testing::StartsWith("pingvox: a.csv: it is never sure"));
+  EXPECT_THAT(sure.out, testing::StartsWith("no trajectory is written\n"));
+  EXPECT_FALSE(here.has("sure.tum"));
+}
+
 TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
   const Workplace here;
   ASSERT_EQ(

@@ -103,5 +103,18 @@ TEST(Tum, WritesNineDecimalsOfTime) {
   EXPECT_EQ(text.str(), "# timestamp tx ty tz qx qy qz qw\n1000.500000000 0 0 0 0 0 0 1\n");
 }
 
+// Kills poses across a time for which there are none.
+TEST(Tum, GapsStayGaps) {
+  const Pose still = Pose::Identity();
+  std::stringstream text;
+  ASSERT_TRUE(write_tum(*Trajectory::make({{0.0, still}, {0.25, still}, {9.0, still}, {9.25, still}}, 0.5), text));
+  EXPECT_THAT(text.str(), HasSubstr("\n# steps of more than 0.5 s are gaps\n"));
+  const auto trajectory = read(text.str());
+  ASSERT_TRUE(trajectory) << trajectory.error().message;
+  EXPECT_EQ(trajectory->gaps(), 1U);
+  EXPECT_TRUE(trajectory->at(9.1));
+  EXPECT_FALSE(trajectory->at(5.0));
+}
+
 }  // namespace
 }  // namespace pingvox

@@ -30,6 +30,7 @@ class Trajectory {
   std::optional<Pose> at(double time_s) const;
 
   const std::vector<StampedPose>& poses() const { return poses_; }
+  double longest_step_s() const { return longest_step_s_; }
   std::size_t gaps() const;
 
  private:
