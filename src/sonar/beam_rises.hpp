@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -21,12 +20,15 @@ inline constexpr std::size_t kContrastReach_beams = 16;
 /// Calls f(bin, rise) for each bin: its height above the lowest of the kRise_bins before it.
 template <class F>
 void for_each_rise(std::span<const std::uint8_t> bins, F&& f) {
-  std::deque<std::size_t> valleys;  // within the last kRise_bins, in ascending order
+  // The valleys within the last kRise_bins: from `lowest` on, in ascending order.
+  std::vector<std::size_t> valleys;
+  valleys.reserve(bins.size());
+  std::size_t lowest = 0;
   for (std::size_t i = 0; i < bins.size(); ++i) {
-    while (!valleys.empty() && bins[valleys.back()] >= bins[i]) valleys.pop_back();
+    while (valleys.size() > lowest && bins[valleys.back()] >= bins[i]) valleys.pop_back();
     valleys.push_back(i);
-    if (i - valleys.front() > kRise_bins) valleys.pop_front();
-    f(i, bins[i] - bins[valleys.front()]);
+    if (i - valleys[lowest] > kRise_bins) ++lowest;
+    f(i, bins[i] - bins[valleys[lowest]]);
   }
 }
 

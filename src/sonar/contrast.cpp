@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "sonar/beam_rises.hpp"
 
 namespace pingvox {
 namespace {
-
-/// Signal and noise of one beam.
-struct Loudness {
-  int rise;      ///< the largest
-  double noise;  ///< of the noisy part of the beam
-};
 
 // Upper quartile of the rises / noise: 5 to 9.5 in pure noise, 11 to 17 in the tank recording.
 constexpr double kQuartileNoiseRatio = 9.7, kMedianNoiseRatio = 8.5, kEchoNoiseRatio = 15.0;
@@ -52,29 +45,25 @@ int contrast_of(std::vector<int>& rises, std::vector<double>& noises) {
 
 }  // namespace
 
-std::vector<int> contrasts_by_gain(const PolarImage& image, const std::vector<BinWindow>& windows) {
-  std::vector<std::optional<Loudness>> heard(image.rows());
+Contrasts::Contrasts(const PolarImage& image, const std::vector<BinWindow>& windows)
+    : image_(image), heard_(image.rows()) {
   for (std::size_t n = 0; n < image.rows(); ++n) {
     const auto [begin, end] = windows[n];
     if (begin >= end) continue;
     const std::span<const std::uint8_t> bins = image.row(n).subspan(begin, end - begin);
-    heard[n] = Loudness{largest_rise(bins), noise_of_noisy_part(bins)};
+    heard_[n] = Loudness{largest_rise(bins), noise_of_noisy_part(bins)};
   }
-  std::vector<int> contrasts;
-  contrasts.reserve(image.rows());
+}
+
+int Contrasts::of(std::size_t beam) const {
   std::vector<int> rises;
   std::vector<double> noises;
-  for (std::size_t n = 0; n < image.rows(); ++n) {
-    rises.clear();
-    noises.clear();
-    for_each_beam_around(image, n, [&](std::size_t m) {
-      if (!heard[m]) return;
-      rises.push_back(heard[m]->rise);
-      noises.push_back(heard[m]->noise);
-    });
-    contrasts.push_back(contrast_of(rises, noises));
-  }
-  return contrasts;
+  for_each_beam_around(image_, beam, [&](std::size_t m) {
+    if (!heard_[m]) return;
+    rises.push_back(heard_[m]->rise);
+    noises.push_back(heard_[m]->noise);
+  });
+  return contrast_of(rises, noises);
 }
 
 }  // namespace pingvox

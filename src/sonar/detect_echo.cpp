@@ -117,48 +117,74 @@ std::optional<std::size_t> start_of_strongest(Bins bins, BinWindow window, int l
   return first;
 }
 
-/// First bins of echoes, by detector.
-class FirstBins {
+/// Whether the contrast is a given threshold and does not depend on other beams.
+bool has_given_contrast(const EchoOptions& options) {
+  return options.detector == Detector::kRise && options.threshold;
+}
+
+/// The bins of one beam, and what makes an echo in them.
+struct SearchedBeam {
+  Bins bins;
+  BinWindow heard, searched;
+  int contrast = 0;
+  std::optional<NoiseFloor> floor = std::nullopt;  ///< kRise, without a given threshold
+  std::optional<std::size_t> edge = std::nullopt;  ///< kCanny
+};
+
+/// What all beams of a sweep need for the search of their echoes.
+class EchoSearch {
  public:
-  /// @param heard    bins that set the contrast  @param windows  bins that are searched, within those
-  FirstBins(const PolarImage& image, const std::vector<BinWindow>& heard, const std::vector<BinWindow>& windows,
-            const std::vector<int>& contrasts, const EchoOptions& options)
-      : heard_(heard), contrasts_(contrasts), options_(options) {
-    if (options.detector == Detector::kRise && !options.threshold) floors_ = noise_floors(image, heard);
+  /// Keeps references to all.
+  EchoSearch(const PolarImage& image, const Sweep& sweep, const EchoOptions& options)
+      : image_(image),
+        options_(options),
+        heard_(windows_of(image, sweep, options)),
+        searched_(clip_windows(options.max_range_m, heard_, sweep)) {
+    if (!has_given_contrast(options)) contrasts_.emplace(image, heard_);
+    if (options.detector == Detector::kRise && !options.threshold) floors_.emplace(image, heard_);
     if (options.detector == Detector::kCfar) scale_ = cfar_scale(options.cfar);
     if (options.detector != Detector::kCanny) return;
     std::vector<int> strong;
-    strong.reserve(contrasts.size());
-    for (const int contrast : contrasts) strong.push_back(options.threshold.value_or(default_gradient(contrast)));
-    edges_ = first_edges(image, windows, strong, options.canny);
+    for (std::size_t n = 0; n < image.rows(); ++n) strong.push_back(gradient_of(contrast_of(n)));
+    edges_ = first_edges(image, searched_, strong, options.canny);
   }
 
-  /// The threshold of one beam, at the bin where an echo begins. REQUIRES a window that is not empty.
-  int threshold_of(std::size_t n, Bins bins, std::size_t first) const {
-    if (options_.threshold) return *options_.threshold;
+  SearchedBeam beam(std::size_t n) const {
+    return {.bins = image_.row(n).first(image_.bins_in(n)),
+            .heard = heard_[n],
+            .searched = searched_[n],
+            .contrast = contrast_of(n),
+            .floor = floors_ ? std::optional(floors_->of(n)) : std::nullopt,
+            .edge = edges_.empty() ? std::nullopt : edges_[n]};
+  }
+
+  /// The threshold at the bin where an echo begins.
+  int threshold_of(const SearchedBeam& beam, std::size_t first) const {
     const Detector detector = options_.detector;
-    if (detector == Detector::kCanny) return default_gradient(contrasts_[n]);
-    if (detector == Detector::kLevel || detector == Detector::kMax) return level_of(n, bins, contrasts_[n]);
-    return detector == Detector::kRise ? std::max(contrasts_[n], floors_[n].at(first)) : contrasts_[n];
+    if (detector == Detector::kCanny) return gradient_of(beam.contrast);
+    if (detector == Detector::kLevel || detector == Detector::kMax) return level_of(beam);
+    if (options_.threshold) return *options_.threshold;
+    return detector == Detector::kRise ? std::max(beam.contrast, beam.floor->at(first)) : beam.contrast;
   }
 
+  /// Where the next echo begins.
   /// @param window  part of the beam's bins that is searched. REQUIRES that it is not empty
-  std::optional<std::size_t> in(std::size_t n, Bins bins, BinWindow window) const {
-    const int contrast = contrasts_[n];
+  std::optional<std::size_t> first_in(const SearchedBeam& beam, BinWindow window) const {
+    const Bins bins = beam.bins;
     switch (options_.detector) {
       case Detector::kRise:
         // A given threshold may be reached over any number of bins.
-        if (options_.threshold) return first_rise(bins, window, contrast, nullptr, bins.size());
-        return first_rise(bins, window, contrast, &floors_[n], kRise_bins);
+        if (options_.threshold) return first_rise(bins, window, beam.contrast, nullptr, bins.size());
+        return first_rise(bins, window, beam.contrast, &*beam.floor, kRise_bins);
       case Detector::kLevel:
-        return first_at_level(bins, window, level_of(n, bins, contrast));
+        return first_at_level(bins, window, level_of(beam));
       case Detector::kMax:
-        return start_of_strongest(bins, window, level_of(n, bins, contrast), contrast);
+        return start_of_strongest(bins, window, level_of(beam), beam.contrast);
       case Detector::kCanny:
         // Only the first edge of a beam is known.
-        return edges_[n] && *edges_[n] >= window.begin ? edges_[n] : std::nullopt;
+        return beam.edge && *beam.edge >= window.begin ? beam.edge : std::nullopt;
       case Detector::kCfar: {
-        const double least = options_.threshold ? *options_.threshold : contrast;
+        const double least = options_.threshold ? *options_.threshold : beam.contrast;
         const auto first =
             first_above_noise(bins.subspan(window.begin, window.end - window.begin), scale_, least, options_.cfar);
         if (first) return window.begin + *first;
@@ -169,60 +195,55 @@ class FirstBins {
   }
 
  private:
-  static int default_gradient(int contrast) { return (8 * contrast + 2) / 5; }
-
-  int level_of(std::size_t n, Bins bins, int contrast) const {
-    return options_.threshold ? *options_.threshold : default_level(bins, heard_[n], contrast);
+  int contrast_of(std::size_t n) const {
+    if (!contrasts_) return *options_.threshold;
+    const int contrast = contrasts_->of(n);
+    return options_.threshold && options_.detector != Detector::kCanny ? std::min(contrast, *options_.threshold)
+                                                                       : contrast;
   }
 
-  const std::vector<BinWindow>& heard_;
-  const std::vector<int>& contrasts_;
+  int gradient_of(int contrast) const { return options_.threshold.value_or((8 * contrast + 2) / 5); }
+
+  int level_of(const SearchedBeam& beam) const {
+    return options_.threshold ? *options_.threshold : default_level(beam.bins, beam.heard, beam.contrast);
+  }
+
+  const PolarImage& image_;
   const EchoOptions& options_;
-  std::vector<NoiseFloor> floors_;                 ///< kRise, without a given threshold
+  std::vector<BinWindow> heard_;     ///< bins that set contrast and noise floor
+  std::vector<BinWindow> searched_;  ///< within those
+  std::optional<Contrasts> contrasts_;
+  std::optional<NoiseFloors> floors_;
   double scale_ = 0.0;                             ///< kCfar
   std::vector<std::optional<std::size_t>> edges_;  ///< kCanny
 };
 
-/// Whether the contrast is a given threshold and does not depend on other beams.
-bool has_given_contrast(const EchoOptions& options) {
-  return options.detector == Detector::kRise && options.threshold;
-}
-
-std::vector<int> contrasts_of(const PolarImage& image, const std::vector<BinWindow>& windows,
-                              const EchoOptions& options) {
-  if (has_given_contrast(options)) return std::vector<int>(image.rows(), *options.threshold);
-  std::vector<int> contrasts = contrasts_by_gain(image, windows);
-  if (options.threshold && options.detector != Detector::kCanny) {
-    for (int& contrast : contrasts) contrast = std::min(contrast, *options.threshold);
-  }
-  return contrasts;
-}
-
 enum class Search { kStop, kContinue };
 
-/// Calls f(beam, echo) for the echoes of each beam, the nearest first, until it returns kStop. The next echo is
-/// searched for behind the last bin of the one before.
+/// Calls f(echo) for the echoes of a beam, the nearest first, until it returns kStop. The next echo is searched for
+/// behind the last bin of the one before.
 template <class F>
-void for_each_echo(const PolarImage& image, const Sweep& sweep, const EchoOptions& options, F&& f) {
-  assert(options.validate());
-  assert(image.rows() == sweep.beams.size());
-  const std::vector<BinWindow> heard = windows_of(image, sweep, options);
-  const std::vector<int> contrasts = contrasts_of(image, heard, options);
-  const std::vector<BinWindow> windows = clip_windows(options.max_range_m, heard, sweep);
-  const FirstBins first_bins(image, heard, windows, contrasts, options);
-  for (std::size_t n = 0; n < image.rows(); ++n) {
-    const Bins bins = image.row(n).first(image.bins_in(n));
-    for (BinWindow window = windows[n]; window.begin < window.end;) {
-      const std::optional<std::size_t> first = first_bins.in(n, bins, window);
-      if (!first) break;
-      Echo echo = echo_from(bins, window, *first, contrasts[n]);
-      echo.intensity = bins[echo.peak];
-      echo.threshold = first_bins.threshold_of(n, bins, *first);
-      echo.range_m = wall_of(sweep.beams[n].intensities, echo, contrasts[n]) * sweep.beams[n].bin_length_m;
-      window.begin = echo.last + 1;
-      if (f(n, echo) == Search::kStop) break;
-    }
+void for_each_echo(const EchoSearch& search, const Sweep& sweep, std::size_t n, F&& f) {
+  const SearchedBeam beam = search.beam(n);
+  for (BinWindow window = beam.searched; window.begin < window.end;) {
+    const std::optional<std::size_t> first = search.first_in(beam, window);
+    if (!first) break;
+    Echo echo = echo_from(beam.bins, window, *first, beam.contrast);
+    echo.intensity = beam.bins[echo.peak];
+    echo.threshold = search.threshold_of(beam, *first);
+    echo.range_m = wall_of(sweep.beams[n].intensities, echo, beam.contrast) * sweep.beams[n].bin_length_m;
+    window.begin = echo.last + 1;
+    if (f(echo) == Search::kStop) break;
   }
+}
+
+std::optional<Echo> first_echo(const EchoSearch& search, const Sweep& sweep, std::size_t n) {
+  std::optional<Echo> found;
+  for_each_echo(search, sweep, n, [&](const Echo& echo) {
+    found = echo;
+    return Search::kStop;
+  });
+  return found;
 }
 
 }  // namespace
@@ -253,21 +274,35 @@ Result<void> EchoOptions::validate() const {
 
 std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sweep& sweep,
                                                const EchoOptions& options) {
-  std::vector<std::optional<Echo>> first(image.rows());
-  for_each_echo(image, sweep, options, [&](std::size_t beam, const Echo& echo) {
-    first[beam] = echo;
-    return Search::kStop;
-  });
+  assert(options.validate());
+  assert(image.rows() == sweep.beams.size());
+  const EchoSearch search(image, sweep, options);
+  std::vector<std::optional<Echo>> first;
+  first.reserve(image.rows());
+  for (std::size_t n = 0; n < image.rows(); ++n) first.push_back(first_echo(search, sweep, n));
   return first;
+}
+
+std::optional<Echo> detect_echo(const PolarImage& image, const Sweep& sweep, std::size_t beam,
+                                const EchoOptions& options) {
+  assert(options.validate());
+  assert(image.rows() == sweep.beams.size());
+  assert(beam < image.rows());
+  return first_echo(EchoSearch(image, sweep, options), sweep, beam);
 }
 
 std::vector<std::vector<Echo>> detect_all_echoes(const PolarImage& image, const Sweep& sweep,
                                                  const EchoOptions& options) {
+  assert(options.validate());
+  assert(image.rows() == sweep.beams.size());
+  const EchoSearch search(image, sweep, options);
   std::vector<std::vector<Echo>> all(image.rows());
-  for_each_echo(image, sweep, options, [&](std::size_t beam, const Echo& echo) {
-    all[beam].push_back(echo);
-    return Search::kContinue;
-  });
+  for (std::size_t n = 0; n < image.rows(); ++n) {
+    for_each_echo(search, sweep, n, [&](const Echo& echo) {
+      all[n].push_back(echo);
+      return Search::kContinue;
+    });
+  }
   return all;
 }
 

@@ -24,8 +24,25 @@ class NoiseFloor {
   std::vector<int> rises_;
 };
 
+/// What is heard in one part of a beam.
+struct BeamPart {
+  double noise = 0.0;
+  int rise = 0;  ///< the largest that ends in it
+};
+
 /// That of each beam: 12 times the noise at that range, and none where a quarter of the beams around, at least, rise by
 /// 11 times the noise at about that range: there is a wall.
-std::vector<NoiseFloor> noise_floors(const PolarImage& image, const std::vector<BinWindow>& windows);
+class NoiseFloors {
+ public:
+  /// Keeps references to both.
+  NoiseFloors(const PolarImage& image, const std::vector<BinWindow>& windows);
+
+  NoiseFloor of(std::size_t beam) const;
+
+ private:
+  const PolarImage& image_;
+  const std::vector<BinWindow>& windows_;
+  std::vector<std::vector<BeamPart>> heard_;  ///< of each beam; empty: its window is
+};
 
 }  // namespace pingvox

@@ -24,7 +24,10 @@ std::vector<int> contrasts_in(const Sweep& sweep) {
   const PolarImage image(sweep);
   std::vector<BinWindow> windows;
   for (std::size_t n = 0; n < image.rows(); ++n) windows.push_back({0, image.bins_in(n)});
-  return contrasts_by_gain(image, windows);
+  const Contrasts contrasts(image, windows);
+  std::vector<int> all;
+  for (std::size_t n = 0; n < image.rows(); ++n) all.push_back(contrasts.of(n));
+  return all;
 }
 
 // Kills a rise that is measured over a bin more or less.

@@ -345,15 +345,17 @@ TEST(ContrastsByGain, FollowsTheGainAndSeesNoEchoInNoise) {
   EXPECT_EQ(noises, 600U);
 }
 
-TEST(ContrastsByGain, IsThePapersThresholdOnItsRecording) {
+TEST(Contrasts, AreThePapersThresholdOnItsRecording) {
   std::vector<Beam> beams = test::TankRecording::beams(PINGVOX_SHARED_DATA);
   if (beams.empty()) GTEST_SKIP() << "no tank recording in " << PINGVOX_SHARED_DATA;
   beams.resize(200);
   const Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::move(beams)};
-  std::vector<int> contrasts =
-      contrasts_by_gain(apply_filter(PolarImage(sweep), {}), std::vector<BinWindow>(200, {60, 399}));
-  std::ranges::sort(contrasts);
-  EXPECT_NEAR(contrasts[100], 70, 5);
+  const PolarImage image = apply_filter(PolarImage(sweep), {});
+  const Contrasts contrasts(image, std::vector<BinWindow>(200, {60, 399}));
+  std::vector<int> all;
+  for (std::size_t n = 0; n < 200; ++n) all.push_back(contrasts.of(n));
+  std::ranges::sort(all);
+  EXPECT_NEAR(all[100], 70, 5);
 }
 
 }  // namespace

@@ -49,7 +49,10 @@ std::vector<NoiseFloor> floors_in(const Sweep& sweep) {
   const PolarImage image = apply_filter(PolarImage(sweep), {});
   std::vector<BinWindow> windows;
   for (std::size_t n = 0; n < image.rows(); ++n) windows.push_back({0, image.bins_in(n)});
-  return noise_floors(image, windows);
+  const NoiseFloors floors(image, windows);
+  std::vector<NoiseFloor> all;
+  for (std::size_t n = 0; n < image.rows(); ++n) all.push_back(floors.of(n));
+  return all;
 }
 
 // Kills thresholds of one height for all of a beam: the far noise rises as much as the near wall.

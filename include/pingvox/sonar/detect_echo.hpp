@@ -101,6 +101,10 @@ struct EchoOptions {
 /// REQUIRES valid options, image.rows() == sweep.beams.size()
 std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sweep& sweep, const EchoOptions& options);
 
+/// That of one beam alone, with less work. REQUIRES beam < image.rows() as well.
+std::optional<Echo> detect_echo(const PolarImage& image, const Sweep& sweep, std::size_t beam,
+                                const EchoOptions& options);
+
 /// All echoes of each beam, the nearest first: the next one begins behind the last bin of the one before. What comes
 /// behind the first is another wall within the beam's height, or an echo of an echo. kCanny finds the first alone.
 /// @see detect_echoes
