@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -54,7 +53,6 @@ struct Found {
   std::vector<bool> was_sure;     ///< of each pose, when it was known
   std::vector<std::size_t> ways;  ///< where the poses of each way begin: from one to the next the vehicle cannot go
   std::vector<bool> is_smoothed;  ///< of each pose: by all of the recording
-  std::size_t smoothed = 0;       ///< of these
   bool fits_always = false;       ///< the map, with the poses by all of the recording
   struct Span {
     double from_s, to_s;
@@ -66,6 +64,10 @@ struct Found {
   double mean_particles = 0.0, from_s = 0.0, to_s = 0.0;
   double sound_speed_m_s = kAssumedSoundSpeed_m_s;
 };
+
+std::size_t smoothed_poses(const Found& found) {
+  return static_cast<std::size_t>(std::ranges::count(found.is_smoothed, true));
+}
 
 Result<OccupancyMap> map_in(const std::string& name) {
   const Result<FileBytes> file = read_file(name);
@@ -163,7 +165,6 @@ bool smooth(const SlamSmoother& smoother, const DistanceField& field, std::size_
     if (!better) continue;
     found.poses[i].map_from_body = *better;
     found.is_smoothed[i] = true;
-    ++found.smoothed;
   }
   return true;
 }
@@ -195,8 +196,7 @@ void smooth(const SlamSmoother& smoother, const DistanceField& field, Found& fou
 /// before them, and after them where the map fits; and all where it fits all the time and one place is left at the end.
 std::vector<bool> known_poses(const Found& found, Estimation estimation) {
   if (estimation == Estimation::kCausal) return found.was_sure;
-  constexpr double kOne = 0.95;  // as for Localizer::is_sure()
-  const bool is_one = !found.hypotheses.empty() && found.hypotheses.front().weight >= kOne;
+  const bool is_one = !found.hypotheses.empty() && found.hypotheses.front().weight >= Localizer::kSureWeight;
   std::vector<bool> known(found.poses.size(), is_one && found.fits_always);
   for (std::size_t w = 0; w < found.ways.size(); ++w) {
     const std::size_t first = found.ways[w], end = w + 1 < found.ways.size() ? found.ways[w + 1] : known.size();
@@ -212,22 +212,15 @@ std::vector<bool> known_poses(const Found& found, Estimation estimation) {
 
 /// The poses that are known to be right, with gaps between them. nullopt: none.
 std::optional<Trajectory> sure_trajectory(const Found& found, const std::vector<bool>& known) {
-  constexpr double kUsualSteps = 5.0, kLeast_s = 0.5;  // as of navigation (docs/formats.md)
   std::vector<StampedPose> poses;
-  std::vector<double> steps_s;
+  NavSource times;
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!known[i]) continue;
     poses.push_back(found.poses[i]);
-    if (i > 0) steps_s.push_back(found.poses[i].time_s - found.poses[i - 1].time_s);
+    times.samples.push_back({.time_s = found.poses[i].time_s});
   }
   if (poses.empty()) return std::nullopt;
-  double longest_s = std::numeric_limits<double>::infinity();
-  if (poses.size() < found.poses.size() && !steps_s.empty()) {
-    const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-    std::ranges::nth_element(steps_s, middle);
-    longest_s = std::max(kLeast_s, kUsualSteps * *middle);
-  }
-  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_s);
+  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), summary_of(times).longest_step_s);
   return trajectory ? std::optional(*std::move(trajectory)) : std::nullopt;
 }
 
@@ -332,7 +325,7 @@ std::string json_of(const Found& found, std::size_t written, std::size_t unsure,
       .add("total", round_to_us(seconds.total));
   json.add("poses", written)
       .add("unsure", unsure)
-      .add("smoothed", found.smoothed)
+      .add("smoothed", smoothed_poses(found))
       .add("beams", found.beams)
       .add("skipped", found.skipped + motion.skipped)
       .add("sound_speed_m_s", found.sound_speed_m_s)
@@ -375,7 +368,7 @@ std::string text_of(const Found& found, std::size_t written, std::size_t unsure,
       "trajectory",
       fmt::format("{} poses of {} beams, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",
                   written, found.beams, unsure, written == found.poses.size() ? "may be wrong" : "left out",
-                  found.smoothed, found.mean_particles, found.most_particles));
+                  smoothed_poses(found), found.mean_particles, found.most_particles));
   constexpr std::size_t kShown = 8;
   for (const PoseHypothesis& h : std::span(found.hypotheses).first(std::min(kShown, found.hypotheses.size()))) {
     text += report_line("at the end",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <variant>
@@ -147,8 +148,9 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("free_cells", counts.free_cells)
       .add("bounds", bounds_json(map.bounds()));
   std::vector<JsonObject> other_beams;
-  for (const auto& used : totals.used_beams) other_beams.push_back(beam_json(used.model).add("log", used.log));
-  if (!other_beams.empty()) other_beams.erase(other_beams.begin());
+  for (const auto& used : totals.used_beams | std::views::drop(1)) {
+    other_beams.push_back(beam_json(used.model).add("log", used.log));
+  }
   JsonObject json;
   JsonObject skipped_for;
   skipped_for.add("damage", totals.damaged)

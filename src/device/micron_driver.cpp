@@ -1,15 +1,13 @@
 #include "pingvox/device/micron_driver.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 #include "device/micron_command.hpp"
 #include "pingvox/io/seanet_frame.hpp"
+#include "pingvox/option_errors.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {
@@ -38,20 +36,15 @@ MicronSampling micron_sampling(double range_m) {
 }
 
 Result<void> MicronSettings::validate() const {
-  std::string bad;
-  const auto check = [&bad](std::string_view name, double value, double min, double max) {
-    if (!(value >= min && value <= max)) bad += fmt::format(" {} must be in {}..{}, is {};", name, min, max, value);
-  };
-  check("range_m", range_m, kMinRange_m, kMaxRange_m);
-  check("step", step, 1, 255);
-  check("timeout_s", timeout_s, 0.01, 60.0);
+  OptionErrors errors;
+  errors.require_within("range_m", range_m, kMinRange_m, kMaxRange_m);
+  errors.require_within("step", step, 1, 255);
+  errors.require_within("timeout_s", timeout_s, 0.01, 60.0);
   if (sector) {
-    check("left", sector->left, 0, kTurn - 1);
-    check("right", sector->right, 0, kTurn - 1);
+    errors.require_within("left", sector->left, 0, kTurn - 1);
+    errors.require_within("right", sector->right, 0, kTurn - 1);
   }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "micron:" + bad);
+  return errors.result("micron");
 }
 
 MicronDriver::MicronDriver(const MicronSettings& settings) : settings_(settings) {

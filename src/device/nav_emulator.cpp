@@ -8,12 +8,12 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <string_view>
 #include <utility>
 
 #include "pingvox/io/mavlink.hpp"
 #include "pingvox/nav/nav_log.hpp"
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -65,17 +65,12 @@ Message bytes_of(std::string_view text) {
 }  // namespace
 
 Result<void> NavEmulatorOptions::validate() const {
-  std::string bad;
-  const auto check = [&bad](std::string_view name, double value, double min, double max) {
-    if (!(value >= min && value <= max)) bad += fmt::format(" {} must be in {}..{}, is {};", name, min, max, value);
-  };
-  check("reports_per_s", reports_per_s, 0.1, 1000.0);
-  check("lost", lost, 0.0, 0.5);
-  check("doubled", doubled, 0.0, 0.5);
-  check("damaged", damaged, 0.0, 0.5);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "emulator of navigation:" + bad);
+  OptionErrors errors;
+  errors.require_within("reports_per_s", reports_per_s, 0.1, 1000.0);
+  errors.require_within("lost", lost, 0.0, 0.5);
+  errors.require_within("doubled", doubled, 0.0, 0.5);
+  errors.require_within("damaged", damaged, 0.0, 0.5);
+  return errors.result("emulator of navigation");
 }
 
 NavEmulator::Say NavEmulator::mavlink(PoseAt pose_at) {

@@ -1,15 +1,14 @@
 #include "pingvox/device/ping360_driver.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <string>
+#include <iterator>
 
 #include "device/ping_fields.hpp"
 #include "pingvox/io/ping_frame.hpp"
+#include "pingvox/option_errors.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {
@@ -33,20 +32,15 @@ Ping360Sampling ping360_sampling(double range_m) {
 }
 
 Result<void> Ping360Settings::validate() const {
-  std::string bad;
-  if (!(range_m >= 0.5 && range_m <= 100.0)) bad += fmt::format(" range_m must be in 0.5..100, is {};", range_m);
-  if (step_grad < 1 || step_grad > 20) bad += fmt::format(" step_grad must be in 1..20, is {};", step_grad);
-  if (sector && (sector->first_grad < 0 || sector->first_grad >= kTurn_grad)) {
-    bad += fmt::format(" first_grad must be in 0..399, is {};", sector->first_grad);
+  OptionErrors errors;
+  errors.require_within("range_m", range_m, 0.5, 100.0);
+  errors.require_within("step_grad", step_grad, 1, 20);
+  errors.require_within("timeout_s", timeout_s, 0.01, 60.0);
+  if (sector) {
+    errors.require_within("first_grad", sector->first_grad, 0, kTurn_grad - 1);
+    errors.require_within("width_grad", sector->width_grad, 1, kTurn_grad - 1);
   }
-  if (sector && (sector->width_grad < 1 || sector->width_grad >= kTurn_grad)) {
-    bad += fmt::format(" width_grad must be in 1..399, is {};", sector->width_grad);
-  }
-  if (!(timeout_s >= 0.01 && timeout_s <= 60.0))
-    bad += fmt::format(" timeout_s must be in 0.01..60, is {};", timeout_s);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "ping360:" + bad);
+  return errors.result("ping360");
 }
 
 Ping360Driver::Ping360Driver(const Ping360Settings& settings)
@@ -102,7 +96,10 @@ std::optional<std::vector<std::uint8_t>> Ping360Driver::message(double now_s) {
   if (is_known_) return ping();
   std::vector<std::uint8_t> wanted;
   put_u16(wanted, static_cast<std::uint16_t>(PingMessage::kDeviceInformation));
-  return make_ping_frame(PingMessage::kGeneralRequest, kHost, kHead, wanted);
+  // Another host may have left the head scanning (auto_transmit), which only this ends.
+  std::vector<std::uint8_t> messages = motor_off();
+  std::ranges::copy(make_ping_frame(PingMessage::kGeneralRequest, kHost, kHead, wanted), std::back_inserter(messages));
+  return messages;
 }
 
 std::vector<std::uint8_t> Ping360Driver::motor_off() {

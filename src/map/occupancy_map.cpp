@@ -18,6 +18,7 @@
 #include "pingvox/geometry/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -206,19 +207,17 @@ std::size_t bytes_of(const detail::BrickTree& tree) {
 }  // namespace
 
 Result<void> MapOptions::validate() const {
-  std::string bad;
-  if (const auto lattice = Lattice::make(resolution_m, depth); !lattice) bad += " " + lattice.error().message + ";";
+  OptionErrors errors;
+  if (const auto lattice = Lattice::make(resolution_m, depth); !lattice) errors.add(lattice.error().message);
   const float low = clamp.lowest.value(), high = clamp.highest.value();
   if (!(low < 0.0F && high > 0.0F && std::isfinite(low) && std::isfinite(high))) {
-    bad += fmt::format(" clamp must be finite with lowest < 0 < highest log-odds, is {} and {};", low, high);
+    errors.add(fmt::format("clamp must be finite with lowest < 0 < highest log-odds, is {} and {}", low, high));
   }
   if (!(thresholds.lower <= thresholds.upper)) {
-    bad += fmt::format(" lower threshold must not exceed the upper one, {} and {} do;", thresholds.lower.value(),
-                       thresholds.upper.value());
+    errors.add(fmt::format("lower threshold must not exceed the upper one, {} and {} do", thresholds.lower.value(),
+                           thresholds.upper.value()));
   }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "map:" + bad);
+  return errors.result("map");
 }
 
 Result<OccupancyMap> OccupancyMap::make(const MapOptions& options) {

@@ -7,23 +7,24 @@
 
 #include "mapping/bundle_grid.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 Result<void> BeamModelOptions::validate() const {
-  std::string bad;
+  OptionErrors errors;
   if (!(width_rad > 0.0 && width_rad <= std::numbers::pi)) {
-    bad += fmt::format(" beam width must be in (0, 180] degrees, is {:.6g};", width_rad * 180.0 / std::numbers::pi);
+    errors.add(fmt::format("beam width must be in (0, 180] degrees, is {:.6g}", width_rad * 180.0 / std::numbers::pi));
   }
   if (!(height_rad > 0.0 && height_rad < std::numbers::pi)) {
-    bad += fmt::format(" beam height must be in (0, 180) degrees, is {:.6g};", height_rad * 180.0 / std::numbers::pi);
+    errors.add(
+        fmt::format("beam height must be in (0, 180) degrees, is {:.6g}", height_rad * 180.0 / std::numbers::pi));
   }
-  if (!(free_share > 0.0 && free_share <= 1.0)) bad += fmt::format(" free share must be in (0, 1], is {};", free_share);
+  if (!(free_share > 0.0 && free_share <= 1.0))
+    errors.add(fmt::format("free share must be in (0, 1], is {}", free_share));
   if (!(hit > LogOdds(0.0F)) || !std::isfinite(hit.value())) {
-    bad += fmt::format(" hit must be a probability in (0.5, 1), is {:.6g};", hit.probability());
+    errors.add(fmt::format("hit must be a probability in (0.5, 1), is {:.6g}", hit.probability()));
   }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "beam model:" + bad);
+  return errors.result("beam model");
 }
 
 LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {

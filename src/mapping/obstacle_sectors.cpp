@@ -1,17 +1,14 @@
 #include "pingvox/mapping/obstacle_sectors.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <string_view>
 
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -22,17 +19,13 @@ constexpr double kSector_rad = kTurn_rad / static_cast<double>(ObstacleSectors::
 }  // namespace
 
 Result<void> ObstacleOptions::validate() const {
-  std::string bad;
-  const auto check = [&bad](std::string_view name, bool is_good, std::string_view wanted, double value) {
-    if (!is_good) bad += fmt::format(" {} must be {}, is {};", name, wanted, value);
-  };
-  check("min_range_m", min_range_m >= 0.0, "at least 0", min_range_m);
-  check("max_range_m", max_range_m > min_range_m && max_range_m <= 650.0, "above min_range_m and at most 650",
-        max_range_m);
-  check("half_height_m", half_height_m > 0.0 && half_height_m <= 100.0, "above 0 and at most 100", half_height_m);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "obstacles:" + bad);
+  OptionErrors errors;
+  errors.require(min_range_m >= 0.0, "min_range_m", "at least 0", min_range_m);
+  errors.require(max_range_m > min_range_m && max_range_m <= 650.0, "max_range_m", "above min_range_m and at most 650",
+                 max_range_m);
+  errors.require(half_height_m > 0.0 && half_height_m <= 100.0, "half_height_m", "above 0 and at most 100",
+                 half_height_m);
+  return errors.result("obstacles");
 }
 
 ObstacleSectors nearest_obstacles(const OccupancyMap& map, const Pose& map_from_body, const ObstacleOptions& options) {

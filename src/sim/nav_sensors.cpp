@@ -1,19 +1,17 @@
 #include "pingvox/sim/nav_sensors.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "pingvox/geometry/random.hpp"
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -158,32 +156,25 @@ NavSource simulate_depth(const Trajectory& trajectory, double from_s, double to_
 }  // namespace
 
 Result<void> NavSensorOptions::validate() const {
-  std::string bad;
-  const auto within = [&bad](double value, double low, double high, std::string_view name) {
-    if (!(value >= low && value <= high)) bad += fmt::format(" {} must be {}..{}, is {};", name, low, high, value);
+  OptionErrors errors;
+  const auto rate = [&errors](std::string_view name, double value) {
+    errors.require(value > 0.0 && value <= 100.0, name, "> 0 and at most 100", value);
   };
-  const auto rate = [&bad](double value, std::string_view name) {
-    if (!(value > 0.0 && value <= 100.0)) bad += fmt::format(" {} must be > 0 and at most 100, is {};", name, value);
-  };
-  rate(dvl_per_s, "dvl_per_s");
-  within(dvl_noise_m_s, 0.0, 10.0, "dvl_noise_m_s");
-  within(dvl_outliers, 0.0, 1.0, "dvl_outliers");
-  if (!(dvl_lost >= 0.0 && dvl_lost < 1.0)) {
-    bad += fmt::format(" dvl_lost must be 0 or more and less than 1, is {};", dvl_lost);
-  }
-  within(dvl_yaw_rad, 0.0, 1.0, "dvl_yaw_rad");
-  within(dvl_scale, 0.0, 0.1, "dvl_scale");
-  rate(attitude_per_s, "attitude_per_s");
-  within(attitude_noise_rad, 0.0, 1.0, "attitude_noise_rad");
-  within(compass_deviation_rad, 0.0, 0.3, "compass_deviation_rad");
-  within(gyro_noise_rad_s, 0.0, 1.0, "gyro_noise_rad_s");
-  within(gyro_drift_rad_s, 0.0, 1.0, "gyro_drift_rad_s");
-  rate(depth_per_s, "depth_per_s");
-  within(depth_noise_m, 0.0, 10.0, "depth_noise_m");
-  within(delay_s, -3600.0, 3600.0, "delay_s");
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "navigation:" + bad);
+  rate("dvl_per_s", dvl_per_s);
+  errors.require_within("dvl_noise_m_s", dvl_noise_m_s, 0.0, 10.0);
+  errors.require_within("dvl_outliers", dvl_outliers, 0.0, 1.0);
+  errors.require(dvl_lost >= 0.0 && dvl_lost < 1.0, "dvl_lost", "0 or more and less than 1", dvl_lost);
+  errors.require_within("dvl_yaw_rad", dvl_yaw_rad, 0.0, 1.0);
+  errors.require_within("dvl_scale", dvl_scale, 0.0, 0.1);
+  rate("attitude_per_s", attitude_per_s);
+  errors.require_within("attitude_noise_rad", attitude_noise_rad, 0.0, 1.0);
+  errors.require_within("compass_deviation_rad", compass_deviation_rad, 0.0, 0.3);
+  errors.require_within("gyro_noise_rad_s", gyro_noise_rad_s, 0.0, 1.0);
+  errors.require_within("gyro_drift_rad_s", gyro_drift_rad_s, 0.0, 1.0);
+  rate("depth_per_s", depth_per_s);
+  errors.require_within("depth_noise_m", depth_noise_m, 0.0, 10.0);
+  errors.require_within("delay_s", delay_s, -3600.0, 3600.0);
+  return errors.result("navigation");
 }
 
 SimulatedNav simulate_nav(const Trajectory& map_from_body, double from_s, double to_s,

@@ -7,11 +7,10 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "pingvox/option_errors.hpp"
 #include "pingvox/sim/random.hpp"
 #include "pingvox/sim/sonar.hpp"
 
@@ -31,23 +30,6 @@ constexpr Material kSteel = {.scatter = 0.7, .glint = 1.2, .mirror = 0.4};
 constexpr Material kMud = {.scatter = 0.15, .glint = 0.3, .mirror = 0.1};
 constexpr Material kSand = {.scatter = 0.5, .glint = 0.3, .mirror = 0.1};
 constexpr Material kRock = {.scatter = 1.0, .glint = 0.2, .mirror = 0.1};
-
-/// Collects the errors of options.
-class Check {
- public:
-  template <class Value>
-  void within(Value value, Value low, Value high, std::string_view name) {
-    if (!(value >= low && value <= high)) bad_ += fmt::format(" {} must be {}..{}, is {};", name, low, high, value);
-  }
-  Result<void> result(std::string_view stage) {
-    if (bad_.empty()) return {};
-    bad_.pop_back();
-    return fail(Error::Code::kBadOption, fmt::format("{}:{}", stage, bad_));
-  }
-
- private:
-  std::string bad_;
-};
 
 /// Lanes along x from one corner of a rectangle to the other.
 Route lanes(const Vector3d& from, const Vector3d& to, int count) {
@@ -184,17 +166,17 @@ Scene tank_scene(const TankOptions& o) {
 }
 
 Result<void> HarbourOptions::validate() const {
-  Check check;
-  check.within(length_m, 16.0, 200.0, "length_m");
-  check.within(width_m, 12.0, 200.0, "width_m");
-  check.within(water_above_m, 0.5, 50.0, "water_above_m");
-  check.within(water_below_m, 0.5, 50.0, "water_below_m");
-  check.within<std::size_t>(piles, 0, 6, "piles");
-  check.within(pile_radius_m, 0.01, 0.5, "pile_radius_m");
-  check.within(hull_length_m, 0.0, 0.45 * length_m, "hull_length_m");
-  check.within(hull_beam_m, 0.1, 3.0, "hull_beam_m");
-  check.within(hull_draught_m, 0.1, water_above_m + water_below_m, "hull_draught_m");
-  return check.result("harbour");
+  OptionErrors errors;
+  errors.require_within("length_m", length_m, 16.0, 200.0);
+  errors.require_within("width_m", width_m, 12.0, 200.0);
+  errors.require_within("water_above_m", water_above_m, 0.5, 50.0);
+  errors.require_within("water_below_m", water_below_m, 0.5, 50.0);
+  errors.require_within("piles", piles, 0, 6);
+  errors.require_within("pile_radius_m", pile_radius_m, 0.01, 0.5);
+  errors.require_within("hull_length_m", hull_length_m, 0.0, 0.45 * length_m);
+  errors.require_within("hull_beam_m", hull_beam_m, 0.1, 3.0);
+  errors.require_within("hull_draught_m", hull_draught_m, 0.1, water_above_m + water_below_m);
+  return errors.result("harbour");
 }
 
 Scene harbour_scene(const HarbourOptions& o) {
@@ -233,10 +215,10 @@ Scene harbour_scene(const HarbourOptions& o) {
 }
 
 Result<void> MarinaOptions::validate() const {
-  Check check;
-  check.within(water_above_m, 0.5, 50.0, "water_above_m");
-  check.within(water_below_m, 0.5, 50.0, "water_below_m");
-  return check.result("marina");
+  OptionErrors errors;
+  errors.require_within("water_above_m", water_above_m, 0.5, 50.0);
+  errors.require_within("water_below_m", water_below_m, 0.5, 50.0);
+  return errors.result("marina");
 }
 
 Scene marina_scene(const MarinaOptions& o) {
@@ -308,13 +290,13 @@ Scene marina_scene(const MarinaOptions& o) {
 }
 
 Result<void> SeabedOptions::validate() const {
-  Check check;
-  check.within(side_m, 20.0, 200.0, "side_m");
-  check.within(depth_m, 1.5, 50.0, "depth_m");
-  check.within(slope, -0.1, 0.1, "slope");
-  check.within(ripples, 0.0, 2.0, "ripples");
-  check.within<std::size_t>(boulders, 0, 1000, "boulders");
-  return check.result("seabed");
+  OptionErrors errors;
+  errors.require_within("side_m", side_m, 20.0, 200.0);
+  errors.require_within("depth_m", depth_m, 1.5, 50.0);
+  errors.require_within("slope", slope, -0.1, 0.1);
+  errors.require_within("ripples", ripples, 0.0, 2.0);
+  errors.require_within("boulders", boulders, 0, 1000);
+  return errors.result("seabed");
 }
 
 Scene seabed_scene(const SeabedOptions& o) {
@@ -369,11 +351,11 @@ Scene seabed_scene(const SeabedOptions& o) {
 }
 
 Result<void> CaveOptions::validate() const {
-  Check check;
-  check.within(length_m, 10.0, 500.0, "length_m");
-  check.within(radius_m, 1.5, 50.0, "radius_m");
-  check.within(bumps, 0.0, 0.3, "bumps");
-  return check.result("cave");
+  OptionErrors errors;
+  errors.require_within("length_m", length_m, 10.0, 500.0);
+  errors.require_within("radius_m", radius_m, 1.5, 50.0);
+  errors.require_within("bumps", bumps, 0.0, 0.3);
+  return errors.result("cave");
 }
 
 Scene cave_scene(const CaveOptions& o) {

@@ -1,13 +1,11 @@
 #include "pingvox/sim/sonar.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
-#include <string_view>
 #include <utility>
+
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -172,33 +170,26 @@ std::vector<std::uint32_t> clean_beam(const World& all_world, const Pose& map_fr
 }  // namespace
 
 Result<void> SonarOptions::validate() const {
-  std::string bad;
-  const auto check = [&bad](bool good, std::string_view name, std::string_view rule, auto value) {
-    if (!good) bad += fmt::format(" {} must be {}, is {};", name, rule, value);
-  };
-  const auto share = [&check](double value, std::string_view name) {
-    check(value >= 0.0 && value <= 1.0, name, "0..1", value);
-  };
-  check(beams_per_turn >= 4 && beams_per_turn <= 6400, "beams_per_turn", "4..6400", beams_per_turn);
-  check(bins >= 1 && bins <= 10'000, "bins", "1..10000", bins);
-  check(bin_length_m >= 1e-6 && bin_length_m <= 1.0, "bin_length_m", "1e-6..1", bin_length_m);
-  check(beams_per_s > 0.0 && std::isfinite(beams_per_s), "beams_per_s", "> 0", beams_per_s);
-  check(beam_width_rad > 0.0 && beam_width_rad <= 1.0, "beam_width_rad", "> 0 and at most 1", beam_width_rad);
-  check(beam_height_rad > 0.0 && beam_height_rad <= 2.0, "beam_height_rad", "> 0 and at most 2", beam_height_rad);
-  share(side_lobes, "side_lobes");
-  check(bearing_step_rad >= 0.0 && bearing_step_rad <= 1.0, "bearing_step_rad", "0..1", bearing_step_rad);
-  check(ringing_m >= 0.0 && ringing_m <= 10'000.0, "ringing_m", "0..10000", ringing_m);
-  share(gain, "gain");
-  check(compression >= 0.1 && compression <= 1.0, "compression", "0.1..1", compression);
-  check(absorption_db_per_m >= 0.0 && absorption_db_per_m <= 10.0, "absorption_db_per_m", "0..10", absorption_db_per_m);
-  share(speckle, "speckle");
-  check(noise >= 0.0 && noise <= 255.0, "noise", "0..255", noise);
-  share(multipath, "multipath");
-  share(silent, "silent");
-  check(lost >= 0.0 && lost < 1.0, "lost", "0 or more and less than 1", lost);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "sonar:" + bad);
+  OptionErrors errors;
+  errors.require_within("beams_per_turn", beams_per_turn, 4, 6400);
+  errors.require_within("bins", bins, 1, 10'000);
+  errors.require_within("bin_length_m", bin_length_m, 1e-6, 1.0);
+  errors.require(beams_per_s > 0.0 && std::isfinite(beams_per_s), "beams_per_s", "> 0", beams_per_s);
+  errors.require(beam_width_rad > 0.0 && beam_width_rad <= 1.0, "beam_width_rad", "> 0 and at most 1", beam_width_rad);
+  errors.require(beam_height_rad > 0.0 && beam_height_rad <= 2.0, "beam_height_rad", "> 0 and at most 2",
+                 beam_height_rad);
+  errors.require_within("side_lobes", side_lobes, 0.0, 1.0);
+  errors.require_within("bearing_step_rad", bearing_step_rad, 0.0, 1.0);
+  errors.require_within("ringing_m", ringing_m, 0.0, 10'000.0);
+  errors.require_within("gain", gain, 0.0, 1.0);
+  errors.require_within("compression", compression, 0.1, 1.0);
+  errors.require_within("absorption_db_per_m", absorption_db_per_m, 0.0, 10.0);
+  errors.require_within("speckle", speckle, 0.0, 1.0);
+  errors.require_within("noise", noise, 0.0, 255.0);
+  errors.require_within("multipath", multipath, 0.0, 1.0);
+  errors.require_within("silent", silent, 0.0, 1.0);
+  errors.require(lost >= 0.0 && lost < 1.0, "lost", "0 or more and less than 1", lost);
+  return errors.result("sonar");
 }
 
 TrueRange true_range(const World& all_world, const Pose& map_from_sensor, double bearing_rad,

@@ -1,13 +1,11 @@
 #include "pingvox/sim/tank.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
-#include <string_view>
+
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -44,24 +42,18 @@ std::optional<double> floater_distance(const TankOptions& o, const PlaneRay& ray
 }  // namespace
 
 Result<void> TankOptions::validate() const {
-  std::string bad;
-  const auto check = [&bad](bool good, std::string_view name, std::string_view rule, auto value) {
-    if (!good) bad += fmt::format(" {} must be {}, is {};", name, rule, value);
-  };
+  OptionErrors errors;
   const double half = 0.5 * side_m;
-  check(side_m > 0.0 && side_m <= 1000.0, "side_m", "> 0 and at most 1000", side_m);
-  check(depth_m > 0.0 && depth_m <= 1000.0, "depth_m", "> 0 and at most 1000", depth_m);
-  check(std::abs(sensor_x_m) < half, "sensor_x_m", "inside the tank", sensor_x_m);
-  check(std::abs(sensor_y_m) < half, "sensor_y_m", "inside the tank", sensor_y_m);
-  check(std::isfinite(sensor_yaw_rad), "sensor_yaw_rad", "finite", sensor_yaw_rad);
-  check(std::isfinite(floater_bearing_rad), "floater_bearing_rad", "finite", floater_bearing_rad);
-  check(floater_radius_m >= 0.0 && floater_radius_m <= 1000.0, "floater_radius_m", ">= 0 and at most 1000",
-        floater_radius_m);
-  check(floater_range_m > floater_radius_m && floater_range_m <= 2000.0, "floater_range_m",
-        "greater than its radius and at most 2000", floater_range_m);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "tank:" + bad);
+  errors.require(side_m > 0.0 && side_m <= 1000.0, "side_m", "> 0 and at most 1000", side_m);
+  errors.require(depth_m > 0.0 && depth_m <= 1000.0, "depth_m", "> 0 and at most 1000", depth_m);
+  errors.require(std::abs(sensor_x_m) < half, "sensor_x_m", "inside the tank", sensor_x_m);
+  errors.require(std::abs(sensor_y_m) < half, "sensor_y_m", "inside the tank", sensor_y_m);
+  errors.require(std::isfinite(sensor_yaw_rad), "sensor_yaw_rad", "finite", sensor_yaw_rad);
+  errors.require(std::isfinite(floater_bearing_rad), "floater_bearing_rad", "finite", floater_bearing_rad);
+  errors.require_within("floater_radius_m", floater_radius_m, 0.0, 1000.0);
+  errors.require(floater_range_m > floater_radius_m && floater_range_m <= 2000.0, "floater_range_m",
+                 "greater than its radius and at most 2000", floater_range_m);
+  return errors.result("tank");
 }
 
 double true_range_m(const TankOptions& options, double bearing_rad) {

@@ -1,16 +1,14 @@
 #include "pingvox/sim/vehicle.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <string>
 #include <utility>
 
+#include "pingvox/option_errors.hpp"
 #include "pingvox/sim/random.hpp"
 
 namespace pingvox {
@@ -123,16 +121,10 @@ Eigen::Matrix3d rotate(double yaw_rad) {
 }  // namespace
 
 Result<void> TravelOptions::validate() const {
-  std::string bad;
-  if (!(speed_m_s > 0.0 && speed_m_s <= 100.0)) {
-    bad += fmt::format(" speed_m_s must be > 0 and at most 100, is {};", speed_m_s);
-  }
-  if (!(pose_every_s > 0.0 && pose_every_s <= 3600.0)) {
-    bad += fmt::format(" pose_every_s must be > 0 and at most 3600, is {};", pose_every_s);
-  }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "vehicle:" + bad);
+  OptionErrors errors;
+  errors.require(speed_m_s > 0.0 && speed_m_s <= 100.0, "speed_m_s", "> 0 and at most 100", speed_m_s);
+  errors.require(pose_every_s > 0.0 && pose_every_s <= 3600.0, "pose_every_s", "> 0 and at most 3600", pose_every_s);
+  return errors.result("vehicle");
 }
 
 double length_m(const Route& route) {
@@ -204,16 +196,10 @@ Trajectory drive_by_hand(const Route& route, const TravelOptions& options, std::
 }
 
 Result<void> DriftOptions::validate() const {
-  std::string bad;
-  if (!(position_m >= 0.0 && position_m <= 1000.0)) {
-    bad += fmt::format(" position_m must be 0..1000, is {};", position_m);
-  }
-  if (!(heading_rad >= 0.0 && heading_rad <= 10.0)) {
-    bad += fmt::format(" heading_rad must be 0..10, is {};", heading_rad);
-  }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "drift:" + bad);
+  OptionErrors errors;
+  errors.require_within("position_m", position_m, 0.0, 1000.0);
+  errors.require_within("heading_rad", heading_rad, 0.0, 10.0);
+  return errors.result("drift");
 }
 
 Trajectory add_drift(const Trajectory& truth, const DriftOptions& options) {

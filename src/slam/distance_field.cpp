@@ -8,9 +8,9 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <string>
 
 #include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -89,16 +89,12 @@ std::array<int, kTileCells> squared_distances(const Neighbourhood& occupied, int
 }  // namespace
 
 Result<void> DistanceFieldOptions::validate() const {
-  std::string bad;
+  OptionErrors errors;
   if (!std::isfinite(min_z_m) || !std::isfinite(max_z_m) || !(min_z_m < max_z_m)) {
-    bad += fmt::format(" min_z_m and max_z_m must be finite and rise, are {} and {};", min_z_m, max_z_m);
+    errors.add(fmt::format("min_z_m and max_z_m must be finite and rise, are {} and {}", min_z_m, max_z_m));
   }
-  if (!(truncation_m > 0.0) || !std::isfinite(truncation_m)) {
-    bad += fmt::format(" truncation_m must be above 0 and finite, is {};", truncation_m);
-  }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "distance field:" + bad);
+  errors.require(truncation_m > 0.0 && std::isfinite(truncation_m), "truncation_m", "above 0 and finite", truncation_m);
+  return errors.result("distance field");
 }
 
 Result<DistanceField> DistanceField::make(const OccupancyMap& map, const DistanceFieldOptions& options) {

@@ -8,10 +8,10 @@
 #include <deque>
 #include <map>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 #include "pingvox/geometry/random.hpp"
+#include "pingvox/option_errors.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 #include "slam/beam_likelihood.hpp"
 #include "slam/particles.hpp"
@@ -33,7 +33,7 @@ constexpr double kLostShare = 0.55;
 /// Least mean likelihood of echoes at a pose that is believed. In a small
 /// room it is 0.3 at poses that are wrong.
 constexpr double kMinFit = 0.45, kSureFit = 0.6;
-constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
+constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree;
 /// Spread of the particles around what a search found.
 constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree;
 
@@ -57,50 +57,34 @@ struct TurnBeam {
   double turned_rad = 0.0;
 };
 
-/// Collects what is wrong with options.
-class Check {
- public:
-  void within(double value, double low, double high, std::string_view name) {
-    if (!(value >= low && value <= high)) bad_ += fmt::format(" {} must be {}..{}, is {};", name, low, high, value);
-  }
-  Result<void> result(std::string_view stage) {
-    if (bad_.empty()) return {};
-    bad_.pop_back();
-    return fail(Error::Code::kBadOption, fmt::format("{}:{}", stage, bad_));
-  }
-
- private:
-  std::string bad_;
-};
-
 }  // namespace
 
 Result<void> BeamLikelihood::validate() const {
-  Check check;
-  check.within(range_deviation_m, 1e-3, 10.0, "range_deviation_m");
-  check.within(bearing_deviation_rad, 0.0, 1.0, "bearing_deviation_rad");
-  check.within(stray, 1e-6, 1.0, "stray");
-  check.within(unknown, 1e-6, 1.0, "unknown");
-  check.within(behind, 1e-6, 1.0, "behind");
-  check.within(silent_wall, 1e-6, 1.0, "silent_wall");
-  check.within(beam_weight, 0.0, 1.0, "beam_weight");
-  return check.result("beam likelihood");
+  OptionErrors errors;
+  errors.require_within("range_deviation_m", range_deviation_m, 1e-3, 10.0);
+  errors.require_within("bearing_deviation_rad", bearing_deviation_rad, 0.0, 1.0);
+  errors.require_within("stray", stray, 1e-6, 1.0);
+  errors.require_within("unknown", unknown, 1e-6, 1.0);
+  errors.require_within("behind", behind, 1e-6, 1.0);
+  errors.require_within("silent_wall", silent_wall, 1e-6, 1.0);
+  errors.require_within("beam_weight", beam_weight, 0.0, 1.0);
+  return errors.result("beam likelihood");
 }
 
 Result<void> MotionNoise::validate() const {
-  Check check;
-  check.within(position_m_per_sqrt_s, 0.0, 100.0, "position_m_per_sqrt_s");
-  check.within(position_m_per_sqrt_m, 0.0, 100.0, "position_m_per_sqrt_m");
-  check.within(yaw_rad_per_sqrt_s, 0.0, 2.0 * kPi, "yaw_rad_per_sqrt_s");
-  check.within(yaw_rad_per_sqrt_rad, 0.0, 2.0 * kPi, "yaw_rad_per_sqrt_rad");
-  return check.result("motion noise");
+  OptionErrors errors;
+  errors.require_within("position_m_per_sqrt_s", position_m_per_sqrt_s, 0.0, 100.0);
+  errors.require_within("position_m_per_sqrt_m", position_m_per_sqrt_m, 0.0, 100.0);
+  errors.require_within("yaw_rad_per_sqrt_s", yaw_rad_per_sqrt_s, 0.0, 2.0 * kPi);
+  errors.require_within("yaw_rad_per_sqrt_rad", yaw_rad_per_sqrt_rad, 0.0, 2.0 * kPi);
+  return errors.result("motion noise");
 }
 
 Result<void> LocalizerOptions::validate() const {
-  Check check;
-  check.within(static_cast<double>(min_particles), 10.0, 1e6, "min_particles");
-  check.within(static_cast<double>(max_particles), static_cast<double>(min_particles), 1e6, "max_particles");
-  if (const auto valid = check.result("localizer"); !valid) return valid;
+  OptionErrors errors;
+  errors.require_within("min_particles", static_cast<double>(min_particles), 10.0, 1e6);
+  errors.require_within("max_particles", static_cast<double>(max_particles), static_cast<double>(min_particles), 1e6);
+  if (const auto valid = errors.result("localizer"); !valid) return valid;
   if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
     return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
   }

@@ -1,13 +1,12 @@
 #include "pingvox/sonar/cartesian_image.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
+
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -89,14 +88,11 @@ class Interpolation {
 }  // namespace
 
 Result<void> CartesianOptions::validate() const {
-  std::string bad;
-  if (size_px < 16 || size_px > 8192) bad += fmt::format(" size_px must be in 16..8192, is {};", size_px);
-  if (!(beam_width_rad > 0.0 && beam_width_rad <= kTurn_rad)) {
-    bad += fmt::format(" beam_width_rad must be > 0 and at most 2 pi, is {};", beam_width_rad);
-  }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "cartesian image:" + bad);
+  OptionErrors errors;
+  errors.require_within("size_px", size_px, 16, 8192);
+  errors.require(beam_width_rad > 0.0 && beam_width_rad <= kTurn_rad, "beam_width_rad", "> 0 and at most 2 pi",
+                 beam_width_rad);
+  return errors.result("cartesian image");
 }
 
 CartesianImage cartesian_image(const PolarImage& image, const Sweep& sweep, const CartesianOptions& options) {

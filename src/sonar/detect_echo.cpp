@@ -7,9 +7,8 @@
 #include <cassert>
 #include <cmath>
 #include <span>
-#include <string>
-#include <string_view>
 
+#include "pingvox/option_errors.hpp"
 #include "sonar/beam_rises.hpp"
 #include "sonar/bin_window.hpp"
 #include "sonar/canny.hpp"
@@ -249,27 +248,23 @@ std::optional<Echo> first_echo(const EchoSearch& search, const Sweep& sweep, std
 }  // namespace
 
 Result<void> EchoOptions::validate() const {
-  std::string bad;
-  const auto check = [&bad](bool good, std::string_view name, const std::string& rule, auto value) {
-    if (!good) bad += fmt::format(" {} must be {}, is {};", name, rule, value);
-  };
+  OptionErrors errors;
   const double nearest = min_range_m.value_or(0.0);
-  check(nearest >= 0.0 && std::isfinite(nearest), "min_range_m", ">= 0", nearest);
-  check(max_range_m > nearest, "max_range_m", fmt::format("greater than min_range_m ({})", nearest), max_range_m);
+  errors.require(nearest >= 0.0 && std::isfinite(nearest), "min_range_m", ">= 0", nearest);
+  errors.require(max_range_m > nearest, "max_range_m", fmt::format("greater than min_range_m ({})", nearest),
+                 max_range_m);
   const int most = detector == Detector::kCanny ? 2040 : 255;
-  check(!threshold || (*threshold >= 1 && *threshold <= most), "threshold", fmt::format("in 1..{}", most),
-        threshold.value_or(0));
-  check(canny.low >= 0 && canny.low <= 2040, "canny.low", "in 0..2040", canny.low);
-  check(canny.link >= 1 && canny.link <= 6400, "canny.link", "in 1..6400", canny.link);
-  check(cfar.guard <= 1000, "cfar.guard", "at most 1000", cfar.guard);
-  check(cfar.training >= 1 && cfar.training <= 1000, "cfar.training", "in 1..1000", cfar.training);
-  check(cfar.false_alarm_rate > 0.0 && cfar.false_alarm_rate <= 0.5, "cfar.false_alarm_rate", "> 0 and at most 0.5",
-        cfar.false_alarm_rate);
+  errors.require(!threshold || (*threshold >= 1 && *threshold <= most), "threshold", fmt::format("in 1..{}", most),
+                 threshold.value_or(0));
+  errors.require_within("canny.low", canny.low, 0, 2040);
+  errors.require_within("canny.link", canny.link, 1, 6400);
+  errors.require(cfar.guard <= 1000, "cfar.guard", "at most 1000", cfar.guard);
+  errors.require_within("cfar.training", cfar.training, 1, 1000);
+  errors.require(cfar.false_alarm_rate > 0.0 && cfar.false_alarm_rate <= 0.5, "cfar.false_alarm_rate",
+                 "> 0 and at most 0.5", cfar.false_alarm_rate);
   const double scale = cfar.scale.value_or(1.0);
-  check(scale >= 1.0 && std::isfinite(scale), "cfar.scale", ">= 1", scale);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "echo:" + bad);
+  errors.require(scale >= 1.0 && std::isfinite(scale), "cfar.scale", ">= 1", scale);
+  return errors.result("echo");
 }
 
 std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sweep& sweep,

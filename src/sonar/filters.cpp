@@ -9,7 +9,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
-#include <string>
+
+#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {
@@ -92,12 +93,10 @@ PolarImage smooth(const PolarImage& image, const FilterOptions& options) {
 }  // namespace
 
 Result<void> FilterOptions::validate() const {
-  std::string bad;
-  if (kernel < 1 || kernel > 99 || kernel % 2 == 0) bad += fmt::format(" kernel must be odd, 1..99, is {};", kernel);
-  if (!(sigma > 0.0 && sigma <= 1000.0)) bad += fmt::format(" sigma must be > 0 and <= 1000, is {};", sigma);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "filter:" + bad);
+  OptionErrors errors;
+  if (kernel < 1 || kernel > 99 || kernel % 2 == 0) errors.add(fmt::format("kernel must be odd, 1..99, is {}", kernel));
+  errors.require(sigma > 0.0 && sigma <= 1000.0, "sigma", "> 0 and <= 1000", sigma);
+  return errors.result("filter");
 }
 
 PolarImage apply_filter(const PolarImage& image, const FilterOptions& options) {

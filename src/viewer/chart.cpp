@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"
@@ -248,23 +249,21 @@ void draw_bars(Picture& picture, const Chart& chart, const Layout& layout) {
 }  // namespace
 
 Result<void> Chart::validate() const {
-  std::string bad;
-  if (width < 320 || width > Picture::kMaxSide) bad += fmt::format(" width must be in 320..4096, is {};", width);
-  if (height < 240 || height > Picture::kMaxSide) bad += fmt::format(" height must be in 240..4096, is {};", height);
+  OptionErrors errors;
+  errors.require_within("width", width, 320, Picture::kMaxSide);
+  errors.require_within("height", height, 240, Picture::kMaxSide);
   if (series.empty() || series.size() > kMaxSeries) {
-    bad += fmt::format(" there must be 1..{} series, not {};", kMaxSeries, series.size());
+    errors.add(fmt::format("there must be 1..{} series, not {}", kMaxSeries, series.size()));
   }
   for (const Series& one : series) {
     if (kind == Kind::kLines && one.x.size() != one.y.size()) {
-      bad += fmt::format(" series '{}' has {} x for {} y;", one.name, one.x.size(), one.y.size());
+      errors.add(fmt::format("series '{}' has {} x for {} y", one.name, one.x.size(), one.y.size()));
     }
     if (kind == Kind::kBars && one.y.size() != categories.size()) {
-      bad += fmt::format(" series '{}' has {} values for {} categories;", one.name, one.y.size(), categories.size());
+      errors.add(fmt::format("series '{}' has {} values for {} categories", one.name, one.y.size(), categories.size()));
     }
   }
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "chart:" + bad);
+  return errors.result("chart");
 }
 
 Picture render_chart(const Chart& chart) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/echo_legend.hpp"
@@ -165,12 +166,10 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
 }  // namespace
 
 Result<void> EchoPictureOptions::validate() const {
-  std::string bad;
-  if (target_px < 16 || target_px > 3072) bad += fmt::format(" target_px must be in 16..3072, is {};", target_px);
-  if (!(gamma > 0.0) || !std::isfinite(gamma)) bad += fmt::format(" gamma must be > 0, is {};", gamma);
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "echo picture:" + bad);
+  OptionErrors errors;
+  errors.require_within("target_px", target_px, 16, 3072);
+  errors.require(gamma > 0.0 && std::isfinite(gamma), "gamma", "> 0", gamma);
+  return errors.result("echo picture");
 }
 
 Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"
@@ -351,18 +352,16 @@ std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, c
 }  // namespace
 
 Result<void> MapPictureOptions::validate() const {
-  std::string bad;
-  if (target_px < 16 || target_px > 3072) bad += fmt::format(" target_px must be in 16..3072, is {};", target_px);
+  OptionErrors errors;
+  errors.require_within("target_px", target_px, 16, 3072);
   if ((min_z_m && std::isnan(*min_z_m)) || (max_z_m && std::isnan(*max_z_m)) ||
       (min_z_m && max_z_m && *min_z_m >= *max_z_m)) {
-    bad += " min_z_m must be below max_z_m;";
+    errors.add("min_z_m must be below max_z_m");
   }
-  if (layer_z_m && !std::isfinite(*layer_z_m)) bad += " layer_z_m must be finite;";
-  if (layer_z_m && (min_z_m || max_z_m)) bad += " a layer has no min_z_m and max_z_m of its own;";
-  if (paths.size() > kMaxPaths) bad += fmt::format(" paths: at most {}, are {};", kMaxPaths, paths.size());
-  if (bad.empty()) return {};
-  bad.pop_back();
-  return fail(Error::Code::kBadOption, "map picture:" + bad);
+  if (layer_z_m && !std::isfinite(*layer_z_m)) errors.add("layer_z_m must be finite");
+  if (layer_z_m && (min_z_m || max_z_m)) errors.add("a layer has no min_z_m and max_z_m of its own");
+  if (paths.size() > kMaxPaths) errors.add(fmt::format("paths: at most {}, are {}", kMaxPaths, paths.size()));
+  return errors.result("map picture");
 }
 
 std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& options) {

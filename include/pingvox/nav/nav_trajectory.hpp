@@ -27,8 +27,7 @@ struct NavTrajectory {
 /// relative to that fix.
 /// @param offset_s  added to all times
 /// @return kUnsupported when the log has no valid attitude or position, or never both at a time; kCorrupt when the
-/// clock
-///         of one that is used was set back
+///         clock of one that is used was set back
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s = 0.0);
 
 /// The positions alone, as poses without rotation: a reference of fixes for another trajectory.

@@ -79,6 +79,9 @@ struct PoseHypothesis {
 ///     }
 class Localizer {
  public:
+  /// Least weight of a hypothesis that is taken for the only one.
+  static constexpr double kSureWeight = 0.95;
+
   /// A pose in the map, and how sure it is.
   struct Located {
     double time_s = 0.0;  ///< of the last beam

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Collects what is wrong with an options struct, so that one message names every broken field.
+class OptionErrors {
+ public:
+  void add(std::string_view text) { texts_ += texts_.empty() ? fmt::format(" {}", text) : fmt::format("; {}", text); }
+
+  /// "NAME must be RULE, is VALUE", unless it holds.
+  template <class Value>
+  void require(bool holds, std::string_view name, std::string_view rule, const Value& value) {
+    if (!holds) add(fmt::format("{} must be {}, is {}", name, rule, value));
+  }
+
+  /// "NAME must be in LOW..HIGH, is VALUE", unless it is. NaN is not.
+  template <class Value>
+  void require_within(std::string_view name, Value value, std::type_identity_t<Value> low,
+                      std::type_identity_t<Value> high) {
+    if (!(value >= low && value <= high)) add(fmt::format("{} must be in {}..{}, is {}", name, low, high, value));
+  }
+
+  /// kBadOption, "STAGE: TEXT; TEXT", if there is any.
+  Result<void> result(std::string_view stage) const {
+    if (texts_.empty()) return {};
+    return fail(Error::Code::kBadOption, fmt::format("{}:{}", stage, texts_));
+  }
+
+ private:
+  std::string texts_;
+};
+
+}  // namespace pingvox
