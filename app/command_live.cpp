@@ -10,7 +10,9 @@
 #include <deque>
 #include <filesystem>
 #include <future>
+#include <new>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -135,16 +137,22 @@ class MapWriter {
   explicit MapWriter(const LiveCommand& command) : command_(command) {}
 
   /// Writes a copy of the map, unless the last one is still being written.
-  /// @return error of the last one
+  /// @return error of the last one, or kNoMemory or kIo when this one cannot be begun
   Result<void> write(const OccupancyMap& map) {
     Result<void> last;
     if (written_.valid()) {
       if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
       last = written_.get();
     }
-    written_ = std::async(std::launch::async, [this, copy = map] {
-      return write_map(copy, command_.format, command_.made_by, command_.output);
-    });
+    try {
+      written_ = std::async(std::launch::async, [this, copy = map] {
+        return write_map(copy, command_.format, command_.made_by, command_.output);
+      });
+    } catch (const std::bad_alloc&) {
+      return fail(Error::Code::kNoMemory, fmt::format("{}: not written: out of memory for a copy", command_.output));
+    } catch (const std::system_error& error) {
+      return fail(Error::Code::kIo, fmt::format("{}: not written: no thread: {}", command_.output, error.what()));
+    }
     return last;
   }
 
@@ -173,29 +181,33 @@ class LiveRun {
         map_(map),
         writer_(command),
         bar_(command.output_options),
-        told_(nav_ ? nav_->devices().size() : 0) {}
+        reported_(nav_ ? nav_->devices().size() : 0) {}
 
   Result<int> run(StopSignals& signals, const Stopwatch& watch) {
-    double tell_at_s = watch.seconds() + kTell_s, write_at_s = watch.seconds() + command_.write_every_s;
+    double report_at_s = watch.seconds() + kReport_s, write_at_s = watch.seconds() + command_.write_every_s;
     bool has_ended = false;
     while (!has_ended && !signals.has_arrived() && (command_.max_beams == 0 || beams_ < command_.max_beams)) {
       const double next_s =
-          std::min({tell_at_s, write_at_s, source_->due_s(), obstacles_ ? obstacles_->due_s() : tell_at_s});
+          std::min({report_at_s, write_at_s, source_->due_s(), obstacles_ ? obstacles_->due_s() : report_at_s});
       wait(signals, can_map_one() ? 0.0 : next_s - watch.seconds());
       const Result<bool> goes_on = source_->step(watch.seconds(), arrived_);
-      if (!goes_on) return tl::unexpected(goes_on.error());
-      has_ended = !*goes_on;
+      // What was mapped until then is written all the same.
+      if (!goes_on) note(goes_on.error());
+      has_ended = !goes_on || !*goes_on;
       if (nav_) {
-        if (const auto read = nav_->step(watch.seconds()); !read) return tl::unexpected(read.error());
+        if (const auto read = nav_->step(watch.seconds()); !read) {
+          note(read.error());
+          has_ended = true;
+        }
       }
       queue_arrived(watch.seconds());
       if (can_map_one()) map_one(watch);
-      tell_changes();
+      report_changes();
       const double now_s = watch.seconds();
       if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map_, last_pose(), now_s);
-      if (now_s >= tell_at_s) {
-        tell(now_s);
-        tell_at_s = now_s + kTell_s;
+      if (now_s >= report_at_s) {
+        report(now_s);
+        report_at_s = now_s + kReport_s;
       }
       if (now_s >= write_at_s) {
         if (has_mapped()) {
@@ -208,7 +220,7 @@ class LiveRun {
   }
 
  private:
-  static constexpr double kTell_s = 1.0, kLong_s = 5.0;
+  static constexpr double kReport_s = 1.0, kLong_s = 5.0;
 
   struct Waiting {
     Beam beam;
@@ -227,7 +239,7 @@ class LiveRun {
     if (nav_) {
       for (const NavDevice& device : nav_->devices()) files.push_back({device.descriptor(), POLLIN, 0});
     }
-    ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kTell_s) * 1000.0)));
+    ::poll(files.data(), files.size(), static_cast<int>(std::ceil(std::clamp(seconds, 0.0, kReport_s) * 1000.0)));
   }
 
   bool can_map_one() const {
@@ -277,7 +289,7 @@ class LiveRun {
     if (!cannot_map_) {
       if (const auto finished = mapper_.finish(); !finished) note(finished.error());
     }
-    tell_changes();
+    report_changes();
     if (has_mapped()) {
       if (const auto written = writer_.finish(map_); !written) return tl::unexpected(written.error());
     } else if (!cannot_map_) {
@@ -298,12 +310,12 @@ class LiveRun {
     has_failed_ = true;
   }
 
-  void tell_changes() {
+  void report_changes() {
     const LiveStatus status = source_->status();
-    tell_recording_error(status.recording_error, was_recording_error_told_);
+    report_recording_error(status.recording_error, was_recording_error_reported_);
     if (nav_) {
-      for (std::size_t i = 0; i < told_.size(); ++i) tell_changes(nav_->devices()[i], told_[i]);
-      tell_sources();
+      for (std::size_t i = 0; i < reported_.size(); ++i) report_changes(nav_->devices()[i], reported_[i]);
+      report_sources();
     }
     if (status.is_connected == was_connected_ && status.problem == last_problem_) return;
     bar_.clear();
@@ -317,47 +329,47 @@ class LiveRun {
     last_problem_ = status.problem;
   }
 
-  void tell_recording_error(const std::optional<Error>& error, bool& was_told) {
-    if (!error || was_told) return;
-    was_told = true;
+  void report_recording_error(const std::optional<Error>& error, bool& was_reported) {
+    if (!error || was_reported) return;
+    was_reported = true;
     note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
   }
 
   /// The state of a navigation device that was printed last.
-  struct Told {
+  struct Reported {
     bool recording_error = false, is_connected = false;
     std::string problem;
   };
 
-  void tell_changes(const NavDevice& device, Told& told) {
+  void report_changes(const NavDevice& device, Reported& last) {
     const NavDevice::Status status = device.status();
-    tell_recording_error(status.recording_error, told.recording_error);
-    if (device.listens() || (status.is_connected == told.is_connected && status.problem == told.problem)) return;
+    report_recording_error(status.recording_error, last.recording_error);
+    if (device.listens() || (status.is_connected == last.is_connected && status.problem == last.problem)) return;
     bar_.clear();
     console_.say(status.is_connected
                      ? fmt::format("{}: connected", device.name())
                      : fmt::format("{}: not connected ({}); trying again", device.name(), status.problem));
-    told.is_connected = status.is_connected;
-    told.problem = status.problem;
+    last.is_connected = status.is_connected;
+    last.problem = status.problem;
   }
 
   /// Prints which sources give the poses once they are chosen, or that they are missing for long.
-  void tell_sources() {
+  void report_sources() {
     const LivePoses& poses = nav_->poses();
-    if (poses.position().empty() && nav_->now_s() > kLong_s && !was_silence_told_) {
-      was_silence_told_ = true;
+    if (poses.position().empty() && nav_->now_s() > kLong_s && !was_silence_reported_) {
+      was_silence_reported_ = true;
       bar_.clear();
       console_.say(fmt::format("{}: no attitude and position yet, {} messages so far: beams are not mapped",
                                nav_->names(), nav_->messages()));
     }
-    if (were_sources_told_ || poses.position().empty()) return;
-    were_sources_told_ = true;
+    if (were_sources_reported_ || poses.position().empty()) return;
+    were_sources_reported_ = true;
     bar_.clear();
     console_.say(fmt::format("{}: attitude of {}, position of {}", nav_->names(), on_one_line(poses.attitude()),
                              on_one_line(poses.position())));
   }
 
-  void tell(double now_s) {
+  void report(double now_s) {
     const double beams_per_s = static_cast<double>(beams_ - recent_.first_beam) / (now_s - recent_.since_s);
     if (command_.output_options.report == Report::kJson) {
       // A reader that has gone ends nothing.
@@ -444,10 +456,10 @@ class LiveRun {
   std::size_t beams_ = 0, unmapped_ = 0;
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
-  bool was_connected_ = false, was_recording_error_told_ = false;
-  bool were_sources_told_ = false, was_silence_told_ = false;
+  bool was_connected_ = false, was_recording_error_reported_ = false;
+  bool were_sources_reported_ = false, was_silence_reported_ = false;
   std::string last_problem_;
-  std::vector<Told> told_;  ///< of the devices of navigation
+  std::vector<Reported> reported_;  ///< of the devices of navigation
 };
 
 }  // namespace

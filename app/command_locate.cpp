@@ -50,10 +50,10 @@ struct Motion {
 /// What was found.
 struct Found {
   std::vector<StampedPose> poses;
-  std::vector<bool> was_sure;     ///< of each pose, when it was known
-  std::vector<std::size_t> ways;  ///< where the poses of each way begin: from one to the next the vehicle cannot go
-  std::vector<bool> is_smoothed;  ///< of each pose: by all of the recording
-  bool fits_always = false;       ///< the map, with the poses by all of the recording
+  std::vector<bool> was_sure;         ///< of each pose, when it was known
+  std::vector<std::size_t> segments;  ///< where each begins: between them the poses jump
+  std::vector<bool> is_smoothed;      ///< of each pose: by all of the recording
+  bool fits_always = false;           ///< the map, with the poses by all of the recording
   struct Span {
     double from_s, to_s;
   };
@@ -154,12 +154,14 @@ DistanceFieldOptions layer_of(const LocateCommand& command, const std::optional<
 
 /// Puts the poses by all of the recording in the place of those that were found, from one to another, where the map
 /// fits. False: it does not.
-bool smooth(const SlamSmoother& smoother, const DistanceField& field, std::size_t from, std::size_t to, Found& found) {
+Result<bool> smooth(const SlamSmoother& smoother, const DistanceField& field, std::size_t from, std::size_t to,
+                    Found& found) {
   const auto first = found.poses.begin() + static_cast<std::ptrdiff_t>(from);
   const Result<Trajectory> near = Trajectory::make({first, found.poses.begin() + static_cast<std::ptrdiff_t>(to)});
   if (!near) return false;
   const Result<SlamSolution> solution = smoother.solve_in(field, *near);
-  if (!solution) return false;
+  if (!solution && solution.error().code == Error::Code::kUnsupported) return false;
+  if (!solution) return tl::unexpected(solution.error());
   for (std::size_t i = from; i < to; ++i) {
     const auto better = solution->trajectory.at(found.poses[i].time_s);
     if (!better) continue;
@@ -170,36 +172,43 @@ bool smooth(const SlamSmoother& smoother, const DistanceField& field, std::size_
 }
 
 /// Where the poses jump, as when the vehicle was carried away or was lost and is found.
-std::vector<std::size_t> ways_of(const std::vector<StampedPose>& poses) {
+std::vector<std::size_t> segments_of(const std::vector<StampedPose>& poses) {
   constexpr double kJump_m = 0.5, kFastest_m_s = 2.0;
-  std::vector<std::size_t> ways = {0};
+  std::vector<std::size_t> segments = {0};
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const double way_m =
         (poses[i].map_from_body.translation() - poses[i - 1].map_from_body.translation()).head<2>().norm();
-    if (way_m > kJump_m + kFastest_m_s * (poses[i].time_s - poses[i - 1].time_s)) ways.push_back(i);
+    if (way_m > kJump_m + kFastest_m_s * (poses[i].time_s - poses[i - 1].time_s)) segments.push_back(i);
   }
-  return ways;
+  return segments;
 }
 
-/// The same of all poses, or else of each way.
-void smooth(const SlamSmoother& smoother, const DistanceField& field, Found& found) {
+/// The same of all poses, or else of each segment.
+Result<void> smooth(const SlamSmoother& smoother, const DistanceField& field, Found& found) {
   const std::size_t count = found.poses.size();
-  found.fits_always = smooth(smoother, field, 0, count, found);
-  if (found.fits_always) found.ways = {0};
-  if (found.ways.size() == 1) return;
-  for (std::size_t w = 0; w < found.ways.size(); ++w) {
-    smooth(smoother, field, found.ways[w], w + 1 < found.ways.size() ? found.ways[w + 1] : count, found);
+  const Result<bool> fits = smooth(smoother, field, 0, count, found);
+  if (!fits) return tl::unexpected(fits.error());
+  found.fits_always = *fits;
+  if (found.fits_always) found.segments = {0};
+  if (found.segments.size() == 1) return {};
+  for (std::size_t s = 0; s < found.segments.size(); ++s) {
+    const std::size_t end = s + 1 < found.segments.size() ? found.segments[s + 1] : count;
+    if (const auto done = smooth(smoother, field, found.segments[s], end, found); !done) {
+      return tl::unexpected(done.error());
+    }
   }
+  return {};
 }
 
-/// The poses that are known to be right: those that were sure. With all of the recording also those of the same way
+/// The poses that are known to be right: those that were sure. With all of the recording also those of the same segment
 /// before them, and after them where the map fits; and all where it fits all the time and one place is left at the end.
 std::vector<bool> known_poses(const Found& found, Estimation estimation) {
   if (estimation == Estimation::kCausal) return found.was_sure;
   const bool is_one = !found.hypotheses.empty() && found.hypotheses.front().weight >= Localizer::kSureWeight;
   std::vector<bool> known(found.poses.size(), is_one && found.fits_always);
-  for (std::size_t w = 0; w < found.ways.size(); ++w) {
-    const std::size_t first = found.ways[w], end = w + 1 < found.ways.size() ? found.ways[w + 1] : known.size();
+  for (std::size_t s = 0; s < found.segments.size(); ++s) {
+    const std::size_t first = found.segments[s];
+    const std::size_t end = s + 1 < found.segments.size() ? found.segments[s + 1] : known.size();
     bool is_known = false;
     for (std::size_t i = end; i-- > first;) {
       is_known = is_known || found.was_sure[i];
@@ -296,8 +305,12 @@ Result<Found> locate(std::vector<Beam> beams, const Motion& motion, const Distan
     return fail(Error::Code::kUnsupported, fmt::format("{}: no echo fits anywhere in the map", command.logs.front()));
   }
   found.is_smoothed.assign(found.poses.size(), false);
-  found.ways = ways_of(found.poses);
-  if (smoother) smooth(*smoother, field, found);
+  found.segments = segments_of(found.poses);
+  if (smoother) {
+    if (const auto done = smooth(*smoother, field, found); !done) {
+      return fail(done.error().code, fmt::format("{}: {}", fmt::join(command.navs, ", "), done.error().message));
+    }
+  }
   return found;
 }
 

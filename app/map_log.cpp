@@ -42,7 +42,7 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
   std::string text;
   const auto& [no_pose, blocked, outside] =
       std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.outside);
-  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count + outside.count;
+  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count;
   const auto add = [&text, all](const LeftOut& left_out, std::string_view unit, const std::string& reason,
                                 std::string_view advice) {
     if (left_out.count == 0) return;
@@ -185,7 +185,9 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
   mapped.first_damage = std::visit([](const auto& source) { return source->first_damage(); }, log);
   mapped.skipped_text = text_of_skipped(mapped, path, map.lattice());
-  if (report->beams == 0) {
+  const bool are_all_outside =
+      report->outside.count == report->beams && report->cells_freed == 0 && report->cells_hit == 0;
+  if (report->beams == 0 || are_all_outside) {
     const std::string reason = mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text;
     return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", name, reason));
   }

@@ -129,7 +129,22 @@ Take store_clamp(Clamp& target) {
   };
 }
 
-/// "x,y,z,roll,pitch,yaw", metres and degrees.
+/// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
+Take store_nav_mounts(std::map<std::string, Pose>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0) {
+      return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
+    }
+    Pose mount;
+    if (auto taken = store_mount(mount)(text.substr(equals + 1)); !taken) return taken;
+    if (!target.emplace(text.substr(0, equals), mount).second) {
+      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
+    }
+    return {};
+  };
+}
+
 /// As in "ping360 2 x 25, micron 3 x 35": width and height of the beam of each device [degrees].
 std::string beam_sizes() {
   std::string sizes;
@@ -165,23 +180,37 @@ Option mount_option(Pose& target) {
           store_mount(target)};
 }
 
-Take store_nav_mounts(std::map<std::string, Pose>& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos || equals == 0) {
-      return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
-    }
-    Pose mount;
-    if (auto taken = store_mount(mount)(text.substr(equals + 1)); !taken) return taken;
-    if (!target.emplace(text.substr(0, equals), mount).second) {
-      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
-    }
-    return {};
-  };
+Option nav_option(Args& targets, std::string help) {
+  return {"--nav", 0, "FILE", std::move(help), "", store_each(targets), Repeats::kEachCounts};
+}
+
+Option nav_offset_option(std::optional<double>& target_s) {
+  Option option{"--nav-offset",
+                0,
+                "S",
+                "seconds to add to the times of --nav to get those of the sonar log",
+                "estimated",
+                within({-1e10, 1e10}, store_optional(target_s))};
+  option.only_with = {{"--nav"}};
+  return option;
+}
+
+Option nav_mount_option(std::map<std::string, Pose>& body_from_source) {
+  Option option{"--nav-mount",
+                0,
+                "SOURCE=X,Y,Z,R,P,Y",
+                "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
+                "0,0,0,0,0,0",
+                store_nav_mounts(body_from_source),
+                Repeats::kEachCounts};
+  option.only_with = {{"--nav"}};
+  return option;
 }
 
 Option use_calibration_option(std::string& target, std::string help) {
-  return {"--use-calibration", 0, "FILE", std::move(help), "", store(target)};
+  Option option{"--use-calibration", 0, "FILE", std::move(help), "", store(target)};
+  option.only_with = {{"--nav"}};
+  return option;
 }
 
 Result<void> check_options(BuildOptions options) {
@@ -346,11 +375,10 @@ OptionTable::Group sensor_group(BuildArgs& args) {
       "Sensor",
       {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "it does not move",
         store(args.poses)},
-       {"--nav", 0, "FILE",
-        "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of --poses",
-        "", store_each(args.navs), Repeats::kEachCounts},
-       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "estimated",
-        within({-1e10, 1e10}, store_optional(args.nav_offset_s))},
+       nav_option(args.navs,
+                  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of "
+                  "--poses"),
+       nav_offset_option(args.nav_offset_s),
        use_calibration_option(args.calibration,
                               "correct the dead reckoning of --nav with a file of 'slam --calibration'"),
        mount_option(args.build.body_from_sensor),
@@ -374,7 +402,6 @@ OptionTable::Group sensor_group(BuildArgs& args) {
     if (option.name == "--beam-width" || option.name == "--free-share" || option.name == "--device")
       option.only_with = {{"--beam", {"fan", "cone"}}};
     if (option.name == "--beam-height") option.only_with = {{"--beam", {"cone"}}};
-    if (option.name == "--nav-offset" || option.name == "--use-calibration") option.only_with = {{"--nav"}};
   }
   return group;
 }

@@ -8,6 +8,7 @@
 #include "command_files.hpp"
 #include "commands.hpp"
 #include "option_table.hpp"
+#include "option_values.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -77,10 +78,13 @@ Result<void> check_options(BuildOptions options);
 Option mount_option(Pose& target);
 /// "x,y,z,roll,pitch,yaw", metres and degrees.
 Take store_mount(Pose& target);
-/// --use-calibration: the output of 'slam --calibration'.
+/// --nav: navigation logs.
+Option nav_option(Args& targets, std::string help);
+/// What has an effect only with --nav: seconds to add to its times, mounts of its sources, and the output of
+/// 'slam --calibration'.
+Option nav_offset_option(std::optional<double>& target_s);
+Option nav_mount_option(std::map<std::string, Pose>& body_from_source);
 Option use_calibration_option(std::string& target, std::string help);
-/// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
-Take store_nav_mounts(std::map<std::string, Pose>& target);
 
 /// Groups of options that write into their arguments, which must outlive them.
 OptionTable::Group echo_group(EchoArgs& args);

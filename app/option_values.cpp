@@ -54,6 +54,7 @@ Take store(std::string& target) {
 
 Take store_each(Args& targets) {
   return [&targets](const std::string& text) -> Result<void> {
+    if (text.empty()) return usage_error("is empty");
     targets.push_back(text);
     return {};
   };

@@ -73,7 +73,7 @@ Result<std::size_t> bytes_from(std::string_view text);
 
 /// Any non-empty text.
 Take store(std::string& target);
-/// Any text, appended to what was given before.
+/// Any non-empty text, appended to what was given before.
 Take store_each(Args& targets);
 
 /// A number of any kind; typed in units of `unit`.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
+#include "pingvox/device/link.hpp"
 #include "shared_options.hpp"
 #include "shell_words.hpp"
 
@@ -169,7 +171,8 @@ Result<Command> live_command(const Args& args) {
     const Result<LiveDevice> taken = device_from(text);
     if (!taken) return tl::unexpected(taken.error());
     command.device = *taken;
-    return {};
+    if (taken->kind == LiveDevice::Kind::kReplay) return {};
+    return Link::check(taken->address);
   };
   const Take format = [&](const std::string& text) -> Result<void> {
     const Result<Format> value = choice_value(kMapFormats, text);
@@ -181,12 +184,13 @@ Result<Command> live_command(const Args& args) {
     const Result<LiveNavigation> taken = navigation_from(text);
     if (!taken) return tl::unexpected(taken.error());
     command.nav.push_back(*taken);
-    return {};
+    if (taken->kind == LiveNavigation::Kind::kMavlink) return {};
+    return Link::check(taken->address);
   };
   const Take obstacles = [&](const std::string& text) -> Result<void> {
     if (!text.starts_with("udp://")) return usage_error(fmt::format("must be udp://HOST:PORT, is '{}'", text));
     command.obstacles = text;
-    return {};
+    return Link::check(text);
   };
   OptionTable table{
       "live",
@@ -246,10 +250,17 @@ Result<Command> live_command(const Args& args) {
       "options,\nis the same.\n"
       "With --json each line of standard output is one object, one a second and one at the end.\n"
       "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
+  constexpr std::string_view kHead = "a head", kReplayed = "a replay";
   for (OptionTable::Group& group : table.groups) {
-    for (Option& option : group.options) option.only_for.clear();  // there are no others than beams
+    for (Option& option : group.options) {
+      option.only_for.clear();  // there are no others than beams
+      if (group.title == "Head") option.only_for = {std::string(kHead)};
+    }
   }
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
+    const bool is_replay = command.device.kind == LiveDevice::Kind::kReplay;
+    if (const auto used = check_limited(parsed.limited, {std::string(is_replay ? kReplayed : kHead)}); !used)
+      return tl::unexpected(used.error());
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
     if (!output_as) return tl::unexpected(output_as.error());
     command.format = *output_as;
@@ -277,16 +288,14 @@ Result<Command> live_command(const Args& args) {
                                      name_of(*output_as), Lattice::kDefaultDepth, command.map.depth));
     }
     if (!record.empty()) {
-      if (command.device.kind == LiveDevice::Kind::kReplay) {
-        return usage_error("--record: a replay is a recording already");
-      }
+      if (is_replay) return usage_error("--record: a replay is a recording already");
       command.record = record;
     }
-    if (!command.nav.empty() && command.device.kind == LiveDevice::Kind::kReplay) {
+    if (!command.nav.empty() && is_replay) {
       return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
     }
     CommandFiles files;
-    if (command.device.kind == LiveDevice::Kind::kReplay) files.read("DEVICE", command.device.address);
+    if (is_replay) files.read("DEVICE", command.device.address);
     files.read("--config", parsed.config);
     files.write("-o", output);
     files.write("--record", record);
@@ -327,7 +336,7 @@ Result<Command> emulate_command(const Args& args) {
     return {};
   };
   const Limits fault{0.0, 0.5};
-  const OptionTable table{
+  OptionTable table{
       "emulate",
       "Answers like a device in a simulated world, to try 'pingvox live' without one: a sonar head (ping360 or\n"
       "micron), an autopilot that sends MAVLink (mavlink), or a DVL (a50). Prints the address to connect to.",
@@ -363,12 +372,24 @@ Result<Command> emulate_command(const Args& args) {
       {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001",
        "pingvox emulate micron", "pingvox emulate mavlink --trajectory loop", "pingvox emulate a50 --trajectory loop"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
+  const std::map<std::string_view, Condition> conditions = {
+      {"--listen", {"DEVICE", {"ping360", "micron", "a50"}}},
+      {"--to", {"DEVICE", {"mavlink"}}},
+      {"--pings", {"DEVICE", {"ping360", "micron"}}},
+      {"--stall-every", {"DEVICE", {"ping360", "micron"}}},
+      {"--stall", {"--stall-every", {}}},
+      {"--lines", {"DEVICE", {"micron"}}},
+      {"--speed", {"--trajectory", {"loop"}}},
+  };
+  for (OptionTable::Group& group : table.groups) {
+    for (Option& option : group.options) {
+      const auto condition = conditions.find(option.name);
+      if (condition != conditions.end()) option.only_with = {condition->second};
+    }
+  }
   return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
     const bool is_micron = command.device == Device::kMicron;
     const bool is_head = command.device == Device::kPing360 || is_micron, sends = command.device == Device::kMavlink;
-    if (sends && !listen.empty())
-      return usage_error("--listen: has no effect on mavlink, which sends to an address (--to)");
-    if (!sends && !send_to.empty()) return usage_error("--to: has an effect only on mavlink");
     command.line = sends ? send_to : listen;
     if (command.line.empty()) {
       command.line = is_micron ? "pty"

@@ -54,29 +54,7 @@ Result<Command> locate_command(const Args& args) {
   std::string output, odometry;
   EchoArgs echoes;
   LocalizerOptions& localizer = command.localizer;
-  Option nav{"--nav", 0,
-             "FILE",  "navigation log, as for 'slam': a heading, and velocity over ground where it has one",
-             "",      store_each(command.navs)};
-  nav.repeats = Repeats::kEachCounts;
-  Option nav_offset{"--nav-offset",
-                    0,
-                    "S",
-                    "seconds to add to the times of --nav to get those of the sonar log",
-                    "estimated",
-                    within({-1e10, 1e10}, store_optional(command.nav_offset_s))};
-  nav_offset.only_with = {{"--nav"}};
-  Option nav_mount{
-      "--nav-mount",
-      0,
-      "SOURCE=X,Y,Z,R,P,Y",
-      "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
-      "0,0,0,0,0,0",
-      store_nav_mounts(command.nav.body_from_source)};
-  nav_mount.repeats = Repeats::kEachCounts;
-  nav_mount.only_with = {{"--nav"}};
   std::string calibration;
-  Option use_calibration = use_calibration_option(calibration, "correct --nav with a file of 'slam --calibration'");
-  use_calibration.only_with = {{"--nav"}};
   OptionTable::Group echo_options = echo_group(echoes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   for (Option& option : echo_options.options) option.only_for.clear();
@@ -85,7 +63,8 @@ Result<Command> locate_command(const Args& args) {
   const OptionTable table{
       "locate",
       "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
-      "several places fit equally well, all are reported. Where it is not sure, no poses are written.",
+      "several places fit equally well, all are reported. It says how many poses may be wrong; --only-sure leaves\n"
+      "them out.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
       {{"Output",
         {output_option(output,
@@ -100,10 +79,11 @@ Result<Command> locate_command(const Args& args) {
          {"--max-z", 0, "M", "highest height of the map that is used", "0.5 above the sonar at the first beam",
           store_optional(command.max_z_m)}}},
        {"Navigation",
-        {std::move(nav),
-         std::move(nav_offset),
-         std::move(nav_mount),
-         std::move(use_calibration),
+        {nav_option(command.navs,
+                    "navigation log, as for 'slam': a heading, and velocity over ground where it has one"),
+         nav_offset_option(command.nav_offset_s),
+         nav_mount_option(command.nav.body_from_source),
+         use_calibration_option(calibration, "correct --nav with a file of 'slam --calibration'"),
          {"--odometry", 0, "FILE", "odometry of the vehicle as TUM lines, in a frame that may drift, instead of --nav",
           "", store(odometry)},
          mount_option(localizer.body_from_sonar)}},
@@ -127,6 +107,9 @@ Result<Command> locate_command(const Args& args) {
     localizer.filter = echoes.filter_options();
     localizer.echo = echoes.echo;
     if (const auto valid = localizer.validate(); !valid) return tl::unexpected(valid.error());
+    if (command.min_z_m && command.max_z_m && !(*command.min_z_m < *command.max_z_m)) {
+      return usage_error("--min-z must be below --max-z");
+    }
     if (command.map.empty()) return usage_error("--map is missing: the map to find the vehicle in");
     if (output.empty()) return usage_error("-o FILE is missing");
     if (output == "-" && command.output_options.report == Report::kJson) {
@@ -146,6 +129,7 @@ Result<Command> locate_command(const Args& args) {
     files.read("--config", parsed.config);
     files.write("-o", output);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_trajectory_output(output); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;
     return command;

@@ -36,18 +36,6 @@ Result<Command> slam_command(const Args& args) {
                     number_text(command.map_resolution_m),
                     within(kResolutions, store_number(command.map_resolution_m))};
   resolution.only_with = {{"--map"}};
-  Option nav{"--nav", 0,
-             "FILE",  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)",
-             "",      store_each(command.navs)};
-  nav.repeats = Repeats::kEachCounts;
-  Option nav_mount{
-      "--nav-mount",
-      0,
-      "SOURCE=X,Y,Z,R,P,Y",
-      "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
-      "0,0,0,0,0,0",
-      store_nav_mounts(slam.body_from_source)};
-  nav_mount.repeats = Repeats::kEachCounts;
   Option seed{"--seed", 0,
               "N",      "seed of the random choice of sweeps that a sweep is matched with",
               "1",      store_number(slam.seed)};
@@ -75,11 +63,10 @@ Result<Command> slam_command(const Args& args) {
   graph_option.only_for = {std::string(kPointLogs)};
   OptionTable::Group navigation{
       "Navigation",
-      {std::move(nav),
-       {"--nav-offset", 0, "S", "seconds to add to the times of --nav to get those of the sonar log", "estimated",
-        within({-1e10, 1e10}, store_optional(command.nav_offset_s))},
-       mount_option(slam.body_from_sonar),
-       std::move(nav_mount),
+      {nav_option(command.navs,
+                  "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)"),
+       nav_offset_option(command.nav_offset_s), mount_option(slam.body_from_sonar),
+       nav_mount_option(slam.body_from_source),
        use_calibration_option(known_calibration,
                               "calibration of the same sensors by an earlier run, taken as a prior")}};
   OptionTable::Group estimation{
@@ -146,6 +133,7 @@ Result<Command> slam_command(const Args& args) {
     files.write("--covariance", covariance);
     files.write("--graph", graph);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_trajectory_output(output); !valid) return tl::unexpected(valid.error());
     if (!map.empty()) {
       const Result<Format> format = output_format(map, std::nullopt, kMapFormats);
       if (!format) return tl::unexpected(format.error());

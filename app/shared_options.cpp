@@ -99,6 +99,12 @@ Result<Format> output_format(const std::string& path, const std::optional<Format
       fmt::format("{}: its suffix must be {}{}", path, fmt::join(suffixes, " or "), did_you_mean(ending, suffixes)));
 }
 
+Result<void> check_trajectory_output(const std::string& path) {
+  const std::optional<Format> by_suffix = format_for_writing(path);
+  if (!by_suffix || *by_suffix == Format::kTum) return {};
+  return usage_error(fmt::format("{}: a trajectory is written as .tum", path));
+}
+
 Result<Command> parse_command(const OptionTable& table, const Args& args,
                               const std::function<Result<Command>(const Parsed&)>& make) {
   const Result<Parsed> result = parse(table, args);

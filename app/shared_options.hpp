@@ -27,6 +27,9 @@ Option quiet_option(OutputOptions& output_options);
 Result<Format> output_format(const std::string& path, const std::optional<Format>& asked,
                              std::span<const Choice<Format>> known);
 
+/// Refuses the suffix of another format for a trajectory.
+Result<void> check_trajectory_output(const std::string& path);
+
 /// Parses the arguments of a command: returns its help if requested, else the result of `make`. Errors are prefixed
 /// with the command's name.
 Result<Command> parse_command(const OptionTable& table, const Args& args,

@@ -131,8 +131,9 @@ Result<void> SliceOptions::validate() const {
     if (z && !std::isfinite(*z)) return fail(Error::Code::kBadOption, "the heights of a slice must be finite");
   }
   if (min_z_m && max_z_m && *min_z_m > *max_z_m) {
-    return fail(Error::Code::kBadOption,
-                fmt::format("a slice from {:g} m up to {:g} m is none: the lower end comes first", *min_z_m, *max_z_m));
+    return fail(
+        Error::Code::kBadOption,
+        fmt::format("the lower end of a slice ({:g} m) must not be above the upper one ({:g} m)", *min_z_m, *max_z_m));
   }
   return {};
 }

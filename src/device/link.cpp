@@ -75,6 +75,48 @@ int make_raw(int terminal, speed_t speed) {
   return ::tcsetattr(terminal, TCSANOW, &settings) == 0 ? 0 : errno;
 }
 
+/// Of "udp://HOST:PORT" or "tcp://HOST:PORT".
+Result<HostAndPort> remote_in(const std::string& address, std::string_view protocol) {
+  std::optional<HostAndPort> parts = host_and_port(std::string_view(address).substr(protocol.size()));
+  if (parts && !parts->host.empty()) return *std::move(parts);
+  return fail(Error::Code::kBadOption, fmt::format("'{}': must be {}HOST:PORT", address, protocol));
+}
+
+struct SerialPort {
+  std::string path;
+  speed_t speed;
+};
+
+/// Of "/dev/ttyUSB0" or "/dev/ttyUSB0@57600".
+Result<SerialPort> serial_port_in(const std::string& address) {
+  constexpr int kDefaultBaud = 115'200;
+  const std::size_t at = address.rfind('@');
+  int baud = kDefaultBaud;
+  if (at != std::string::npos) {
+    const char* const last = address.data() + address.size();
+    const auto [end, error] = std::from_chars(address.data() + at + 1, last, baud);
+    if (error != std::errc{} || end != last) baud = 0;
+  }
+  const std::optional<speed_t> speed = speed_of(baud);
+  if (speed) return SerialPort{address.substr(0, at), *speed};
+  return fail(
+      Error::Code::kBadOption,
+      fmt::format("'{}': the baud rate must be 9600, 19200, 38400, 57600, 115200, 230400, 460800 or 921600", address));
+}
+
+tl::unexpected<Error> unknown_address(const std::string& address) {
+  return fail(Error::Code::kBadOption,
+              fmt::format("'{}': must be udp://HOST:PORT, tcp://HOST:PORT, or the path of a serial port", address));
+}
+
+/// The first IPv4 address, as heads and DVLs have, else the first.
+const addrinfo& preferred(const addrinfo& found) {
+  for (const addrinfo* one = &found; one != nullptr; one = one->ai_next) {
+    if (one->ai_family == AF_INET) return *one;
+  }
+  return found;
+}
+
 /// "udp://HOST:PORT" of a socket.
 std::string address_of(int socket, std::string_view protocol) {
   sockaddr_storage own = {};
@@ -96,8 +138,15 @@ Result<Link> Link::open(const std::string& address) {
   if (address.starts_with(kUdp)) return open_socket(address, Kind::kSocket);
   if (address.starts_with(kTcp)) return open_socket(address, Kind::kStream);
   if (address.starts_with('/')) return open_serial_port(address);
-  return fail(Error::Code::kBadOption,
-              fmt::format("'{}': must be udp://HOST:PORT, tcp://HOST:PORT, or the path of a serial port", address));
+  return unknown_address(address);
+}
+
+Result<void> Link::check(const std::string& address) {
+  const auto nothing = [](const auto&) {};
+  if (address.starts_with(kUdp)) return remote_in(address, kUdp).map(nothing);
+  if (address.starts_with(kTcp)) return remote_in(address, kTcp).map(nothing);
+  if (address.starts_with('/')) return serial_port_in(address).map(nothing);
+  return unknown_address(address);
 }
 
 Result<Link> Link::listen(const std::string& address) {
@@ -119,14 +168,15 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = is_stream ? SOCK_STREAM : SOCK_DGRAM;
   wanted.ai_flags = AI_NUMERICSERV | AI_PASSIVE;
-  addrinfo* found = nullptr;
+  addrinfo* all = nullptr;
   if (const int error =
-          ::getaddrinfo(parts->host.empty() ? nullptr : parts->host.c_str(), parts->port.c_str(), &wanted, &found)) {
+          ::getaddrinfo(parts->host.empty() ? nullptr : parts->host.c_str(), parts->port.c_str(), &wanted, &all)) {
     return fail(Error::Code::kIo, fmt::format("{}: {}", address, ::gai_strerror(error)));
   }
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(all, &::freeaddrinfo);
+  const addrinfo& found = preferred(*all);
 
-  Descriptor socket(::socket(found->ai_family, wanted.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  Descriptor socket(::socket(found.ai_family, wanted.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket.valid()) return os_error(address, errno);
   // Room for what comes while a sweep is mapped; the system may allow less.
   constexpr int kBuffer_bytes = 4 << 20;
@@ -136,8 +186,8 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   if (kind == Kind::kListeningStream) {
     static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &kYes, sizeof kYes));
   }
-  const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
-                             : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
+  const int status = listens ? ::bind(socket.get(), found.ai_addr, found.ai_addrlen)
+                             : ::connect(socket.get(), found.ai_addr, found.ai_addrlen);
   const bool is_connecting = kind == Kind::kStream && errno == EINPROGRESS;
   if (status != 0 && !is_connecting) return os_error(address, errno);
   if (kind == Kind::kListeningStream && ::listen(socket.get(), 1) != 0) return os_error(address, errno);
@@ -146,23 +196,11 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
 }
 
 Result<Link> Link::open_serial_port(const std::string& address) {
-  constexpr int kDefaultBaud = 115'200;
-  const std::size_t at = address.rfind('@');
-  int baud = kDefaultBaud;
-  if (at != std::string::npos) {
-    const char* end = address.data() + address.size();
-    if (std::from_chars(address.data() + at + 1, end, baud).ptr != end) baud = 0;
-  }
-  const std::optional<speed_t> speed = speed_of(baud);
-  if (!speed) {
-    return fail(Error::Code::kBadOption,
-                fmt::format("'{}': the baud rate must be 9600, 19200, 38400, 57600, 115200, 230400, 460800 or 921600",
-                            address));
-  }
-  const std::string path = address.substr(0, at);
-  Descriptor port(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (!port.valid()) return os_error(path, errno);
-  if (const int error = make_raw(port.get(), *speed)) return os_error(path, error);
+  const Result<SerialPort> serial = serial_port_in(address);
+  if (!serial) return tl::unexpected(serial.error());
+  Descriptor port(::open(serial->path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!port.valid()) return os_error(serial->path, errno);
+  if (const int error = make_raw(port.get(), serial->speed)) return os_error(serial->path, error);
   return Link(Kind::kTerminal, address, std::move(port));
 }
 

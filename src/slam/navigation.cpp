@@ -1,10 +1,13 @@
 #include "slam/navigation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -197,6 +200,17 @@ std::optional<HeadingSource> gyro_heading(const NavSource& rate, const Pose& bod
   turned->roll_rad = heading.roll_rad;
   turned->pitch_rad = heading.pitch_rad;
   return turned;
+}
+
+Result<void> check_mounts(const NavLog& log, const std::map<std::string, Pose>& body_from_source) {
+  std::set<std::string> known;
+  for (const NavSource& source : log.sources()) known.insert(source.name);
+  for (const auto& [name, mount] : body_from_source) {
+    if (known.contains(name)) continue;
+    return fail(Error::Code::kBadOption,
+                fmt::format("a mount of '{}': the sources of the navigation are {}", name, fmt::join(known, ", ")));
+  }
+  return {};
 }
 
 std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source) {

@@ -67,6 +67,9 @@ std::optional<HeadingSource> turned_heading(const NavSource& source, const Pose&
 std::optional<HeadingSource> gyro_heading(const NavSource& rate, const Pose& body_from_source,
                                           const HeadingSource& heading);
 
+/// @return kBadOption when a mount is of none of the sources
+Result<void> check_mounts(const NavLog& log, const std::map<std::string, Pose>& body_from_source);
+
 /// The heading or attitude with most samples, the first of equals.
 /// @param body_from_source  how sources are mounted, by name; the identity for others
 std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source);

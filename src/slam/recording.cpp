@@ -132,13 +132,7 @@ Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptio
   const Result<NavLog> made = NavLog::make(std::move(sources), NavClock::kUnknown);
   if (!made) return tl::unexpected(made.error());
   const NavLog& log = *made;
-  for (const auto& [name, mount] : options.body_from_source) {
-    if (std::ranges::find(log.sources(), name, &NavSource::name) != log.sources().end()) continue;
-    std::string known;
-    for (const NavSource& source : log.sources()) known += (known.empty() ? "" : ", ") + source.name;
-    return fail(Error::Code::kBadOption,
-                fmt::format("'{}' has a mount, but is no source of the navigation: {}", name, known));
-  }
+  if (const auto known = check_mounts(log, options.body_from_source); !known) return tl::unexpected(known.error());
   std::optional<VelocitySource> velocity = velocity_of(log, options);
   std::vector<HeadingSource> headings = headings_of(log, options);
   if (!velocity || headings.empty()) {

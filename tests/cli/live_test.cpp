@@ -406,6 +406,14 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   const Workplace here;
   expect_error(here.call({"live", "sonar", "-o", "a.bt"}), 2, {"no such device 'sonar'", "ping360:udp://HOST:PORT"});
   expect_error(here.call({"live", "replay:a.bin@0", "-o", "a.bt"}), 2, {"above 0"});
+  // What can never be reached is not tried again and again.
+  expect_error(here.call({"live", "ping360:udp://host", "-o", "a.bt"}), 2, {"DEVICE", "udp://HOST:PORT"});
+  expect_error(here.call({"live", "micron:/dev/ttyUSB0@1234", "-o", "a.bt"}), 2, {"baud rate"});
+  expect_error(here.call({"live", "micron:/dev/ttyUSB0@", "-o", "a.bt"}), 2, {"baud rate"});
+  expect_error(here.call({"live", "ping360:/dev/ttyUSB0@99999999999", "-o", "a.bt"}), 2, {"baud rate"});
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--obstacles", "udp://a"}), 2,
+               {"--obstacles", "udp://HOST:PORT"});
+  expect_error(here.call({"live", "replay:a.bin", "-o", "a.bt", "--range", "5"}), 2, {"--range", "a replay", "a head"});
   expect_error(here.call({"live", "replay:a.bin", "-o", "a.bt", "--record", "b.bin"}), 2, {"--record"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "-"}), 2, {"-o -"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--sector", "60,-60"}), 2, {"--sector"});
@@ -427,8 +435,10 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
                {"--step", "multiple of 0.05625"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--range", "200"}), 2, {"range_m", "100"});
   expect_error(here.call({"emulate", "echoscope"}), 2, {"no such device 'echoscope'"});
-  expect_error(here.call({"emulate", "mavlink", "--listen", "udp://127.0.0.1:9"}), 2, {"--listen", "--to"});
+  expect_error(here.call({"emulate", "mavlink", "--listen", "udp://127.0.0.1:9"}), 2, {"--listen", "DEVICE mavlink"});
   expect_error(here.call({"emulate", "a50", "--to", "udp://127.0.0.1:9"}), 2, {"--to"});
+  expect_error(here.call({"emulate", "a50", "--pings", "1"}), 2, {"--pings", "DEVICE a50"});
+  expect_error(here.call({"emulate", "ping360", "--speed", "1"}), 2, {"--speed", "--trajectory"});
   expect_error(here.call({"emulate", "a50", "--listen", "pty"}), 2, {"tcp://HOST:PORT"});
   expect_error(here.call({"emulate", "mavlink", "--rate", "2000"}), 2, {"reports_per_s"});
 }

@@ -116,6 +116,19 @@ TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
 }
 
 // Kills a clock of the navigation that is taken for the sonar's without a word.
+// Kills an error of the smoother that is taken for a map that does not fit.
+TEST(Locate, AMountOfAnUnknownSourceIsInvalid) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--trajectory", "loop", "--turns", "2", "--nav", "nav.csv",
+                       "--nav-delay", "0"})
+                .status,
+            0);
+  ASSERT_EQ(here.call({"map", "a.csv", "-o", "a.bt"}).status, 0);
+  expect_error(here.call({"locate", "a.csv", "--map", "a.bt", "--nav", "nav.csv", "--nav-offset", "0", "--nav-mount",
+                          "dlv=0,0,0,0,0,9", "-o", "a.tum"}),
+               2, {"nav.csv", "dlv", "DVL"});
+}
+
 TEST(Locate, NavigationOnAnotherClockIsMovedOrRefused) {
   const Workplace here;
   ASSERT_EQ(

@@ -224,6 +224,9 @@ TEST(Slam, SaysWhatIsWrongWithItsWords) {
     expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--nav-mount", mount}), 2,
                  {"--nav-mount"});
   }
+  expect_error(here.call({"slam", "beams.csv", "-o", "o.tum", "--nav-offset", "1"}), 2, {"--nav-offset", "--nav"});
+  expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.bt"}), 2, {"o.bt", ".tum"});
+  expect_error(here.call({"slam", "beams.csv", "--nav", "", "-o", "o.tum"}), 2, {"--nav", "is empty"});
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--graph", "o.g2o"}), 2, {"--graph"});
   expect_error(here.call({"slam", "-", "--nav", "nav.csv", "-o", "o.tum", "--map", "m.bt"}), 2, {"--map"});
   expect_error(here.call({"slam", "beams.csv", "--nav", "nav.csv", "-o", "o.tum", "--nav-mount", "dlv=0,0,0,0,0,9"}), 2,

@@ -447,11 +447,16 @@ TEST(ReplaySource, KeepsTheRhythmOfTheLogAtItsSpeed) {
 }
 
 TEST(Link, RefusesAddressesThatItDoesNotKnow) {
-  for (const char* address : {"", "http://a:1", "tcp://a", "udp://", "udp://127.0.0.1", "udp://127.0.0.1:x",
-                              "udp://127.0.0.1:70000", "/dev/null@1", "/dev/null@115200x"}) {
+  for (const char* address :
+       {"", "http://a:1", "tcp://a", "udp://", "udp://127.0.0.1", "udp://127.0.0.1:x", "udp://127.0.0.1:70000",
+        "/dev/null@1", "/dev/null@115200x", "/dev/null@", "/dev/null@99999999999"}) {
     const Result<Link> link = Link::open(address);
     ASSERT_FALSE(link) << address;
     EXPECT_EQ(link.error().code, Error::Code::kBadOption) << address;
+    EXPECT_EQ(Link::check(address).error().message, link.error().message);
+  }
+  for (const char* address : {"udp://a:1", "tcp://[::1]:9092", "/dev/ttyUSB0", "/dev/ttyUSB0@57600"}) {
+    EXPECT_TRUE(Link::check(address)) << address;
   }
   const Result<Link> no_terminal = Link::open("/dev/null");
   ASSERT_FALSE(no_terminal);

@@ -132,7 +132,8 @@ TEST(ClockOffset, OfAnAutopilotAndItsGroundStation) {
   EXPECT_LT(offset->deviation_s, 0.02);
 }
 
-// The sonar's times are about 0.6 s before those of both compasses (docs/slam.md). The first quarter of an hour.
+// The sonar's times are about 0.6 s before those of both compasses (docs/slam-figures.md). The first quarter of an
+// hour.
 TEST(ClockOffset, OfTheMarinasSonarAndCompass) {
   const auto hits = shared("marina-ribas-stpere/is_hits.txt"),
              compass = shared("marina-ribas-stpere/_040825_1735_DVL.log");

@@ -29,7 +29,7 @@ class A50Receiver {
 
   /// @param address       "tcp://HOST:PORT"
   /// @param recorder      its lines are those of the device with the time when each came in front; nullopt: none
-  /// @param since_1970_s  time of the recording at 0 of the clock that `read` is told
+  /// @param since_1970_s  time of the recording at 0 of the clock of now_s
   /// @return kBadOption for another address
   static Result<A50Receiver> make(const std::string& address, std::optional<RecordFile> recorder, double since_1970_s);
 

@@ -20,6 +20,8 @@ class Link {
   ///                 (115200 baud, 8N1). A TCP connection that cannot be made is an error of `read`.
   /// @return kBadOption when it is none of these, kIo when it cannot be opened
   static Result<Link> open(const std::string& address);
+  /// Whether `open` can take the address at all. @return kBadOption when it cannot
+  static Result<void> check(const std::string& address);
   /// Opens the end that waits for the other one: an emulator's, or that of a host to which a vehicle sends.
   /// @param address  "udp://HOST:PORT" (no host: all addresses of this one; port 0: one that is free),
   /// "tcp://HOST:PORT"

@@ -25,7 +25,7 @@ class MavlinkReceiver {
   };
 
   /// @param address        "udp://:PORT" or "udp://ADDRESS:PORT", of this host
-  /// @param since_1970_s   time of the recording at 0 of the clock that `read` is told
+  /// @param since_1970_s   time of the recording at 0 of the clock of now_s
   /// @return kBadOption for another address, kIo when it cannot be opened
   static Result<MavlinkReceiver> listen(const std::string& address, std::optional<TlogRecorder> recorder,
                                         double since_1970_s);

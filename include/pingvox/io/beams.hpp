@@ -21,8 +21,8 @@ enum class Damage {
   kFail,  ///< the first one is an error (--strict)
 };
 
-/// Opens a log of beams; its content tells the format. Device logs are read as streams in constant memory, others as a
-/// whole.
+/// Opens a log of beams; the format is recognised by content. Device logs are read as streams in constant memory,
+/// others as a whole.
 /// @param topic  of a ROS bag. Without a name, a second topic with beams is an error (kBadOption) where it begins.
 /// @return kUnsupported when it holds no beams, kCorrupt when its header is damaged
 Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage = Damage::kSkip,
@@ -31,7 +31,8 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage 
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = Damage::kSkip,
                                                const BeamTopic& topic = {});
 
-/// Opens a log of point scans, or a point cloud (PLY, PCD, XYZ) as one scan; its content tells the format.
+/// Opens a log of point scans, or a point cloud (PLY, PCD, XYZ) as one scan; the format is recognised by
+/// content.
 /// @param cloud_origin_m  origin of a cloud's rays (map frame); nullopt: a PCD's VIEWPOINT, else 0, 0, 0. Ignored for
 ///                        logs, which hold the origins of their scans
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip,

@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// The bytes of a file, a pipe or memory, read as they are needed. The beginning stays in memory, because it tells the
+/// The bytes of a file, a pipe or memory, read as they are needed. The beginning stays in memory, because it shows the
 /// format.
 class ByteStream {
  public:

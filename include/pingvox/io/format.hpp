@@ -49,7 +49,7 @@ enum class Format {
 
 enum class FormatKind { kBeams, kScans, kMap, kTrajectory, kNav, kCloud, kMesh, kGrid, kPicture };
 
-/// Bags are of the kind kBeams, though they may hold navigation only (read_bag tells).
+/// Bags are of the kind kBeams, though they may hold navigation only (see read_bag).
 FormatKind kind_of(Format format);
 /// Whether it is one of the bags of ROS.
 bool is_bag(Format format);

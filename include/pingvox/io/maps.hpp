@@ -18,7 +18,7 @@ struct MapFile {
   std::string made_by;  ///< kPvx: free text about how the map was made; else empty
 };
 
-/// Reads a map; its content tells the format. kCorrupt names the place and the reason.
+/// Reads a map; the format is recognised by content. kCorrupt names the place and the reason.
 /// @param memory_limit_bytes  0: none; else kLimit when the tree would exceed it
 Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes = 0);
 

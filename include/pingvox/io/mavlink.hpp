@@ -27,7 +27,7 @@ struct MavlinkFrame {
 };
 
 /// The frame that `bytes` begin with, and its length. `frame` is empty when they begin with none, or with less than a
-/// whole one: then `is_cut` says that more bytes would tell.
+/// whole one: then `is_cut` says that more bytes are needed.
 struct MavlinkRead {
   std::optional<MavlinkFrame> frame;
   std::size_t length = 0;

@@ -12,7 +12,7 @@ struct ObstacleDistance {
   static constexpr std::uint16_t kUnknown = 65'535;
   std::uint64_t time_us = 0;                  ///< since 1970
   std::array<std::uint16_t, 72> cm = {};      ///< max_cm + 1: nothing; kUnknown
-  std::uint16_t min_cm = 0, max_cm = 65'533;  ///< that could be told
+  std::uint16_t min_cm = 0, max_cm = 65'533;  ///< that can be reported
 };
 /// Its payload, for make_mavlink_frame with `kObstacleDistance`.
 std::vector<std::uint8_t> payload_of(const ObstacleDistance& obstacles);

@@ -20,7 +20,8 @@ struct NavFile {
   std::vector<DamageKind> damage;  ///< in the order in which the kinds were met
 };
 
-/// Reads any navigation log; its content tells the format. Units and frames are converted to those of NavQuantity.
+/// Reads any navigation log; the format is recognised by content. Units and frames are converted to those
+/// of NavQuantity.
 /// @return kUnsupported when the file is none; with Damage::kFail, kCorrupt naming the first damage
 Result<NavFile> read_nav(const FileBytes& file, Damage damage = Damage::kSkip);
 /// The same. ROS bags are read as streams, other logs as a whole.

@@ -9,7 +9,7 @@
 
 namespace pingvox {
 
-/// How messages of a ROS bag tell one quantity of navigation (docs/formats.md). Their numbers are named by paths, as in
+/// How messages of a ROS bag hold one quantity of navigation (docs/formats.md). Their numbers are named by paths, as in
 /// "velocity.x" or "covariance[7]"; a minus before a path turns the sign.
 struct NavFields {
   enum class Frame {

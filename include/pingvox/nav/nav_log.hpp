@@ -94,7 +94,7 @@ class NavLog {
 /// Adds samples of the same source, of another log or part of it: they are no step back of its clock.
 void add_samples(const NavSource& from, NavSource& to);
 
-/// @return kCorrupt when its clock was set back: which times are right cannot be told
+/// @return kCorrupt when its clock was set back: which times are right is not known
 Result<void> check_clock(const NavSource& source);
 /// The same of all sources of these quantities, those that something is computed from; kCorrupt names the first.
 Result<void> check_clocks(const NavLog& log, std::span<const NavQuantity> quantities);

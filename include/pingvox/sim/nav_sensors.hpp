@@ -11,7 +11,7 @@ namespace pingvox {
 
 /// Navigation sensors of a simulated vehicle, all at the origin of its body frame: a DVL, an attitude sensor with
 /// compass and gyros, and a depth sensor. Errors that are constant over a run are drawn with the standard deviations
-/// given here. Defaults: about those of the marina's recording (docs/slam.md).
+/// given here. Defaults: about those of the marina's recording (docs/slam-figures.md).
 struct NavSensorOptions {
   std::uint64_t seed = 1;
 

@@ -58,7 +58,7 @@ struct HarbourOptions {
 Scene harbour_scene(const HarbourOptions& options);
 
 /// Canals and basins of 400 x 300 m between quays, with moored hulls and piles, as in the marina of the recording in
-/// docs/slam.md: for a sonar with a long range. Its loop of 600 m goes around two islands.
+/// docs/slam-figures.md: for a sonar with a long range. Its loop of 600 m goes around two islands.
 struct MarinaOptions {
   double water_above_m = 1.5;  ///< above the vehicle, 0.5..50
   double water_below_m = 4.0;  ///< below the vehicle, 0.5..50

@@ -14,7 +14,7 @@ namespace pingvox {
 struct YawChange {
   double from_s = 0.0, to_s = 0.0;
   double by_rad = 0.0;
-  double spread_s = 0.0;  ///< how long what told it took: its times are the middle
+  double spread_s = 0.0;  ///< duration of what it was measured from: the offset is that of its middle
 };
 
 /// How the vehicle turned, by the picture of its sonar: when the vehicle turns left, the picture turns right. Parts of
@@ -46,7 +46,8 @@ struct ClockOffset {
 
 /// The offset with which the heading (or attitude) with most samples explains changes of yaw best, whatever the overlap
 /// of the two recordings.
-/// @return kUnsupported saying why when it cannot be told: no heading, too few changes, a vehicle that turns too little
+/// @return kUnsupported saying why when it cannot be determined: no heading, too few changes, a vehicle that turns too
+/// little
 ///         or evenly, or another offset that is nearly as good; kCorrupt when the clock of a heading was set back
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
 

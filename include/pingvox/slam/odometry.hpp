@@ -36,7 +36,8 @@ struct Odometry {
 
 /// Integrates the velocity with most samples along the heading with most samples.
 /// @return kUnsupported without a valid heading or attitude, or when velocity and heading do not overlap in time;
-///         kBadOption when the calibration is of another velocity, or lacks the heading;
+///         kBadOption when a mount is of none of the sources, or the calibration is of another velocity or lacks the
+///         heading;
 ///         kCorrupt when the clock of a velocity, a heading, an attitude, a turn rate or the depth was set back
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options);
 

@@ -35,7 +35,7 @@ struct MapPath {
 };
 
 struct MapPictureOptions {
-  /// Paths that can be told apart.
+  /// Paths that have colours of their own.
   static constexpr std::size_t kMaxPaths = 5;
 
   MapView view = MapView::kAbove;
