@@ -18,6 +18,7 @@
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/trajectory_score.hpp"
@@ -30,7 +31,7 @@ Result<MapFile> map_in(const Result<FileBytes>& file) {
   if (!file) return tl::unexpected(file.error());
   if (const auto format = format_of(file->view()); format && kind_of(*format) != FormatKind::kMap) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("{}: is {}, not a map (.bt, .ot or .pvx)", file->name, describe(*format)));
+                fmt::format("{}: is {}, not a map (.bt, .ot or .pvx)", file->name, description_of(*format)));
   }
   return read_map(*file);
 }
@@ -202,9 +203,10 @@ std::string text_of(const TrajectoryScore& score) {
 Result<Trajectory> trajectory_in(const Result<FileBytes>& file) {
   if (!file) return tl::unexpected(file.error());
   if (const auto format = format_of(file->view()); format != Format::kTum) {
-    return fail(Error::Code::kUnsupported,
-                fmt::format("{}: {}: a trajectory (TUM) is compared with another one", file->name,
-                            format ? "is " + describe(*format) : describe_unknown_file(file->view())));
+    return fail(
+        Error::Code::kUnsupported,
+        fmt::format("{}: {}: a trajectory (TUM) is compared with another one", file->name,
+                    format ? fmt::format("is {}", description_of(*format)) : describe_unknown_file(file->view())));
   }
   return read_tum(*file);
 }

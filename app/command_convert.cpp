@@ -17,6 +17,7 @@
 #include "pingvox/analysis/surface_map.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/io/grids.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
@@ -42,7 +43,7 @@ tl::unexpected<Error> conversion_error(const std::string& name, Format from, For
                                 : kind == FormatKind::kScans ? ": .ply, .pcd and .xyz hold its points"
                                                              : "";
   return fail(Error::Code::kBadOption, fmt::format("convert: {}: is {}, which cannot be written as .{}{}", name,
-                                                   describe(from), name_of(to), hint));
+                                                   description_of(from), name_of(to), hint));
 }
 
 Result<std::string> write_beams(BeamSource& source, std::ostream& out) {

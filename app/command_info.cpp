@@ -16,6 +16,7 @@
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
@@ -35,7 +36,7 @@ struct Summary {
 };
 
 std::string headline(const std::string& name, Format format) {
-  return fmt::format("{}: {}\n", on_one_line(name), describe(format));
+  return fmt::format("{}: {}\n", on_one_line(name), description_of(format));
 }
 
 /// Angle covered by the head: a full turn, or all but the widest gap between bearings.

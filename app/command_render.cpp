@@ -20,6 +20,7 @@
 #include "open_log.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
@@ -277,8 +278,8 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
     const std::string_view hint = kind == FormatKind::kCloud  ? ": 'pingvox map' makes a map of it"
                                   : kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface"
                                                               : "";
-    return fail(Error::Code::kUnsupported,
-                fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name, describe(*format), hint));
+    return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name,
+                                                       description_of(*format), hint));
   }
   const PictureView view = view_of(panel, kind);
   const auto to_draw = [&](OccupancyMap map) -> Result<Prepared> {
@@ -290,7 +291,7 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
     if (kind != FormatKind::kBeams) {
       return fail(Error::Code::kBadOption,
                   fmt::format("render: {}: is {}: only logs of beams have polar and Cartesian pictures", file.name,
-                              describe(*format)));
+                              description_of(*format)));
     }
     auto drawn = view == PictureView::kPolar ? draw_sweeps<PolarCollector>(std::move(file), panel, command)
                                              : draw_sweeps<CartesianCollector>(std::move(file), panel, command);

@@ -76,7 +76,8 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   // A damaged trajectory may look like points as text.
   const std::optional<Format> format = format_of(file->view());
   if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
-  return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a trajectory", file->name, describe(*format)));
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: is {}, not a trajectory", file->name, description_of(*format)));
 }
 
 Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, const BagArgs& bag, Damage damage) {

@@ -348,7 +348,7 @@ OptionTable::Group map_group(BuildArgs& args) {
       {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m),
         within(kResolutions, store_number(map.resolution_m))},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
-        store_number(map.depth)},
+        within({1.0, 128.0}, store_number(map.depth))},
        {"--hit", 0, "P",
         "probability that a cell is occupied after one echo in it, the strongest one with --hit-from intensity",
         number_text(model.hit.probability()), within({0.5, 1.0, Limits::Ends::kBothOut}, store_probability(model.hit))},

@@ -68,7 +68,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     if (!contents && format && kind_of(*format) == FormatKind::kTrajectory) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a navigation log: 'map' and 'render' take it "
                                                          "by --poses, 'locate' by --odometry",
-                                                         shown, describe(*format)));
+                                                         shown, description_of(*format)));
     }
     if (!contents) return tl::unexpected(contents.error());
     topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());

@@ -40,43 +40,6 @@ bool has_beams(const BagContents& bag) {
   });
 }
 
-std::string describe(Format format) {
-  const auto with = [&](std::string_view kind) { return fmt::format("{} (.{})", kind, name_of(format)); };
-  // Formats without a suffix of their own.
-  if (format == Format::kPingViewer) return "a log of beams (Ping Viewer)";
-  if (format == Format::kPingText) return "a log of beams (print of a Ping360's pings)";
-  if (format == Format::kSonarView) return "a log of beams (SonarView)";
-  if (format == Format::kSeanetCapture) return "a log of beams (SeaNet, serial line)";
-  if (format == Format::kUdpCapture) return "a log of beams (SeaNet, UDP packets)";
-  if (is_bag(format)) return fmt::format("a ROS bag (.{})", name_of(format));
-  if (format == Format::kDumplog) return "a log of beams (SeanetDumpLog)";
-  if (format == Format::kBeamHits) return "a log of beams (bins that were hit)";
-  if (format == Format::kIctineu) return "a navigation log (Ictineu)";
-  if (format == Format::kDvlA50) return "a navigation log (Water Linked DVL)";
-  if (format == Format::kNmea) return "a navigation log (NMEA 0183)";
-  switch (kind_of(format)) {
-    case FormatKind::kBeams:
-      return with("a log of beams");
-    case FormatKind::kScans:
-      return with("a log of point scans");
-    case FormatKind::kMap:
-      return with("a map");
-    case FormatKind::kTrajectory:
-      return with("a trajectory");
-    case FormatKind::kNav:
-      return with("a navigation log");
-    case FormatKind::kCloud:
-      return with("a cloud of points");
-    case FormatKind::kMesh:
-      return with("a mesh");
-    case FormatKind::kGrid:
-      return with("a grid");
-    case FormatKind::kPicture:
-      break;
-  }
-  return with("a picture");
-}
-
 std::string kind_text(FormatKind kind) {
   switch (kind) {
     case FormatKind::kBeams:
@@ -112,7 +75,7 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
         .map([](auto source) { return Log(std::move(source)); });
   }
   return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a log of a sonar{}", stream.name(), describe(*format),
+              fmt::format("{}: is {}, not a log of a sonar{}", stream.name(), description_of(*format),
                           kind == FormatKind::kMesh  ? ": 'pingvox convert' makes a map of its surface"
                           : kind == FormatKind::kNav ? ": give it with --nav"
                                                      : ""));

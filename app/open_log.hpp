@@ -22,9 +22,6 @@ Result<Format> identify_format(const FileBytes& file);
 /// The same. Loads formats that are not read as streams into memory.
 Result<Format> identify_format(ByteStream& stream);
 
-/// Format and kind for messages: "a map (.bt)".
-std::string describe(Format format);
-
 /// The kind in the words of Option::only_for: "logs of beams".
 std::string kind_text(FormatKind kind);
 

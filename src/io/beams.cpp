@@ -11,68 +11,6 @@
 namespace pingvox {
 namespace {
 
-std::string_view description_of(Format format) {
-  switch (format) {
-    case Format::kMat:
-      return "a MATLAB file of beams";
-    case Format::kCsv:
-      return "a CSV file of beams";
-    case Format::kPingViewer:
-      return "a log of Ping Viewer";
-    case Format::kPingText:
-      return "a print of pings";
-    case Format::kSonarView:
-      return "a log of SonarView";
-    case Format::kSeanetCapture:
-    case Format::kUdpCapture:
-      return "a capture of a SeaNet sonar";
-    case Format::kV4log:
-    case Format::kDumplog:
-      return "a SeaNet log";
-    case Format::kRosBag:
-    case Format::kRosSqlite:
-    case Format::kMcap:
-      return "a ROS bag";
-    case Format::kBeamHits:
-      return "a list of hits";
-    case Format::kScanGraph:
-      return "an OctoMap scan graph";
-    case Format::kScanLog:
-      return "an OctoMap scan log";
-    case Format::kXtf:
-      return "a line of a multibeam";
-    case Format::kBt:
-      return "an OctoMap binary tree";
-    case Format::kOt:
-      return "an OctoMap tree";
-    case Format::kPvx:
-      return "a pingvox map";
-    case Format::kTum:
-      return "a trajectory";
-    case Format::kTlog:
-    case Format::kDataflash:
-    case Format::kIctineu:
-    case Format::kDvlA50:
-    case Format::kNmea:
-    case Format::kNavCsv:
-      return "a navigation log";
-    case Format::kPly:
-    case Format::kPcd:
-    case Format::kXyz:
-      return "a point cloud";
-    case Format::kPlyMesh:
-    case Format::kOff:
-    case Format::kStl:
-      return "a mesh";
-    case Format::kGrid:
-    case Format::kAsc:
-      return "a grid";
-    case Format::kPng:
-      break;
-  }
-  return "a picture";
-}
-
 tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wanted, std::optional<Format> format) {
   return fail(Error::Code::kUnsupported,
               format ? fmt::format("{}: not {} (it is {})", name, wanted, description_of(*format))

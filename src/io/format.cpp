@@ -29,56 +29,63 @@ bool looks_like_oldest_bt(std::span<const std::uint8_t> bytes) {
          reader.left() / 2 <= std::uint64_t{*nodes};
 }
 
+struct FormatFacts {
+  Format format;
+  std::string_view name;
+  FormatKind kind;
+  std::string_view description;
+};
+
+/// In the order of Format.
+constexpr std::array kFormats = {
+    FormatFacts{Format::kMat, "mat", FormatKind::kBeams, "a log of beams (.mat)"},
+    FormatFacts{Format::kCsv, "csv", FormatKind::kBeams, "a log of beams (.csv)"},
+    FormatFacts{Format::kPingViewer, "pingviewer", FormatKind::kBeams, "a log of beams (Ping Viewer)"},
+    FormatFacts{Format::kPingText, "pingtext", FormatKind::kBeams, "a log of beams (print of a Ping360's pings)"},
+    FormatFacts{Format::kSonarView, "svlog", FormatKind::kBeams, "a log of beams (SonarView)"},
+    FormatFacts{Format::kSeanetCapture, "seanet", FormatKind::kBeams, "a log of beams (SeaNet, serial line)"},
+    FormatFacts{Format::kUdpCapture, "seanet-udp", FormatKind::kBeams, "a log of beams (SeaNet, UDP packets)"},
+    FormatFacts{Format::kV4log, "v4log", FormatKind::kBeams, "a log of beams (.v4log)"},
+    FormatFacts{Format::kDumplog, "dumplog", FormatKind::kBeams, "a log of beams (SeanetDumpLog)"},
+    FormatFacts{Format::kRosBag, "bag", FormatKind::kBeams, "a ROS bag (.bag)"},
+    FormatFacts{Format::kRosSqlite, "db3", FormatKind::kBeams, "a ROS bag (.db3)"},
+    FormatFacts{Format::kMcap, "mcap", FormatKind::kBeams, "a ROS bag (.mcap)"},
+    FormatFacts{Format::kBeamHits, "hits", FormatKind::kBeams, "a log of beams (bins that were hit)"},
+    FormatFacts{Format::kScanGraph, "graph", FormatKind::kScans, "a log of point scans (.graph)"},
+    FormatFacts{Format::kScanLog, "log", FormatKind::kScans, "a log of point scans (.log)"},
+    FormatFacts{Format::kXtf, "xtf", FormatKind::kScans, "a log of point scans (.xtf)"},
+    FormatFacts{Format::kBt, "bt", FormatKind::kMap, "a map (.bt)"},
+    FormatFacts{Format::kOt, "ot", FormatKind::kMap, "a map (.ot)"},
+    FormatFacts{Format::kPvx, "pvx", FormatKind::kMap, "a map (.pvx)"},
+    FormatFacts{Format::kTum, "tum", FormatKind::kTrajectory, "a trajectory (.tum)"},
+    FormatFacts{Format::kTlog, "tlog", FormatKind::kNav, "a navigation log (.tlog)"},
+    FormatFacts{Format::kDataflash, "dataflash", FormatKind::kNav, "a navigation log (.dataflash)"},
+    FormatFacts{Format::kIctineu, "ictineu", FormatKind::kNav, "a navigation log (Ictineu)"},
+    FormatFacts{Format::kDvlA50, "a50", FormatKind::kNav, "a navigation log (Water Linked DVL)"},
+    FormatFacts{Format::kNmea, "nmea", FormatKind::kNav, "a navigation log (NMEA 0183)"},
+    FormatFacts{Format::kNavCsv, "csv", FormatKind::kNav, "a navigation log (.csv)"},
+    FormatFacts{Format::kPly, "ply", FormatKind::kCloud, "a cloud of points (.ply)"},
+    FormatFacts{Format::kPcd, "pcd", FormatKind::kCloud, "a cloud of points (.pcd)"},
+    FormatFacts{Format::kXyz, "xyz", FormatKind::kCloud, "a cloud of points (.xyz)"},
+    FormatFacts{Format::kPlyMesh, "ply", FormatKind::kMesh, "a mesh (.ply)"},
+    FormatFacts{Format::kOff, "off", FormatKind::kMesh, "a mesh (.off)"},
+    FormatFacts{Format::kStl, "stl", FormatKind::kMesh, "a mesh (.stl)"},
+    FormatFacts{Format::kGrid, "pgm", FormatKind::kGrid, "a grid (.pgm)"},
+    FormatFacts{Format::kAsc, "asc", FormatKind::kGrid, "a grid (.asc)"},
+    FormatFacts{Format::kPng, "png", FormatKind::kPicture, "a picture (.png)"},
+};
+static_assert(std::ranges::all_of(kFormats, [i = 0](const FormatFacts& facts) mutable {
+  return facts.format == static_cast<Format>(i++);
+}));
+
+const FormatFacts& facts_of(Format format) {
+  return kFormats[static_cast<std::size_t>(format)];
+}
+
 }  // namespace
 
 FormatKind kind_of(Format format) {
-  switch (format) {
-    case Format::kMat:
-    case Format::kCsv:
-    case Format::kPingViewer:
-    case Format::kPingText:
-    case Format::kSonarView:
-    case Format::kSeanetCapture:
-    case Format::kUdpCapture:
-    case Format::kV4log:
-    case Format::kDumplog:
-    case Format::kRosBag:
-    case Format::kRosSqlite:
-    case Format::kMcap:
-    case Format::kBeamHits:
-      return FormatKind::kBeams;
-    case Format::kScanGraph:
-    case Format::kScanLog:
-    case Format::kXtf:
-      return FormatKind::kScans;
-    case Format::kBt:
-    case Format::kOt:
-    case Format::kPvx:
-      return FormatKind::kMap;
-    case Format::kTum:
-      return FormatKind::kTrajectory;
-    case Format::kTlog:
-    case Format::kDataflash:
-    case Format::kIctineu:
-    case Format::kDvlA50:
-    case Format::kNmea:
-    case Format::kNavCsv:
-      return FormatKind::kNav;
-    case Format::kPly:
-    case Format::kPcd:
-    case Format::kXyz:
-      return FormatKind::kCloud;
-    case Format::kPlyMesh:
-    case Format::kOff:
-    case Format::kStl:
-      return FormatKind::kMesh;
-    case Format::kGrid:
-    case Format::kAsc:
-      return FormatKind::kGrid;
-    case Format::kPng:
-      break;
-  }
-  return FormatKind::kPicture;
+  return facts_of(format).kind;
 }
 
 bool is_bag(Format format) {
@@ -86,78 +93,11 @@ bool is_bag(Format format) {
 }
 
 std::string_view name_of(Format format) {
-  switch (format) {
-    case Format::kMat:
-      return "mat";
-    case Format::kCsv:
-      return "csv";
-    case Format::kPingViewer:
-      return "pingviewer";
-    case Format::kPingText:
-      return "pingtext";
-    case Format::kSonarView:
-      return "svlog";
-    case Format::kSeanetCapture:
-      return "seanet";
-    case Format::kUdpCapture:
-      return "seanet-udp";
-    case Format::kV4log:
-      return "v4log";
-    case Format::kDumplog:
-      return "dumplog";
-    case Format::kRosBag:
-      return "bag";
-    case Format::kRosSqlite:
-      return "db3";
-    case Format::kMcap:
-      return "mcap";
-    case Format::kBeamHits:
-      return "hits";
-    case Format::kScanGraph:
-      return "graph";
-    case Format::kScanLog:
-      return "log";
-    case Format::kXtf:
-      return "xtf";
-    case Format::kBt:
-      return "bt";
-    case Format::kOt:
-      return "ot";
-    case Format::kPvx:
-      return "pvx";
-    case Format::kTum:
-      return "tum";
-    case Format::kTlog:
-      return "tlog";
-    case Format::kDataflash:
-      return "dataflash";
-    case Format::kIctineu:
-      return "ictineu";
-    case Format::kDvlA50:
-      return "a50";
-    case Format::kNmea:
-      return "nmea";
-    case Format::kNavCsv:
-      return "csv";
-    case Format::kPly:
-    case Format::kPlyMesh:
-      return "ply";
-    case Format::kPcd:
-      return "pcd";
-    case Format::kXyz:
-      return "xyz";
-    case Format::kOff:
-      return "off";
-    case Format::kStl:
-      return "stl";
-    case Format::kGrid:
-      return "pgm";
-    case Format::kAsc:
-      return "asc";
-    case Format::kPng:
-      break;
-  }
-  return "png";
+  return facts_of(format).name;
+}
+
+std::string_view description_of(Format format) {
+  return facts_of(format).description;
 }
 
 std::optional<Format> format_of(std::span<const std::uint8_t> bytes) {

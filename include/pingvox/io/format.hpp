@@ -55,6 +55,8 @@ FormatKind kind_of(Format format);
 bool is_bag(Format format);
 /// Short lower-case name, as in "csv".
 std::string_view name_of(Format format);
+/// As in "a log of beams (Ping Viewer)".
+std::string_view description_of(Format format);
 
 /// Format by content, not by name (docs/formats.md gives the order). nullopt: unknown file.
 std::optional<Format> format_of(std::span<const std::uint8_t> bytes);

@@ -14,7 +14,7 @@ namespace pingvox {
 struct YawChange {
   double from_s = 0.0, to_s = 0.0;
   double by_rad = 0.0;
-  double spread_s = 0.0;  ///< duration of what it was measured from: the offset is that of its middle
+  double spread_s = 0.0;  ///< duration of what it was measured from; the times are its middle
 };
 
 /// How the vehicle turned, by the picture of its sonar: when the vehicle turns left, the picture turns right. Parts of
