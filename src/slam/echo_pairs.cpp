@@ -16,7 +16,7 @@ namespace {
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// The line of a wall.
-constexpr std::size_t kLineEchoes = 8, kMinLineEchoes = 4;
+constexpr std::size_t kLineEchoes = 5, kMinLineEchoes = 4;
 constexpr double kLineReach_m = 5.0, kWidthOfLength = 0.25;
 
 /// Which sweeps are partners of a sweep: these many before and after it, and some that are near in place only.
@@ -24,8 +24,8 @@ constexpr std::array<std::size_t, 5> kNear = {1, 2, 3, 5, kFarthestNear};
 constexpr std::size_t kLoopPairs = 10;
 
 constexpr double kMinAgreement = 0.85;  ///< of two normals, cosine
-/// Noise of an echo: of its place, of half its length along the beam, of the beam's direction.
-constexpr double kPlace_m = 0.3, kOfHalfLength = 0.3, kBearing_rad = 1.0 * kDegree_rad;
+/// Noise of an echo: of its place in a run and at a crest, of half its length along the beam, of the beam's direction.
+constexpr double kMiddle_m = 0.3, kCrest_m = 0.1, kOfHalfLength = 0.3, kBearing_rad = 1.0 * kDegree_rad;
 /// The pairs of an echo weigh half an echo together, and a pair is of two echoes.
 constexpr double kWeightOfEcho = 0.25;
 constexpr double kRobustOfGate = 0.35;
@@ -89,9 +89,11 @@ std::uint64_t mix(std::uint64_t x) {
 }
 
 double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal, double scale) {
+  // A crest is as sharp as the sonar draws it, not as far as it reaches.
+  const double place_m = echo.run.place == EchoRun::Place::kCrest ? kCrest_m : scale * kMiddle_m;
   const double along = kOfHalfLength * echo.run.half_length_m * normal.dot(ground.ray);
-  const double across = kBearing_rad * echo.run.middle_m * cross(normal, ground.ray);
-  return scale * scale * kPlace_m * kPlace_m + along * along + across * across;
+  const double across = kBearing_rad * echo.run.range_m * cross(normal, ground.ray);
+  return place_m * place_m + along * along + across * across;
 }
 
 }  // namespace
@@ -145,7 +147,7 @@ EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, con
   const Eigen::Vector2d lever = mount.place_m + Eigen::Vector2d(g[global::kSonarX], g[global::kSonarY]);
   const double c = std::cos(yaw_rad), s = std::sin(yaw_rad);
   ground.arm = Eigen::Vector2d(c * lever.x() - s * lever.y(), s * lever.x() + c * lever.y()) +
-               (echo.run.middle_m + g[global::kWall] * echo.run.half_length_m) * ground.ray;
+               (echo.run.range_m + g[global::kWall] * echo.run.half_length_m) * ground.ray;
   ground.at = place_m + ground.bulge + ground.arm;
   return ground;
 }
@@ -259,7 +261,7 @@ std::vector<WallMatch> match_walls(std::span<const PlacedEcho> echoes, std::span
     const auto wall = walls.nearest(ground[i].at, ground[i].ray, gate_m);
     if (!wall) continue;
     const double distance_m = wall->normal.dot(ground[i].at - wall->place_m);
-    const double across_m = kMapBearing_rad * echoes[i].run.middle_m;
+    const double across_m = kMapBearing_rad * echoes[i].run.range_m;
     const double variance =
         kMapPlace_m * kMapPlace_m + kOfCell * kOfCell * walls.cell_m() * walls.cell_m() + across_m * across_m;
     const double square = kRobustOfGate * kRobustOfGate * gate_m * gate_m;

@@ -36,7 +36,7 @@ double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns);
 EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
                         const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo);
 
-/// Places all echoes, and fits the wall's line at each: through the eight nearest of its sweep within five metres.
+/// Places all echoes, and fits the wall's line at each: through the five nearest of its sweep within five metres.
 /// @param sweeps  where the echoes of each sweep begin, and the end of the last
 std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
                                        const std::vector<SlamProblem::Way>& ways, std::span<const PlacedEcho> echoes,

@@ -70,7 +70,12 @@ std::vector<EchoRun> echo_runs(const Sweep& sweep, const FilterOptions& filter, 
   const PolarImage image = apply_filter(PolarImage(sweep), filter);
   const std::vector<std::optional<Echo>> echoes = detect_echoes(image, sweep, echo);
   for (std::size_t i = 0; i < echoes.size(); ++i) {
-    if (echoes[i]) runs.push_back(run_of(sweep.beams[i], echoes[i]->first, echoes[i]->last));
+    if (!echoes[i]) continue;
+    EchoRun run = run_of(sweep.beams[i], echoes[i]->first, echoes[i]->last);
+    // On a slanting wall the middle of the run leads its crest, and pairs of such echoes would shrink the way.
+    run.range_m = echoes[i]->range_m;
+    run.place = EchoRun::Place::kCrest;
+    runs.push_back(run);
   }
   return runs;
 }

@@ -63,7 +63,7 @@ HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
   HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
                    echo_runs(sweep, options.filter, options.echo)};
   for (EchoRun& run : heard.runs) {
-    run.middle_m *= options.sound_speed_ratio;
+    run.range_m *= options.sound_speed_ratio;
     run.half_length_m *= options.sound_speed_ratio;
   }
   return heard;

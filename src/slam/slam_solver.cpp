@@ -40,7 +40,7 @@ Eigen::VectorXd gradient_at(const WindowPrior& prior, const Eigen::Vector3d& kno
 double reach_of(std::span<const HeardSweep> sweeps) {
   std::vector<double> ranges_m;
   for (const HeardSweep& sweep : sweeps) {
-    for (const EchoRun& run : sweep.runs) ranges_m.push_back(run.middle_m);
+    for (const EchoRun& run : sweep.runs) ranges_m.push_back(run.range_m);
   }
   if (ranges_m.empty()) return 0.0;
   const auto nine_of_ten = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() * 9 / 10);

@@ -82,8 +82,7 @@ std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, doubl
   std::vector<Eigen::Vector2d> points_m;
   for (const EchoRun& run : sweep.runs) {
     const double ray_rad = mount.yaw_rad + run.bearing_rad;
-    const Eigen::Vector2d in_body =
-        mount.place_m + run.middle_m * Eigen::Vector2d(std::cos(ray_rad), std::sin(ray_rad));
+    const Eigen::Vector2d in_body = mount.place_m + run.range_m * Eigen::Vector2d(std::cos(ray_rad), std::sin(ray_rad));
     const Eigen::Vector2d at = way_by_velocity(zero_s, run.time_s, motion.turn_rad_s, vehicle) * motion.velocity_m_s +
                                rotation2(yaw_at(run.time_s, zero_s, motion.turn_rad_s, vehicle)) * in_body;
     if (at.norm() < within_m) points_m.push_back(at);

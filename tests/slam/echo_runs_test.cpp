@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/sonar/polar_image.hpp"
+
 namespace pingvox::test {
 namespace {
 
@@ -25,9 +27,9 @@ Sweep one_beam(std::initializer_list<std::pair<std::size_t, std::size_t>> runs) 
 TEST(EchoRuns, OfAThresholdedBeamAreItsTwoLongest) {
   const auto runs = echo_runs(one_beam({{20, 24}, {40, 50}, {70, 77}}), {}, {});
   ASSERT_EQ(runs.size(), 2U);
-  EXPECT_NEAR(runs[0].middle_m, 4.55, 1e-12);
+  EXPECT_NEAR(runs[0].range_m, 4.55, 1e-12);
   EXPECT_NEAR(runs[0].half_length_m, 0.55, 1e-12);
-  EXPECT_NEAR(runs[1].middle_m, 7.4, 1e-12);
+  EXPECT_NEAR(runs[1].range_m, 7.4, 1e-12);
   EXPECT_EQ(runs[1].time_s, 1.0);
   EXPECT_EQ(runs[1].bearing_rad, 0.5);
 }
@@ -35,7 +37,7 @@ TEST(EchoRuns, OfAThresholdedBeamAreItsTwoLongest) {
 TEST(EchoRuns, CrossShortGapsAndLeaveOutSpecksAndRinging) {
   const auto runs = echo_runs(one_beam({{2, 6}, {30, 31}, {34, 36}, {60, 61}}), {}, {});
   ASSERT_EQ(runs.size(), 1U) << "2..6 is nearer than 0.75 m, 60..61 has two bins";
-  EXPECT_NEAR(runs[0].middle_m, 3.35, 1e-12);
+  EXPECT_NEAR(runs[0].range_m, 3.35, 1e-12);
   EXPECT_NEAR(runs[0].half_length_m, 0.35, 1e-12);
 }
 
@@ -45,7 +47,7 @@ TEST(EchoRuns, AreWithinTheRangesOfTheOptions) {
   echo.min_bin = 25;
   const auto runs = echo_runs(one_beam({{10, 20}, {30, 35}, {60, 70}}), {}, echo);
   ASSERT_EQ(runs.size(), 1U);
-  EXPECT_NEAR(runs[0].middle_m, 3.3, 1e-12);
+  EXPECT_NEAR(runs[0].range_m, 3.3, 1e-12);
 }
 
 TEST(EchoRuns, OfIntensitiesAreTheDetectedEchoes) {
@@ -57,7 +59,26 @@ TEST(EchoRuns, OfIntensitiesAreTheDetectedEchoes) {
   }
   const auto runs = echo_runs(sweep, {}, {});
   ASSERT_EQ(runs.size(), 40U);
-  for (const EchoRun& run : runs) EXPECT_NEAR(run.middle_m, 10.7, 0.5);
+  for (const EchoRun& run : runs) EXPECT_NEAR(run.range_m, 10.7, 0.5);
+}
+
+TEST(EchoRuns, OfIntensitiesAreWhereTheCrestIs) {
+  Sweep sweep;
+  for (int n = 0; n < 40; ++n) {
+    Beam beam{0.1 * n, 0.05 * n, 0.1, std::vector<std::uint8_t>(200, 10)};
+    // A long rise that is cut off behind its crest.
+    for (std::size_t i = 0; i < 30; ++i) beam.intensities[100 + i] = static_cast<std::uint8_t>(40 + 6 * i);
+    sweep.beams.push_back(std::move(beam));
+  }
+  const auto echoes = detect_echoes(apply_filter(PolarImage(sweep), {}), sweep, {});
+  const auto runs = echo_runs(sweep, {}, {});
+  ASSERT_EQ(runs.size(), 40U);
+  ASSERT_TRUE(echoes[20]);
+  EXPECT_EQ(runs[20].place, EchoRun::Place::kCrest);
+  EXPECT_EQ(runs[20].range_m, echoes[20]->range_m);
+  const double middle_m = 0.05 * static_cast<double>(echoes[20]->first + echoes[20]->last + 1);
+  EXPECT_GT(runs[20].range_m, middle_m + 0.5) << "else the two cannot be told apart";
+  EXPECT_EQ(echo_runs(one_beam({{20, 24}}), {}, {})[0].place, EchoRun::Place::kMiddle);
 }
 
 }  // namespace

@@ -124,12 +124,12 @@ TEST(SonarOdometry, DamagedTimesAndRangesTakeNoMemory) {
     late.back().to_s = late.back().runs.back().time_s = 1e9;
     EXPECT_LE(sonar_odometry(late, mount_of(basin), known).matched, 5U);
     for (HeardSweep& sweep : near) {
-      for (EchoRun& run : sweep.runs) run.middle_m = 1e-9;
-      sweep.runs.back().middle_m = 1e6;
+      for (EchoRun& run : sweep.runs) run.range_m = 1e-9;
+      sweep.runs.back().range_m = 1e6;
     }
     EXPECT_LE(sonar_odometry(near, mount_of(basin), known).matched, 5U);
     for (HeardSweep& sweep : near) {
-      for (EchoRun& run : sweep.runs) run.middle_m = 0.0;
+      for (EchoRun& run : sweep.runs) run.range_m = 0.0;
     }
     EXPECT_FALSE(sonar_odometry(near, mount_of(basin), known).tells);
   }
