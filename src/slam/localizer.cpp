@@ -34,6 +34,8 @@ constexpr double kLostShare = 0.55;
 /// room it is 0.3 at poses that are wrong.
 constexpr double kMinFit = 0.45, kSureFit = 0.6;
 constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree, kSureWeight = 0.95;
+/// A place is confirmed by a turn of the head that is so many times as likely there as at any other.
+constexpr double kDistinct = 5.0;
 /// Spread of the particles around what a search found.
 constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree;
 
@@ -322,8 +324,13 @@ void Localizer::State::confirm() {
   if (found.empty()) return;
   const PlanePose& best = found.front().pose;
   doubted_rad.reset();
-  is_confirmed = is_near(best.x, best.y, best.yaw, anchor, kHypothesis_m, kHypothesis_rad);
-  if (!is_confirmed) adopt(found, beams_now);
+  if (!is_near(best.x, best.y, best.yaw, anchor, kHypothesis_m, kHypothesis_rad)) return adopt(found, beams_now);
+  const auto other = std::ranges::find_if(found, [&](const ScoredPose& pose) {
+    return !is_near(pose.pose.x, pose.pose.y, pose.pose.yaw, best, kHypothesis_m, kHypothesis_rad);
+  });
+  is_confirmed = other == found.end() || found.front().log_likelihood - other->log_likelihood >= std::log(kDistinct);
+  // Boulders look alike: what is here may be there, too.
+  if (!is_confirmed) doubted_rad = turned_rad;
 }
 
 void Localizer::State::adopt(const std::vector<ScoredPose>& found, const std::vector<HeardBeam>& beams_now) {
