@@ -74,6 +74,12 @@ class BeamJudge {
  public:
   BeamJudge(const HeardBeam& beam, const DistanceField& field, const BeamLikelihood& model);
   double log_likelihood(const PlaneFrame& map_from_frame) const;
+  /// The same by the end of the echo alone: more where something is in between. 0 without an echo.
+  double log_at_end(const PlaneFrame& map_from_frame) const {
+    if (!beam_.has_echo) return 0.0;
+    const Eigen::Vector2d end = map_from_frame * end_m_;
+    return table_[field_.value_at(end.x(), end.y())];
+  }
 
  private:
   const DistanceField& field_;

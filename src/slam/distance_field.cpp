@@ -191,11 +191,12 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
     const double distance_m = std::sqrt(static_cast<double>(square)) * field.cell_m_;
     steps[square] = static_cast<std::uint8_t>(std::min<double>(kFar, std::round(distance_m / field.step_m_)));
   }
-  const int radius = static_cast<int>(std::min<double>(kTile, std::ceil(field.truncation_m_ * field.cells_per_m_)));
   field.values_.resize(states.size());
   std::ranges::transform(states, field.values_.begin(), [](std::uint8_t state) {
     return static_cast<std::uint8_t>(kFar + (state == kNothing ? kUnknown : 0));
   });
+  // A tile that is not near has nothing occupied beside it.
+  field.clear_cells_.resize(has_occupied.size() * kBlocks * kBlocks, kTile - 2);
   const auto occupied = std::make_unique<Neighbourhood>();
   for (const std::size_t place : near) {
     for (std::size_t ty = 0; ty < 3; ++ty) {
@@ -207,10 +208,14 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
         }
       }
     }
-    const auto squares = squared_distances(*occupied, radius);
+    const auto squares = squared_distances(*occupied, kTile);
     const std::size_t first = field.tiles_[place] * kTileCells;
     for (std::size_t i = 0; i < kTileCells; ++i) {
       const auto square = static_cast<std::size_t>(squares[i]);
+      // Less a diagonal: from the middle of a column to that of another is so much more than from point to point.
+      const double clear = std::floor(std::sqrt(static_cast<double>(square)) - std::numbers::sqrt2);
+      std::uint8_t& least = field.clear_cells_[field.block_of(field.tiles_[place], i % kTile, i / kTile)];
+      least = static_cast<std::uint8_t>(std::clamp<double>(clear, 0.0, least));
       const std::uint8_t distance = square < steps.size() ? steps[square] : kFar;
       field.values_[first + i] = static_cast<std::uint8_t>(distance + (states[first + i] == kNothing ? kUnknown : 0));
     }
@@ -232,9 +237,17 @@ double DistanceField::clear_range_m(const Eigen::Vector2d& from_m, const Eigen::
     const Eigen::Vector2d point_m = from_m + range_m * direction;
     const std::uint8_t value = value_at(point_m.x(), point_m.y());
     if (value == 0) return range_m;
-    range_m += std::max(step_m_ * (value & kFar) - surplus_m, 0.5 * cell_m_);
+    const bool is_far = (value & kFar) == kFar;
+    range_m += std::max(is_far ? clear_m(point_m) : step_m_ * (value & kFar) - surplus_m, 0.5 * cell_m_);
   }
   return limit_m;
+}
+
+double DistanceField::clear_m(const Eigen::Vector2d& point_m) const {
+  const double x = point_m.x() * cells_per_m_ - first_x_, y = point_m.y() * cells_per_m_ - first_y_;
+  if (!(x >= 0.0 && x < size_x_ && y >= 0.0 && y < size_y_)) return 0.0;
+  const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+  return cell_m_ * clear_cells_[block_of(tiles_[(j / kTile) * tiles_x_ + i / kTile], i % kTile, j % kTile)];
 }
 
 std::vector<Eigen::Vector2d> DistanceField::places(double step_m, double reach_m) const {

@@ -306,8 +306,10 @@ void Localizer::State::confirm() {
   if (found.empty()) return;
   const PlanePose& best = found.front().pose;
   doubted_rad.reset();
-  is_confirmed = is_near(best.x, best.y, best.yaw, anchor, kHypothesis_m, kHypothesis_rad);
-  if (!is_confirmed) adopt(found, beams_now);
+  if (!is_near(best.x, best.y, best.yaw, anchor, kHypothesis_m, kHypothesis_rad)) return adopt(found, beams_now);
+  is_confirmed = is_distinct(found);
+  // Boulders look alike: what is here may be there, too.
+  if (!is_confirmed) doubted_rad = turned_rad;
 }
 
 void Localizer::State::adopt(const std::vector<ScoredPose>& found, const std::vector<HeardBeam>& beams_now) {

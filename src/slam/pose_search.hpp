@@ -23,6 +23,10 @@ std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const
 ScoredPose refine_pose(std::span<const BeamJudge> judges, const BeamLikelihood& model, const PlanePose& from,
                        double step_m, double step_rad);
 
+/// Whether the beams are at least five times as likely at the best pose as at any that is another hypothesis.
+/// REQUIRES one pose at least, the best first.
+bool is_distinct(std::span<const ScoredPose> found);
+
 /// The poses without those that a better one is near; the best first.
 std::vector<ScoredPose> without_neighbours(std::vector<ScoredPose> poses, double near_m, double near_rad,
                                            std::size_t most);

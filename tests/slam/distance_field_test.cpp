@@ -76,6 +76,35 @@ TEST(DistanceField, GoesUpToTheFirstWall) {
   EXPECT_EQ(field->clear_range_m({0.0, 0.0}, {1.0, 0.0}, 2.5), 2.5);
 }
 
+// Kills steps in open water that are longer than nothing is occupied around.
+TEST(DistanceField, PassesThroughNothingFarFromWalls) {
+  constexpr unsigned kSeed = 3;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::vector<Eigen::Vector3d> occupied;
+  const auto metres = [&] { return 0.1 * (static_cast<double>(random() % 600) - 300.0) + 0.05; };
+  for (int block = 0; block < 40; ++block) {
+    const Eigen::Vector3d corner(metres(), metres(), 0.05);
+    for (int i = 0; i < 16; ++i) occupied.emplace_back(corner + 0.1 * Eigen::Vector3d(i % 4, i / 4, 0.0));
+  }
+  const auto field = DistanceField::make(map_of(occupied, {}), {});
+  ASSERT_TRUE(field);
+  int met = 0;
+  for (int ray = 0; ray < 2000; ++ray) {
+    const Eigen::Vector2d from(metres(), metres());
+    const double angle = 0.01 * static_cast<double>(random() % 628);
+    const Eigen::Vector2d ahead(std::cos(angle), std::sin(angle));
+    const double range_m = field->clear_range_m(from, ahead, 50.0);
+    met += range_m < 50.0 ? 1 : 0;
+    int within = 0;  // corners may be cut
+    for (double m = 0.0; m < range_m; m += 0.02) {
+      within = field->classify(from + m * ahead) == Occupancy::kOccupied ? within + 1 : 0;
+      ASSERT_LE(within, 5) << from.transpose() << " at " << angle << ", " << m;
+    }
+  }
+  EXPECT_GT(met, 100);
+}
+
 TEST(DistanceField, OffersPlacesInTheWaterOnly) {
   const auto field = DistanceField::make(Room().map(), {});
   ASSERT_TRUE(field);

@@ -36,7 +36,7 @@ class DistanceField {
 
   double truncation_m() const { return truncation_m_; }
   double cell_m() const { return cell_m_; }
-  std::size_t memory_bytes() const { return values_.size() + tiles_.size() * sizeof(tiles_[0]); }
+  std::size_t memory_bytes() const { return values_.size() + clear_cells_.size() + tiles_.size() * sizeof(tiles_[0]); }
 
   /// Value of the column that holds a point [m, map frame]. Outside, or NaN: kFar + kUnknown.
   std::uint8_t value_at(double x_m, double y_m) const {
@@ -68,12 +68,21 @@ class DistanceField {
  private:
   DistanceField() = default;
 
+  static constexpr std::size_t kBlocks = 8;  ///< along a side of a tile
+  static std::size_t block_of(std::size_t tile, std::size_t x, std::size_t y) {
+    return (tile * kBlocks + y * kBlocks / kTile) * kBlocks + x * kBlocks / kTile;
+  }
+  /// How far nothing is occupied around a point, at least [m]; 0 outside.
+  double clear_m(const Eigen::Vector2d& point_m) const;
+
   double cell_m_ = 0.0, cells_per_m_ = 0.0, truncation_m_ = 0.0, step_m_ = 0.0;
   double first_x_ = 0.0, first_y_ = 0.0;  ///< column at the lowest corner, in cells from the centre of the lattice
   double size_x_ = 0.0, size_y_ = 0.0;    ///< in cells
   std::size_t tiles_x_ = 0;
   std::vector<std::uint32_t> tiles_;  ///< by row: index of a tile; 0: nothing is known, all is far
   std::vector<std::uint8_t> values_;  ///< tile by tile, row by row
+  /// By block of columns, in the same order: how many cells nothing is occupied around any point of it.
+  std::vector<std::uint8_t> clear_cells_;
 };
 
 }  // namespace pingvox

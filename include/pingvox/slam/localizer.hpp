@@ -111,7 +111,8 @@ class Localizer {
   /// nullopt: not found yet.
   std::optional<Located> pose() const;
   /// Whether there is one hypothesis alone, within 0.3 m and 5 degrees, that the last turn of the head agrees with, and
-  /// that two turns, each searched for itself, have led to, unless `start` said it.
+  /// that two turns, each searched for itself, have led to, the second to no other place that is more than a fifth as
+  /// likely, unless `start` said it.
   bool is_sure() const;
   /// The most likely first; empty: not found yet.
   std::vector<PoseHypothesis> hypotheses() const;
