@@ -77,7 +77,7 @@ TEST(EchoRuns, OfIntensitiesAreWhereTheCrestIs) {
   EXPECT_EQ(runs[20].place, EchoRun::Place::kCrest);
   EXPECT_EQ(runs[20].range_m, echoes[20]->range_m);
   const double middle_m = 0.05 * static_cast<double>(echoes[20]->first + echoes[20]->last + 1);
-  EXPECT_GT(runs[20].range_m, middle_m + 0.5) << "else the two cannot be told apart";
+  EXPECT_GT(runs[20].range_m, middle_m + 0.4) << "else the test sees no difference";
   EXPECT_EQ(echo_runs(one_beam({{20, 24}}), {}, {})[0].place, EchoRun::Place::kMiddle);
 }
 
