@@ -110,9 +110,9 @@ tl::unexpected<Error> unknown_address(const std::string& address) {
 }
 
 /// The first IPv4 address, as heads and DVLs have, else the first.
-const addrinfo& preferred(const addrinfo& found) {
-  for (const addrinfo* one = &found; one != nullptr; one = one->ai_next) {
-    if (one->ai_family == AF_INET) return *one;
+const addrinfo* preferred(const addrinfo* found) {
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    if (one->ai_family == AF_INET) return one;
   }
   return found;
 }
@@ -174,9 +174,9 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
     return fail(Error::Code::kIo, fmt::format("{}: {}", address, ::gai_strerror(error)));
   }
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(all, &::freeaddrinfo);
-  const addrinfo& found = preferred(*all);
+  const addrinfo* const found = preferred(all);
 
-  Descriptor socket(::socket(found.ai_family, wanted.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  Descriptor socket(::socket(found->ai_family, wanted.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket.valid()) return os_error(address, errno);
   // Room for what comes while a sweep is mapped; the system may allow less.
   constexpr int kBuffer_bytes = 4 << 20;
@@ -186,8 +186,8 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   if (kind == Kind::kListeningStream) {
     static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &kYes, sizeof kYes));
   }
-  const int status = listens ? ::bind(socket.get(), found.ai_addr, found.ai_addrlen)
-                             : ::connect(socket.get(), found.ai_addr, found.ai_addrlen);
+  const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
+                             : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
   const bool is_connecting = kind == Kind::kStream && errno == EINPROGRESS;
   if (status != 0 && !is_connecting) return os_error(address, errno);
   if (kind == Kind::kListeningStream && ::listen(socket.get(), 1) != 0) return os_error(address, errno);

@@ -52,7 +52,10 @@ std::vector<ScoredPose> coarse_search(const DistanceField& field, const std::vec
     y[i] = places[i].y();
   }
   std::vector<float> sums(places.size() * static_cast<std::size_t>(kYawSteps), 0.0F);
-  const auto yaw_of = [&](std::size_t pose) { return static_cast<double>(pose / places.size()) * yaw_step; };
+  const auto yaw_of = [&](std::size_t pose) {
+    const std::size_t turn = pose / places.size();
+    return static_cast<double>(turn) * yaw_step;
+  };
   for (std::size_t first = 0; first < sums.size(); first += places.size()) {
     std::ranges::fill(cosine, std::cos(yaw_of(first)));
     std::ranges::fill(sine, std::sin(yaw_of(first)));
