@@ -72,7 +72,7 @@ std::vector<EchoRun> echo_runs(const Sweep& sweep, const FilterOptions& filter, 
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     if (!echoes[i]) continue;
     EchoRun run = run_of(sweep.beams[i], echoes[i]->first, echoes[i]->last);
-    // On a slanting wall the middle of the run leads its crest, and pairs of such echoes would shrink the way.
+    // On a slanting wall the middle of the run is behind its crest: pairs of such echoes would shrink the trajectory.
     run.range_m = echoes[i]->range_m;
     run.place = EchoRun::Place::kCrest;
     runs.push_back(run);

@@ -13,7 +13,7 @@ struct EchoRun {
   /// What its place is.
   enum class Place {
     kMiddle,  ///< the middle of the run: nobody knows where in it the wall is
-    kCrest,   ///< the wall as its intensities tell it, see Echo::range_m
+    kCrest,   ///< the wall by its intensities, see Echo::range_m
   };
   double time_s = 0.0;
   double bearing_rad = 0.0;    ///< in the frame of the sonar

@@ -115,7 +115,6 @@ TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
   EXPECT_FALSE(here.has("o.tum"));
 }
 
-// Kills a clock of the navigation that is taken for the sonar's without a word.
 // Kills an error of the smoother that is taken for a map that does not fit.
 TEST(Locate, AMountOfAnUnknownSourceIsInvalid) {
   const Workplace here;
@@ -129,6 +128,7 @@ TEST(Locate, AMountOfAnUnknownSourceIsInvalid) {
                2, {"nav.csv", "dlv", "DVL"});
 }
 
+// Kills a clock of the navigation that is taken for the sonar's without a word.
 TEST(Locate, NavigationOnAnotherClockIsMovedOrRefused) {
   const Workplace here;
   ASSERT_EQ(
