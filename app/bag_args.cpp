@@ -11,6 +11,7 @@
 
 #include "console.hpp"
 #include "option_values.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "suggest.hpp"
 #include "toml_file.hpp"

@@ -12,6 +12,7 @@
 #include "console.hpp"
 #include "mapping_options.hpp"
 #include "option_values.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "toml_file.hpp"
 

@@ -17,6 +17,7 @@
 #include "pingvox/analysis/map_agreement.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/maps.hpp"

@@ -18,6 +18,7 @@
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/nav.hpp"

@@ -20,6 +20,7 @@
 #include "open_log.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/sonar/device_profile.hpp"

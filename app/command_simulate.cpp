@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "map_log.hpp"
 #include "option_values.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"

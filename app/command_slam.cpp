@@ -21,6 +21,7 @@
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/g2o.hpp"
 #include "pingvox/io/maps.hpp"

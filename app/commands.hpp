@@ -1,6 +1,5 @@
 #pragma once
 
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include "pingvox/device/micron_driver.hpp"
 #include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/device/ping360_driver.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
@@ -228,7 +228,7 @@ struct SlamCommand {
 
 struct StartPose {
   double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
-  double deviation_m = 0.5, deviation_rad = 10.0 * std::numbers::pi / 180.0;
+  double deviation_m = 0.5, deviation_rad = 10.0 * kDegree_rad;
 };
 
 /// Which poses `locate` writes.

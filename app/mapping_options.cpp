@@ -12,6 +12,7 @@
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/analysis/map_agreement.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 

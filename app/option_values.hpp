@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,8 +24,6 @@
 namespace pingvox::app {
 
 using Args = std::vector<std::string>;
-
-inline constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// Invalid usage: kBadOption.
 inline tl::unexpected<Error> usage_error(std::string what) {

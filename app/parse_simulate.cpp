@@ -12,6 +12,7 @@
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "shared_options.hpp"
 #include "suggest.hpp"
 

@@ -14,6 +14,7 @@
 #include "app/world_map.hpp"
 #include "drives/drive.hpp"
 #include "paired_timing.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sim/sonar.hpp"
@@ -26,8 +27,6 @@
 
 namespace pingvox::bench {
 namespace {
-
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// The layer of a map in which the head turns.
 Result<DistanceField> field_of(const OccupancyMap& map) {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "bench/paired_timing.hpp"
 #include "dense_grid.hpp"
 #include "line_map.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/ray_dda.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"
@@ -30,7 +30,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr double kTolerance_m = 0.05;  ///< of a line from a wall
 
 /// One drive makes the map, another one is followed in it.

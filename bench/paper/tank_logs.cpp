@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -13,8 +14,6 @@
 namespace pingvox::bench {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 std::optional<double> simulated_wall_m(double bearing_rad) {
   return true_range_m(TankOptions{}, bearing_rad);
 }
@@ -22,11 +21,11 @@ std::optional<double> simulated_wall_m(double bearing_rad) {
 std::optional<double> recorded_wall_m(double bearing_rad) {
   constexpr std::array<double, 4> kDistances_m = {2.109, 1.820, 2.325, 2.766};  // ahead, right, behind, left
   const double clockwise = 2.0 * std::numbers::pi - bearing_rad;
-  if (clockwise > 255.0 * kDegree && clockwise < 285.0 * kDegree) return std::nullopt;  // the floater
+  if (clockwise > 255.0 * kDegree_rad && clockwise < 285.0 * kDegree_rad) return std::nullopt;  // the floater
   for (std::size_t side = 0; side < 4; ++side) {
     const double off =
         std::remainder(clockwise + 0.0253 - 0.5 * std::numbers::pi * static_cast<double>(side), 2.0 * std::numbers::pi);
-    if (std::abs(off) <= 33.0 * kDegree) return kDistances_m[side] / std::cos(off);
+    if (std::abs(off) <= 33.0 * kDegree_rad) return kDistances_m[side] / std::cos(off);
   }
   return std::nullopt;
 }

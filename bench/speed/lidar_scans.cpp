@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/sim/scene.hpp"
 
 namespace pingvox::bench {
 namespace {
 
 constexpr double kRange_m = 50.0, kWay_m = 0.5;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 RayCloud scan_at(const World& world, const Pose& map_from_sensor, const LidarOptions& options) {
   RayCloud scan{map_from_sensor.translation().cast<float>(), {}};
@@ -18,7 +18,7 @@ RayCloud scan_at(const World& world, const Pose& map_from_sensor, const LidarOpt
     const double bearing = 2.0 * std::numbers::pi * static_cast<double>(step) / static_cast<double>(options.steps);
     for (std::size_t ring = 0; ring < options.rings; ++ring) {
       const double up = static_cast<double>(ring) / static_cast<double>(options.rings - 1) - 0.5;
-      const double elevation = up * options.height_deg * kDegree;
+      const double elevation = up * options.height_deg * kDegree_rad;
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing), std::cos(elevation) * std::sin(bearing),
                                       std::sin(elevation));
       const SoundRay ray{origin_m, map_from_sensor.linear() * direction};

@@ -5,12 +5,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
@@ -20,7 +20,6 @@ namespace pingvox::bench {
 namespace {
 
 constexpr std::size_t kPings = 300, kBeams = 256;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A sounding in the plane across the track.
 struct Sounding {
@@ -39,7 +38,7 @@ RayCloud scan_of(const Pose& map_from_sensor, std::span<const Sounding> sounding
 
 /// The same angles over a seabed as deep, 19 pings a second at 1.5 m/s.
 std::vector<RayCloud> simulated_scans() {
-  constexpr double kWay_m = 1.5 / 19.0, kHalfWidth_rad = 61.5 * kDegree, kRange_m = 100.0;
+  constexpr double kWay_m = 1.5 / 19.0, kHalfWidth_rad = 61.5 * kDegree_rad, kRange_m = 100.0;
   const Scene scene = seabed_scene({.side_m = 100.0, .depth_m = 12.0});
   std::vector<RayCloud> scans;
   for (std::size_t i = 0; i < kPings; ++i) {

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include "bench/tank_beams.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/sweep.hpp"
 
 namespace pingvox::bench {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::vector<std::vector<BeamEcho>> echoes_of(std::span<const Beam> beams) {
   std::vector<std::vector<BeamEcho>> sweeps;
@@ -50,9 +48,9 @@ RayCloud bundles_of(const std::vector<BeamEcho>& sweep, int across, int up) {
   RayCloud cloud;
   for (const BeamEcho& echo : sweep) {
     for (int u = 0; u < up; ++u) {
-      const double elevation = 35.0 * kDegree * ((u + 0.5) / up - 0.5);
+      const double elevation = 35.0 * kDegree_rad * ((u + 0.5) / up - 0.5);
       for (int a = 0; a < across; ++a) {
-        const double bearing = echo.bearing_rad + 3.0 * kDegree * ((a + 0.5) / across - 0.5);
+        const double bearing = echo.bearing_rad + 3.0 * kDegree_rad * ((a + 0.5) / across - 0.5);
         const Eigen::Vector3d direction(std::cos(elevation) * std::cos(bearing),
                                         std::cos(elevation) * std::sin(bearing), std::sin(elevation));
         cloud.ends_m.emplace_back((echo.range_m * direction).cast<float>());

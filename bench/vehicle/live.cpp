@@ -20,6 +20,7 @@
 #include "pingvox/device/link.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/ping360_emulator.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -28,7 +29,7 @@
 namespace pingvox::bench {
 namespace {
 
-constexpr double kCell_m = 0.05, kRange_m = 10.0, kDegree_rad = std::numbers::pi / 180.0;
+constexpr double kCell_m = 0.05, kRange_m = 10.0;
 constexpr double kPings_per_s = 200.0;  ///< several times what a Ping360 does
 constexpr std::size_t kBeams = 2000;
 

@@ -12,14 +12,13 @@
 #include "io/bag_topics.hpp"
 #include "io/device_log.hpp"
 #include "io/readers.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/io/ping_frame.hpp"
 
 // The beams in bags: drivers' messages, by their type and fields (docs/formats.md).
 namespace pingvox {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Settings from a message, valid for the beams after it.
 struct SonarSettings {
@@ -80,7 +79,7 @@ Beams ping_settings(const RosFields& message, SonarSettings& settings) {
 }
 
 Beams scan_line_beam(const RosFields& message, SonarSettings&) {
-  return beam_of(-message.number(0) * kRadPerDeg, message.number(1), message.bytes(2));
+  return beam_of(-message.number(0) * kDegree_rad, message.number(1), message.bytes(2));
 }
 
 Beams slice_beam(const RosFields& message, SonarSettings&) {
@@ -92,7 +91,7 @@ Beams slice_beam(const RosFields& message, SonarSettings&) {
 Beams acoustic_beam(const RosFields& message, SonarSettings&) {
   std::vector<std::uint8_t> samples = message.bytes(2);
   const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
-  return beam_of(bearing_of(message.number(0) * kRadPerDeg), bin_length_m, std::move(samples));
+  return beam_of(bearing_of(message.number(0) * kDegree_rad), bin_length_m, std::move(samples));
 }
 
 /// A scan is a beam when it looks in one direction and has the profile in its intensities.

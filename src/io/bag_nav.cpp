@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "io/dvl_a50.hpp"
 #include "io/nav_fields.hpp"
 #include "io/nav_sources.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
@@ -20,8 +20,6 @@
 // The navigation in bags, by type and fields of the messages (docs/formats.md).
 namespace pingvox {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Where the samples of one message go.
 class Samples {
@@ -97,11 +95,11 @@ void add_twist(const RosFields& message, Samples& samples) {
 
 void add_fix(const RosFields& message, Samples& samples) {
   const Eigen::Vector3d fix = three(message, 0);
-  samples.add(NavQuantity::kFix, {fix.x() * kRadPerDeg, fix.y() * kRadPerDeg, fix.z()}, message.number(3) >= 0.0);
+  samples.add(NavQuantity::kFix, {fix.x() * kDegree_rad, fix.y() * kDegree_rad, fix.z()}, message.number(3) >= 0.0);
 }
 
 void add_xsens_fix(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kFix, {message.number(0) * kRadPerDeg, message.number(1) * kRadPerDeg, 0.0},
+  samples.add(NavQuantity::kFix, {message.number(0) * kDegree_rad, message.number(1) * kDegree_rad, 0.0},
               message.number(2) > 0.0);
 }
 
@@ -141,7 +139,7 @@ void add_dvl_velocity(const RosFields& message, const Eigen::Matrix3d& frd_from_
 
 /// Its dead reckoning in the axes that it had at its last reset; angles in degrees.
 void add_dvl_position(const RosFields& message, const Eigen::Matrix3d& frd_from_dvl, Samples& samples) {
-  const Eigen::Vector3d rpy = three(message, 3) * kRadPerDeg;
+  const Eigen::Vector3d rpy = three(message, 3) * kDegree_rad;
   const Eigen::Matrix3d turned = pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z()).rotation();
   samples.add_dead_reckoning(from_ned::world(frd_from_dvl * three(message, 0)),
                              from_ned::attitude(rpy_of(frd_from_dvl * turned * frd_from_dvl.transpose())));

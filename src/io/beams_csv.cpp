@@ -10,12 +10,11 @@
 
 #include "io/readers.hpp"
 #include "io/text.hpp"
+#include "pingvox/geometry/degree.hpp"
 
 // Beams as text: a header line with the columns, then a beam in each line (docs/formats.md).
 namespace pingvox {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 enum class Column { kTime, kBearingRad, kBearingDeg, kBearingClockwiseDeg, kBinLength, kIntensities, kOther };
 
@@ -67,8 +66,8 @@ std::string_view problem_of(const std::vector<Column>& columns) {
 }
 
 double bearing_of(Column column, double number) {
-  if (column == Column::kBearingDeg) number *= kRadPerDeg;
-  if (column == Column::kBearingClockwiseDeg) number *= -kRadPerDeg;
+  if (column == Column::kBearingDeg) number *= kDegree_rad;
+  if (column == Column::kBearingClockwiseDeg) number *= -kDegree_rad;
   // Valid bearings are kept as they are, so that written files are read back exactly.
   return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrap_bearing(number);
 }

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numbers>
 
 #include "io/text.hpp"
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::string_view kNoNumbers = "report without its numbers", kChecksum = "wrong checksum",
                            kNoChecksum = "line without checksum";
 
@@ -129,7 +128,7 @@ A50Reading position_report(std::string_view time_s, const std::optional<Eigen::V
   report.kind = A50Report::Kind::kPosition;
   report.valid = true;
   report.position_m = *position_m;
-  report.rpy_rad = *rpy_deg * kRadPerDeg;
+  report.rpy_rad = *rpy_deg * kDegree_rad;
   report.made_s = number_in(time_s);
   return report;
 }

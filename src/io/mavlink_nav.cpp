@@ -6,16 +6,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "io/byte_reader.hpp"
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
 
 using Report = MavlinkNav::Report;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Fields of a payload, by their offset.
 class Fields {
@@ -51,7 +49,7 @@ NavSample position_of(const Eigen::Vector3d& north_east_down) {
 
 /// A fix of integers of 1e-7 degrees; 0, 0 comes from a receiver without satellites.
 NavSample fix_of(std::int32_t latitude, std::int32_t longitude, double altitude_m) {
-  NavSample sample = sample_of({latitude * 1e-7 * kRadPerDeg, longitude * 1e-7 * kRadPerDeg, altitude_m});
+  NavSample sample = sample_of({latitude * 1e-7 * kDegree_rad, longitude * 1e-7 * kDegree_rad, altitude_m});
   sample.valid = latitude != 0 || longitude != 0;
   return sample;
 }
@@ -116,7 +114,7 @@ class Message {
         return put("GLOBAL_POSITION_INT", kFix,
                    fix_of(fields.at<std::int32_t>(4), fields.at<std::int32_t>(8), fields.at<std::int32_t>(12) * 1e-3));
       case 74:
-        return put("VFR_HUD", kHeading, sample_of({from_ned::yaw(fields.at<std::int16_t>(16) * kRadPerDeg), 0, 0}));
+        return put("VFR_HUD", kHeading, sample_of({from_ned::yaw(fields.at<std::int16_t>(16) * kDegree_rad), 0, 0}));
       case 102:
         put("VISION_POSITION_ESTIMATE", kPosition, sample_of(from_ned::world(fields.three<float>(8))));
         return put("VISION_POSITION_ESTIMATE", kAttitude, sample_of(from_ned::attitude(fields.three<float>(20))));

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/format.hpp"
 
@@ -36,7 +36,7 @@ bool DeadReckoningFrame::holds(double time_s, const Eigen::Vector3d& position_m)
 
 double angle_of_degrees_minutes(double number) {
   const double degrees = std::trunc(number / 100.0);
-  return (degrees + (number - 100.0 * degrees) / 60.0) * std::numbers::pi / 180.0;
+  return (degrees + (number - 100.0 * degrees) / 60.0) * kDegree_rad;
 }
 
 Result<NavFile> read_nav(const FileBytes& file, Damage damage) {

@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 
 #include "io/dataflash.hpp"
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
+#include "pingvox/geometry/degree.hpp"
 
 // The navigation in the log that an ArduPilot autopilot keeps itself.
 namespace pingvox {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 class DataflashNav {
  public:
@@ -76,7 +74,7 @@ class DataflashNav {
 
   void put_attitude(const DataflashRecord& record) {
     if (const auto rpy_deg = three(record, "Roll", "Pitch", "Yaw")) {
-      put(NavQuantity::kAttitude, from_ned::attitude(*rpy_deg * kRadPerDeg));
+      put(NavQuantity::kAttitude, from_ned::attitude(*rpy_deg * kDegree_rad));
     }
   }
 
@@ -108,7 +106,7 @@ class DataflashNav {
   void put_fix(const DataflashRecord& record) {
     const auto fix = three(record, "Lat", "Lng", "Alt");
     if (!fix) return;
-    NavSample* const sample = put(NavQuantity::kFix, {fix->x() * kRadPerDeg, fix->y() * kRadPerDeg, fix->z()});
+    NavSample* const sample = put(NavQuantity::kFix, {fix->x() * kDegree_rad, fix->y() * kDegree_rad, fix->z()});
     if (sample == nullptr) return;
     sample->valid = record.number_of("Status").value_or(0.0) >= 2.0 && (fix->x() != 0.0 || fix->y() != 0.0);
   }

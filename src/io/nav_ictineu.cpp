@@ -9,6 +9,7 @@
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
 #include "io/text.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/frame_finder.hpp"
 
@@ -16,7 +17,6 @@
 namespace pingvox {
 namespace {
 
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 /// How the instruments stand in the vehicle: clockwise from ahead, seen from above.
 constexpr double kDvlYaw_rad = 60.0 * kDegree_rad, kMtiYaw_rad = 86.0 * kDegree_rad;
 

@@ -10,13 +10,14 @@
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
 #include "io/text.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/frame_finder.hpp"
 
 // NMEA 0183 as it is logged (docs/formats.md): sentences between other text.
 namespace pingvox {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0, kMetresPerSecondOfKnot = 1852.0 / 3600.0, kDay_s = 86'400.0;
+constexpr double kMetresPerSecondOfKnot = 1852.0 / 3600.0, kDay_s = 86'400.0;
 
 /// A sentence with a right checksum.
 class Sentence {
@@ -194,7 +195,7 @@ class NmeaNav {
   }
 
   void add_heading(std::optional<double> heading_deg, bool valid) {
-    if (heading_deg) put(NavQuantity::kHeading, {from_ned::yaw(*heading_deg * kRadPerDeg), 0.0, 0.0}, valid);
+    if (heading_deg) put(NavQuantity::kHeading, {from_ned::yaw(*heading_deg * kDegree_rad), 0.0, 0.0}, valid);
   }
 
   /// Magnetic, with the compass's own deviation and the variation where the sentence has them.

@@ -16,6 +16,7 @@
 
 #include "io/byte_reader.hpp"
 #include "io/readers.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/sonar/beam.hpp"
@@ -68,13 +69,12 @@ struct HeadPose {
 };
 
 std::optional<HeadPose> head_pose(Bytes packet, bool has_degrees) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  const double unit = has_degrees ? kDegree : 1.0;
+  const double unit = has_degrees ? kDegree_rad : 1.0;
   HeadPose head;
   head.place = {little<double>(packet, 160) * unit, little<double>(packet, 168) * unit, little<float>(packet, 216)};
-  head.pitch_rad = little<float>(packet, 204) * kDegree;
-  head.roll_rad = little<float>(packet, 208) * kDegree;
-  head.heading_rad = little<float>(packet, 212) * kDegree;
+  head.pitch_rad = little<float>(packet, 204) * kDegree_rad;
+  head.roll_rad = little<float>(packet, 208) * kDegree_rad;
+  head.heading_rad = little<float>(packet, 212) * kDegree_rad;
   const bool is_finite = head.place.allFinite() && std::isfinite(head.pitch_rad) && std::isfinite(head.roll_rad) &&
                          std::isfinite(head.heading_rad);
   constexpr double kMaxPosition_m = 1e8;

@@ -8,6 +8,7 @@
 
 #include "mapping/brick_column.hpp"
 #include "mapping/kernels/convex_rows.hpp"
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
@@ -17,7 +18,7 @@ using Vector = Eigen::Vector3d;
 
 // A wedge wider than this is cut up: the cones above and below it are taken as planes, which are too wide by
 // tan(height / 2) * (1 / cos(piece / 2) - 1) of the range: 0.3 mm in a metre for 5 degrees and a height of 35.
-constexpr double kWidestPiece_rad = 5.0 * std::numbers::pi / 180.0;
+constexpr double kWidestPiece_rad = 5.0 * kDegree_rad;
 using detail::WalkAxes;
 
 constexpr std::int64_t kPage = 1 << ScanUpdate::kPageBits;

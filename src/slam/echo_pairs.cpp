@@ -4,16 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// The line of a wall.
 constexpr std::size_t kLineEchoes = 5, kMinLineEchoes = 4;

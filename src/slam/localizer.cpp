@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/option_errors.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
@@ -20,7 +21,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
+constexpr double kPi = std::numbers::pi;
 /// Up to a beam short of it counts: heads jitter.
 constexpr double kTurn = 1.98 * kPi;
 constexpr std::size_t kMaxTurnBeams = 2000;  ///< of a head that stands still
@@ -33,9 +34,9 @@ constexpr double kLostShare = 0.55;
 /// Least mean likelihood of echoes at a pose that is believed. In a small
 /// room it is 0.3 at poses that are wrong.
 constexpr double kMinFit = 0.45, kSureFit = 0.6;
-constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree;
+constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree_rad;
 /// Spread of the particles around what a search found.
-constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree;
+constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree_rad;
 
 double yaw_of(const Pose& pose) {
   return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
@@ -288,9 +289,9 @@ std::vector<ScoredPose> Localizer::State::candidates(const std::vector<HeardBeam
   for (const HeardBeam& beam : beams_now) judges.emplace_back(beam, field, options.beam);
   for (const PoseHypothesis& believed : groups) {
     found.push_back(
-        refine_pose(judges, options.beam, {believed.x_m, believed.y_m, believed.yaw_rad}, 0.1, 2.0 * kDegree));
+        refine_pose(judges, options.beam, {believed.x_m, believed.y_m, believed.yaw_rad}, 0.1, 2.0 * kDegree_rad));
   }
-  return without_neighbours(std::move(found), 0.3, 10.0 * kDegree, kMaxHypotheses);
+  return without_neighbours(std::move(found), 0.3, 10.0 * kDegree_rad, kMaxHypotheses);
 }
 
 /// Begins with what the last turn of the head says.

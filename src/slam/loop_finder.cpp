@@ -12,6 +12,7 @@
 #include <string>
 #include <unordered_set>
 
+#include "pingvox/geometry/degree.hpp"
 #include "slam/point_field.hpp"
 
 namespace pingvox {
@@ -32,7 +33,6 @@ constexpr double kStraight_cells = 5.0;
 constexpr double kMaxFlatness = 0.15;
 /// Ways back to a place that are tried for each key frame.
 constexpr std::size_t kMaxReturns = 8;
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 /// 99 % of chi square with three degrees of freedom.
 constexpr double kConsistent = 11.3;
 /// A loop that the odometry would have had to be so wrong for, in squared standard deviations, is of two places that

@@ -11,6 +11,8 @@
 #include <span>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -22,8 +24,8 @@ constexpr double kNoiseWindow_s = 30.0;
 /// than what drifts as far as 2 mm/s in 100 s.
 constexpr double kMinDensity = 0.002 * 10.0;
 /// Errors of a compass, and for how long they stay alike; usual bias of a gyro.
-constexpr double kCompass_rad = 3.0 * std::numbers::pi / 180.0, kCompassAlike_s = 10.0;
-constexpr double kGyroBias_rad_s = 0.1 * std::numbers::pi / 180.0;
+constexpr double kCompass_rad = 3.0 * kDegree_rad, kCompassAlike_s = 10.0;
+constexpr double kGyroBias_rad_s = 0.1 * kDegree_rad;
 constexpr double kMaxGyroStep_s = 0.5;
 
 /// Valid samples at rising times; of equal times the first counts.

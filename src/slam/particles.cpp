@@ -9,10 +9,12 @@
 #include <unordered_set>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
+
 namespace pingvox {
 namespace {
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
+constexpr double kPi = std::numbers::pi;
 
 /// How many boxes of 0.1 m and 3 degrees the chosen particles lie in.
 std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::size_t>& chosen) {
@@ -23,7 +25,8 @@ std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::clamp(std::floor(value / step), -1e6, 1e6))) &
              0x1FFFFFU;
     };
-    bins.insert(part(p.x, 0.1) | part(p.y, 0.1) << 21U | part(std::remainder(p.yaw, 2.0 * kPi), 3.0 * kDegree) << 42U);
+    bins.insert(part(p.x, 0.1) | part(p.y, 0.1) << 21U |
+                part(std::remainder(p.yaw, 2.0 * kPi), 3.0 * kDegree_rad) << 42U);
   }
   return bins.size();
 }

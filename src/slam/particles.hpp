@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/localizer.hpp"
 #include "slam/beam_likelihood.hpp"
 
@@ -11,7 +11,7 @@
 namespace pingvox {
 
 /// Poses of one hypothesis are within this.
-inline constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * std::numbers::pi / 180.0;
+inline constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree_rad;
 inline constexpr std::size_t kMaxHypotheses = 100;
 
 /// From `a_rad` to `b_rad`, the short way round.

@@ -4,9 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 #include <utility>
+
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kLevels = 6;
 constexpr double kSigma_cells = 2.0;
 constexpr int kReach_cells = 6;  ///< three sigma: farther away the field is zero
-constexpr double kYawStep_rad = 2.0 * std::numbers::pi / 180.0;
+constexpr double kYawStep_rad = 2.0 * kDegree_rad;
 /// Two poses nearer than this, in cells and in steps of yaw, are of one peak.
 constexpr int kPeak_cells = 6, kPeakSteps = 3;
 /// A second peak this high, as a share of the first, makes a match ambiguous.

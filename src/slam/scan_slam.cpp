@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/loop_finder.hpp"
 
 namespace pingvox {
 namespace {
 
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 /// A key frame after so much way, as a share of the reach, or turn.
 constexpr double kStep = 0.04, kTurn_rad = 20.0 * kDegree_rad;
 /// Half of the window of the search: share of the reach, and yaw. A window is used until it brings few new loops.

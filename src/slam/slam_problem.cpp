@@ -6,13 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/heading_deviation.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// Standard deviations of what is believed beforehand.
 constexpr double kFirstPosition_m = 1e-3;

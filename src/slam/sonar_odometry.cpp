@@ -10,13 +10,13 @@
 #include <string>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/point_field.hpp"
 
 namespace pingvox {
 namespace {
 
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 /// How a vehicle may go when nothing is known: ahead at one of these speeds, turning if no heading tells it.
 constexpr std::array kSpeeds_m_s = {0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8};
 constexpr std::array kTurns_rad_s = {0.0, 0.06, -0.06, 0.12, -0.12};

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/loop_finder.hpp"
 
 namespace pingvox {
@@ -19,7 +19,7 @@ struct Window {
   std::size_t searches;
 };
 constexpr std::array<Window, 2> kWindows = {{{0.6, 3}, {0.2, 1}}};
-constexpr double kWindow_rad = 10.0 * std::numbers::pi / 180.0;
+constexpr double kWindow_rad = 10.0 * kDegree_rad;
 /// See LoopOptions: canals go on beyond what the sonar hears.
 constexpr double kPointsWithin = 0.8;
 /// Gauss-Newton steps after each search.

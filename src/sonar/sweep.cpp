@@ -5,11 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
+
 namespace pingvox {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 /// Below a third of the finest step of known heads (1/16 gradian): rounding, not movement.
 constexpr double kSameBearing_rad = 3e-4;
 constexpr double kJump_rad = 45.0 * kDegree_rad;

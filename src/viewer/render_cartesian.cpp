@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/echo_legend.hpp"
@@ -112,7 +113,7 @@ void draw_polar_grid(Picture& picture, const Area& area, const Disc& disc) {
 void draw_ring_labels(Picture& picture, const Disc& disc) {
   const double step_m = ring_step_m(disc);
   // Between two spokes.
-  const double bearing_rad = 345.0 * std::numbers::pi / 180.0;
+  const double bearing_rad = 345.0 * kDegree_rad;
   for (int n = 1; n * step_m < disc.range_m * (1.0 - 1e-9); ++n) {
     const std::string text = length_text(n * step_m) + " m";
     const Spot at = disc.spot_at(n * step_m, bearing_rad);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
@@ -130,7 +131,6 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
   double turned_rad = 0.0;
   for (std::size_t b = 1; b < beams.size(); ++b) turned_rad += std::abs(turn_between(beams[b - 1], beams[b]));
   // A step that gives about ten labels.
-  constexpr double kDegree_rad = std::numbers::pi / 180.0;
   constexpr std::array kSteps = {10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0};
   double step_rad = kSteps.back() * kDegree_rad;
   for (const double step_deg : kSteps) {

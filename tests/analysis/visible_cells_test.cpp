@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A room of 10 m x 10 m x 5 m of water around the origin, in cells of 0.1 m, with four walls and no floor; and a
 /// pillar of 1 m x 1 m from x = 2 m on.
@@ -69,12 +68,12 @@ TEST_F(InARoom, FromAPlaceBesideThePillarTheWallBehindItIsSeen) {
 
 TEST_F(InARoom, OnlyWhatIsInTheBeamIsSeen) {
   const OccupancyMap visible = seen({kOrigin});
-  const double edge_m = 5.0 * std::tan(17.5 * kDegree);  // 1.58 m up the wall at 5 m
+  const double edge_m = 5.0 * std::tan(17.5 * kDegree_rad);  // 1.58 m up the wall at 5 m
   EXPECT_TRUE(visible.at(Vector3d(-5.05, 0.05, edge_m - 0.1)));
   EXPECT_FALSE(visible.at(Vector3d(-5.05, 0.05, edge_m + 0.1)));
-  EXPECT_TRUE(seen({kOrigin}, {.height_rad = 50.0 * kDegree}).at(Vector3d(-5.05, 0.05, edge_m + 0.1)));
+  EXPECT_TRUE(seen({kOrigin}, {.height_rad = 50.0 * kDegree_rad}).at(Vector3d(-5.05, 0.05, edge_m + 0.1)));
   // Rolled by 90 degrees it turns in the plane of x and z.
-  const Pose rolled = pose_from_rpy(Vector3d::Zero(), 90.0 * kDegree, 0.0, 0.0);
+  const Pose rolled = pose_from_rpy(Vector3d::Zero(), 90.0 * kDegree_rad, 0.0, 0.0);
   EXPECT_TRUE(seen({rolled}).at(Vector3d(-5.05, 0.05, edge_m + 0.1)));
   EXPECT_FALSE(seen({rolled}).at(Vector3d(-5.05, 2.05, 0.05)));
 }

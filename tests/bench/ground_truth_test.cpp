@@ -4,17 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "pingvox/analysis/compare.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sim/tank.hpp"
 
 namespace pingvox::bench {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Recording tank(std::size_t turns) {
   return *record({.world = "tank", .motion = Motion::kStill, .turns = turns});
@@ -44,7 +42,7 @@ TEST(TrueReturns, OverABottomBeginAtTheLowerEdgeOfTheCone) {
   ASSERT_TRUE(left.axis_m);
   EXPECT_NEAR(*left.axis_m, 7.0, 0.01);
   EXPECT_NEAR(left.returns.front().first_m, 7.0, 0.02);
-  EXPECT_NEAR(left.returns.back().last_m, 7.0 / std::cos(17.5 * kDegree), 0.1);
+  EXPECT_NEAR(left.returns.back().last_m, 7.0 / std::cos(17.5 * kDegree_rad), 0.1);
 }
 
 TEST(Mapped, IsWhatBuildMapMakes) {

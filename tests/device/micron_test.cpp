@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/micron_driver.hpp"
 #include "pingvox/device/micron_emulator.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 #include "pingvox/io/seanet_recorder.hpp"
 #include "tests/device/recording.hpp"
@@ -259,7 +259,7 @@ TEST(SeanetRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   EXPECT_EQ(beams[0].time_s, 2.14);
   EXPECT_EQ(beams[1].time_s, recorded_time_s(kDay_ms - 1));
   EXPECT_EQ(beams[2].time_s, recorded_time_s(40 * kDay_ms + 59'999));
-  EXPECT_NEAR(beams[0].bearing_rad, 359.1 * std::numbers::pi / 180.0, 1e-12);
+  EXPECT_NEAR(beams[0].bearing_rad, 359.1 * kDegree_rad, 1e-12);
   EXPECT_EQ(beams[0].intensities, (Bytes{0, 10, 13, 64, 255, 9}));
   EXPECT_FALSE(SeanetRecorder::create(path));
 

@@ -5,17 +5,15 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <string>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 FileBytes file_of(const std::string& text) {
   return {"dvl.log", {text.begin(), text.end()}};
@@ -68,7 +66,7 @@ TEST(A50, ReadsJsonInOurFramesAndAtTheTimeOfValidity) {
   EXPECT_FALSE(velocities[1].valid) << "its pretty numbers do not count";
   EXPECT_FALSE(samples_of(nav, NavQuantity::kRange).at(1).valid);
   EXPECT_EQ(samples_of(nav, NavQuantity::kPosition).at(0).value, Eigen::Vector3d(2, 1, -3));
-  EXPECT_NEAR(samples_of(nav, NavQuantity::kAttitude).at(0).value.z(), 60 * kDegree, 1e-12);
+  EXPECT_NEAR(samples_of(nav, NavQuantity::kAttitude).at(0).value.z(), 60 * kDegree_rad, 1e-12);
 }
 
 TEST(A50, OldReportsHaveTheSumOfTheirStepsAsTime) {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <string>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -48,11 +48,10 @@ TEST(Dataflash, ReadsRecordsAsTheirLayoutSays) {
   EXPECT_TRUE(nav->damage.empty());
   ASSERT_EQ(nav->log.sources().size(), 1U);
   const NavSample& sample = nav->log.sources()[0].samples.at(0);
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   EXPECT_NEAR(sample.time_s, 265.738465, 1e-9);
-  EXPECT_NEAR(sample.value.x(), -0.08 * kRadPerDeg, 1e-9);
-  EXPECT_NEAR(sample.value.y(), 0.63 * kRadPerDeg, 1e-9);
-  EXPECT_NEAR(sample.value.z(), (90 - 213.93) * kRadPerDeg, 1e-9);
+  EXPECT_NEAR(sample.value.x(), -0.08 * kDegree_rad, 1e-9);
+  EXPECT_NEAR(sample.value.y(), 0.63 * kDegree_rad, 1e-9);
+  EXPECT_NEAR(sample.value.z(), (90 - 213.93) * kDegree_rad, 1e-9);
 }
 
 TEST(Dataflash, KeepsWhatIsWholeOfALogCutInARecord) {

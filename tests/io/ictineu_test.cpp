@@ -11,6 +11,7 @@
 #include <numbers>
 #include <string>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -19,8 +20,6 @@
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 FileBytes file_of(const std::string& text) {
   return {"nav.log", {text.begin(), text.end()}};
@@ -53,7 +52,7 @@ TEST(Ictineu, TheDvlIsTurnedIntoTheVehicleAndSaysWhenItHasNoBottom) {
   EXPECT_TRUE(velocity.samples[0].value.isApprox(Eigen::Vector3d(0.5, -std::sqrt(0.75), 0.05), 1e-12));
   EXPECT_TRUE(velocity.samples[0].valid);
   EXPECT_FALSE(velocity.samples[1].valid);
-  EXPECT_NEAR(source_of(*nav, NavQuantity::kHeading).samples[0].value.x(), 90 * kDegree, 1e-12) << "north";
+  EXPECT_NEAR(source_of(*nav, NavQuantity::kHeading).samples[0].value.x(), 90 * kDegree_rad, 1e-12) << "north";
   EXPECT_NEAR(source_of(*nav, NavQuantity::kDepth).samples[0].value.x(), 0.377225, 1e-12);
 }
 
@@ -66,13 +65,13 @@ TEST(Ictineu, TheMtiIsTurnedIntoTheVehicle) {
   const Eigen::Vector3d attitude = source_of(*nav, NavQuantity::kAttitude).samples[0].value;
   // Nearly 90 degrees apart: the instrument's roll is the vehicle's pitch but for 4 degrees. REP-103: bow up is
   // negative.
-  EXPECT_NEAR(attitude.y(), -std::asin(std::sin(10 * kDegree) * std::sin(86 * kDegree)), 1e-9);
-  EXPECT_NEAR(attitude.x(), std::atan(std::tan(10 * kDegree) * std::cos(86 * kDegree)), 1e-3);
-  EXPECT_NEAR(attitude.z(), 90 * kDegree, 0.01);
+  EXPECT_NEAR(attitude.y(), -std::asin(std::sin(10 * kDegree_rad) * std::sin(86 * kDegree_rad)), 1e-9);
+  EXPECT_NEAR(attitude.x(), std::atan(std::tan(10 * kDegree_rad) * std::cos(86 * kDegree_rad)), 1e-3);
+  EXPECT_NEAR(attitude.z(), 90 * kDegree_rad, 0.01);
   const Eigen::Vector3d rate = source_of(*nav, NavQuantity::kTurnRate).samples[0].value;
   EXPECT_NEAR(rate.z(), -0.2, 1e-12) << "to the right is clockwise";
-  EXPECT_NEAR(rate.x(), 0.1 * std::cos(86 * kDegree), 1e-12);
-  EXPECT_NEAR(rate.y(), -0.1 * std::sin(86 * kDegree), 1e-12);
+  EXPECT_NEAR(rate.x(), 0.1 * std::cos(86 * kDegree_rad), 1e-12);
+  EXPECT_NEAR(rate.y(), -0.1 * std::sin(86 * kDegree_rad), 1e-12);
 }
 
 TEST(Ictineu, FixesAreDegreesAndMinutesInOneNumber) {
@@ -83,8 +82,8 @@ TEST(Ictineu, FixesAreDegreesAndMinutesInOneNumber) {
   ASSERT_TRUE(nav) << nav.error().message;
   const NavSource& fixes = source_of(*nav, NavQuantity::kFix);
   ASSERT_EQ(fixes.samples.size(), 2U);
-  EXPECT_NEAR(fixes.samples[0].value.x(), (42 + 12.225 / 60) * kDegree, 1e-12);
-  EXPECT_NEAR(fixes.samples[0].value.y(), -(3 + 6.2832 / 60) * kDegree, 1e-12);
+  EXPECT_NEAR(fixes.samples[0].value.x(), (42 + 12.225 / 60) * kDegree_rad, 1e-12);
+  EXPECT_NEAR(fixes.samples[0].value.y(), -(3 + 6.2832 / 60) * kDegree_rad, 1e-12);
   EXPECT_TRUE(fixes.samples[0].valid);
   EXPECT_FALSE(fixes.samples[1].valid);
   EXPECT_EQ(nav->damage.size(), 1U) << "99 degrees north";
@@ -161,7 +160,7 @@ TEST(IctineuRecording, HoldsWhatItsDescriptionSays) {
   EXPECT_EQ(mti->records, 33457U);
   // Both compasses agree on the vehicle's heading to a degree at the start.
   EXPECT_NEAR(source_of(*dvl, NavQuantity::kHeading).samples[0].value.x(),
-              source_of(*mti, NavQuantity::kAttitude).samples[1].value.z(), 1 * kDegree);
+              source_of(*mti, NavQuantity::kAttitude).samples[1].value.z(), 1 * kDegree_rad);
   const auto path = nav_positions(dgps->log);
   ASSERT_TRUE(path) << path.error().message;
   double length_m = 0;

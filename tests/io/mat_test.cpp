@@ -9,6 +9,7 @@
 #include <random>
 
 #include "io/mat5.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "support/logs.hpp"
 #include "support/mat5_writer.hpp"
@@ -59,7 +60,7 @@ TEST(Mat, ReadsTheGoldenBytes) {
   EXPECT_EQ(all.items[0].bin_length_m, static_cast<double>(0.0125F));
   EXPECT_THAT(all.items[0].intensities, ElementsAre(0, 43, 68, 90));
   // The head turns clockwise: 181.8 degrees is 178.2 degrees counter-clockwise.
-  EXPECT_NEAR(all.items[1].bearing_rad, 178.2 * std::numbers::pi / 180.0, 1e-6);
+  EXPECT_NEAR(all.items[1].bearing_rad, 178.2 * kDegree_rad, 1e-6);
   EXPECT_THAT(all.items[1].intensities, ElementsAre(0, 17));
 }
 

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
@@ -27,8 +27,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::SizeIs;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 constexpr std::string_view kHeader = "Header header\n";
 constexpr std::string_view kStamps = "===\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
@@ -124,14 +122,14 @@ TEST(NavFields, KnowsWhatTheDeviceMarksAsInvalid) {
 TEST(NavFields, ReadsAttitudesInEitherFrameAndForm) {
   // 30 degrees nose up and 10 to starboard, towards south-east.
   const Eigen::Matrix3d ned =
-      pose_from_rpy(Eigen::Vector3d::Zero(), 10.0 * kRadPerDeg, 30.0 * kRadPerDeg, 135.0 * kRadPerDeg).rotation();
+      pose_from_rpy(Eigen::Vector3d::Zero(), 10.0 * kDegree_rad, 30.0 * kDegree_rad, 135.0 * kDegree_rad).rotation();
   const Eigen::Quaterniond q(ned);
   NavFields angles = fields_of(NavQuantity::kAttitude, {"roll", "pitch", "yaw"});
   angles.frame = NavFields::Frame::kNed;
-  angles.unit = kRadPerDeg;
+  angles.unit = kDegree_rad;
   NavFields quaternion = fields_of(NavQuantity::kAttitude, {"q.x", "q.y", "q.z", "q.w"});
   quaternion.frame = NavFields::Frame::kNed;
-  const Eigen::Vector3d expected(10.0 * kRadPerDeg, -30.0 * kRadPerDeg, -45.0 * kRadPerDeg);
+  const Eigen::Vector3d expected(10.0 * kDegree_rad, -30.0 * kDegree_rad, -45.0 * kDegree_rad);
   const auto by_angles = samples("float64 roll\nfloat64 pitch\nfloat64 yaw\n", {message(10.0, 30.0, 135.0)}, angles);
   ASSERT_THAT(by_angles, SizeIs(1));
   EXPECT_TRUE(by_angles[0].value.isApprox(expected, 1e-12)) << by_angles[0].value.transpose();
@@ -154,7 +152,7 @@ TEST(NavFields, ReadsAttitudesInEitherFrameAndForm) {
 TEST(NavFields, TurnsWhatIsInTheWorld) {
   NavFields heading = fields_of(NavQuantity::kHeading, {"a"});
   heading.frame = NavFields::Frame::kNed;
-  heading.unit = kRadPerDeg;
+  heading.unit = kDegree_rad;
   const std::string abc = "float64 a\nfloat64 b\nfloat64 c\n";
   const auto compass = samples(abc, {message(90.0, 0.0, 0.0)}, heading);
   ASSERT_THAT(compass, SizeIs(1));
@@ -172,11 +170,12 @@ TEST(NavFields, TurnsWhatIsInTheWorld) {
   EXPECT_TRUE(std::isnan(place[0].deviation.z())) << "it was not told";
 
   NavFields fix = fields_of(NavQuantity::kFix, {"lat", "lon", "height"});
-  fix.unit = kRadPerDeg * 1e-7;
+  fix.unit = kDegree_rad * 1e-7;
   const auto fixed = samples("int32 lat\nint32 lon\nfloat32 height\n",
                              {message(std::int32_t{421'234'567}, std::int32_t{-31'234'567}, 12.5F)}, fix);
   ASSERT_THAT(fixed, SizeIs(1));
-  EXPECT_TRUE(fixed[0].value.isApprox(Eigen::Vector3d(42.1234567 * kRadPerDeg, -3.1234567 * kRadPerDeg, 12.5), 1e-12));
+  EXPECT_TRUE(
+      fixed[0].value.isApprox(Eigen::Vector3d(42.1234567 * kDegree_rad, -3.1234567 * kDegree_rad, 12.5), 1e-12));
 
   const auto depth = samples(abc, {message(0.0, 0.0, -7.5)}, fields_of(NavQuantity::kDepth, {"-c"}));
   ASSERT_THAT(depth, SizeIs(1));
@@ -379,7 +378,7 @@ TEST(NavFieldsRecordings, MakePosesOfABagThatHadNone) {
   attitude.topic = "/xsens/imu";
   attitude.quantity = NavQuantity::kAttitude;
   attitude.values = {"x", "y", "z"};
-  attitude.unit = kRadPerDeg;
+  attitude.unit = kDegree_rad;
   const auto bag = read_bag(*ByteStream::open(path), Damage::kSkip, std::vector{attitude});
   ASSERT_TRUE(bag) << bag.error().message;
   const auto made = nav_trajectory(bag->nav.log);

@@ -6,17 +6,15 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <string>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 FileBytes file_of(const std::string& text) {
   return {"topside.txt", {text.begin(), text.end()}};
@@ -53,8 +51,8 @@ TEST(Nmea, ReadsFixesBetweenOtherText) {
   EXPECT_EQ(nav.log.clock(), NavClock::kUnknown) << "a time of day alone";
   const auto& fixes = samples_of(nav, "GPGGA");
   ASSERT_EQ(fixes.size(), 1U);
-  EXPECT_NEAR(fixes[0].value.x() / kDegree, 47.60752961, 5e-9);
-  EXPECT_NEAR(fixes[0].value.y() / kDegree, -122.34120619, 5e-9);
+  EXPECT_NEAR(fixes[0].value.x() / kDegree_rad, 47.60752961, 5e-9);
+  EXPECT_NEAR(fixes[0].value.y() / kDegree_rad, -122.34120619, 5e-9);
   EXPECT_EQ(fixes[0].value.z(), 8.378);
   EXPECT_DOUBLE_EQ(fixes[0].time_s, 22 * 3600 + 56 * 60 + 45);
 }
@@ -84,7 +82,7 @@ TEST(Nmea, ReadsCompassSounderAndLog) {
   const NavFile nav = read(std::string(kRmc) +
                            "$IIHDG,10.0,2.0,W,5.0,E*6D\r\n$SDDBT,30.0,f,9.1,M,5.0,F*38\r\n$SDDPT,3.5,0.2*53\r\n"
                            "$VDVBW,,,V,2.0,1.0,A*45\r\n$YXMTW,12.5,C*14\r\n");
-  EXPECT_NEAR(samples_of(nav, "IIHDG").at(0).value.x(), 77 * kDegree, 1e-12) << "10 - 2 + 5 from north";
+  EXPECT_NEAR(samples_of(nav, "IIHDG").at(0).value.x(), 77 * kDegree_rad, 1e-12) << "10 - 2 + 5 from north";
   EXPECT_EQ(samples_of(nav, "SDDBT").at(0).value.x(), 9.1) << "metres, not feet";
   EXPECT_EQ(samples_of(nav, "SDDPT").at(0).value.x(), 3.5);
   EXPECT_EQ(samples_of(nav, "YXMTW").at(0).value.x(), 12.5);

@@ -6,14 +6,13 @@
 #include <numbers>
 #include <random>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"
 #include "support/rounds.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 enum class Mark { kNone, kMissed, kHit };
 
@@ -86,8 +85,8 @@ TEST_P(Cone, TakesEachCellOfTheInsonifiedVolumeAndNoneFarFromIt) {
     options.shape = BeamShape::kCone;
     options.tracing = GetParam();
     options.free_share = 1.0;
-    options.width_rad = uniform(random, 1, 12) * kDegree;
-    options.height_rad = uniform(random, 10, 50) * kDegree;
+    options.width_rad = uniform(random, 1, 12) * kDegree_rad;
+    options.height_rad = uniform(random, 10, 50) * kDegree_rad;
     ScanUpdate scan(lattice);
     ASSERT_EQ(trace_beam(map_from_sensor, beam_of(bearing, 400), echo_at(range), options, scan), 0U);
 
@@ -135,8 +134,8 @@ TEST(BeamModel, GeometryMarksEachCellThatTheBundleMarks) {
     BeamModelOptions options;
     options.shape = seed % 4 == 0 ? BeamShape::kFan : BeamShape::kCone;
     options.free_share = 1.0;
-    options.width_rad = uniform(random, 1, 30) * kDegree;
-    options.height_rad = uniform(random, 5, 60) * kDegree;
+    options.width_rad = uniform(random, 1, 30) * kDegree_rad;
+    options.height_rad = uniform(random, 5, 60) * kDegree_rad;
     const double bearing = uniform(random, 0, 6), range = uniform(random, 0.1, 1.5);
     ScanUpdate by_geometry(lattice), by_bundle(lattice);
     trace_beam(map_from_sensor, beam_of(bearing, 400), echo_at(range), options, by_geometry);
@@ -165,7 +164,7 @@ TEST(BeamModel, FanStaysInThePlaneOfTheHeadWithoutGaps) {
   const Lattice lattice(0.05);
   BeamModelOptions options;
   options.shape = BeamShape::kFan;
-  options.width_rad = 20.0 * kDegree;
+  options.width_rad = 20.0 * kDegree_rad;
   options.free_share = 1.0;
   const Pose sensor = pose_from_rpy({0.025, 0.025, 0.025}, 0, 0, 0);
   ScanUpdate scan(lattice);
@@ -241,7 +240,7 @@ TEST(BeamModel, TheConesEdgeIsHitAndNotFreed) {
   ScanUpdate scan(lattice);
   trace_beam(Pose::Identity(), beam_of(0.0, 400), echo_at(3.02), options, scan);
   const auto mark_at = [&](double range_m, double elevation_deg) {
-    const double elevation = elevation_deg * kDegree;
+    const double elevation = elevation_deg * kDegree_rad;
     const Eigen::Vector3d at(range_m * std::cos(elevation), 0.01, range_m * std::sin(elevation));
     return mark_of(scan, *lattice.key_of(at));
   };
@@ -256,7 +255,7 @@ TEST(BeamModel, RayFreesUpToItsEchoAndHitsThere) {
   ScanUpdate scan(lattice);
   BeamModelOptions options;
   options.hit_from = HitFrom::kFixed;
-  const Pose sensor = pose_from_rpy({0.05, 0.05, 0.05}, 0, 0, 90.0 * kDegree);
+  const Pose sensor = pose_from_rpy({0.05, 0.05, 0.05}, 0, 0, 90.0 * kDegree_rad);
   trace_beam(sensor, beam_of(0.0, 400), echo_at(1.0), options, scan);
   OccupancyMap map({.resolution_m = 0.1});
   const auto report = map.apply(scan);

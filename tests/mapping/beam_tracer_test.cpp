@@ -4,16 +4,14 @@
 
 #include <bit>
 #include <map>
-#include <numbers>
 #include <random>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "tests/support/scan_cells.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random() % 1'000'001) / 1e6);
@@ -52,8 +50,8 @@ TEST(BeamTracer, HitsAreTheStrongestOfTheRaysThatEndInACell) {
                       uniform(random, -1.5, 1.5), uniform(random, -3, 3));
     BeamModelOptions options;
     options.shape = seed % 5 == 0 ? BeamShape::kFan : (seed % 6 == 0 ? BeamShape::kRay : BeamShape::kCone);
-    options.width_rad = uniform(random, 0.1, 10) * kDegree;
-    options.height_rad = uniform(random, 1, 60) * kDegree;
+    options.width_rad = uniform(random, 0.1, 10) * kDegree_rad;
+    options.height_rad = uniform(random, 1, 60) * kDegree_rad;
     BeamTracer tracer(options);
     for (int n = 0; n < 8; ++n) {
       // The second half takes the same numbers of rays again; one has more than are kept.

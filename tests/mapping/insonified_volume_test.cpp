@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
+
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random() % 1'000'001) / 1e6);
@@ -88,7 +88,7 @@ std::set<WideKey> cells_one_by_one(const Lattice& lattice, const InsonifiedVolum
   const LongVector first = origin.array().floor();
   const Eigen::Vector3d in_cell = (origin - first).cast<double>();
   const WideWord centre = WideWord{1} << (lattice.depth() - 1);
-  const int pieces = std::max(1, static_cast<int>(std::ceil(volume.width_rad / (5.0 * kDegree))));
+  const int pieces = std::max(1, static_cast<int>(std::ceil(volume.width_rad / (5.0 * kDegree_rad))));
   const double width = volume.width_rad / pieces;
   std::set<WideKey> cells;
   for (int i = 0; i < pieces; ++i) {
@@ -131,8 +131,8 @@ TEST(InsonifiedVolume, MarksTheCellsThatAllHalfSpacesAndTheSphereTouch) {
       volume.map_from_sensor.translation() = (volume.map_from_sensor.translation() * 20.0).array().round() / 20.0;
     }
     volume.bearing_rad = uniform(random, -7, 7);
-    volume.width_rad = seed % 7 == 0 ? 0.0 : uniform(random, 0, seed % 11 == 0 ? 60 : 8) * kDegree;
-    volume.height_rad = seed % 4 == 0 ? 0.0 : uniform(random, 0, seed % 13 == 0 ? 120 : 50) * kDegree;
+    volume.width_rad = seed % 7 == 0 ? 0.0 : uniform(random, 0, seed % 11 == 0 ? 60 : 8) * kDegree_rad;
+    volume.height_rad = seed % 4 == 0 ? 0.0 : uniform(random, 0, seed % 13 == 0 ? 120 : 50) * kDegree_rad;
     volume.range_m = lattice.resolution_m() * std::exp(uniform(random, std::log(0.2), std::log(50.0)));
     ScanUpdate scan(lattice);
     ASSERT_TRUE(trace_volume(volume, scan));

@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
 
 using What = ObstacleSectors::What;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 OccupancyMap empty_map() {
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = 0.1});
@@ -25,7 +24,7 @@ void set(OccupancyMap& map, const Eigen::Vector3d& place_m, float belief) {
 
 /// A place at a range and an angle clockwise from the vehicle's ahead.
 Eigen::Vector3d around(const Pose& pose, double range_m, double clockwise_deg, double up_m = 0.0) {
-  const double angle_rad = -clockwise_deg * kDegree;
+  const double angle_rad = -clockwise_deg * kDegree_rad;
   return pose * Eigen::Vector3d(range_m * std::cos(angle_rad), range_m * std::sin(angle_rad), up_m);
 }
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
@@ -113,10 +113,9 @@ TEST(NavTrajectory, TakesTheAttitudeOfThePositionsOwnSource) {
 
 TEST(NavTrajectory, MakesMetresOfFixesAlsoAcrossTheDateLine) {
   // By tables a degree at 45 degrees north is 111.132 km long to the north, and 78.847 km to the east.
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const auto made = trajectory_of({kLevel, source_of("gps", NavQuantity::kFix,
-                                                     {{0, {45.0 * kDegree, 179.9995 * kDegree, 50}},
-                                                      {1, {45.001 * kDegree, -179.9995 * kDegree, 52}}})});
+                                                     {{0, {45.0 * kDegree_rad, 179.9995 * kDegree_rad, 50}},
+                                                      {1, {45.001 * kDegree_rad, -179.9995 * kDegree_rad, 52}}})});
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(made->trajectory.at(0)->translation().isZero());
   const Eigen::Vector3d moved = made->trajectory.at(1)->translation();

@@ -8,14 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/sim/vehicle.hpp"
 
 namespace pingvox {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Without any error.
 NavSensorOptions perfect() {
@@ -70,11 +69,11 @@ TEST(NavSensors, AttitudeOfATiltedVehicleIsFixedAxisRollPitchYaw) {
 TEST(NavSensors, ConstantErrorsAreThoseThatAreReported) {
   NavSensorOptions options = perfect();
   options.seed = 7;
-  options.dvl_yaw_rad = 4.0 * kDegree;
+  options.dvl_yaw_rad = 4.0 * kDegree_rad;
   options.dvl_scale = 0.02;
-  options.compass_deviation_rad = 5.0 * kDegree;
+  options.compass_deviation_rad = 5.0 * kDegree_rad;
   const auto [log, errors] = simulate_nav(circle(130.0), 0.0, 130.0, options);
-  EXPECT_GT(std::abs(errors.dvl_yaw_rad), 0.1 * kDegree);
+  EXPECT_GT(std::abs(errors.dvl_yaw_rad), 0.1 * kDegree_rad);
   EXPECT_GT(std::abs(errors.dvl_scale), 1e-4);
   for (const NavSample& s : log.best(NavQuantity::kVelocity)->samples) {
     // A DVL that is turned to the left sees what is ahead to its right.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/sim/sonar.hpp"
 
 namespace pingvox {
@@ -83,7 +84,7 @@ TEST(Scenes, HaveSomethingToHearFromTheirMiddle) {
     options.bin_length_m = scene.sonar_range_m / 399.0;
     int heard = 0;
     for (int n = 0; n < 72; ++n) {
-      heard += true_range(scene.world, Pose::Identity(), n * 5.0 * std::numbers::pi / 180.0, options).cone_m ? 1 : 0;
+      heard += true_range(scene.world, Pose::Identity(), n * 5.0 * kDegree_rad, options).cone_m ? 1 : 0;
     }
     EXPECT_GT(heard, 72 / 3) << name;
     EXPECT_GE(scene.world.bounds().volume(), 10.0) << name;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "slam/room.hpp"
 
 namespace pingvox::test {
@@ -44,7 +45,7 @@ TEST(Localizer, FindsItselfAnywhereAfterATurn) {
   hear(localizer, room, 90, 300, kPlace);
   double turn = 0.0;
   EXPECT_LT(error_m(localizer, kPlace, turn), 0.12);
-  EXPECT_NEAR(turn, 0.0, 2.5 * std::numbers::pi / 180.0);
+  EXPECT_NEAR(turn, 0.0, 2.5 * kDegree_rad);
   EXPECT_TRUE(localizer.is_sure());
   EXPECT_EQ(localizer.hypotheses().size(), 1U);
 }

@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <span>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "tests/slam/walls.hpp"
 #include "tests/support/uniform.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kReach_m = 30.0;
 /// Windows as for a scanning sonar with a compass.
-constexpr LoopOptions kOptions{kReach_m, 12.0, 10.0 * std::numbers::pi / 180.0, 0.8};
+constexpr LoopOptions kOptions{kReach_m, 12.0, 10.0 * kDegree_rad, 0.8};
 
 using Walls = std::vector<Wall>;
 const Walls kBasin = {{0, 0, 60, -4},   {60, -4, 64, 30}, {64, 30, 40, 34}, {40, 34, 38, 50},

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/slam/distance_field.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
@@ -14,8 +15,6 @@
 
 namespace pingvox::test {
 namespace {
-
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 /// Round the middle of the room in 80 seconds, heading along the way.
 Room::State state_at(double time_s) {

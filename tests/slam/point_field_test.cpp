@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
+#include "pingvox/geometry/degree.hpp"
 #include "tests/support/uniform.hpp"
 
 namespace pingvox::test {
 namespace {
 
-constexpr double kCell_m = 0.2, kDegree_rad = std::numbers::pi / 180.0;
+constexpr double kCell_m = 0.2;
 
 std::vector<Eigen::Vector2d> points_of_line(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   std::vector<Eigen::Vector2d> points;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "pingvox/geometry/degree.hpp"
 #include "support/tank_recording.hpp"
 
 namespace pingvox {
@@ -79,7 +80,7 @@ TEST(Background, NeedsSeveralBeamsOfADirection) {
 
 TEST(Background, DoesNotDependOnTheLengthOfBins) {
   const Background background = learned(beams_of_a_vehicle(12), 2.0);
-  Beam fine{.bearing_rad = 20.0 * std::numbers::pi / 180.0, .bin_length_m = 0.00125, .intensities = {}};
+  Beam fine{.bearing_rad = 20.0 * kDegree_rad, .bin_length_m = 0.00125, .intensities = {}};
   fine.intensities.assign(2000, 120);
   background.subtract_from(fine);
   EXPECT_LE(fine.intensities[static_cast<std::size_t>(0.84 / 0.00125)], 8);

@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <set>
+
+#include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 namespace {
@@ -22,8 +23,8 @@ TEST(DeviceProfile, EachIsFoundByItsOwnNameAndNoneByAnother) {
 }
 
 TEST(DeviceProfile, AnglesAreInRadians) {
-  EXPECT_NEAR(find_device("ping360")->beam_width_rad, 2.0 * std::numbers::pi / 180.0, 1e-15);
-  EXPECT_NEAR(find_device("micron")->beam_height_rad, 35.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_NEAR(find_device("ping360")->beam_width_rad, 2.0 * kDegree_rad, 1e-15);
+  EXPECT_NEAR(find_device("micron")->beam_height_rad, 35.0 * kDegree_rad, 1e-15);
 }
 
 }  // namespace

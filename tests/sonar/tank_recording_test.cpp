@@ -10,14 +10,13 @@
 #include <map>
 #include <numbers>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/sweep.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 class OnTheTankRecording : public testing::Test {
  protected:
@@ -44,7 +43,7 @@ Wall wall_at(double clockwise_rad) {
     const double off = clockwise_rad + 0.0253 - 0.5 * std::numbers::pi * static_cast<double>(side);
     const double range = kDistances_m[side] / std::cos(off);
     if (std::cos(off) > 0.1 && range < nearest.range_m) {
-      nearest = {range, std::abs(std::remainder(off, 2.0 * std::numbers::pi)) / kDegree};
+      nearest = {range, std::abs(std::remainder(off, 2.0 * std::numbers::pi)) / kDegree_rad};
     }
   }
   return nearest;
@@ -73,7 +72,7 @@ TEST_F(OnTheTankRecording, TheDefaultsFindTheWallsAndTheFloater) {
     for (std::size_t n = 0; n < echoes.size(); ++n) {
       ++beams;
       const double clockwise = 2.0 * std::numbers::pi - sweep.beams[n].bearing_rad;
-      const double degrees = clockwise / kDegree;
+      const double degrees = clockwise / kDegree_rad;
       if (!echoes[n]) {
         ++missed;
         continue;

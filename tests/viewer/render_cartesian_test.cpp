@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "pingvox/geometry/degree.hpp"
+
 using namespace pingvox;
 
 namespace {
 
 constexpr std::size_t kSize = 400, kLeft = 24 + 44, kTop = 24 + 44;
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 const Rgb kEcho = EchoPictureOptions{}.echo, kNothing = EchoPictureOptions{}.nothing;
 
 Sweep sweep_between(double from_deg, double to_deg, double step_deg) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "pingvox/geometry/degree.hpp"
 #include "viewer/picture_text.hpp"
 
 using namespace pingvox;
@@ -96,7 +97,7 @@ TEST(RenderEchoes, MarksRoundBearingsWhereTheHeadPassesThem) {
   std::vector<Beam> beams;
   for (int n = 0; n < 300; ++n) {
     beams.push_back(beam_of({0, 0, 0, 0}));
-    const double turned_rad = (45.0 - 1.8 * n) * std::numbers::pi / 180.0;
+    const double turned_rad = (45.0 - 1.8 * n) * kDegree_rad;
     beams.back().bearing_rad = turned_rad - 2.0 * std::numbers::pi * std::floor(turned_rad / (2.0 * std::numbers::pi));
   }
   const Picture turning = render_echoes(beams, {}, {.target_px = 16});

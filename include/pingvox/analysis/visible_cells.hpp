@@ -1,9 +1,9 @@
 #pragma once
 
 #include <limits>
-#include <numbers>
 #include <span>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
@@ -14,7 +14,7 @@ namespace pingvox {
 struct ViewOptions {
   double min_range_m = 0.0;
   double max_range_m = std::numeric_limits<double>::infinity();
-  double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical beam width, full angle
+  double height_rad = 35.0 * kDegree_rad;  ///< vertical beam width, full angle
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };

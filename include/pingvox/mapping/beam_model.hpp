@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -45,8 +45,8 @@ enum class Tracing {
 struct BeamModelOptions {
   BeamShape shape = BeamShape::kRay;
   Tracing tracing = Tracing::kGeometry;
-  double width_rad = 3.0 * std::numbers::pi / 180.0;    ///< horizontal, full angle; Micron data sheet
-  double height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, full angle; Micron data sheet
+  double width_rad = 3.0 * kDegree_rad;    ///< horizontal, full angle; Micron data sheet
+  double height_rad = 35.0 * kDegree_rad;  ///< vertical, full angle; Micron data sheet
   /// Central fraction of width and height that frees cells. Width and height are those of half power one way; within
   /// 0.72 of them (of sin(u) / u) it is half power both ways. Objects farther out return less than half and may not be
   /// detected. Hits use the whole beam nevertheless.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <numbers>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
@@ -20,18 +20,18 @@ struct NavSensorOptions {
   double dvl_noise_m_s = 0.1;  ///< standard deviation on each axis; 0..10
   double dvl_outliers = 0.02;  ///< fraction of measurements that are wrong by some 1 m/s on each axis; 0..1
   double dvl_lost = 0.02;      ///< fraction of time without bottom lock, for some 5 s each; 0 or more, less than 1
-  double dvl_yaw_rad = 3.0 * std::numbers::pi / 180.0;  ///< deviation of the angle it is turned by; 0..1
-  double dvl_scale = 0.005;                             ///< deviation of true over measured velocity; 0..0.1
+  double dvl_yaw_rad = 3.0 * kDegree_rad;  ///< deviation of the angle it is turned by; 0..1
+  double dvl_scale = 0.005;                ///< deviation of true over measured velocity; 0..0.1
 
   // The attitude sensor.
-  double attitude_per_s = 10.0;                                   ///< measurements; > 0, at most 100
-  double attitude_noise_rad = 0.3 * std::numbers::pi / 180.0;     ///< standard deviation of each angle; 0..1
-  double compass_deviation_rad = 3.0 * std::numbers::pi / 180.0;  ///< of the coefficients of the sine and the cosine of
-                                                                  ///< yaw; a third of it for its double and the
-                                                                  ///< constant; 0..0.3
-  double gyro_noise_rad_s = 0.1 * std::numbers::pi / 180.0;       ///< standard deviation on each axis; 0..1
-  double gyro_drift_rad_s = 0.02 * std::numbers::pi / 180.0;      ///< deviation of the bias of the turn rate at the
-                                                                  ///< start, and of its change in ten minutes; 0..1
+  double attitude_per_s = 10.0;                      ///< measurements; > 0, at most 100
+  double attitude_noise_rad = 0.3 * kDegree_rad;     ///< standard deviation of each angle; 0..1
+  double compass_deviation_rad = 3.0 * kDegree_rad;  ///< of the coefficients of the sine and the cosine of
+                                                     ///< yaw; a third of it for its double and the
+                                                     ///< constant; 0..0.3
+  double gyro_noise_rad_s = 0.1 * kDegree_rad;       ///< standard deviation on each axis; 0..1
+  double gyro_drift_rad_s = 0.02 * kDegree_rad;      ///< deviation of the bias of the turn rate at the
+                                                     ///< start, and of its change in ten minutes; 0..1
 
   // The depth sensor.
   double depth_per_s = 5.0;     ///< measurements; > 0, at most 100

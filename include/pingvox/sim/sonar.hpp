@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/result.hpp"
@@ -20,13 +21,12 @@ struct SonarOptions {
   std::uint64_t seed = 1;  ///< of speckle, noise and dropouts, not of the world
 
   // The head.
-  std::size_t beams_per_turn = 200;  ///< 4..6400; clockwise, starting ahead
-  std::size_t bins = 399;            ///< 1..10,000
-  double bin_length_m = 0.0125;      ///< > 0; also sets the length of the pulse
-  double beams_per_s = 23.0;         ///< > 0
-  double beam_width_rad =
-      3.0 * std::numbers::pi / 180.0;  ///< horizontal, full angle at half power, one way; > 0, at most 1
-  double beam_height_rad = 35.0 * std::numbers::pi / 180.0;  ///< vertical, the same; > 0, at most 2
+  std::size_t beams_per_turn = 200;             ///< 4..6400; clockwise, starting ahead
+  std::size_t bins = 399;                       ///< 1..10,000
+  double bin_length_m = 0.0125;                 ///< > 0; also sets the length of the pulse
+  double beams_per_s = 23.0;                    ///< > 0
+  double beam_width_rad = 3.0 * kDegree_rad;    ///< horizontal, full angle at half power, one way; > 0, at most 1
+  double beam_height_rad = 35.0 * kDegree_rad;  ///< vertical, the same; > 0, at most 2
   double side_lobes = 1.0;  ///< amplitude relative to those of a uniform rectangular transducer; 0: none
   double bearing_step_rad = 2.0 * std::numbers::pi / 6400.0;  ///< rounding of the reported bearings; 0: none
   double ringing_m = 0.45;                                    ///< range of the transducer ringing; >= 0

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/result.hpp"
@@ -21,8 +21,8 @@ namespace pingvox {
 
 /// How likely an echo or the lack of one is, as a ratio to an echo from an occupied cell (docs/slam.md).
 struct BeamLikelihood {
-  double range_deviation_m = 0.05;                                ///< of an echo from a cell of the map, along the beam
-  double bearing_deviation_rad = 0.6 * std::numbers::pi / 180.0;  ///< of the direction that it came from
+  double range_deviation_m = 0.05;                   ///< of an echo from a cell of the map, along the beam
+  double bearing_deviation_rad = 0.6 * kDegree_rad;  ///< of the direction that it came from
   double stray = 0.1;         ///< an echo where the map is free: clutter, or what is not in the map
   double unknown = 0.3;       ///< an echo where the map knows nothing
   double behind = 0.05;       ///< an echo from behind an occupied cell
@@ -35,12 +35,12 @@ struct BeamLikelihood {
 /// Standard deviations of a motion: of each coordinate and of the yaw, over time and over the way.
 struct MotionNoise {
   double position_m_per_sqrt_s = 0.02, position_m_per_sqrt_m = 0.05;
-  double yaw_rad_per_sqrt_s = 0.3 * std::numbers::pi / 180.0, yaw_rad_per_sqrt_rad = 0.02;
+  double yaw_rad_per_sqrt_s = 0.3 * kDegree_rad, yaw_rad_per_sqrt_rad = 0.02;
 
   /// Of a vehicle that nothing is known of but that it moves little.
-  static MotionNoise random_walk() { return {0.05, 0.0, std::numbers::pi / 180.0, 0.0}; }
+  static MotionNoise random_walk() { return {0.05, 0.0, kDegree_rad, 0.0}; }
   /// Of one whose turns are known, but not its way.
-  static MotionNoise turns_only() { return {0.15, 0.0, 0.3 * std::numbers::pi / 180.0, 0.02}; }
+  static MotionNoise turns_only() { return {0.15, 0.0, 0.3 * kDegree_rad, 0.02}; }
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
