@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "io/mat5.hpp"
 #include "io/readers.hpp"
+#include "pingvox/geometry/degree.hpp"
 
 // Beams in a MATLAB file: an array of structs parsedData(k) with the fields time [s], angle [deg, clockwise from
 // ahead], step_dist [m] and intensities (docs/formats.md).
@@ -33,7 +33,7 @@ tl::expected<Beam, std::string> beam_in(const std::array<std::optional<mat5::Num
 
   Beam beam;
   beam.time_s = numbers[kTime];
-  beam.bearing_rad = wrap_bearing(-numbers[kAngle] * (std::numbers::pi / 180.0));
+  beam.bearing_rad = wrap_bearing(-numbers[kAngle] * kDegree_rad);
   beam.bin_length_m = numbers[kStepDist];
   const mat5::NumericArray& intensities = *fields[kIntensities];
   beam.intensities.reserve(intensities.size());

@@ -5,7 +5,6 @@
 #include <array>
 #include <cassert>
 #include <cstring>
-#include <numbers>
 #include <utility>
 
 #include "io/byte_reader.hpp"

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mapping/bundle_grid.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/beam_tracer.hpp"
 #include "pingvox/option_errors.hpp"
 
@@ -13,11 +15,10 @@ namespace pingvox {
 Result<void> BeamModelOptions::validate() const {
   OptionErrors errors;
   if (!(width_rad > 0.0 && width_rad <= std::numbers::pi)) {
-    errors.add(fmt::format("beam width must be in (0, 180] degrees, is {:.6g}", width_rad * 180.0 / std::numbers::pi));
+    errors.add(fmt::format("beam width must be in (0, 180] degrees, is {:.6g}", width_rad / kDegree_rad));
   }
   if (!(height_rad > 0.0 && height_rad < std::numbers::pi)) {
-    errors.add(
-        fmt::format("beam height must be in (0, 180) degrees, is {:.6g}", height_rad * 180.0 / std::numbers::pi));
+    errors.add(fmt::format("beam height must be in (0, 180) degrees, is {:.6g}", height_rad / kDegree_rad));
   }
   if (!(free_share > 0.0 && free_share <= 1.0))
     errors.add(fmt::format("free share must be in (0, 1], is {}", free_share));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <utility>
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "slam/particles.hpp"
 
 namespace pingvox {
@@ -176,11 +177,11 @@ std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const
     candidate = climb(candidate.pose, steps, at_ends);
     candidate.log_likelihood = log_likelihood(judges, candidate.pose, model);
   }
-  candidates = without_neighbours(std::move(candidates), 0.3, 10.0 * kPi / 180.0, kRefined);
+  candidates = without_neighbours(std::move(candidates), 0.3, 10.0 * kDegree_rad, kRefined);
   for (ScoredPose& candidate : candidates) {
     candidate = refine_pose(judges, model, candidate.pose, 0.5 * steps.m, 0.5 * steps.rad);
   }
-  std::vector<ScoredPose> found = without_neighbours(std::move(candidates), 0.3, 10.0 * kPi / 180.0, kCandidates);
+  std::vector<ScoredPose> found = without_neighbours(std::move(candidates), 0.3, 10.0 * kDegree_rad, kCandidates);
   if (!found.empty()) {
     const double least = found.front().log_likelihood + kMinLog;
     std::erase_if(found, [&](const ScoredPose& pose) { return pose.log_likelihood < least; });

@@ -1,4 +1,4 @@
-// The smoother in a basin whose truth is known, and on input that it cannot use.
+// The smoother in a basin whose truth is known. Input that it cannot use: slam_smoother_input_test.cpp.
 
 #include "pingvox/slam/slam_smoother.hpp"
 
@@ -6,49 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "pingvox/slam/odometry.hpp"
-#include "slam/basin.hpp"
+#include "slam/smoother_in_basin.hpp"
 #include "support/rounds.hpp"
 
 namespace pingvox::test {
 namespace {
 
 using testing::HasSubstr;
-
-SlamSmoother smoother_of(const Basin& basin, SlamOptions options) {
-  options.body_from_sonar = pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, basin.sonar_yaw_rad);
-  return SlamSmoother(std::move(options));
-}
-
-void add(SlamSmoother& smoother, const std::vector<NavSource>& sources) {
-  for (const NavSource& source : sources) {
-    for (const NavSample& sample : source.samples) {
-      ASSERT_TRUE(smoother.add(source.name, source.quantity, sample));
-    }
-  }
-}
-
-Result<SlamSolution> solve(const Basin& basin, const SlamOptions& options, std::uint64_t noise_seed = 1) {
-  SlamSmoother smoother = smoother_of(basin, options);
-  add(smoother, basin.sources(noise_seed));
-  for (const Beam& beam : basin.beams()) smoother.add(beam);
-  return smoother.solve();
-}
-
-/// Root of the mean square distance from the truth, both beginning at the same pose.
-double error_m(const Trajectory& trajectory) {
-  const auto start = Basin::at(trajectory.poses().front().time_s);
-  double sum = 0.0;
-  for (const StampedPose& pose : trajectory.poses()) {
-    const Eigen::Vector2d moved = Basin::at(pose.time_s).place - start.place;
-    sum += (pose.map_from_body.translation().head<2>() - moved).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(trajectory.poses().size()));
-}
 
 TEST(SlamSmoother, FindsTrajectoryAndCalibrationOfABasin) {
   const Basin basin;
@@ -426,14 +394,6 @@ TEST(SlamSmoother, BelievesACalibrationAsFarAsItsDeviations) {
 
 // Without a velocity.
 
-Result<SlamSolution> solve_without_velocity(const Basin& basin, SlamOptions options, const NavSource& turning) {
-  options.seed = 3;
-  SlamSmoother smoother = smoother_of(basin, std::move(options));
-  add(smoother, {turning});
-  for (const Beam& beam : basin.beams()) smoother.add(beam);
-  return smoother.solve();
-}
-
 /// The turn rate of a gyro with a bias.
 NavSource gyro_of(const Basin& basin) {
   NavSource gyro{"gyro", NavQuantity::kTurnRate, {}};
@@ -514,175 +474,6 @@ TEST(SlamSmoother, FindsTheWayByTheSonarAloneAsOnBoard) {
   const auto& poses = solved->trajectory.poses();
   EXPECT_NEAR((poses.back().map_from_body.translation() - poses.front().map_from_body.translation()).norm(),
               (Basin::at(poses.back().time_s).place - Basin::at(poses.front().time_s).place).norm(), 2.0);
-}
-
-// What it cannot use.
-
-void expect_refused(const SlamSmoother& smoother, const char* reason) {
-  const auto solved = smoother.solve();
-  ASSERT_FALSE(solved);
-  EXPECT_THAT(solved.error().message, HasSubstr(reason));
-}
-
-TEST(SlamSmoother, RefusesToGuessWithoutBeamsOrHeading) {
-  const Basin basin;
-  const auto sources = basin.sources();
-  SlamSmoother smoother = smoother_of(basin, {});
-  add(smoother, sources);
-  expect_refused(smoother, "no beams");
-
-  SlamSmoother turning = smoother_of(basin, {});
-  for (const Beam& beam : basin.beams()) turning.add(beam);
-  add(turning, {sources[0]});
-  expect_refused(turning, "no valid heading");
-}
-
-// Kills a trajectory that nothing tells: a vehicle that stands still, or goes on for ever.
-TEST(SlamSmoother, RefusesToGuessWithoutVelocityAndEchoes) {
-  const Basin basin{.duration_s = 100.0};
-  for (const bool has_heading : {true, false}) {
-    SlamSmoother smoother = smoother_of(basin, {});
-    if (has_heading) add(smoother, {basin.sources()[1]});
-    for (Beam beam : basin.beams()) {
-      std::ranges::fill(beam.intensities, std::uint8_t{0});
-      smoother.add(std::move(beam));
-    }
-    expect_refused(smoother, "0 of 9 sweeps match");
-  }
-}
-
-TEST(SlamSmoother, RefusesAHeadingOfAnotherTimeWithoutVelocity) {
-  const Basin basin{.duration_s = 100.0};
-  NavSource compass = basin.sources()[1];
-  for (NavSample& sample : compass.samples) sample.time_s += 10'000.0;
-  const auto solved = solve_without_velocity(basin, {}, compass);
-  ASSERT_FALSE(solved);
-  EXPECT_THAT(solved.error().message, HasSubstr("do not overlap in time"));
-}
-
-TEST(SlamSmoother, RefusesNavigationOfAnotherTime) {
-  const Basin basin;
-  std::vector<NavSource> sources = basin.sources();
-  for (NavSource& source : sources) {
-    for (NavSample& sample : source.samples) sample.time_s += 10'000.0;
-  }
-  SlamSmoother smoother = smoother_of(basin, {});
-  add(smoother, sources);
-  for (const Beam& beam : basin.beams()) smoother.add(beam);
-  expect_refused(smoother, "do not overlap in time");
-}
-
-TEST(SlamSmoother, RefusesNumbersThatAreNotFinite) {
-  SlamSmoother smoother = smoother_of(Basin(), {});
-  NavSample sample;
-  sample.value.x() = std::numeric_limits<double>::quiet_NaN();
-  const auto added = smoother.add("dvl", NavQuantity::kVelocity, sample);
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message, HasSubstr("dvl"));
-}
-
-TEST(SlamSmoother, RefusesBeamsThatGoBackInTime) {
-  const Basin basin;
-  SlamSmoother smoother = smoother_of(basin, {});
-  add(smoother, basin.sources());
-  std::vector<Beam> beams = basin.beams();
-  beams[700].time_s = 3.0;
-  for (const Beam& beam : beams) smoother.add(beam);
-  expect_refused(smoother, "beam 699");
-}
-
-TEST(SlamSmoother, RefusesBeamsThatJumpInTime) {
-  const Basin basin;
-  SlamSmoother smoother = smoother_of(basin, {});
-  std::vector<Beam> beams = basin.beams();
-  beams.resize(400);
-  beams.back().time_s = 1e9;
-  for (const Beam& beam : beams) smoother.add(beam);
-  std::vector<NavSource> sources = basin.sources();
-  for (NavSource& source : sources) {
-    source.samples.push_back(source.samples.back());
-    source.samples.back().time_s = 2e9;
-  }
-  add(smoother, sources);
-  expect_refused(smoother, "times jump");
-}
-
-// Kills turns that are made up where the clock of the navigation jumps ahead.
-TEST(SlamSmoother, RefusesBeamsWhereNoHeadingIsKnown) {
-  const Basin basin{.duration_s = 200.0};
-  std::vector<NavSource> sources = basin.sources();
-  for (NavSource& source : sources) {
-    for (NavSample& sample : source.samples) sample.time_s += sample.time_s > 100.0 ? 3600.0 : 0.0;
-  }
-  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
-    SlamOptions options;
-    options.estimation = estimation;
-    SlamSmoother smoother = smoother_of(basin, options);
-    add(smoother, sources);
-    for (const Beam& beam : basin.beams()) smoother.add(beam);
-    expect_refused(smoother, "no heading is known from 100.000 to 3700.200 s, where there are 1000 beams");
-  }
-}
-
-// Kills a log whose clock was set back, added as a whole.
-TEST(SlamSmoother, RefusesNavigationWhoseClockWasSetBack) {
-  const Basin basin{.duration_s = 60.0};
-  std::vector<NavSource> sources = basin.sources();
-  for (NavSample& sample : sources[1].samples) sample.time_s -= sample.time_s > 30.0 ? 20.0 : 0.0;
-  const auto log = NavLog::make(sources, NavClock::kUnknown);
-  ASSERT_TRUE(log);
-  SlamSmoother smoother = smoother_of(basin, {});
-  const auto added = smoother.add(*log);
-  ASSERT_FALSE(added);
-  EXPECT_THAT(added.error().message, HasSubstr("heading of compass runs back"));
-}
-
-// Kills a solution without any step, whose calibration has no deviations.
-TEST(SlamSmoother, ReckonsAlongOneSweepAlone) {
-  const Basin basin{.duration_s = 10.0};
-  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
-    SlamOptions options;
-    options.estimation = estimation;
-    const auto solved = solve(basin, options);
-    ASSERT_TRUE(solved) << solved.error().message;
-    EXPECT_EQ(solved->report.pairs, 0U);
-    EXPECT_FALSE(solved->report.velocity_check);
-    EXPECT_GT(solved->calibration.velocity_yaw_rad.deviation, 0.0);
-    EXPECT_LT(error_m(solved->trajectory), 0.5);
-  }
-  SlamSmoother without = smoother_of(basin, {});
-  add(without, {basin.sources()[1]});
-  for (const Beam& beam : basin.beams()) without.add(beam);
-  expect_refused(without, "only one sweep");
-}
-
-TEST(SlamSmoother, RefusesVelocitiesThatNoVehicleHas) {
-  const Basin basin{.duration_s = 60.0};
-  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
-    for (const double velocity_m_s : {40.0, 1e6, 1e300}) {
-      SlamOptions options;
-      options.estimation = estimation;
-      SlamSmoother smoother = smoother_of(basin, options);
-      std::vector<NavSource> sources = basin.sources();
-      for (NavSample& sample : sources[0].samples) sample.value.x() = velocity_m_s;
-      add(smoother, sources);
-      for (const Beam& beam : basin.beams()) smoother.add(beam);
-      expect_refused(smoother, "m/s in the median");
-    }
-  }
-}
-
-TEST(SlamSmoother, NeedsNoEchoToReckon) {
-  const Basin basin;
-  SlamSmoother smoother = smoother_of(basin, {});
-  add(smoother, basin.sources());
-  for (Beam beam : basin.beams()) {
-    std::ranges::fill(beam.intensities, std::uint8_t{0});
-    smoother.add(std::move(beam));
-  }
-  const auto solved = smoother.solve();
-  ASSERT_TRUE(solved) << solved.error().message;
-  EXPECT_EQ(solved->report.pairs, 0U);
 }
 
 }  // namespace

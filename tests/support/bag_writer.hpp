@@ -17,6 +17,10 @@ namespace pingvox::bags {
 
 using Bytes = std::vector<std::uint8_t>;
 
+/// A SonarEcho of a Ping360 as another writer made it: hex, in CDR, with the intensities 0, 10, 64 and 255.
+inline constexpr std::string_view kSonarEcho =
+    "00010000e80300000065cd1d02000000730000000000c03f01000400ee02dc050a00000004000000000a40ff";
+
 template <class T>
 void put(Bytes& to, T value) {
   const auto* raw = reinterpret_cast<const std::uint8_t*>(&value);

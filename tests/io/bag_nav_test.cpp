@@ -1,0 +1,83 @@
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/nav.hpp"
+#include "support/bag_writer.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::SizeIs;
+
+/// The samples of a quantity in a message of ROS 2 alone in a bag.
+std::vector<NavSample> samples_of(std::string_view type, std::string_view hex, NavQuantity quantity,
+                                  std::string_view topic = "/topic", std::string_view definition = "") {
+  bags::Mcap mcap;
+  mcap.topic(1, topic, type, definition);
+  mcap.message(1, 1'000'600'000'000U, from_hex(hex));
+  mcap.end_chunk();
+  const auto nav = read_nav(FileBytes{"dive.mcap", mcap.closed()});
+  EXPECT_TRUE(nav);
+  if (!nav) return {};
+  EXPECT_TRUE(nav->damage.empty());
+  EXPECT_EQ(nav->log.clock(), NavClock::kUnix);
+  for (const NavSource& source : nav->log.sources()) {
+    if (source.quantity == quantity && source.name == topic) return source.samples;
+  }
+  return {};
+}
+
+TEST(BagNav, ReadsWhatAnotherWriterMade) {
+  const auto pressure =
+      samples_of("sensor_msgs/msg/FluidPressure",
+                 "00010000e80300000065cd1d0200000073000000000000002003fe400000000000000000", NavQuantity::kPressure);
+  ASSERT_THAT(pressure, SizeIs(1));
+  EXPECT_EQ(pressure[0].value.x(), 122'930.0);
+  EXPECT_EQ(pressure[0].time_s, 1000.5);
+  const auto velocity = samples_of(
+      "geometry_msgs/msg/TwistStamped",
+      "00010000e80300000065cd1d0400000064766c00 000000000000e03f 000000000000d0bf 0000000000000000 0000000000000000 "
+      "0000000000000000 000000000000c03f",
+      NavQuantity::kVelocity);
+  ASSERT_THAT(velocity, SizeIs(1));
+  EXPECT_EQ(velocity[0].value, Eigen::Vector3d(0.5, -0.25, 0.0)) << "already in our frame";
+}
+
+TEST(BagNav, TellsUnitsOfPressureByTheirSize) {
+  const auto pascals = [](double value) {
+    bags::Bytes message = {0, 1, 0, 0};
+    bags::put(message, value);
+    std::string hex;
+    for (const std::uint8_t byte : message) hex += fmt::format("{:02x}", byte);
+    const auto samples = samples_of("std_msgs/msg/Float64", hex, NavQuantity::kPressure, "/bar30/pressure");
+    return samples.empty() ? 0.0 : samples[0].value.x();
+  };
+  EXPECT_NEAR(pascals(1.5), 150'000.0, 1e-6);
+  EXPECT_NEAR(pascals(101.3), 101'300.0, 1e-6);
+  EXPECT_NEAR(pascals(1500.0), 150'000.0, 1e-6);
+  EXPECT_NEAR(pascals(150'000.0), 150'000.0, 1e-6);
+}
+
+TEST(BagNav, TurnsADvlThatLooksDown) {
+  constexpr std::string_view kDefinition =
+      "geometry_msgs/Vector3 velocity\nfloat64 fom\nfloat64 altitude\nbool velocity_valid\n";
+  const std::string hex =
+      "00010000 000000000000f03f 0000000000000040 0000000000000840 0000000000000000 0000000000001040 01";
+  const auto down = samples_of("waterlinked_a50_ros_driver/msg/DVL", hex, NavQuantity::kVelocity, "/dvl", kDefinition);
+  ASSERT_THAT(down, SizeIs(1));
+  EXPECT_EQ(down[0].value, Eigen::Vector3d(1, -2, -3));
+  const auto ahead = samples_of("sensors/msg/DVLVelocity", hex, NavQuantity::kVelocity, "/dvl", kDefinition);
+  ASSERT_THAT(ahead, SizeIs(1));
+  EXPECT_EQ(ahead[0].value, Eigen::Vector3d(3, 1, 2)) << "of SOLAQUA: x left, y up, z ahead";
+}
+
+}  // namespace
+}  // namespace pingvox

@@ -1,0 +1,108 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string_view>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/format.hpp"
+#include "support/bag_writer.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::ElementsAre;
+using testing::SizeIs;
+
+// Made by another writer.
+constexpr std::string_view kFlatMcap =
+    "894d434150300d0a 010d0000000000000004000000726f73320100000074"
+    "03480000000000000001002000000070696e673336305f736f6e61725f6d7367732f6d73672f536f6e61724563686f07000000726f73326d"
+    "7367 1300000075696e74385b5d20696e74656e736974696573"
+    "04180000000000000000000100050000002f6563686f0300000063647200000000"
+    "054200000000000000000000000000007572f2e8000000007572f2e8000000"
+    "00010000e80300000065cd1d02000000730000000000c03f01000400ee02dc050a00000004000000000a40ff"
+    "0f04000000000000005ed9b4d2 02140000000000000000000000000000000000000000000000b0c9c46f894d434150300d0a";
+
+TEST(Mcap, ReadsWhatAnotherWriterMade) {
+  const auto bytes = from_hex(kFlatMcap);
+  ASSERT_EQ(bytes.size(), 269U);
+  EXPECT_EQ(format_of(bytes), Format::kMcap);
+  const auto read = all_beams({"dive.mcap", bytes});
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.skipped, 0U);
+  ASSERT_THAT(read.items, SizeIs(1));
+  EXPECT_EQ(read.items[0].time_s, 1000.5);
+  EXPECT_NEAR(read.items[0].bearing_rad, std::numbers::pi - 1.5, 1e-12) << "as the head counts, clockwise";
+  EXPECT_EQ(read.items[0].bin_length_m, 2.5);
+  EXPECT_THAT(read.items[0].intensities, ElementsAre(0, 10, 64, 255));
+}
+
+bags::Mcap echoes(std::string_view compression, int chunks = 3) {
+  bags::Mcap mcap;
+  mcap.topic(4, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+  for (int i = 0; i < 10 * chunks; ++i) {
+    mcap.message(4, 1'000'000'000'000U + static_cast<unsigned>(i) * 100'000'000U, from_hex(bags::kSonarEcho));
+    if (i % 10 == 9) mcap.end_chunk(compression);
+  }
+  return mcap;
+}
+
+constexpr std::size_t kBehindChunks = 50;  ///< bytes
+
+TEST(Mcap, UnpacksItsChunks) {
+  for (const char* compression : {"", "lz4", "zstd"}) {
+    const auto read = all_beams({"dive.mcap", echoes(compression).closed()});
+    EXPECT_EQ(read.skipped, 0U) << compression;
+    EXPECT_THAT(read.items, SizeIs(30)) << compression;
+  }
+}
+
+TEST(Mcap, DropsOnlyTheChunkWithAFlippedBit) {
+  for (const char* compression : {"", "lz4", "zstd"}) {
+    SCOPED_TRACE(compression);
+    auto bytes = echoes(compression, 1).closed();
+    const std::size_t first = bytes.size() - kBehindChunks;
+    bytes = echoes(compression).closed();
+    const std::size_t in_second = first + (bytes.size() - first) / 4;
+    bytes[in_second] ^= 4;
+    const auto read = all_beams({"dive.mcap", bytes});
+    EXPECT_THAT(read.items, SizeIs(20));
+    EXPECT_EQ(read.skipped, 1U);
+  }
+}
+
+TEST(Mcap, ReadsOnBehindLostBytes) {
+  const auto whole = echoes("").closed();
+  for (std::size_t at = echoes("", 1).closed().size() - kBehindChunks; at < whole.size() - kBehindChunks; at += 5) {
+    auto bytes = whole;
+    bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at) + 3);
+    EXPECT_GE(all_beams({"dive.mcap", bytes}).items.size(), 19U) << "without bytes " << at;
+  }
+}
+
+TEST(Mcap, NeedsNoEnd) {
+  const auto whole = echoes("lz4").closed();
+  const auto cut = all_beams({"dive.mcap", {whole.begin(), whole.end() - std::ptrdiff_t{kBehindChunks}}});
+  EXPECT_THAT(cut.items, SizeIs(30));
+  EXPECT_EQ(cut.skipped, 1U) << "it was not closed";
+}
+
+TEST(Mcap, GivesTheBeamsOfAnImagingSonar) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/image", "marine_acoustic_msgs/msg/ProjectedSonarImage", "");
+  mcap.message(1, 1'000'500'000'000U,
+               from_hex("00010000e80300000065cd1d0200000073000000 001b3749 0080bb44 01000000f628dc3e 01000000295c0f3d "
+                        "01000000 00000000 000000000000f03f00000000000000000000000000000000 02000000 0000003f 0000803f "
+                        "00000000 00000000 01000000 02000000 00ff"));
+  mcap.end_chunk();
+  const auto read = all_beams({"dive.mcap", mcap.closed()});
+  EXPECT_EQ(read.skipped, 0U);
+  ASSERT_THAT(read.items, SizeIs(1));
+  EXPECT_EQ(read.items[0].bin_length_m, 0.5);
+  EXPECT_THAT(read.items[0].intensities, ElementsAre(0, 0, 255));
+}
+
+}  // namespace
+}  // namespace pingvox
