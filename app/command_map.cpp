@@ -162,9 +162,9 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("sweeps", report.sweeps)
       .add("echoes", report.echoes)
       .add("skipped", report.skipped)
-      .add("skipped_for", skipped_for)
-      .add("beam", beam_json(totals.used_beams.empty() ? BeamModelOptions{} : totals.used_beams.front().model))
-      .add("threshold", threshold_json(report))
+      .add("skipped_for", skipped_for);
+  totals.used_beams.empty() ? json.add_null("beam") : json.add("beam", beam_json(totals.used_beams.front().model));
+  json.add("threshold", threshold_json(report))
       .add("sound_speed_m_s", totals.sound_speed_m_s)
       .add("cells_freed", report.cells_freed)
       .add("cells_hit", report.cells_hit)
@@ -182,13 +182,12 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   std::string read;
   if (const std::size_t beams = report.beams - totals.points; beams > 0) {
     const std::size_t echoes = report.echoes - totals.points;
-    read = fmt::format("{} beams, {} complete sweep{}, {} echoes", beams, report.sweeps - totals.scans,
-                       report.sweeps - totals.scans == 1 ? "" : "s", echoes);
-    if (beams > echoes) read += fmt::format(", {} beams without echo", beams - echoes);
+    read = beams_text(beams, report.sweeps - totals.scans, echoes);
+    if (beams > echoes) read += fmt::format(", {} without echo", counted(beams - echoes, "beam"));
   }
   if (totals.scans > 0) {
-    read += fmt::format("{}{} points in {} scan{}", read.empty() ? "" : ", ", totals.points, totals.scans,
-                        totals.scans == 1 ? "" : "s");
+    read += fmt::format("{}{} in {}", read.empty() ? "" : ", ", counted(totals.points, "point"),
+                        counted(totals.scans, "scan"));
   }
   if (report.skipped > 0) read += fmt::format("; {} skipped", report.skipped);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
@@ -231,6 +230,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
 
   std::vector<std::string> kinds;
+  std::vector<std::string> nothing;  // texts of logs of which nothing is on the map
   {
     ProgressBar bar(command.output_options);
     for (std::size_t i = 0; i < command.logs.size(); ++i) {
@@ -238,6 +238,10 @@ Result<int> run(const MapCommand& command, Console& console) {
       Result<ByteStream> stream = ByteStream::open(command.logs[i]);
       if (!stream) return tl::unexpected(stream.error());
       const std::string name = stream->name();
+      if (stream->beginning().empty() && command.logs.size() > 1) {
+        nothing.push_back(fmt::format("{}: is empty", name));
+        continue;
+      }
       const Result<Format> format = identify_format(*stream);
       if (!format) return tl::unexpected(format.error());
       if (const std::string kind = kind_text(kind_of(*format)); std::ranges::find(kinds, kind) == kinds.end()) {
@@ -269,6 +273,10 @@ Result<int> run(const MapCommand& command, Console& console) {
       const Result<MappedLog> mapped = map_log(*log, name, *path, build, command.head, *map, progress);
       if (!mapped) return tl::unexpected(mapped.error());
       totals.add(*mapped, *log, name);
+      if (mapped->is_nothing) {
+        nothing.push_back(text_of_nothing(*mapped, name));
+        continue;
+      }
       if (!mapped->skipped_text.empty()) {
         bar.clear();
         console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));
@@ -287,6 +295,9 @@ Result<int> run(const MapCommand& command, Console& console) {
       }
     }
   }
+
+  if (nothing.size() == command.logs.size()) return fail(Error::Code::kCorrupt, nothing.front());
+  for (const std::string& text : nothing) console.say(text);
 
   if (command.occupancy.cut_depth) map = cut_tree(*map, *command.occupancy.cut_depth);
 

@@ -234,6 +234,7 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const
   }
   const Result<MappedLog> report = map_log(*log, name, *path, build, panel.head, *map);
   if (!report) return tl::unexpected(report.error());
+  if (report->is_nothing) return fail(Error::Code::kCorrupt, text_of_nothing(*report, name));
   return map;
 }
 

@@ -149,9 +149,9 @@ std::string nav_text(const VehiclePath& path) {
   } else if (attitude != position) {
     sources += " and " + on_one_line(position);
   }
-  std::string text = fmt::format("{} poses from {}", path.trajectory.poses().size(), sources);
+  std::string text = fmt::format("{} from {}", counted(path.trajectory.poses().size(), "pose"), sources);
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
-    text += fmt::format(", {} gap{}", gaps, gaps == 1 ? "" : "s");
+    text += ", " + counted(gaps, "gap");
   }
   if (damaged > 0) text += fmt::format("; skipped {} damaged", damaged);
   return text;
@@ -188,11 +188,14 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   mapped.skipped_text = text_of_skipped(mapped, path, map.lattice());
   const bool are_all_outside =
       report->outside.count == report->beams && report->cells_freed == 0 && report->cells_hit == 0;
-  if (report->beams == 0 || are_all_outside) {
-    const std::string reason = mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text;
-    return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", name, reason));
-  }
+  mapped.is_nothing = report->beams == 0 || are_all_outside;
   return mapped;
+}
+
+std::string text_of_nothing(const MappedLog& mapped, const std::string& name) {
+  assert(mapped.is_nothing);
+  return fmt::format("{}: nothing could be mapped: {}", name,
+                     mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text);
 }
 
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {

@@ -57,9 +57,12 @@ struct MappedLog {
   std::size_t damaged = 0;    ///< records that could not be read
   std::string first_damage;   ///< place and reason of the first one
   std::string skipped_text;   ///< skipped beams by reason, and what to do; empty: none
+  bool is_nothing = false;    ///< no beam or point of it is on the map
 };
+/// "dive.csv: nothing could be mapped: it is empty". REQUIRES one of which nothing is on the map.
+std::string text_of_nothing(const MappedLog& mapped, const std::string& name);
 
-/// Adds a log of either kind to the map. kCorrupt when nothing in it could be mapped.
+/// Adds a log of either kind to the map.
 /// @param name  of the log, for messages
 /// @param head  of the command line
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,

@@ -28,8 +28,16 @@ std::string bytes_text(std::size_t bytes) {
   return fmt::format("{:.1f} GB", size / (kKilo * kKilo * kKilo));
 }
 
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : noun.ends_with('o') ? "es" : "s");
+}
+
+std::string beams_text(std::size_t beams, std::size_t sweeps, std::size_t echoes) {
+  return fmt::format("{}, {}, {}", counted(beams, "beam"), counted(sweeps, "complete sweep"), counted(echoes, "echo"));
+}
+
 std::string damage_text(std::size_t records, std::string_view first) {
-  return fmt::format("{} damaged record{}, the first: {}", records, records == 1 ? "" : "s", on_one_line(first));
+  return fmt::format("{}, the first: {}", counted(records, "damaged record"), on_one_line(first));
 }
 
 std::string report_line(std::string_view label, std::string_view value) {

@@ -18,6 +18,11 @@ std::string bounds_text(const std::optional<Box>& bounds);
 /// A number of bytes as text: "12.3 MB".
 std::string bytes_text(std::size_t bytes);
 
+/// "1 beam", "2 echoes": a number with a noun.
+std::string counted(std::size_t count, std::string_view noun);
+/// "4000 beams, 10 complete sweeps, 3900 echoes"
+std::string beams_text(std::size_t beams, std::size_t sweeps, std::size_t echoes);
+
 /// "2 damaged records, the first: line 43: range 20000 m is longer than 10000 m"
 std::string damage_text(std::size_t records, std::string_view first);
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "mapping_options.hpp"
@@ -12,14 +13,27 @@
 
 namespace pingvox::app {
 
+namespace {
+
+tl::unexpected<Error> unknown_file(const std::string& name, std::span<const std::uint8_t> bytes) {
+  return fail(Error::Code::kUnsupported, fmt::format("{}: {}", name, describe_unknown_file(bytes)));
+}
+
+}  // namespace
+
 Result<Format> identify_format(const FileBytes& file) {
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   if (const auto format = format_of(file.view()); format && !is_true_ranges(file.view())) return *format;
-  return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, describe_unknown_file(file.view())));
+  return unknown_file(file.name, file.view());
 }
 
 Result<Format> identify_format(ByteStream& stream) {
-  if (const auto streamed = streamed_format_of(stream.beginning())) return *streamed;
+  const std::span<const std::uint8_t> beginning = stream.beginning();
+  if (const auto streamed = streamed_format_of(beginning)) return *streamed;
+  // A pipe may never end.
+  if (!stream.path() && beginning.size() == ByteStream::kBeginning && !may_be_known(beginning)) {
+    return unknown_file(stream.name(), beginning);
+  }
   if (const Result<void> held = stream.load_all(); !held) return tl::unexpected(held.error());
   return identify_format(stream.held());
 }

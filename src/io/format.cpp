@@ -145,6 +145,10 @@ std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning
   return std::nullopt;
 }
 
+bool may_be_known(std::span<const std::uint8_t> beginning) {
+  return format_of(beginning) || may_begin_binary_stl(beginning);
+}
+
 std::optional<Format> format_for_writing(std::string_view path) {
   constexpr std::array kSuffixes = {
       std::pair{std::string_view(".bt"), Format::kBt},    std::pair{std::string_view(".ot"), Format::kOt},

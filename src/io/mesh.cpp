@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -257,6 +258,19 @@ bool looks_like_binary_stl(Bytes bytes) {
   if (bytes.size() < kStlHead + 4) return false;
   const auto count = value_from<std::uint32_t>(bytes.subspan(kStlHead, 4), std::endian::little);
   return count > 0 && bytes.size() - kStlHead - 4 == std::uint64_t{count} * kStlFacet;
+}
+
+bool may_begin_binary_stl(Bytes beginning) {
+  if (beginning.size() < kStlHead + 4) return false;
+  const auto count = value_from<std::uint32_t>(beginning.subspan(kStlHead, 4), std::endian::little);
+  Bytes facets = beginning.subspan(kStlHead + 4);
+  if (std::uint64_t{count} * kStlFacet <= facets.size() || std::ranges::find(facets, 0) == facets.end()) return false;
+  for (; facets.size() >= kStlFacet; facets = facets.subspan(kStlFacet)) {
+    for (std::size_t i = 0; i < 12; ++i) {
+      if (!std::isfinite(value_from<float>(facets.subspan(4 * i, 4), std::endian::little))) return false;
+    }
+  }
+  return true;
 }
 
 bool looks_like_stl_text(Bytes bytes) {

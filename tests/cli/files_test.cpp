@@ -190,6 +190,30 @@ TEST(Files, ALogInWhichNothingCanBeMappedIsNoMap) {
   EXPECT_FALSE(here.has("out.bt"));
 }
 
+TEST(Files, OneLogInWhichNothingCanBeMappedDoesNotKeepTheOthersOutOfTheMap) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("empty.csv", "");
+  here.write("heading.csv", "time_s,bearing_rad,bin_length_m,intensities\n");
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "alone.pvx"}).status, 0);
+  const Outcome outcome = here.call({"map", "empty.csv", "tank.csv", "heading.csv", "-o", "all.pvx"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("empty.csv: is empty"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("heading.csv: nothing could be mapped: it is empty"));
+  EXPECT_EQ(here.call({"compare", "all.pvx", "alone.pvx"}).status, 0);
+  expect_error(here.call({"map", "empty.csv", "heading.csv", "-o", "none.bt"}), 1, {"empty.csv: is empty"});
+  EXPECT_FALSE(here.has("none.bt"));
+}
+
+// These would be read until memory is full.
+TEST(Files, APipeWithoutEndThatIsNoLogIsRefusedByItsBeginning) {
+  const Workplace here;
+  for (const std::string device : {"/dev/zero", "/dev/urandom"}) {
+    expect_error(here.call({"info", device}), 1, {device, "is none of the logs"});
+    expect_error(here.call({"map", device, "-o", "o.bt"}), 1, {device, "is none of the logs"});
+  }
+}
+
 // One line on standard error, and all else as of any map.
 TEST(Map, ThatKnowsNothingSaysWhy) {
   const Workplace here;

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "support/logs.hpp"
 #include "support/mat5_writer.hpp"
@@ -118,6 +121,31 @@ TEST(Format, IsNothingForNoise) {
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
     EXPECT_EQ(format_of(bytes), std::nullopt) << i;
   }
+}
+
+// What a pipe begins with decides whether it is read on.
+TEST(Format, MayBeKnownByTheBeginningOfALongFile) {
+  constexpr std::size_t kBeginning = std::size_t{1} << 16;
+  std::mt19937_64 random(2);
+  std::vector<std::uint8_t> noise(kBeginning), zeros(kBeginning);
+  for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
+  EXPECT_FALSE(may_be_known(noise));
+  EXPECT_FALSE(may_be_known(zeros));
+  std::string text;
+  while (text.size() < kBeginning) text += "y\n";
+  EXPECT_FALSE(may_be_known(bytes_of(text)));
+  std::string points;
+  while (points.size() < kBeginning) points += "1.5 -2 3\n";
+  EXPECT_TRUE(may_be_known(bytes_of(points)));
+
+  // A binary STL of 2000 facets, which is longer.
+  std::vector<std::uint8_t> stl = zeros;
+  constexpr std::uint32_t kFacets = 2000;
+  std::memcpy(&stl[80], &kFacets, 4);
+  EXPECT_TRUE(may_be_known(stl));
+  const float infinite = std::numeric_limits<float>::infinity();
+  std::memcpy(&stl[84 + 50 * 1000 + 44], &infinite, 4);
+  EXPECT_FALSE(may_be_known(stl)) << "a corner that is nowhere";
 }
 
 TEST(Format, OfAFileToBeWrittenIsItsSuffix) {

@@ -63,6 +63,8 @@ std::optional<Format> format_of(std::span<const std::uint8_t> bytes);
 
 /// The same for logs that are read as streams, by ByteStream::beginning() alone. nullopt: another format, or unknown.
 std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning);
+/// Whether a file that goes on after these first bytes (ByteStream::kBeginning of them) may be of a known format.
+bool may_be_known(std::span<const std::uint8_t> beginning);
 
 /// Format of a file to write, by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .tum .pgm .yaml .asc .png);
 /// nullopt: none that can be written.

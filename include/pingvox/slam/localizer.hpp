@@ -19,7 +19,7 @@
 
 namespace pingvox {
 
-/// How likely an echo or the lack of one is, as a ratio to an echo from an occupied cell (docs/slam.md).
+/// How likely an echo or the lack of one is, as a ratio to an echo from an occupied cell (docs/locate.md).
 struct BeamLikelihood {
   double range_deviation_m = 0.05;                   ///< of an echo from a cell of the map, along the beam
   double bearing_deviation_rad = 0.6 * kDegree_rad;  ///< of the direction that it came from

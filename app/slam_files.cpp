@@ -1,0 +1,45 @@
+#include "slam_files.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <ostream>
+#include <utility>
+#include <variant>
+
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
+#include "pingvox/io/tum.hpp"
+
+namespace pingvox::app {
+
+Result<Log> open_slam_log(const std::string& file, const SlamCommand& command) {
+  return ByteStream::open(file).and_then(
+      [&](ByteStream stream) { return open_log(std::move(stream), command.damage, std::nullopt, command.bag.beams); });
+}
+
+Result<std::unique_ptr<BeamSource>> open_slam_beams(const std::string& file, const SlamCommand& command) {
+  Result<Log> log = open_slam_log(file, command);
+  if (!log) return tl::unexpected(log.error());
+  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) return std::move(*beams);
+  return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", file));
+}
+
+Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command) {
+  auto written = write_file(command.output, [&](std::ostream& out) { return write_tum(trajectory, out); });
+  if (!written || !command.map) return written;
+  return write_map(map, command.map_format, command.made_by, *command.map);
+}
+
+Result<void> write_covariances(const SlamSolution& solution, const std::string& path) {
+  return write_file(path, [&](std::ostream& out) -> Result<void> {
+    out << "time_s,x_x,x_y,y_y,x_yaw,y_yaw,yaw_yaw\n";
+    for (const auto& [time_s, c] : solution.covariances) {
+      out << fmt::format("{:.9f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", time_s, c(0, 0), c(0, 1), c(1, 1),
+                         c(0, 2), c(1, 2), c(2, 2));
+    }
+    return {};
+  });
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,279 @@
+#include "slam_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "json.hpp"
+#include "map_report.hpp"
+#include "nav_report.hpp"
+#include "pingvox/geometry/degree.hpp"
+#include "stopwatch.hpp"
+
+namespace pingvox::app {
+namespace {
+
+double to_degrees(double angle_rad) {
+  return angle_rad / kDegree_rad;
+}
+
+JsonObject estimate_json(const Estimate& estimate, double unit = 1.0) {
+  JsonObject json;
+  return json.add("value", estimate.value / unit).add("sd", estimate.deviation / unit);
+}
+
+JsonObject calibration_json(const SlamCalibration& calibration) {
+  std::vector<JsonObject> headings;
+  for (const HeadingCalibration& heading : calibration.headings) {
+    headings.emplace_back()
+        .add("source", heading.source)
+        .add("constant_deg", estimate_json(heading.constant_rad, kDegree_rad))
+        .add("sin1_deg", estimate_json(heading.sin1_rad, kDegree_rad))
+        .add("cos1_deg", estimate_json(heading.cos1_rad, kDegree_rad))
+        .add("sin2_deg", estimate_json(heading.sin2_rad, kDegree_rad))
+        .add("cos2_deg", estimate_json(heading.cos2_rad, kDegree_rad));
+  }
+  JsonObject json;
+  return json.add("velocity_yaw_deg", estimate_json(calibration.velocity_yaw_rad, kDegree_rad))
+      .add("velocity_scale", estimate_json(calibration.velocity_scale))
+      .add("wall_in_echo", estimate_json(calibration.wall_in_echo))
+      .add("sonar_x_m", estimate_json(calibration.sonar_x_m))
+      .add("sonar_y_m", estimate_json(calibration.sonar_y_m))
+      .add("headings", headings);
+}
+
+double recorded_s(const SlamSolution& solution) {
+  const auto& poses = solution.trajectory.poses();
+  return poses.back().time_s - poses.front().time_s;
+}
+
+/// How well the poses are known.
+struct Uncertainty {
+  double mean_m = 0.0;    ///< mean of the standard deviations along the direction that is known least
+  PlaceEllipse greatest;  ///< and at which time
+  double greatest_at_s = 0.0, greatest_yaw_rad = 0.0;
+};
+
+/// nullopt: it was not estimated.
+std::optional<Uncertainty> uncertainty_of(const SlamSolution& solution) {
+  if (solution.covariances.empty()) return std::nullopt;
+  Uncertainty all;
+  for (const PoseCovariance& pose : solution.covariances) {
+    const PlaceEllipse place = place_ellipse(pose.covariance);
+    all.mean_m += place.along_m / static_cast<double>(solution.covariances.size());
+    all.greatest_yaw_rad = std::max(all.greatest_yaw_rad, std::sqrt(pose.covariance(2, 2)));
+    if (place.along_m <= all.greatest.along_m) continue;
+    all.greatest = place;
+    all.greatest_at_s = pose.time_s;
+  }
+  return all;
+}
+
+JsonObject json_of(const Uncertainty& all) {
+  JsonObject greatest, json;
+  greatest.add("at_s", all.greatest_at_s)
+      .add("along_m", all.greatest.along_m)
+      .add("across_m", all.greatest.across_m)
+      .add("direction_deg", to_degrees(all.greatest.direction_rad));
+  return json.add("mean_sd_m", all.mean_m)
+      .add("greatest_sd", greatest)
+      .add("greatest_yaw_sd_deg", to_degrees(all.greatest_yaw_rad));
+}
+
+JsonObject json_of(const SlamSeconds& seconds) {
+  JsonObject json;
+  return json.add("read", round_to_us(seconds.read))
+      .add("solve", round_to_us(seconds.solve))
+      .add("map", round_to_us(seconds.map))
+      .add("write", round_to_us(seconds.write))
+      .add("total", round_to_us(seconds.total));
+}
+
+std::string degrees_text(const Estimate& estimate) {
+  return fmt::format("{:.2f} +- {:.2f}", to_degrees(estimate.value), to_degrees(estimate.deviation));
+}
+
+std::string title_of(const SlamCommand& command) {
+  return command.output == "-" ? "standard output\n" : on_one_line(command.output) + "\n";
+}
+
+std::string seconds_text(const SlamSeconds& seconds) {
+  return fmt::format("{:.3f} = {:.3f} read + {:.3f} solve + {:.3f} map + {:.3f} write + rest", seconds.total,
+                     seconds.read, seconds.solve, seconds.map, seconds.write);
+}
+
+std::string velocity_text(const SlamReport& report) {
+  if (const auto& sonar = report.by_sonar) {
+    return fmt::format(
+        "not measured, but by the sonar: {} of {} sweeps match those before them, longest gap {:.0f} s; "
+        "without pairs it drifts by {:.1f} m",
+        sonar->matched, report.sweeps, report.longest_gap_s, sonar->drift_m);
+  }
+  const std::string check =
+      report.velocity_check ? fmt::format("{:.2f} m/s from what the sonar sees", report.velocity_check->difference_m_s)
+                            : std::string("not checked by the sonar");
+  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s; {}", on_one_line(report.velocity),
+                     report.velocities, report.velocities_clipped, report.longest_gap_s, check);
+}
+
+std::string sensors_text(const SlamSolution& solution) {
+  const SlamCalibration& c = solution.calibration;
+  std::string text;
+  if (!solution.report.by_sonar) {
+    text = fmt::format("velocity turned by {} degrees, scaled by {:.4f} +- {:.4f}; ", degrees_text(c.velocity_yaw_rad),
+                       1.0 + c.velocity_scale.value, c.velocity_scale.deviation);
+  }
+  return text + fmt::format("sonar moved by {:.2f} {:.2f} m; wall at {:.2f} in its echo", c.sonar_x_m.value,
+                            c.sonar_y_m.value, c.wall_in_echo.value);
+}
+
+}  // namespace
+
+std::string slam_json(const SlamSolution& solution, const SlamCommand& command, const SlamInputs& inputs,
+                      const SlamOptions& slam, const SlamSeconds& seconds) {
+  const SlamReport& report = solution.report;
+  JsonObject loops, submap_loops, velocity, largest, json;
+  loops.add("found", report.loops_found).add("kept", report.loops_kept);
+  submap_loops.add("found", report.submap_loops_found).add("kept", report.submap_loops_kept);
+  largest.add("knots", report.largest.knots).add("echoes", report.largest.echoes).add("pairs", report.largest.pairs);
+  velocity.add("source", report.velocity)
+      .add("samples", report.velocities)
+      .add("clipped", report.velocities_clipped)
+      .add("longest_gap_s", report.longest_gap_s);
+  if (report.by_sonar) {
+    JsonObject by_sonar;
+    by_sonar.add("matched", report.by_sonar->matched)
+        .add("noise_m_sqrt_s", report.by_sonar->noise_m_sqrt_s)
+        .add("drift_m", report.by_sonar->drift_m);
+    velocity.add("by_sonar", by_sonar);
+  } else {
+    velocity.add_null("by_sonar");
+  }
+  if (report.velocity_check) {
+    JsonObject check;
+    check.add("sweeps", report.velocity_check->sweeps).add("difference_m_s", report.velocity_check->difference_m_s);
+    velocity.add("check", check);
+  } else {
+    velocity.add_null("check");
+  }
+  json.add("poses", solution.trajectory.poses().size())
+      .add("beams", report.beams)
+      .add("sweeps", report.sweeps)
+      .add("echoes", report.echoes)
+      .add("skipped", inputs.skipped)
+      .add("sound_speed_m_s", slam.sound_speed_ratio * kAssumedSoundSpeed_m_s)
+      .add("knots", report.knots)
+      .add("pairs", report.pairs)
+      .add("pair_median_m", report.pair_median_m)
+      .add("loops", loops)
+      .add("submap_loops", submap_loops)
+      .add("velocity", velocity)
+      .add("heading", report.heading)
+      .add("nav_clock", json_of(inputs.nav_offset));
+  command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
+  std::vector<JsonObject> not_observable;
+  for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
+  json.add("not_observable", not_observable);
+  std::vector<JsonObject> implausible;
+  for (const std::string& what : report.implausible) implausible.emplace_back().add("name", what);
+  json.add("implausible", implausible);
+  const std::optional<Uncertainty> uncertainty = uncertainty_of(solution);
+  uncertainty ? json.add("uncertainty", json_of(*uncertainty)) : json.add_null("uncertainty");
+  if (command.slam.matching == Matching::kPairs) {
+    json.add("calibration", calibration_json(solution.calibration));
+  } else {
+    json.add_null("calibration");
+  }
+  if (inputs.mapped) {
+    JsonObject mapped;
+    json.add("map", mapped.add("beams", inputs.mapped->beams).add("skipped", inputs.mapped->skipped));
+  } else {
+    json.add_null("map");
+  }
+  json.add("recorded_s", recorded_s(solution)).add("seconds", json_of(seconds));
+  json.add("real_time_factor", recorded_s(solution) / seconds.total);
+  return json.text() + "\n";
+}
+
+std::string slam_text(const SlamSolution& solution, const SlamCommand& command, const SlamInputs& inputs,
+                      const SlamSeconds& seconds) {
+  const SlamReport& report = solution.report;
+  std::string text = title_of(command);
+  text += report_line("read", beams_text(report.beams, report.sweeps, report.echoes));
+  text += report_line("nav clock", text_of(inputs.nav_offset));
+  if (inputs.nav_water) text += report_line("water", water_text(*inputs.nav_water));
+  text += report_line("velocity", velocity_text(report));
+  text += report_line("trajectory", fmt::format("{} over {:.1f} s", counted(solution.trajectory.poses().size(), "pose"),
+                                                recorded_s(solution)));
+  if (command.slam.matching == Matching::kPairs) {
+    text += report_line("pairs", report.pairs == 0
+                                     ? "none: nothing but velocity and headings tells the poses"
+                                     : fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
+                                                   report.pair_median_m, report.loops_kept, report.loops_found));
+    if (report.submap_loops_found > 0) {
+      text += report_line(
+          "submaps", fmt::format("{} of {} loops kept before", report.submap_loops_kept, report.submap_loops_found));
+    }
+    text += report_line("sensors", sensors_text(solution));
+    for (const HeadingCalibration& heading : solution.calibration.headings) {
+      text +=
+          report_line("heading", fmt::format("{}: constant {}, deviation {:.2f} and {:.2f} degrees",
+                                             on_one_line(heading.source), degrees_text(heading.constant_rad),
+                                             to_degrees(std::hypot(heading.sin1_rad.value, heading.cos1_rad.value)),
+                                             to_degrees(std::hypot(heading.sin2_rad.value, heading.cos2_rad.value))));
+    }
+  }
+  if (const auto all = uncertainty_of(solution)) {
+    text += report_line(
+        "uncertain",
+        fmt::format("{:.2f} m in the mean; at {:.1f} s {:.2f} m along {:.0f} degrees from east and "
+                    "{:.2f} m across; yaw {:.2f} degrees",
+                    all->mean_m, all->greatest_at_s, all->greatest.along_m, to_degrees(all->greatest.direction_rad),
+                    all->greatest.across_m, to_degrees(all->greatest_yaw_rad)));
+  }
+  if (!report.not_observable.empty()) {
+    text +=
+        report_line("not known",
+                    on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(report.not_observable, ", "))));
+  }
+  if (!report.implausible.empty()) {
+    text +=
+        report_line("implausible", on_one_line(fmt::format("{}: far from what was expected; are --mount, --nav-mount "
+                                                           "and --nav-offset right?",
+                                                           fmt::join(report.implausible, ", "))));
+  }
+  return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
+                                                   recorded_s(solution) / seconds.total));
+}
+
+std::string scan_slam_json(const ScanSlamReport& report, std::size_t skipped, const SlamSeconds& seconds) {
+  JsonObject loops, json;
+  loops.add("found", report.loops_found).add("kept", report.loops_kept);
+  json.add("poses", report.scans)
+      .add("scans", report.scans)
+      .add("skipped", skipped)
+      .add("key_frames", report.key_frames)
+      .add("reach_m", report.reach_m)
+      .add("rounds", report.rounds)
+      .add("loops", loops)
+      .add("seconds", json_of(seconds));
+  return json.text() + "\n";
+}
+
+std::string scan_slam_text(const ScanSlamReport& report, const SlamCommand& command, const SlamSeconds& seconds) {
+  return title_of(command) +
+         report_line("read", fmt::format("{} scans, {} key frames, reach {:.3g} m", report.scans, report.key_frames,
+                                         report.reach_m)) +
+         report_line(
+             "loops",
+             report.loops_kept == 0
+                 ? fmt::format("none of {} kept: the poses are those of the odometry", report.loops_found)
+                 : fmt::format("{} of {} kept after {} rounds", report.loops_kept, report.loops_found, report.rounds)) +
+         report_line("seconds", seconds_text(seconds));
+}
+
+}  // namespace pingvox::app
