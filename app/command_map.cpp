@@ -210,6 +210,113 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
                                  totals.total_s, s.read, s.detect, s.trace, s.apply, totals.write_s));
 }
 
+/// Maps the logs of a command, one by one.
+class LogMapper {
+ public:
+  LogMapper(const MapCommand& command, const VehiclePath& path, const BuildOptions& build, OccupancyMap& map,
+            Totals& totals, Console& console)
+      : command_(command),
+        path_(path),
+        build_(build),
+        map_(map),
+        totals_(totals),
+        console_(console),
+        bar_(command.output_options) {}
+
+  /// Maps the next log.
+  Result<void> add(const std::string& file) {
+    ++opened_;
+    const Stopwatch read;
+    Result<ByteStream> stream = ByteStream::open(file);
+    if (!stream) return tl::unexpected(stream.error());
+    const std::string name = stream->name();
+    if (stream->beginning().empty() && command_.logs.size() > 1) {
+      nothing_.push_back(fmt::format("{}: is empty", name));
+      return check_options_used();
+    }
+    const Result<Format> format = identify_format(*stream);
+    if (!format) return tl::unexpected(format.error());
+    if (const std::string kind = kind_text(kind_of(*format)); std::ranges::find(kinds_, kind) == kinds_.end()) {
+      kinds_.push_back(kind);
+    }
+    if (const auto used = check_options_used(); !used) return used;
+    Result<Log> log = open_log(std::move(*stream), command_.damage, command_.cloud_origin_m, command_.bag.beams);
+    if (!log) return tl::unexpected(log.error());
+    if (const auto done = subtract_background(*log, file, command_.background_m, command_.damage, command_.bag.beams);
+        !done) {
+      return done;
+    }
+    totals_.report.seconds.read += read.seconds();
+
+    const Progress progress = [&](const BuildReport& done) { draw(share_read(*log), done.beams); };
+    const Result<MappedLog> mapped = map_log(*log, name, path_, build_, command_.head, map_, progress);
+    if (!mapped) return tl::unexpected(mapped.error());
+    totals_.add(*mapped, *log, name);
+    if (mapped->is_nothing) {
+      nothing_.push_back(text_of_nothing(*mapped, name));
+      return {};
+    }
+    say_what_is_odd(*mapped, name);
+    if (std::holds_alternative<std::unique_ptr<BeamSource>>(*log) && !command_.path.poses &&
+        command_.path.navs.empty()) {
+      if (const std::string hint = hint_at_path(name, *format); !hint.empty()) {
+        say(fmt::format("{}: mapped as if the vehicle did not move; {}", name, hint));
+      }
+    }
+    return {};
+  }
+
+  /// kCorrupt when nothing of any log is on the map; else names the logs of which nothing is.
+  Result<void> finish() {
+    if (nothing_.size() == command_.logs.size()) return fail(Error::Code::kCorrupt, nothing_.front());
+    for (const std::string& text : nothing_) say(text);
+    bar_.clear();
+    return {};
+  }
+
+ private:
+  /// Options without effect are known with the last log, before it is mapped.
+  Result<void> check_options_used() const {
+    if (opened_ < command_.logs.size() || kinds_.empty()) return {};
+    return check_limited(command_.limited, kinds_).map_error([](const Error& error) {
+      return Error{error.code, fmt::format("map: {}", error.message)};
+    });
+  }
+
+  void draw(std::optional<double> share, std::size_t beams) {
+    if (!bar_.is_due()) return;
+    // All logs count the same, as the length of later ones is unknown.
+    if (share) share = (static_cast<double>(opened_ - 1) + *share) / static_cast<double>(command_.logs.size());
+    bar_.draw(share, fmt::format("{}, {:.0f} s, {}", counted(totals_.report.beams + beams, "beam"), total_.seconds(),
+                                 bytes_text(map_.memory_bytes())));
+  }
+
+  void say_what_is_odd(const MappedLog& mapped, const std::string& name) {
+    if (!mapped.skipped_text.empty()) say(fmt::format("{}: skipped {}", name, mapped.skipped_text));
+    if (!command_.path.poses) return;
+    if (const std::string odd = odd_times_text(path_.trajectory, mapped.report); !odd.empty()) {
+      say(fmt::format("{}: {}", *command_.path.poses, odd));
+    }
+  }
+
+  void say(const std::string& text) {
+    bar_.clear();
+    console_.say(text);
+  }
+
+  const MapCommand& command_;
+  const VehiclePath& path_;
+  const BuildOptions& build_;
+  OccupancyMap& map_;
+  Totals& totals_;
+  Console& console_;
+  ProgressBar bar_;
+  Stopwatch total_;
+  std::size_t opened_ = 0;
+  std::vector<std::string> kinds_;    ///< of the logs
+  std::vector<std::string> nothing_;  ///< texts of logs of which nothing is on the map
+};
+
 }  // namespace
 
 Result<int> run(const MapCommand& command, Console& console) {
@@ -229,76 +336,13 @@ Result<int> run(const MapCommand& command, Console& console) {
   }
   totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
 
-  std::vector<std::string> kinds;
-  std::vector<std::string> nothing;  // texts of logs of which nothing is on the map
   {
-    ProgressBar bar(command.output_options);
-    for (std::size_t i = 0; i < command.logs.size(); ++i) {
-      const Stopwatch read;
-      Result<ByteStream> stream = ByteStream::open(command.logs[i]);
-      if (!stream) return tl::unexpected(stream.error());
-      const std::string name = stream->name();
-      if (stream->beginning().empty() && command.logs.size() > 1) {
-        nothing.push_back(fmt::format("{}: is empty", name));
-        continue;
-      }
-      const Result<Format> format = identify_format(*stream);
-      if (!format) return tl::unexpected(format.error());
-      if (const std::string kind = kind_text(kind_of(*format)); std::ranges::find(kinds, kind) == kinds.end()) {
-        kinds.push_back(kind);
-      }
-      // Known with the last log; printed before mapping it.
-      if (i + 1 == command.logs.size()) {
-        if (const auto used = check_limited(command.limited, kinds); !used) {
-          return fail(used.error().code, fmt::format("map: {}", used.error().message));
-        }
-      }
-      Result<Log> log = open_log(std::move(*stream), command.damage, command.cloud_origin_m, command.bag.beams);
-      if (!log) return tl::unexpected(log.error());
-      if (const auto done =
-              subtract_background(*log, command.logs[i], command.background_m, command.damage, command.bag.beams);
-          !done) {
-        return tl::unexpected(done.error());
-      }
-      totals.report.seconds.read += read.seconds();
-
-      const Progress progress = [&](const BuildReport& done) {
-        if (!bar.is_due()) return;
-        // All logs count the same, as the length of later ones is unknown.
-        std::optional<double> share = share_read(*log);
-        if (share) share = (static_cast<double>(i) + *share) / static_cast<double>(command.logs.size());
-        bar.draw(share, fmt::format("{} beams, {:.0f} s, {}", totals.report.beams + done.beams, total.seconds(),
-                                    bytes_text(map->memory_bytes())));
-      };
-      const Result<MappedLog> mapped = map_log(*log, name, *path, build, command.head, *map, progress);
-      if (!mapped) return tl::unexpected(mapped.error());
-      totals.add(*mapped, *log, name);
-      if (mapped->is_nothing) {
-        nothing.push_back(text_of_nothing(*mapped, name));
-        continue;
-      }
-      if (!mapped->skipped_text.empty()) {
-        bar.clear();
-        console.say(fmt::format("{}: skipped {}", name, mapped->skipped_text));
-      }
-      if (const std::string odd = odd_times_text(path->trajectory, mapped->report);
-          !odd.empty() && command.path.poses) {
-        bar.clear();
-        console.say(fmt::format("{}: {}", *command.path.poses, odd));
-      }
-      if (std::holds_alternative<std::unique_ptr<BeamSource>>(*log) && !command.path.poses &&
-          command.path.navs.empty()) {
-        if (const std::string hint = hint_at_path(name, *format); !hint.empty()) {
-          bar.clear();
-          console.say(fmt::format("{}: mapped as if the vehicle did not move; {}", name, hint));
-        }
-      }
+    LogMapper mapper(command, *path, build, *map, totals, console);
+    for (const std::string& log : command.logs) {
+      if (const auto added = mapper.add(log); !added) return tl::unexpected(added.error());
     }
+    if (const auto done = mapper.finish(); !done) return tl::unexpected(done.error());
   }
-
-  if (nothing.size() == command.logs.size()) return fail(Error::Code::kCorrupt, nothing.front());
-  for (const std::string& text : nothing) console.say(text);
-
   if (command.occupancy.cut_depth) map = cut_tree(*map, *command.occupancy.cut_depth);
 
   const Stopwatch write;
