@@ -24,6 +24,7 @@
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/points.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -81,7 +82,7 @@ Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& comma
   }
   write_sweep(assembler.finish());
   if (!out.flush()) return fail(Error::Code::kIo, "the echoes could not be written");
-  return fmt::format("{} echoes of {} beams", echoes, beams);
+  return fmt::format("{} of {}", counted(echoes, "echo"), counted(beams, "beam"));
 }
 
 /// Writes the beams of a log, or their echoes. @return what was written
@@ -103,8 +104,7 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   });
   if (!written) return tl::unexpected(written.error());
   const std::size_t skipped = (*source)->skipped();
-  if (skipped > 0)
-    what += fmt::format("; {} damaged ones skipped, the first: {}", skipped, on_one_line((*source)->first_damage()));
+  if (skipped > 0) what += "; skipped " + damage_text(skipped, (*source)->first_damage());
   const DeviceProfile* device = command.echoes ? nullptr : (*source)->device();
   if (device != nullptr) what += fmt::format(" (CSV names no sonar: map it with --device {})", device->name);
   return what;
@@ -218,7 +218,13 @@ Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
   if (!written) return tl::unexpected(written.error());
   const MapCounts counts = read.map.counts();
   if (kind_of(command.format) == FormatKind::kCloud) {
-    return fmt::format("{} occupied cells as points, one for each leaf", counts.occupied_cells);
+    std::size_t points = 0;
+    const Thresholds& thresholds = read.map.options().thresholds;
+    for_each_leaf(read.map, [&](const Leaf& leaf) {
+      points += classify(leaf.belief, thresholds) == Occupancy::kOccupied ? 1 : 0;
+    });
+    return fmt::format("{} for {}, one for each leaf", counted(points, "point"),
+                       counted(counts.occupied_cells, "occupied cell"));
   }
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);
 }

@@ -53,7 +53,7 @@ double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
 }
 
-void add_device(Summary& summary, const DeviceProfile& device) {
+void add_device(Summary& summary, const DeviceProfile& device, Format format) {
   const auto degrees = [](double angle_rad) { return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6; };
   const double width_deg = degrees(device.beam_width_rad), height_deg = degrees(device.beam_height_rad);
   JsonObject json;
@@ -65,8 +65,9 @@ void add_device(Summary& summary, const DeviceProfile& device) {
   summary.json.add("device", json);
   summary.text +=
       report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, blanking range {:.6g} m (--device)",
-                                        device.title, width_deg, height_deg, device.blanking_m)) +
-      report_line("intensities", std::string(device.intensity));
+                                        device.title, width_deg, height_deg, device.blanking_m));
+  // Bins that were hit have none.
+  if (format != Format::kBeamHits) summary.text += report_line("intensities", std::string(device.intensity));
 }
 
 void add_damage(Summary& summary, const std::vector<DamageKind>& kinds) {
@@ -178,7 +179,7 @@ class BeamSurvey {
                       report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", last_s_ - first_s_, first_s_)) +
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
-    if (const DeviceProfile* device = source.device()) add_device(summary, *device);
+    if (const DeviceProfile* device = source.device()) add_device(summary, *device, format);
     if (skipped > 0) summary.text += skipped_line(source);
     add_damage(summary, source.damage());
     return summary;

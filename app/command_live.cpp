@@ -431,10 +431,10 @@ class LiveRun {
     const BuildReport& report = mapper_.report();
     std::string text =
         (has_mapped() ? on_one_line(command_.output) : "no map") + "\n" +
-        report_line("heard", fmt::format("{} beams, {} complete sweeps, {} echoes; {} not mapped", beams_,
-                                         report.sweeps, report.echoes, unmapped_ + report.skipped)) +
-        report_line("line", fmt::format("{} unanswered, {} damaged, {} connections", status.unanswered, status.damaged,
-                                        status.connections));
+        report_line("heard", fmt::format("{}; {} not mapped", beams_text(beams_, report.sweeps, report.echoes),
+                                         unmapped_ + report.skipped)) +
+        report_line("line", fmt::format("{} unanswered, {} damaged, {}", status.unanswered, status.damaged,
+                                        counted(status.connections, "connection")));
     if (nav_) {
       text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->messages(),
                                              nav_->damaged(), report.no_pose.count));

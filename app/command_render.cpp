@@ -15,6 +15,7 @@
 
 #include "commands.hpp"
 #include "map_log.hpp"
+#include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
@@ -81,7 +82,7 @@ std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> e
     thresholds.add(echoes);
     if (found > 0) text += fmt::format(", threshold {}", thresholds.text(panel.build.echo.threshold));
   }
-  if (skipped > 0) text += fmt::format("; {} damaged ones skipped", skipped);
+  if (skipped > 0) text += fmt::format("; skipped {}", counted(skipped, "damaged record"));
   return text;
 }
 
@@ -207,7 +208,7 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
   if (drawn) return std::move(*drawn);
   if (sweeps == 0) {
     return fail(Error::Code::kCorrupt,
-                fmt::format("{}: no beams ({} damaged ones skipped)", name, (*source)->skipped()));
+                fmt::format("{}: no beams (skipped {})", name, counted((*source)->skipped(), "damaged record")));
   }
   return fail(Error::Code::kBadOption,
               fmt::format("render: {}: there is no sweep {}, only {}", name, panel.sweep.value_or(0), sweeps));

@@ -30,7 +30,9 @@ namespace {
 /// The files that a solution is made of: "dive.csv, nav.csv"
 std::string inputs_text(const SlamCommand& command) {
   std::string text = command.logs.front();
-  for (const std::string& nav : command.navs) text += ", " + nav;
+  for (const std::string& nav : command.navs) {
+    if (nav != command.logs.front()) text += ", " + nav;
+  }
   return text;
 }
 

@@ -36,6 +36,13 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
 }
 
+/// Whether poses can be made of it: of positions and attitudes, or by dead reckoning.
+bool tells_path(const NavLog& nav) {
+  const auto has = [&](NavQuantity quantity) { return nav.best(quantity) != nullptr; };
+  if (has(NavQuantity::kPosition) || has(NavQuantity::kFix)) return has(NavQuantity::kAttitude);
+  return has(NavQuantity::kVelocity);
+}
+
 /// "3036 of 4000 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover
 /// the log, with times in seconds of the same clock)"
 std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, const Lattice& lattice) {
@@ -50,7 +57,6 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
     if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
     text += fmt::format(" ({})", advice);
   };
-  if (mapped.damaged > 0) text = damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
   const auto& poses = path.trajectory.poses();
   add(no_pose, "beam",
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
@@ -62,6 +68,9 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
       "lengths are in metres; a larger --resolution reaches farther");
+  if (mapped.damaged > 0) {
+    text += (text.empty() ? "" : "; ") + damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
+  }
   return text;
 }
 
@@ -77,7 +86,8 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   const std::optional<Format> format = format_of(file->view());
   if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
   return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a trajectory", file->name, description_of(*format)));
+              fmt::format("{}: is {}, not a trajectory{}", file->name, description_of(*format),
+                          kind_of(*format) == FormatKind::kNav ? ": give it with --nav" : ""));
 }
 
 Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, const BagArgs& bag, Damage damage) {
@@ -88,10 +98,18 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
   }
   const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav);
   if (!nav) return tl::unexpected(nav.error());
+  const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
+  if (!tells_path(nav->log)) {
+    return fail(
+        Error::Code::kUnsupported,
+        fmt::format("{}: tells no path: it has no valid {} ('pingvox slam' estimates one from sonar and heading, "
+                    "for --poses)",
+                    fmt::join(path.navs, ", "),
+                    has(NavQuantity::kPosition) || has(NavQuantity::kFix) ? "attitude" : "position or velocity"));
+  }
   const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, {log, bag.beams}, damage);
   if (!offset) return tl::unexpected(offset.error());
   const std::optional<WaterAround> water = water_around(nav->log);
-  const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
   const auto name_files = [&](Error error) {
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
     return error;
@@ -133,7 +151,13 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<c
   const NavFile& read = contents->nav;
   const bool has_attitude = read.log.best(NavQuantity::kAttitude) != nullptr;
   Result<NavTrajectory> made = has_attitude ? nav_trajectory(read.log) : nav_positions(read.log);
-  if (!made) return fail(made.error().code, fmt::format("{}: {}", name, made.error().message));
+  if (!made) {
+    const bool can_reckon = read.log.best(NavQuantity::kVelocity) != nullptr;
+    return fail(
+        made.error().code,
+        fmt::format("{}: {}{}", name, made.error().message,
+                    can_reckon ? " ('pingvox slam --matching none' reckons them from velocity and heading)" : ""));
+  }
   return VehiclePath{std::move(made->trajectory),
                      VehiclePath::Nav{made->attitude, made->position, "", damaged_records(read), {}, {}}};
 }
@@ -218,9 +242,7 @@ std::string hint_at_path(const std::string& log, Format format) {
   if (!is_bag(format)) return {};
   const Result<BagContents> bag =
       ByteStream::open(log).and_then([](ByteStream stream) { return read_bag(std::move(stream)); });
-  const auto has = [&](NavQuantity quantity) { return bag && bag->nav.log.best(quantity) != nullptr; };
-  const bool tells_path = has(NavQuantity::kPosition) || has(NavQuantity::kFix) || has(NavQuantity::kVelocity);
-  return tells_path ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
+  return bag && tells_path(bag->nav.log) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
 }
 
 }  // namespace pingvox::app

@@ -59,6 +59,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
+    const bool is_empty = stream->beginning().empty();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
     const Result<Format> format = identify_format(*stream);
     const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
@@ -70,6 +71,11 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
                                                          "by --poses, 'locate' by --odometry",
                                                          shown, description_of(*format)));
     }
+    if (!contents && format && kind_of(*format) != FormatKind::kNav && !is_bag(*format)) {
+      return fail(Error::Code::kUnsupported,
+                  fmt::format("{}: is {}, not a navigation log", shown, description_of(*format)));
+    }
+    if (!contents && is_empty) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", shown));
     if (!contents) return tl::unexpected(contents.error());
     topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());
     const NavLog& log = contents->nav.log;
@@ -146,11 +152,11 @@ std::string nav_text(const NavFile& nav) {
                      report_line("clock", std::string(name_of(nav.log.clock())));
   std::size_t widest = 6;
   for (const NavSource& source : nav.log.sources()) widest = std::max(widest, on_one_line(source.name).size());
-  text += fmt::format("  {:<{}}  {:<9} {:>8} {:>8} {:>8} {:>5} {:>17} {:>17}\n", "source", widest, "quantity",
+  text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8} {:>5} {:>17} {:>17}\n", "source", widest, "quantity",
                       "samples", "invalid", "rate Hz", "gaps", "from s", "to s");
   for (const NavSource& source : nav.log.sources()) {
     const NavSummary summary = summary_of(source);
-    text += fmt::format("  {:<{}}  {:<9} {:>8} {:>8} {:>8.2f} {:>5} {:>17.3f} {:>17.3f}\n", on_one_line(source.name),
+    text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8.2f} {:>5} {:>17.3f} {:>17.3f}\n", on_one_line(source.name),
                         widest, name_of(source.quantity), summary.samples, summary.invalid, summary.rate_hz,
                         summary.gaps, summary.from_s, summary.to_s);
   }

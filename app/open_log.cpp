@@ -90,9 +90,10 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
   }
   return fail(Error::Code::kUnsupported,
               fmt::format("{}: is {}, not a log of a sonar{}", stream.name(), description_of(*format),
-                          kind == FormatKind::kMesh  ? ": 'pingvox convert' makes a map of its surface"
-                          : kind == FormatKind::kNav ? ": give it with --nav"
-                                                     : ""));
+                          kind == FormatKind::kMesh         ? ": 'pingvox convert' makes a map of its surface"
+                          : kind == FormatKind::kNav        ? ": give it with --nav"
+                          : kind == FormatKind::kTrajectory ? ": 'map' and 'render' take it by --poses"
+                                                            : ""));
 }
 
 Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic) {

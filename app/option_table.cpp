@@ -305,8 +305,10 @@ Result<void> check_limited(const std::vector<LimitedOption>& options, const std:
       return std::find(option.only_for.begin(), option.only_for.end(), kind) != option.only_for.end();
     };
     if (std::any_of(kinds.begin(), kinds.end(), is_met)) continue;
-    return fail(Error::Code::kBadOption, fmt::format("{}: has no effect on {}, only on {}", option.name,
-                                                     fmt::join(kinds, " or "), fmt::join(option.only_for, " or ")));
+    // A list of all that a picture is would not help.
+    const std::string here = kinds.size() > 2 ? "here" : fmt::format("on {}", fmt::join(kinds, " or "));
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}: has no effect {}, only on {}", option.name, here, fmt::join(option.only_for, " or ")));
   }
   return {};
 }

@@ -33,7 +33,7 @@ Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes) 
   } catch (const std::bad_alloc&) {
     return fail(Error::Code::kNoMemory, fmt::format("{}: out of memory: the map was not read", file.name));
   }
-  const std::string what = format               ? fmt::format("a file of the kind '{}'", name_of(*format))
+  const std::string what = format               ? std::string(description_of(*format))
                            : file.bytes.empty() ? "empty"
                                                 : "of no kind that we know";
   return fail(Error::Code::kUnsupported, fmt::format("{}: not a map (.bt, .ot or .pvx) but {}", file.name, what));

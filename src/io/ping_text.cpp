@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -185,8 +186,10 @@ class PrintedFrames final : public FrameContainer {
 bool looks_like_ping_text(std::span<const std::uint8_t> beginning) {
   constexpr std::size_t kSearched = 1024;
   const std::string_view text = text_of(beginning.first(std::min(beginning.size(), kSearched)));
-  return text.find("ID: 2300 - device_data") != std::string_view::npos ||
-         text.find("ID: 2301 - auto_device_data") != std::string_view::npos;
+  const auto begins_line = [&](std::string_view words) {
+    return text.starts_with(words) || text.find('\n' + std::string(words)) != std::string_view::npos;
+  };
+  return begins_line("ID: 2300 - device_data") || begins_line("ID: 2301 - auto_device_data");
 }
 
 Result<std::unique_ptr<BeamSource>> open_ping_text(ByteStream stream, Damage damage) {

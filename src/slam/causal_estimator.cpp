@@ -225,7 +225,7 @@ Result<SlamSolution> CausalEstimator::finish() {
   }
   if (odometry_.tells() && !tells_enough()) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("the navigation has no velocity over ground, and the sonar does not tell how the vehicle "
+                fmt::format("there is no velocity over ground, and the sonar does not tell how the vehicle "
                             "moved: {} of {} sweeps match those before them",
                             odometry_.matched(), all_sweeps_ - 1));
   }

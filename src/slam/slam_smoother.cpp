@@ -196,9 +196,8 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   if (!log) return tl::unexpected(log.error());
   if (options.motion == MotionSource::kVelocity && velocity_of(*log, options)) return sources;
   if (sweeps.size() < 2) {
-    return fail(
-        Error::Code::kUnsupported,
-        "the navigation has no valid velocity over ground, and there is only one sweep: nothing to match it with");
+    return fail(Error::Code::kUnsupported,
+                "there is no valid velocity over ground, and there is only one sweep: nothing to match it with");
   }
   const std::vector<HeadingSource> headings = headings_of(*log, options);
   if (!headings.empty()) {
@@ -210,9 +209,10 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
       sonar_odometry(sweeps, sonar_mount(options.body_from_sonar), headings.empty() ? nullptr : &headings.front());
   if (!odometry.tells) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("the navigation has no valid velocity over ground{}, and the sonar does not tell how the "
-                            "vehicle moved: {} of {} sweeps match those before them",
-                            headings.empty() ? " and no heading" : "", odometry.matched, sweeps.size() - 1));
+                fmt::format("there is no valid velocity over ground{}, and the sonar does not tell how the vehicle "
+                            "moved: {} of {} sweeps match those before them{}",
+                            headings.empty() ? " and no heading" : "", odometry.matched, sweeps.size() - 1,
+                            headings.empty() ? fmt::format(" (without a heading, {} have to)", kMatchesAlone) : ""));
   }
   // One without a valid sample would be in its way.
   std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });

@@ -38,7 +38,6 @@ constexpr double kMinWay = 0.3;
 constexpr double kMinMatched = 0.5, kMinMatchedAlone = 0.9;
 /// Without a heading a turn that is missed or mistaken bends all that comes after it: in a square tank two sweeps in a
 /// row fit after a wrong one, but not many.
-constexpr std::size_t kFewestAlone = 5;
 /// Standard deviation of the way after one second [m / sqrt(s)]: how unevenly a vehicle moves.
 constexpr double kDensity = 0.1;
 
@@ -261,7 +260,7 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMoun
     velocities.push_back(sample_at(0.5 * (from_s + to_s), {velocity.x(), velocity.y(), 0.0}));
   }
   odometry.tells = odometry.matched >= least_matched(steps.size(), heading != nullptr);
-  if (heading == nullptr && (odometry.matched < kFewestAlone || misses_one_within(steps))) odometry.tells = false;
+  if (heading == nullptr && (odometry.matched < kMatchesAlone || misses_one_within(steps))) odometry.tells = false;
   if (velocities.empty()) return odometry;
   // The first and the last motion go on to the ends.
   velocities.insert(velocities.begin(), sample_at(begin_s, velocities.front().value));

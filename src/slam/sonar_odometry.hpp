@@ -15,6 +15,9 @@
 /// How the vehicle moved, by its sonar.
 namespace pingvox {
 
+/// The fewest sweeps that match, without a heading, to tell a trajectory.
+inline constexpr std::size_t kMatchesAlone = 5;
+
 /// The name of the sources that are made here.
 inline constexpr std::string_view kSonarSource = "sonar odometry";
 
@@ -22,7 +25,7 @@ struct SonarOdometry {
   NavSource velocity;       ///< in the frame of the body, in the middle between sweeps that match
   NavSource heading;        ///< what it turned, from 0; only of a vehicle whose heading is not known
   std::size_t matched = 0;  ///< sweeps that match the ones before
-  bool tells = false;       ///< enough do to tell a trajectory: half of them; without a heading five or more, and
+  bool tells = false;       ///< enough do to tell a trajectory: half of them; without a heading kMatchesAlone, and
                             ///< all but some at the ends, nine of ten
 };
 

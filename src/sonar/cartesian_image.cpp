@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/option_errors.hpp"
 
 namespace pingvox {
@@ -47,7 +48,7 @@ void dot_axes(const PolarImage& image, const Sweep& sweep, CartesianImage& out) 
 class Interpolation {
  public:
   Interpolation(const PolarImage& image, const Sweep& sweep, double beam_width_rad)
-      : image_(image), sweep_(sweep), axes_(axes_of(sweep)), reach_rad_(0.5 * beam_width_rad) {}
+      : image_(image), sweep_(sweep), axes_(axes_of(sweep)), reach_rad_(drawn_reach_rad(sweep, beam_width_rad)) {}
 
   std::uint8_t at(double x_m, double y_m) const {
     const double range_m = std::hypot(x_m, y_m);
@@ -93,6 +94,21 @@ Result<void> CartesianOptions::validate() const {
   errors.require(beam_width_rad > 0.0 && beam_width_rad <= kTurn_rad, "beam_width_rad", "> 0 and at most 2 pi",
                  beam_width_rad);
   return errors.result("cartesian image");
+}
+
+double drawn_reach_rad(const Sweep& sweep, double beam_width_rad) {
+  constexpr double kCoarsest_rad = 12.0 * kDegree_rad;
+  const double half = 0.5 * beam_width_rad;
+  const std::vector<Axis> axes = axes_of(sweep);
+  std::vector<double> steps_rad;
+  for (std::size_t n = 1; n < axes.size(); ++n) {
+    const double step_rad = axes[n].bearing_rad - axes[n - 1].bearing_rad;
+    if (step_rad > 0.0) steps_rad.push_back(step_rad);
+  }
+  if (steps_rad.empty()) return half;
+  const auto middle = steps_rad.begin() + static_cast<std::ptrdiff_t>(steps_rad.size() / 2);
+  std::ranges::nth_element(steps_rad, middle);
+  return *middle > kCoarsest_rad ? half : std::max(half, *middle);
 }
 
 CartesianImage cartesian_image(const PolarImage& image, const Sweep& sweep, const CartesianOptions& options) {

@@ -37,8 +37,8 @@ struct Disc {
 /// Range of the beams by direction, to distinguish silence from directions without a beam.
 class Reach {
  public:
-  Reach(const Sweep& sweep, double beam_width_rad) : range_m_(kDirections, 0.0) {
-    const double half = 0.5 * beam_width_rad / kStep_rad;
+  Reach(const Sweep& sweep, double reach_rad) : range_m_(kDirections, 0.0) {
+    const double half = reach_rad / kStep_rad;
     for (const Beam& beam : sweep.beams) {
       const double range_m = static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
       const double middle = beam.bearing_rad / kStep_rad;
@@ -164,7 +164,7 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
     draw_label(picture, kMargin, footer, "nothing was heard", kTextScale, kInk);
     return picture;
   }
-  draw_image(picture, area, drawn, Reach(sweep, options.beam_width_rad), options.style);
+  draw_image(picture, area, drawn, Reach(sweep, drawn_reach_rad(sweep, options.beam_width_rad)), options.style);
   draw_polar_grid(picture, area, disc);
   draw_ring_labels(picture, disc);
   const double radius = std::clamp(half / 200.0, 1.6, 4.0);

@@ -94,7 +94,10 @@ TEST(Clouds, OfAMapAreReadAgain) {
   expect_done(here, {"convert", "tank.ot", "-o", "tank.ply"});
   expect_done(here, {"map", "tank.csv", "-o", "direct.pcd"});
   EXPECT_EQ(here.read("direct.pcd"), here.read("tank.pcd"));
-  EXPECT_EQ(info(here, "tank.pcd").at("points"), info(here, "tank.ply").at("points"));
+  const std::string points = info(here, "tank.ply").at("points");
+  EXPECT_EQ(info(here, "tank.pcd").at("points"), points);
+  EXPECT_THAT(here.call({"convert", "tank.ot", "-o", "tank.ply"}).out,
+              HasSubstr("tank.ply: " + points + " points for "));
   EXPECT_EQ(info(here, "tank.pcd").at("bounds.max"), info(here, "tank.ply").at("bounds.max"));
 }
 

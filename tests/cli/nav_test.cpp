@@ -217,6 +217,21 @@ TEST(Nav, WithoutAPositionAVelocityGivesDeadReckoning) {
   EXPECT_EQ(render.status, 0) << render.err;
 }
 
+TEST(Nav, ThatTellsNoPathIsRefusedBeforeItsClock) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("heading.csv", "time_s,source,quantity,x,y,z\n900,IMU,attitude,0,0,0\n901,IMU,attitude,0,0,0.1\n");
+  expect_error(here.call({"map", "tank.csv", "-o", "o.bt", "--nav", "heading.csv"}), 1,
+               {"heading.csv: tells no path: it has no valid position or velocity", "pingvox slam"});
+  here.write("dvl.csv", "time_s,source,quantity,x,y,z\n0,DVL,velocity,0.1,0,0\n1,DVL,velocity,0.1,0,0\n");
+  expect_error(here.call({"convert", "dvl.csv", "-o", "o.tum"}), 1,
+               {"dvl.csv", "no valid position", "slam --matching none"});
+  expect_error(here.call({"map", "tank.csv", "-o", "o.bt", "--nav", "tank.csv"}), 1,
+               {"tank.csv: is a log of beams (.csv), not a navigation log"});
+  expect_error(here.call({"map", "tank.csv", "-o", "o.bt", "--poses", "dvl.csv"}), 1,
+               {"dvl.csv", "give it with --nav"});
+}
+
 TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   const Workplace here;
   // 2026-01-01 00:00:10 UTC, at noon in local time and in the name of the log.

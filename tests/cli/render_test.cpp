@@ -80,6 +80,8 @@ TEST(Render, DrawsTrajectoriesOverAMap) {
   expect_error(here.call({"render", map, "-o", "a.png", "--path", "none.tum"}), 1, {"none.tum"});
   expect_error(here.call({"render", map, "-o", "a.png", "--path", "dive.csv"}), 1, {"dive.csv", "not a trajectory"});
   expect_error(here.call({"render", "dive.csv", "-o", "a.png", "--path", "dive.tum"}), 2, {"--path"});
+  expect_error(here.call({"render", map, "-o", "a.png", "--z", "0"}), 2,
+               {"--z: has no effect here, only on --view slice"});
 }
 
 TEST(Render, SettingsStandSideBySide) {

@@ -53,6 +53,28 @@ TEST(CartesianImage, OfRingsHasTheBinOfItsRangeInEachPixel) {
   EXPECT_GT(checked, 100'000U);
 }
 
+// Fast heads step by more than the width of a beam.
+TEST(CartesianImage, HasNoGapsBetweenTheBeamsOfACoarseTurn) {
+  for (const std::size_t beams : {36U, 100U, 120U, 200U}) {
+    const Sweep sweep = turn_of(beams, 40, [](double, std::size_t) { return std::uint8_t{90}; });
+    const CartesianImage image = cartesian_image(PolarImage(sweep), sweep, {.size_px = 200});
+    for (std::size_t row = 0; row < image.size_px; ++row) {
+      for (std::size_t column = 0; column < image.size_px; ++column) {
+        if (std::hypot(image.x_m(row), image.y_m(column)) > 3.99) continue;
+        ASSERT_EQ(image.at(row, column), 90) << beams << " beams: " << row << ", " << column;
+      }
+    }
+  }
+}
+
+TEST(CartesianImage, LeavesASectorWithoutBeamsEmpty) {
+  Sweep sweep = turn_of(100, 40, [](double, std::size_t) { return std::uint8_t{90}; });
+  std::erase_if(sweep.beams, [](const Beam& beam) { return std::abs(beam.bearing_rad - kPi) < kPi / 4.0; });
+  const CartesianImage image = cartesian_image(PolarImage(sweep), sweep, {.size_px = 200});
+  EXPECT_EQ(image.at(150, 100), 0) << "astern";
+  EXPECT_EQ(image.at(50, 100), 90) << "ahead";
+}
+
 TEST(CartesianImage, GoesEvenlyFromOneAxisToTheNextAlsoAcrossBearingZero) {
   // Intensity falls along a cosine; between axes 1.8 degrees apart a straight line is as good.
   const Sweep sweep = turn_of(200, 40, [](double bearing, std::size_t) {

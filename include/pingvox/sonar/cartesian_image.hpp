@@ -39,9 +39,13 @@ struct CartesianOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
+/// How far from its axis a beam of the sweep is drawn [rad]: half its width, or the usual step to the next beam where
+/// that is more (up to 12 degrees), so that heads with coarse steps leave no gaps.
+double drawn_reach_rad(const Sweep& sweep, double beam_width_rad);
+
 /// Draws a sweep out to the range of its longest beam.
-/// - kInterpolate: mean of the bins at the pixel's range of all beams whose axis is less than half a width away; the
-///   weight falls from 1 at the axis to 0 at half a width. Pixels that no beam reaches are 0.
+/// - kInterpolate: mean of the bins at the pixel's range of all beams whose axis is less than drawn_reach_rad away; the
+///   weight falls from 1 at the axis to 0 there. Pixels that no beam reaches are 0.
 /// - kNothing: the strongest bin whose centre lies in the pixel.
 /// @param image  the sweep's image, filtered or not
 /// REQUIRES valid options, image.rows() == sweep.beams.size()
