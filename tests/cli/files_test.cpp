@@ -235,8 +235,8 @@ TEST(Map, BeamsOutsideOfItAreCalledThat) {
   here.write("a.txt", "NODE 0 0 0 0 0 0\n1 0 0\n1e6 0 0\nx\n");
   const Outcome outcome = here.call({"map", "a.txt", "-o", "a.bt"});
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("; 2 skipped\n"));
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("a.txt: skipped 1 damaged record, the first: line 4: is not a point"));
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("1 of 2 points outside of the map"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("a.txt: skipped 1 of 2 points outside of the map"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("; 1 damaged record, the first: line 4: is not a point"));
 }
 
 TEST(Output, AFailedCallKeepsTheOldFile) {
