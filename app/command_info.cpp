@@ -91,8 +91,7 @@ std::string lengths_text(const BinLengths& lengths) {
   if (lengths.size() == 1) return fmt::format("{:.6g} m", lengths.front().first);
   std::string text;
   for (std::size_t i = 0; i < std::min(lengths.size(), kMaxListed); ++i) {
-    text += fmt::format("{}{:.6g} m ({} {})", i == 0 ? "" : ", ", lengths[i].first, lengths[i].second,
-                        lengths[i].second == 1 ? "beam" : "beams");
+    text += fmt::format("{}{:.6g} m ({})", i == 0 ? "" : ", ", lengths[i].first, counted(lengths[i].second, "beam"));
   }
   return lengths.size() > kMaxListed ? text + fmt::format(" and {} more", lengths.size() - kMaxListed) : text;
 }

@@ -266,12 +266,10 @@ class LogMapper {
     return {};
   }
 
-  /// kCorrupt when nothing of any log is on the map; else names the logs of which nothing is.
+  /// Names the logs of which nothing is on the map; kCorrupt when these are all of them.
   Result<void> finish() {
-    if (nothing_.size() == command_.logs.size()) return fail(Error::Code::kCorrupt, nothing_.front());
-    for (const std::string& text : nothing_) say(text);
     bar_.clear();
-    return {};
+    return say_nothing_mapped(nothing_, command_.logs.size(), console_);
   }
 
  private:

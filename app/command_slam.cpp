@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "calibration_file.hpp"
 #include "commands.hpp"
@@ -79,21 +80,21 @@ Result<MappedBeams> map_along(const Trajectory& trajectory, const SlamCalibratio
   build.sound_speed_ratio = slam.sound_speed_ratio;
   build.body_from_sensor = slam.body_from_sonar;
   MappedBeams all;
-  std::string nothing;
+  std::vector<std::string> nothing;
   for (const std::string& name : command.logs) {
     auto beams = open_slam_beams(name, command);
     if (!beams) return tl::unexpected(beams.error());
     const Result<MappedLog> mapped = map_log(Log(std::move(*beams)), name, path, build, {}, map);
     if (!mapped) return tl::unexpected(mapped.error());
-    if (!mapped->skipped_text.empty()) {
+    if (mapped->is_nothing) {
+      nothing.push_back(text_of_nothing(*mapped, name));
+    } else if (!mapped->skipped_text.empty()) {
       console.say(fmt::format("{}: left out of the map: {}", name, mapped->skipped_text));
     }
-    if (mapped->is_nothing && nothing.empty()) nothing = text_of_nothing(*mapped, name);
     all.beams += mapped->report.beams;
     all.skipped += mapped->report.skipped;
   }
-  if (all.beams == 0) return fail(Error::Code::kCorrupt, nothing);
-  return all;
+  return say_nothing_mapped(nothing, command.logs.size(), console).map([&] { return all; });
 }
 
 /// What is known of the sensors; mounts of the command line win.

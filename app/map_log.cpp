@@ -36,11 +36,17 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
   return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
 }
 
+bool has(const NavLog& nav, NavQuantity quantity) {
+  return nav.best(quantity) != nullptr;
+}
+
+bool has_position(const NavLog& nav) {
+  return has(nav, NavQuantity::kPosition) || has(nav, NavQuantity::kFix);
+}
+
 /// Whether poses can be made of it: of positions and attitudes, or by dead reckoning.
 bool tells_path(const NavLog& nav) {
-  const auto has = [&](NavQuantity quantity) { return nav.best(quantity) != nullptr; };
-  if (has(NavQuantity::kPosition) || has(NavQuantity::kFix)) return has(NavQuantity::kAttitude);
-  return has(NavQuantity::kVelocity);
+  return has(nav, has_position(nav) ? NavQuantity::kAttitude : NavQuantity::kVelocity);
 }
 
 /// "3036 of 4000 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover
@@ -98,14 +104,12 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
   }
   const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav);
   if (!nav) return tl::unexpected(nav.error());
-  const auto has = [&](NavQuantity quantity) { return nav->log.best(quantity) != nullptr; };
   if (!tells_path(nav->log)) {
     return fail(
         Error::Code::kUnsupported,
         fmt::format("{}: tells no path: it has no valid {} ('pingvox slam' estimates one from sonar and heading, "
                     "for --poses)",
-                    fmt::join(path.navs, ", "),
-                    has(NavQuantity::kPosition) || has(NavQuantity::kFix) ? "attitude" : "position or velocity"));
+                    fmt::join(path.navs, ", "), has_position(nav->log) ? "attitude" : "position or velocity"));
   }
   const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, {log, bag.beams}, damage);
   if (!offset) return tl::unexpected(offset.error());
@@ -114,7 +118,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
     return error;
   };
-  if (!has(NavQuantity::kPosition) && !has(NavQuantity::kFix) && has(NavQuantity::kVelocity)) {
+  if (!has_position(nav->log)) {
     OdometryOptions options{.body_from_source = {}, .offset_s = offset->offset_s};
     Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();
     if (path.calibration) {
@@ -149,10 +153,10 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<c
   const Result<BagContents> contents = read_nav_log(std::move(nav), damage, fields);
   if (!contents) return tl::unexpected(contents.error());
   const NavFile& read = contents->nav;
-  const bool has_attitude = read.log.best(NavQuantity::kAttitude) != nullptr;
+  const bool has_attitude = has(read.log, NavQuantity::kAttitude);
   Result<NavTrajectory> made = has_attitude ? nav_trajectory(read.log) : nav_positions(read.log);
   if (!made) {
-    const bool can_reckon = read.log.best(NavQuantity::kVelocity) != nullptr;
+    const bool can_reckon = has(read.log, NavQuantity::kVelocity);
     return fail(
         made.error().code,
         fmt::format("{}: {}{}", name, made.error().message,
@@ -220,6 +224,12 @@ std::string text_of_nothing(const MappedLog& mapped, const std::string& name) {
   assert(mapped.is_nothing);
   return fmt::format("{}: nothing could be mapped: {}", name,
                      mapped.skipped_text.empty() ? "it is empty" : mapped.skipped_text);
+}
+
+Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size_t logs, Console& console) {
+  if (texts.size() == logs) return fail(Error::Code::kCorrupt, texts.front());
+  for (const std::string& text : texts) console.say(text);
+  return {};
 }
 
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {

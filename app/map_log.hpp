@@ -4,8 +4,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "nav_clock.hpp"
 #include "open_log.hpp"
 #include "pingvox/geometry/trajectory.hpp"
@@ -61,6 +63,9 @@ struct MappedLog {
 };
 /// "dive.csv: nothing could be mapped: it is empty". REQUIRES one of which nothing is on the map.
 std::string text_of_nothing(const MappedLog& mapped, const std::string& name);
+/// Names the logs of which nothing is on the map; kCorrupt when these are all of them.
+/// @param texts  one for each of these logs
+Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size_t logs, Console& console);
 
 /// Adds a log of either kind to the map.
 /// @param name  of the log, for messages

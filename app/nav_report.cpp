@@ -59,7 +59,6 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
-    const bool is_empty = stream->beginning().empty();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
     const Result<Format> format = identify_format(*stream);
     const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
@@ -71,11 +70,6 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
                                                          "by --poses, 'locate' by --odometry",
                                                          shown, description_of(*format)));
     }
-    if (!contents && format && kind_of(*format) != FormatKind::kNav && !is_bag(*format)) {
-      return fail(Error::Code::kUnsupported,
-                  fmt::format("{}: is {}, not a navigation log", shown, description_of(*format)));
-    }
-    if (!contents && is_empty) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", shown));
     if (!contents) return tl::unexpected(contents.error());
     topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());
     const NavLog& log = contents->nav.log;

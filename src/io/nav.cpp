@@ -56,7 +56,10 @@ Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
   } else if (format == Format::kNavCsv) {
     reading = read_nav_csv(file.view());
   } else {
-    return fail(Error::Code::kUnsupported, fmt::format("{}: is not a navigation log", file.name));
+    const std::string what = format               ? fmt::format("is {}, not a navigation log", description_of(*format))
+                             : file.bytes.empty() ? "is empty"
+                                                  : "is not a navigation log";
+    return fail(Error::Code::kUnsupported, fmt::format("{}: {}", file.name, what));
   }
   if (damage == Damage::kFail && !reading.damage.empty()) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, first_damage_text(reading.damage.front())));

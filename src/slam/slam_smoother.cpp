@@ -208,11 +208,12 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   SonarOdometry odometry =
       sonar_odometry(sweeps, sonar_mount(options.body_from_sonar), headings.empty() ? nullptr : &headings.front());
   if (!odometry.tells) {
+    const bool are_too_few = headings.empty() && odometry.matched < kMatchesAlone;
     return fail(Error::Code::kUnsupported,
                 fmt::format("there is no valid velocity over ground{}, and the sonar does not tell how the vehicle "
                             "moved: {} of {} sweeps match those before them{}",
                             headings.empty() ? " and no heading" : "", odometry.matched, sweeps.size() - 1,
-                            headings.empty() ? fmt::format(" (without a heading, {} have to)", kMatchesAlone) : ""));
+                            are_too_few ? fmt::format(" (without a heading, {} have to)", kMatchesAlone) : ""));
   }
   // One without a valid sample would be in its way.
   std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });

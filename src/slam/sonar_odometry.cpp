@@ -36,8 +36,6 @@ constexpr double kMaxSpread_cells = 2.3;
 constexpr double kMinWay = 0.3;
 /// The fewest sweeps that match, as a share, with a heading and without: a sonar that sees less tells no trajectory.
 constexpr double kMinMatched = 0.5, kMinMatchedAlone = 0.9;
-/// Without a heading a turn that is missed or mistaken bends all that comes after it: in a square tank two sweeps in a
-/// row fit after a wrong one, but not many.
 /// Standard deviation of the way after one second [m / sqrt(s)]: how unevenly a vehicle moves.
 constexpr double kDensity = 0.1;
 

@@ -15,7 +15,8 @@
 /// How the vehicle moved, by its sonar.
 namespace pingvox {
 
-/// The fewest sweeps that match, without a heading, to tell a trajectory.
+/// The fewest sweeps that match, without a heading, to tell a trajectory. A turn that is missed or mistaken bends all
+/// that comes after it: in a square tank two sweeps in a row fit after a wrong one, but not many.
 inline constexpr std::size_t kMatchesAlone = 5;
 
 /// The name of the sources that are made here.
