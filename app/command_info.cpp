@@ -362,12 +362,19 @@ void add_topics(Summary& summary, const std::vector<BagTopicSummary>& topics) {
   summary.json.add("topics", std::span<const JsonObject>(list));
 }
 
+/// The first fields of many.
+std::string first_fields(const std::string& fields) {
+  constexpr std::size_t kShown = 200;  // characters
+  if (fields.size() <= kShown) return fields;
+  return fields.substr(0, fields.rfind(',', kShown)) + ", ... (all with --json)";
+}
+
 /// What --fields can name.
 std::string other_fields_text(const std::vector<BagTopicSummary>& topics) {
   std::string text;
   for (const BagTopicSummary& topic : topics) {
     if (topic.fields.empty()) continue;
-    text += fmt::format("  {}: {}\n", on_one_line(topic.name), on_one_line(topic.fields));
+    text += fmt::format("  {}: {}\n", on_one_line(topic.name), on_one_line(first_fields(topic.fields)));
   }
   return text.empty() ? text : "fields in the messages of other topics (for --fields):\n" + text;
 }
@@ -428,7 +435,7 @@ Result<Summary> summarize_file(ByteStream stream, const InfoCommand& command) {
     case FormatKind::kNav:
       return summarize_nav(file, *format, damage);
     default:
-      return summarize_log(std::move(stream), *format, damage);
+      return summarize_log(std::move(stream), *format, damage, command.bag.beams);
   }
 }
 

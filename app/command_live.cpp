@@ -1,4 +1,3 @@
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <poll.h>
 
@@ -6,166 +5,28 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <deque>
 #include <filesystem>
-#include <future>
-#include <new>
+#include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "json.hpp"
 #include "live_navigation.hpp"
+#include "live_sonar.hpp"
 #include "map_report.hpp"
+#include "map_writer.hpp"
+#include "obstacle_sender.hpp"
 #include "pingvox/device/live_source.hpp"
-#include "pingvox/io/beams.hpp"
-#include "pingvox/io/maps.hpp"
-#include "pingvox/io/mavlink_obstacles.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
-#include "pingvox/mapping/obstacle_sectors.hpp"
 #include "progress.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
 namespace {
-
-/// When the beams' clock was 0.
-struct Start {
-  double s = 0.0;                   ///< of the stopwatch
-  std::uint64_t since_1970_ms = 0;  ///< the same as a date
-};
-
-/// Ping Viewer's name for a log, "20261123-175346123", in local time.
-std::string name_by_time(const Start& start) {
-  const auto seconds = static_cast<std::time_t>(start.since_1970_ms / 1000);
-  std::tm local = {};
-  ::localtime_r(&seconds, &local);
-  return fmt::format("{:%Y%m%d-%H%M%S}{:03}", local, start.since_1970_ms % 1000);
-}
-
-/// The file to record the sonar to; nullopt: none.
-std::optional<std::filesystem::path> record_path(const LiveCommand& command, const Start& start) {
-  if (!command.record) return std::nullopt;
-  std::filesystem::path path = *command.record;
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    path /= name_by_time(start) + (command.device.kind == LiveDevice::Kind::kMicron ? ".csv" : ".bin");
-  }
-  return path;
-}
-
-template <class Recorder>
-Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record, const Start& start) {
-  if (!record) return std::nullopt;
-  return Recorder::create(record->string(), start.since_1970_ms).map([](Recorder created) {
-    return std::optional(std::move(created));
-  });
-}
-
-/// @param record  nullopt: none
-Result<std::unique_ptr<LiveSource>> source_of(const LiveCommand& command,
-                                              const std::optional<std::filesystem::path>& record, const Start& start) {
-  const LiveDevice& device = command.device;
-  if (device.kind == LiveDevice::Kind::kReplay) {
-    return ByteStream::open(device.address)
-        .and_then([](ByteStream stream) { return open_beams(std::move(stream)); })
-        .map([&](std::unique_ptr<BeamSource> log) { return replay_source(std::move(log), device.speed); });
-  }
-  if (device.kind == LiveDevice::Kind::kMicron) {
-    return recorder_of<SeanetRecorder>(record, start).map([&](std::optional<SeanetRecorder> recorder) {
-      return micron_source(device.address, command.micron, std::move(recorder), start.s);
-    });
-  }
-  return recorder_of<PingViewerRecorder>(record, start).map([&](std::optional<PingViewerRecorder> recorder) {
-    return ping360_source(device.address, command.ping360, std::move(recorder), start.s);
-  });
-}
-
-/// Sends the nearest obstacles to an autopilot.
-class ObstacleSender {
- public:
-  static Result<ObstacleSender> open(const std::string& address, const ObstacleOptions& options) {
-    return Link::open(address).map([&](Link link) { return ObstacleSender(std::move(link), options); });
-  }
-
-  double due_s() const { return due_s_; }
-
-  /// @param map_from_body  nullopt: not known
-  void send(const OccupancyMap& map, const std::optional<Pose>& map_from_body, double now_s) {
-    constexpr double kEvery_s = 0.2;
-    constexpr std::uint8_t kObstacleAvoidance = 196;  // a component
-    due_s_ = now_s + kEvery_s;
-    if (!map_from_body) return;
-    const ObstacleDistance message = message_of(nearest_obstacles(map, *map_from_body, options_));
-    const MavlinkSender sender = {.sequence = sequence_++, .component = kObstacleAvoidance};
-    // An autopilot that is not there is sent the next one.
-    static_cast<void>(link_.write(make_mavlink_frame(kObstacleDistance, payload_of(message), sender)));
-  }
-
- private:
-  ObstacleSender(Link link, const ObstacleOptions& options) : link_(std::move(link)), options_(options) {}
-
-  ObstacleDistance message_of(const ObstacleSectors& obstacles) const {
-    const auto cm_of = [](double metres) { return static_cast<std::uint16_t>(std::lround(metres * 100.0)); };
-    ObstacleDistance message;
-    message.time_us = static_cast<std::uint64_t>(
-        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-            .count());
-    message.min_cm = cm_of(options_.min_range_m);
-    message.max_cm = cm_of(options_.max_range_m);
-    std::ranges::transform(obstacles.sectors, message.cm.begin(), [&](const ObstacleSectors::Sector& sector) {
-      using What = ObstacleSectors::What;
-      if (sector.what == What::kObstacle) return cm_of(sector.range_m);
-      return sector.what == What::kClear ? static_cast<std::uint16_t>(message.max_cm + 1) : ObstacleDistance::kUnknown;
-    });
-    return message;
-  }
-
-  Link link_;
-  ObstacleOptions options_;
-  double due_s_ = 0.0;
-  std::uint8_t sequence_ = 0;
-};
-
-/// Writes maps in a thread of its own: a disk may take seconds, in which the lines' buffers would overflow.
-class MapWriter {
- public:
-  explicit MapWriter(const LiveCommand& command) : command_(command) {}
-
-  /// Writes a copy of the map, unless the last one is still being written.
-  /// @return error of the last one, or kNoMemory or kIo when this one cannot be begun
-  Result<void> write(const OccupancyMap& map) {
-    Result<void> last;
-    if (written_.valid()) {
-      if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
-      last = written_.get();
-    }
-    try {
-      written_ = std::async(std::launch::async, [this, copy = map] {
-        return write_map(copy, command_.format, command_.made_by, command_.output);
-      });
-    } catch (const std::bad_alloc&) {
-      return fail(Error::Code::kNoMemory, fmt::format("{}: not written: out of memory for a copy", command_.output));
-    } catch (const std::system_error& error) {
-      return fail(Error::Code::kIo, fmt::format("{}: not written: no thread: {}", command_.output, error.what()));
-    }
-    return last;
-  }
-
-  /// Writes the last map. @return its error
-  Result<void> finish(const OccupancyMap& map) {
-    if (written_.valid()) written_.wait();
-    return write_map(map, command_.format, command_.made_by, command_.output);
-  }
-
- private:
-  const LiveCommand& command_;
-  std::future<Result<void>> written_;
-};
 
 /// One run: receives beams, queues and maps them.
 class LiveRun {
@@ -472,9 +333,9 @@ Result<int> run(const LiveCommand& command, Console& console) {
   if (!map) return tl::unexpected(map.error());
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
   const auto since_1970_ms = std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count();
-  const Start start{watch.seconds(), static_cast<std::uint64_t>(since_1970_ms)};
+  const LiveStart start{watch.seconds(), static_cast<std::uint64_t>(since_1970_ms)};
   const std::optional<std::filesystem::path> record = record_path(command, start);
-  Result<std::unique_ptr<LiveSource>> source = source_of(command, record, start);
+  Result<std::unique_ptr<LiveSource>> source = open_live_sonar(command, record, start);
   if (!source) return tl::unexpected(source.error());
   std::optional<Navigation> nav;
   if (!command.nav.empty()) {

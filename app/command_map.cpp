@@ -126,7 +126,8 @@ JsonObject nav_json(const VehiclePath& path) {
       .add("gaps", path.trajectory.gaps())
       .add("skipped", path.nav->damaged)
       .add("velocity", path.nav->velocity)
-      .add("clock", json_of(path.nav->offset));
+      .add("clock", json_of(path.nav->offset))
+      .add("frame", frame_text(*path.nav));
 }
 
 std::string json_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
@@ -202,7 +203,9 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   }
   if (totals.nav_water) beams += report_line("water", water_text(*totals.nav_water));
   return name + "\n" + report_line("read", read) +
-         (path.nav ? report_line("nav", nav_text(path)) + report_line("nav clock", text_of(path.nav->offset)) : "") +
+         (path.nav ? report_line("nav", nav_text(path)) + report_line("nav clock", text_of(path.nav->offset)) +
+                         report_line("frame", frame_text(*path.nav))
+                   : "") +
          beams + map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
@@ -236,9 +239,9 @@ class LogMapper {
     }
     const Result<Format> format = identify_format(*stream);
     if (!format) return tl::unexpected(format.error());
-    if (const std::string kind = kind_text(kind_of(*format)); std::ranges::find(kinds_, kind) == kinds_.end()) {
-      kinds_.push_back(kind);
-    }
+    const FormatKind kind = kind_of(*format);
+    add_kind(kind_text(kind));
+    if (kind == FormatKind::kBeams && build_.model.shape == BeamShape::kRay) add_kind(std::string(kRayBeams));
     if (const auto used = check_options_used(); !used) return used;
     Result<Log> log = open_log(std::move(*stream), command_.damage, command_.cloud_origin_m, command_.bag.beams);
     if (!log) return tl::unexpected(log.error());
@@ -273,6 +276,10 @@ class LogMapper {
   }
 
  private:
+  void add_kind(std::string kind) {
+    if (std::ranges::find(kinds_, kind) == kinds_.end()) kinds_.push_back(std::move(kind));
+  }
+
   /// Options without effect are known with the last log, before it is mapped.
   Result<void> check_options_used() const {
     if (opened_ < command_.logs.size() || kinds_.empty()) return {};

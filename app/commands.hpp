@@ -27,7 +27,7 @@
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
-#include "pingvox/slam/localizer.hpp"
+#include "pingvox/slam/locate_recording.hpp"
 #include "pingvox/slam/odometry.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/device_profile.hpp"
@@ -224,11 +224,6 @@ struct SlamCommand {
   std::optional<double> nav_offset_s;  ///< added to the times of `navs`; nullopt: to be found
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
-};
-
-struct StartPose {
-  double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
-  double deviation_m = 0.5, deviation_rad = 10.0 * kDegree_rad;
 };
 
 /// Which poses `locate` writes.

@@ -14,6 +14,7 @@
 #include "console.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -128,9 +129,10 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
     }
     return odometry_of(nav->log, options)
         .map([&](Odometry odometry) {
-          return VehiclePath{std::move(odometry.odometry_from_body),
-                             VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water},
-                             sonar_moved_m, VehiclePath::kNavMustCover};
+          return VehiclePath{
+              std::move(odometry.odometry_from_body),
+              VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water, std::nullopt},
+              sonar_moved_m, VehiclePath::kNavMustCover};
         })
         .map_error(name_files);
   }
@@ -141,9 +143,10 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
   }
   return nav_trajectory(nav->log, offset->offset_s)
       .map([&](NavTrajectory made) {
-        return VehiclePath{std::move(made.trajectory),
-                           VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water},
-                           Eigen::Vector3d::Zero(), VehiclePath::kNavMustCover};
+        return VehiclePath{
+            std::move(made.trajectory),
+            VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water, made.origin_fix},
+            Eigen::Vector3d::Zero(), VehiclePath::kNavMustCover};
       })
       .map_error(name_files);
 }
@@ -162,13 +165,14 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<c
         fmt::format("{}: {}{}", name, made.error().message,
                     can_reckon ? " ('pingvox slam --matching none' reckons them from velocity and heading)" : ""));
   }
-  return VehiclePath{std::move(made->trajectory),
-                     VehiclePath::Nav{made->attitude, made->position, "", damaged_records(read), {}, {}}};
+  return VehiclePath{
+      std::move(made->trajectory),
+      VehiclePath::Nav{made->attitude, made->position, "", damaged_records(read), {}, {}, made->origin_fix}};
 }
 
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
-  const auto& [attitude, position, velocity, damaged, offset, water] = *path.nav;
+  const auto& [attitude, position, velocity, damaged, offset, water, origin_fix] = *path.nav;
   std::string sources = on_one_line(attitude.empty() ? position : attitude);
   if (!velocity.empty()) {
     sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));
@@ -181,8 +185,19 @@ std::string nav_text(const VehiclePath& path) {
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += ", " + counted(gaps, "gap");
   }
-  if (damaged > 0) text += fmt::format("; skipped {} damaged", damaged);
+  if (damaged > 0) text += fmt::format("; skipped {}", counted(damaged, "damaged record"));
   return text;
+}
+
+std::string frame_text(const VehiclePath::Nav& nav) {
+  if (nav.position.empty()) return frame_text(nav.attitude);
+  if (!nav.origin_fix) return fmt::format("origin and axes are those of {}", on_one_line(nav.position));
+  return fmt::format("x east, y north of latitude {:.7f}, longitude {:.7f} degrees", nav.origin_fix->x() / kDegree_rad,
+                     nav.origin_fix->y() / kDegree_rad);
+}
+
+std::string frame_text(std::string_view heading) {
+  return fmt::format("origin at the first pose; x east, y north as far as {} points north", on_one_line(heading));
 }
 
 Result<void> check_ranges(const BuildOptions& options) {

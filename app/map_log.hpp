@@ -30,6 +30,7 @@ struct VehiclePath {
     std::size_t damaged = 0;         ///< records that could not be read
     NavOffset offset;                ///< that was added to its times
     std::optional<WaterAround> water;
+    std::optional<Eigen::Vector3d> origin_fix;  ///< NavTrajectory::origin_fix
   };
   std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
@@ -47,6 +48,10 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
+/// What the axes of the map are. REQUIRES a path from a navigation log.
+std::string frame_text(const VehiclePath::Nav& nav);
+/// The same of a path that begins at 0, 0 and is turned as a heading says.
+std::string frame_text(std::string_view heading);
 
 /// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);

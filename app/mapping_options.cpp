@@ -399,7 +399,9 @@ OptionTable::Group sensor_group(BuildArgs& args) {
               model.hit_from),
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};
   for (Option& option : group.options) {
-    if (option.name != "--ray") option.only_for = {std::string(kBeamLogs)};
+    option.only_for = {std::string(kBeamLogs)};
+    if (option.name == "--ray")
+      option.only_for = {std::string(kRayBeams), std::string(kPointLogs), std::string(kClouds)};
     if (option.name == "--beam-width" || option.name == "--free-share" || option.name == "--device")
       option.only_with = {{"--beam", {"fan", "cone"}}};
     if (option.name == "--beam-height") option.only_with = {{"--beam", {"cone"}}};

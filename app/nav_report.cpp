@@ -157,12 +157,12 @@ std::string nav_text(const NavFile& nav) {
   for (const NavSource& source : nav.log.sources()) {
     if (!source.step_back) continue;
     const auto& [step_from_s, step_to_s, late] = *source.step_back;
-    text +=
-        report_line("clock back", fmt::format("{} of {} by {:.3f} s, from {:.3f} to {:.3f} s; {} sample(s) come late",
-                                              name_of(source.quantity), on_one_line(source.name),
-                                              step_from_s - step_to_s, step_from_s, step_to_s, late));
+    text += report_line("clock back",
+                        fmt::format("{} of {} by {:.3f} s, from {:.3f} to {:.3f} s; {} late", name_of(source.quantity),
+                                    on_one_line(source.name), step_from_s - step_to_s, step_from_s, step_to_s,
+                                    counted(late, "sample")));
   }
-  if (damaged_records(nav) > 0) text += report_line("skipped", fmt::format("{} damaged", damaged_records(nav)));
+  if (damaged_records(nav) > 0) text += report_line("skipped", counted(damaged_records(nav), "damaged record"));
   return text;
 }
 

@@ -80,6 +80,10 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
   const Result<Format> format = identify_format(stream);
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
+  if (!topic.name.empty() && !topic.fields && !is_bag(*format)) {
+    return usage_error(
+        fmt::format("{}: --topic: has no effect on {}, only on ROS bags", stream.name(), description_of(*format)));
+  }
   if (kind == FormatKind::kBeams) {
     return open_beams(std::move(stream), damage, topic).map([](auto source) { return Log(std::move(source)); });
   }

@@ -254,6 +254,7 @@ Result<Command> live_command(const Args& args) {
   for (OptionTable::Group& group : table.groups) {
     for (Option& option : group.options) {
       option.only_for.clear();  // there are no others than beams
+      if (option.name == "--ray") option.only_with = {{"--beam", {"ray"}}};
       if (group.title == "Head") option.only_for = {std::string(kHead)};
     }
   }

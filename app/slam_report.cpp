@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "json.hpp"
+#include "map_log.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -127,8 +128,8 @@ std::string sensors_text(const SlamSolution& solution) {
     text = fmt::format("velocity turned by {} degrees, scaled by {:.4f} +- {:.4f}; ", degrees_text(c.velocity_yaw_rad),
                        1.0 + c.velocity_scale.value, c.velocity_scale.deviation);
   }
-  return text + fmt::format("sonar moved by {:.2f} {:.2f} m; wall at {:.2f} in its echo", c.sonar_x_m.value,
-                            c.sonar_y_m.value, c.wall_in_echo.value);
+  return text + fmt::format("sonar moved by {:.2f} {:.2f} m; wall at {:.2f} in its echo (-1: first bin, 1: last)",
+                            c.sonar_x_m.value, c.sonar_y_m.value, c.wall_in_echo.value);
 }
 
 }  // namespace
@@ -173,6 +174,7 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
       .add("submap_loops", submap_loops)
       .add("velocity", velocity)
       .add("heading", report.heading)
+      .add("frame", frame_text(report.heading))
       .add("nav_clock", json_of(inputs.nav_offset));
   command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
@@ -209,6 +211,7 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   text += report_line("velocity", velocity_text(report));
   text += report_line("trajectory", fmt::format("{} over {:.1f} s", counted(solution.trajectory.poses().size(), "pose"),
                                                 recorded_s(solution)));
+  text += report_line("frame", frame_text(report.heading));
   if (command.slam.matching == Matching::kPairs) {
     text += report_line("pairs", report.pairs == 0
                                      ? "none: nothing but velocity and headings tells the poses"

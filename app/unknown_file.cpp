@@ -69,10 +69,12 @@ std::optional<std::string> describe_unread_file(std::span<const std::uint8_t> by
 std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
   if (auto known = describe_unread_file(bytes)) return *std::move(known);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::string_view what =
-      is_text(text) ? "is text, but its first line names no columns of beams, and it is no scan log, cloud or mesh"
-                    : "is none of the logs, clouds, maps, meshes and trajectories that pingvox reads";
-  return fmt::format("{}: {}", what, kAsCsv);
+  if (is_text(text)) {
+    return "is text of no known format: beams as CSV begin with the line "
+           "'time_s,bearing_cw_deg,bin_length_m,intensities' "
+           "(docs/formats.md)";
+  }
+  return fmt::format("is none of the logs, clouds, maps, meshes and trajectories that pingvox reads: {}", kAsCsv);
 }
 
 bool is_true_ranges(std::span<const std::uint8_t> bytes) {

@@ -55,11 +55,12 @@ Pose translation(const Eigen::Vector3d& position_m) {
   return Pose(Eigen::Translation3d(position_m));
 }
 
-/// Turns fixes into positions relative to the first.
-void make_positions(NavSource& fixes) {
+/// Turns fixes into positions relative to the first, which is returned.
+Eigen::Vector3d make_positions(NavSource& fixes) {
   const Eigen::Vector3d origin = fixes.samples.front().value;
   fixes.quantity = NavQuantity::kPosition;
   for (NavSample& sample : fixes.samples) sample.value = position_of_fix(sample.value, origin);
+  return origin;
 }
 
 /// Sets the height of positions by the depth at their time; those without a depth are left out.
@@ -72,21 +73,28 @@ Result<void> set_depths(NavSource& positions, const NavSource& depth) {
   return {};
 }
 
+struct PositionSource {
+  NavSource source;  ///< in metres
+  std::optional<Eigen::Vector3d> origin_fix;
+};
+
 /// nullopt: the log has no position.
-Result<std::optional<NavSource>> position_source(const NavLog& log) {
+Result<std::optional<PositionSource>> position_source(const NavLog& log) {
   Result<std::optional<NavSource>> position = main_source(log, NavQuantity::kPosition);
-  if (!position || *position) return position;
+  if (!position) return tl::unexpected(position.error());
+  if (*position) return PositionSource{*std::move(*position), std::nullopt};
   Result<std::optional<NavSource>> found = main_source(log, NavQuantity::kFix);
-  if (!found || !*found) return found;
+  if (!found) return tl::unexpected(found.error());
+  if (!*found) return std::nullopt;
   NavSource& fixes = **found;
-  make_positions(fixes);
+  const Eigen::Vector3d origin = make_positions(fixes);
   if (auto depth = depth_source(log)) {
     if (const auto checked = check_clock(*depth); !checked) return tl::unexpected(checked.error());
     std::erase_if(depth->samples, [](const NavSample& sample) { return !sample.valid; });
     if (const auto done = set_depths(fixes, *depth); !done) return tl::unexpected(done.error());
   }
   if (fixes.samples.empty()) return std::nullopt;
-  return found;
+  return PositionSource{std::move(fixes), origin};
 }
 
 }  // namespace
@@ -101,14 +109,15 @@ Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3
 }
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
-  const Result<std::optional<NavSource>> position = position_source(log);
-  if (!position) return tl::unexpected(position.error());
+  const Result<std::optional<PositionSource>> found = position_source(log);
+  if (!found) return tl::unexpected(found.error());
+  const NavSource* position = *found ? &(*found)->source : nullptr;
   // A source of both has them in one frame, which need not be that of others.
-  const Result<std::optional<NavSource>> turned =
-      main_source(log, NavQuantity::kAttitude, *position ? std::string_view((*position)->name) : std::string_view());
+  const Result<std::optional<NavSource>> turned = main_source(
+      log, NavQuantity::kAttitude, position != nullptr ? std::string_view(position->name) : std::string_view());
   if (!turned) return tl::unexpected(turned.error());
   const std::optional<NavSource>& attitude = *turned;
-  if (!attitude || !*position) {
+  if (!attitude || position == nullptr) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
   }
@@ -116,7 +125,7 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
     return pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z());
   });
   if (!rotations) return tl::unexpected(rotations.error());
-  const Result<Trajectory> translations = trajectory_of(**position, offset_s, translation);
+  const Result<Trajectory> translations = trajectory_of(*position, offset_s, translation);
   if (!translations) return tl::unexpected(translations.error());
 
   std::vector<double> times_s;
@@ -132,23 +141,24 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
   }
   if (poses.empty()) {
     return fail(Error::Code::kUnsupported, fmt::format("attitude ({}) and position ({}) are never known together",
-                                                       attitude->name, (*position)->name));
+                                                       attitude->name, position->name));
   }
   // A step with a gap in neither source is shorter than the limits of both, and one with a gap is longer than its
   // limit.
-  const double longest_step_s = std::min(summary_of(*attitude).longest_step_s, summary_of(**position).longest_step_s);
+  const double longest_step_s = std::min(summary_of(*attitude).longest_step_s, summary_of(*position).longest_step_s);
   Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_step_s);
   if (!trajectory) return tl::unexpected(trajectory.error());
-  return NavTrajectory{*std::move(trajectory), attitude->name, (*position)->name};
+  return NavTrajectory{*std::move(trajectory), attitude->name, position->name, (*found)->origin_fix};
 }
 
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
-  const Result<std::optional<NavSource>> position = position_source(log);
-  if (!position) return tl::unexpected(position.error());
-  if (!*position) return fail(Error::Code::kUnsupported, "has no valid position");
-  Result<Trajectory> trajectory = trajectory_of(**position, offset_s, translation);
+  const Result<std::optional<PositionSource>> found = position_source(log);
+  if (!found) return tl::unexpected(found.error());
+  if (!*found) return fail(Error::Code::kUnsupported, "has no valid position");
+  const NavSource& position = (*found)->source;
+  Result<Trajectory> trajectory = trajectory_of(position, offset_s, translation);
   if (!trajectory) return tl::unexpected(trajectory.error());
-  return NavTrajectory{*std::move(trajectory), "", (*position)->name};
+  return NavTrajectory{*std::move(trajectory), "", position.name, (*found)->origin_fix};
 }
 
 }  // namespace pingvox

@@ -66,6 +66,11 @@ TEST(Bags, ATopicIsChosenByName) {
   EXPECT_EQ(here.call({"convert", kMcap, "-o", "echoes.csv", "--topic", "/echo"}).status, 0);
   EXPECT_EQ(here.call({"render", kMcap, "-o", "echoes.png", "--topic", "/echo"}).status, 0);
   expect_error(here.call({"map", kMcap, "-o", "map.bt", "--topic", "/other"}), 1, {"lz4", "/other", "/echo"});
+  const std::string refused = "scan.csv: --topic: has no effect on a log of beams (.csv), only on ROS bags";
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "scan.csv", "--turns", "1"}).status, 0);
+  expect_error(here.call({"map", "scan.csv", "-o", "map.bt", "--topic", "/echo"}), 2, {refused});
+  expect_error(here.call({"slam", "scan.csv", "-o", "scan.tum", "--topic", "/echo"}), 2, {refused});
+  expect_error(here.call({"info", "scan.csv", "--topic", "/echo"}), 2, {refused});
 }
 
 /// The lines of a text, without comments, as numbers between blanks or commas; words are left out.

@@ -263,6 +263,18 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   EXPECT_THAT(given.out, HasSubstr(R"("clock": {"offset_s": 0, "sd_s": null, "from": "--nav-offset"})"));
 }
 
+// Kills a map whose place on Earth nobody can tell.
+TEST(Nav, ReportsTheFixAtTheOriginOfTheMap) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--turns", "1"}).status, 0);
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 40; ++i) nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},gps,fix,0.9,-0.3,0\n", i * 0.25);
+  here.write("nav.csv", nav);
+  const Outcome mapped = here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "map.bt"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("x east, y north of latitude 51.5662016, longitude -17.1887339 degrees\n"));
+}
+
 TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--turns", "2"}).status, 0);
@@ -275,7 +287,8 @@ TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {
   here.write("nav.csv", nav + "21,dvl,position\n");
   const Outcome mapped = here.call({"map", "dive.csv", "--nav", "nav.csv", "-o", "map.bt"});
   ASSERT_EQ(mapped.status, 0) << mapped.err;
-  EXPECT_THAT(mapped.out, HasSubstr("ahrs and dvl, 1 gap; skipped 1 damaged\n"));
+  EXPECT_THAT(mapped.out, HasSubstr("ahrs and dvl, 1 gap; skipped 1 damaged record\n"));
+  EXPECT_THAT(mapped.out, HasSubstr("  frame       origin and axes are those of dvl\n"));
   EXPECT_THAT(mapped.err, HasSubstr("or in one of their gaps, the first at 4.0"));
   EXPECT_THAT(mapped.err, HasSubstr("--nav-offset"));
 

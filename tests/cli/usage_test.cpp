@@ -155,6 +155,8 @@ TEST(Usage, OptionsWithoutEffectAreRefused) {
       {{"map", "a.csv", "-o", "m.bt", "-o", "n.bt"}, {"--output: given twice: 'm.bt' and 'n.bt'"}},
       {{"map", "a.csv", "-o", "m.bt", "--format", "ot"}, {"--format ot: contradicts the suffix of m.bt"}},
       {{"map", "tank.csv", "-o", "m.bt", "--origin", "1,2,3"}, {"--origin: has no effect on logs of beams", "clouds"}},
+      {{"map", "tank.csv", "-o", "m.bt", "--ray", "bresenham"}, {"--ray: has no effect on logs of beams", "--beam ray"}},
+      {{"live", "replay:tank.csv", "-o", "m.bt", "--ray", "dda"}, {"--ray: has no effect", "--beam ray"}},
       {{"map", "a.xyz", "-o", "m.bt", "--beam-width", "3"}, {"--beam-width: has no effect on clouds of points"}},
       {{"info", "a.xyz", "b.xyz"}, {"unexpected argument"}},
       {{"convert", "tank.csv", "-o", "b.csv", "--z", "0"}, {"--z: has no effect on logs of beams"}},

@@ -109,6 +109,7 @@ TEST(NavTrajectory, TakesTheAttitudeOfThePositionsOwnSource) {
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->attitude, "A50");
   EXPECT_TRUE(made->trajectory.at(0)->isApprox(pose_from_rpy({1, 0, 0}, 0, 0, 2)));
+  EXPECT_FALSE(made->origin_fix);
 }
 
 TEST(NavTrajectory, MakesMetresOfFixesAlsoAcrossTheDateLine) {
@@ -122,6 +123,7 @@ TEST(NavTrajectory, MakesMetresOfFixesAlsoAcrossTheDateLine) {
   EXPECT_NEAR(moved.x(), 78.847, 1e-3);
   EXPECT_NEAR(moved.y(), 111.132, 1e-3);
   EXPECT_NEAR(moved.z(), 2.0, 1e-9) << "without a depth the altitude counts";
+  EXPECT_TRUE(made->origin_fix->isApprox(Eigen::Vector3d(45.0 * kDegree_rad, 179.9995 * kDegree_rad, 50)));
 }
 
 TEST(NavTrajectory, PutsFixesAtTheDepthOfTheirTime) {

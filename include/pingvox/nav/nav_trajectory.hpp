@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 #include "pingvox/geometry/trajectory.hpp"
@@ -19,6 +20,8 @@ struct NavTrajectory {
   /// at which both are known, and a gap where one of them has one.
   Trajectory trajectory;
   std::string attitude, position;  ///< the names of the sources
+  /// The fix at 0, 0, as NavQuantity::kFix has it; nullopt: positions are in metres in the log.
+  std::optional<Eigen::Vector3d> origin_fix;
 };
 
 /// Sources: of the attitude the one that comes with the position, if any; else of each quantity the estimate of the

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "pingvox/device/live_source.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// When the beams' clock was 0.
+struct LiveStart {
+  double s = 0.0;                   ///< of the stopwatch
+  std::uint64_t since_1970_ms = 0;  ///< the same as a date
+};
+
+/// The file to record the sonar to; nullopt: none.
+std::optional<std::filesystem::path> record_path(const LiveCommand& command, const LiveStart& start);
+
+/// @param record  nullopt: none
+Result<std::unique_ptr<LiveSource>> open_live_sonar(const LiveCommand& command,
+                                                    const std::optional<std::filesystem::path>& record,
+                                                    const LiveStart& start);
+
+}  // namespace pingvox::app

@@ -1,0 +1,139 @@
+// A whole recording in a room whose map is known.
+
+#include "pingvox/slam/locate_recording.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "slam/room.hpp"
+
+namespace pingvox::test {
+namespace {
+
+constexpr Room::State kPlace = {-1.0, 0.5, 0.7};
+
+DistanceField field_of(const Room& room) {
+  return *DistanceField::make(room.map(), {});
+}
+
+std::vector<Beam> beams_at(const Room& room, const Room::State& place, int count) {
+  std::vector<Beam> beams;
+  for (int i = 0; i < count; ++i) beams.push_back(room.beam(i, place));
+  return beams;
+}
+
+LocatedRecording located(const Room& room, Estimation estimation) {
+  LocateOptions options;
+  options.estimation = estimation;
+  const auto found = locate_recording(beams_at(room, kPlace, 300), {}, field_of(room), options);
+  EXPECT_TRUE(found) << found.error().message;
+  return *found;
+}
+
+// Kills poses that are taken for known before anything said so, and ones that are not known once it did.
+TEST(LocateRecording, KnowsThePosesBeforeASureOneOnlyWhenAllIsRecorded) {
+  const Room room;
+  const LocatedRecording batch = located(room, Estimation::kBatch), causal = located(room, Estimation::kCausal);
+  ASSERT_EQ(batch.poses.size(), causal.poses.size());
+  EXPECT_TRUE(batch.is_sure);
+  EXPECT_FALSE(batch.poses.front().was_sure);
+  EXPECT_TRUE(std::ranges::all_of(batch.poses, &LocatedPose::is_known));
+  EXPECT_TRUE(std::ranges::all_of(causal.poses, [](const LocatedPose& p) { return p.is_known == p.was_sure; }));
+  EXPECT_EQ(causal.known_trajectory()->poses().size(),
+            static_cast<std::size_t>(std::ranges::count(causal.poses, true, &LocatedPose::was_sure)));
+  EXPECT_EQ(batch.trajectory()->poses().size(), batch.poses.size());
+}
+
+// Kills poses that count as known however many places fit.
+TEST(LocateRecording, KnowsNoPoseWhereTwoPlacesFit) {
+  const LocatedRecording found = located(Room{.has_block = false}, Estimation::kBatch);
+  EXPECT_EQ(found.hypotheses.size(), 2U);
+  EXPECT_TRUE(std::ranges::none_of(found.poses, &LocatedPose::is_known));
+  EXPECT_FALSE(found.known_trajectory());
+}
+
+// Kills a sure place that is taken to confirm where the vehicle was before it was carried away.
+TEST(LocateRecording, APoseBeforeAJumpIsNotKnownByOneBehindIt) {
+  const Room room;
+  constexpr int kJump = 150;  // found after one turn of the head, sure after two
+  const double ahead_m = 0.9;
+  const Room::State there = {kPlace.x + ahead_m * std::cos(kPlace.yaw), kPlace.y + ahead_m * std::sin(kPlace.yaw),
+                             kPlace.yaw};
+  std::vector<Beam> beams;
+  std::vector<StampedPose> odometry;
+  for (int i = 0; i < 500; ++i) {
+    beams.push_back(room.beam(i, i < kJump ? kPlace : there));
+    odometry.push_back({0.1 * i, Pose(Eigen::Translation3d(i < kJump ? 0.0 : ahead_m, 0.0, 0.0))});
+  }
+  RecordedMotion motion;
+  motion.odometry_from_body = *Trajectory::make(std::move(odometry));
+  const auto found = locate_recording(std::move(beams), motion, field_of(room), {});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_LT(found->poses.front().time_s, 0.1 * kJump);
+  EXPECT_FALSE(found->poses.front().is_known);
+  EXPECT_TRUE(found->is_sure);
+  EXPECT_TRUE(found->poses.back().is_known);
+}
+
+/// Round the middle of the room in 80 seconds, heading along the way.
+Room::State state_at(double time_s) {
+  const double angle = 2.0 * std::numbers::pi * time_s / 80.0;
+  return {-0.3 + std::cos(angle), -0.3 + std::sin(angle), angle + std::numbers::pi / 2.0};
+}
+
+double error_m(const LocatedRecording& found) {
+  double squares = 0.0;
+  for (const LocatedPose& pose : found.poses) {
+    const Room::State truth = state_at(pose.time_s);
+    const Eigen::Vector3d at = pose.map_from_body.translation();
+    squares += std::pow(at.x() - truth.x, 2) + std::pow(at.y() - truth.y, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(found.poses.size()));
+}
+
+// Kills a smoother that is not asked, or whose poses are not taken: a velocity that is 20 % too large leads the filter.
+TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
+  const Room room;
+  std::vector<Beam> beams;
+  for (int i = 0; i < 800; ++i) beams.push_back(room.beam(i, state_at(0.1 * i)));
+  NavSource velocity{"dvl", NavQuantity::kVelocity, {}, {}}, heading{"imu", NavQuantity::kAttitude, {}, {}};
+  for (double time_s = -0.5; time_s < 81.0; time_s += 0.25) {
+    velocity.samples.push_back({.time_s = time_s, .value = {1.2 * 2.0 * std::numbers::pi / 80.0, 0.0, 0.0}});
+    heading.samples.push_back(
+        {.time_s = time_s, .value = {0.0, 0.0, std::remainder(state_at(time_s).yaw, 2.0 * std::numbers::pi)}});
+  }
+  RecordedMotion motion;
+  motion.nav = *NavLog::make({velocity, heading}, NavClock::kUnknown);
+  motion.odometry_from_body = odometry_of(*motion.nav, motion.nav_options)->odometry_from_body;
+  LocateOptions options;
+  options.start = StartPose{state_at(0.0).x, state_at(0.0).y, state_at(0.0).yaw};
+
+  double done = 0.0;
+  const auto smoothed = locate_recording(beams, motion, field_of(room), options, [&](double share) { done = share; });
+  ASSERT_TRUE(smoothed) << smoothed.error().message;
+  options.estimation = Estimation::kCausal;
+  const auto causal = locate_recording(std::move(beams), motion, field_of(room), options);
+  ASSERT_TRUE(causal) << causal.error().message;
+  EXPECT_GT(done, 0.99);
+  EXPECT_TRUE(std::ranges::all_of(smoothed->poses, &LocatedPose::is_smoothed));
+  EXPECT_TRUE(std::ranges::none_of(causal->poses, &LocatedPose::is_smoothed));
+  EXPECT_LT(error_m(*smoothed), 0.05);
+  EXPECT_LT(error_m(*smoothed), 0.7 * error_m(*causal));
+}
+
+TEST(LocateRecording, RefusesTimesThatRunBackwards) {
+  const Room room;
+  std::vector<Beam> beams = beams_at(room, kPlace, 3);
+  std::swap(beams[0], beams[2]);
+  const auto found = locate_recording(std::move(beams), {}, field_of(room), {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, Error::Code::kCorrupt);
+}
+
+}  // namespace
+}  // namespace pingvox::test
