@@ -15,6 +15,7 @@
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/maps.hpp"
@@ -133,7 +134,8 @@ class BeamSurvey {
     most_bins_ = std::max(most_bins_, beam.intensities.size());
     longest_m_ = std::max(longest_m_, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
     ++bin_lengths_[beam.bin_length_m];
-    bearings_rad_.insert(beam.bearing_rad);
+    constexpr double kStep_rad = 1e-4 * kDegree_rad;
+    bearings_rad_.insert(std::round(beam.bearing_rad / kStep_rad) * kStep_rad);
     take(assembler_.add(beam));
   }
 
@@ -210,7 +212,7 @@ class BeamSurvey {
   double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
   bool has_turn_ = false;
   std::map<double, std::size_t> bin_lengths_;
-  std::set<double> bearings_rad_;  ///< bounded by the resolution of the head, however long the log
+  std::set<double> bearings_rad_;  ///< rounded: their number is bounded, however long the log
   SweepAssembler assembler_;
 };
 

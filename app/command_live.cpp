@@ -162,6 +162,7 @@ class LiveRun {
                              ? console_.print(json_of(watch.seconds(), true).text() + "\n")
                              : console_.summarise(text_of(status), command_.output);
     if (!printed) return tl::unexpected(printed.error());
+    if (has_mapped() && map_.empty()) console_.say(empty_map_text(command_.output));
     return has_failed_ ? 1 : 0;
   }
 

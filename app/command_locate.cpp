@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "locate_files.hpp"
 #include "locate_report.hpp"
+#include "map_report.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/slam/locate_recording.hpp"
@@ -33,6 +34,20 @@ Result<std::optional<Pose>> first_pose(const RecordedMotion& motion, const std::
                           "the navigation is from {:.3f} to {:.3f} s",
                           log, beams.front().time_s, beams.back().time_s, odometry->poses().front().time_s,
                           odometry->poses().back().time_s));
+}
+
+/// kBadOption when --start is outside of the map.
+Result<void> check_start(const LocateCommand& command, const OccupancyMap& map) {
+  const std::optional<Box> bounds = map.bounds();
+  if (!command.start || !bounds) return {};
+  const Eigen::Array2d at(command.start->x_m, command.start->y_m);
+  const double margin_m = 3.0 * command.start->deviation_m;
+  if ((at >= bounds->min.head<2>().array() - margin_m).all() &&
+      (at <= bounds->max.head<2>().array() + margin_m).all()) {
+    return {};
+  }
+  return fail(Error::Code::kBadOption, fmt::format("--start: {:.6g}, {:.6g} is outside of {}, which has {}", at.x(),
+                                                   at.y(), command.map, bounds_text(bounds)));
 }
 
 /// The distance field of the layer of the map around the sonar at the first beam.
@@ -75,6 +90,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
   const Stopwatch read;
   const Result<OccupancyMap> map = read_map_file(command.map);
   if (!map) return tl::unexpected(map.error());
+  if (const auto inside = check_start(command, *map); !inside) return tl::unexpected(inside.error());
   Result<LocateMotion> motion = read_motion(command);
   if (!motion) return tl::unexpected(motion.error());
   LocateInputs inputs{.motion = *std::move(motion)};

@@ -361,10 +361,7 @@ Result<int> run(const MapCommand& command, Console& console) {
                                    : console.summarise(text_of(totals, *path, *map, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (map->empty()) {
-    console.say(
-        fmt::format("{}: the map is empty: no echoes and no free space in range (see --min-range, --max-range, "
-                    "--threshold and --silent)",
-                    command.output));
+    console.say(empty_map_text(command.output));
   }
   return 0;
 }

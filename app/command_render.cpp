@@ -123,14 +123,15 @@ class PolarCollector {
   std::vector<std::optional<Echo>> echoes_;
 };
 
-/// Selects the sweep of a Cartesian picture: as requested, else the one that covers the most directions.
+/// Selects the sweep of a Cartesian picture: as requested, else the one that shows most: directions times range. A head
+/// that begins with some short pings before a dive is not drawn by these.
 class CartesianCollector {
  public:
   explicit CartesianCollector(const PanelCommand& panel) : panel_(panel) {}
 
   void add(std::size_t number, Sweep sweep) {
     if (panel_.sweep && *panel_.sweep != number) return;
-    const auto fullness = std::pair(directions_in(sweep), sweep.beams.size());
+    const auto fullness = std::pair(static_cast<double>(directions_in(sweep)) * range_m(sweep), sweep.beams.size());
     if (chosen_ && fullness <= fullness_) return;
     fullness_ = fullness;
     chosen_ = std::pair(number, std::move(sweep));
@@ -156,9 +157,17 @@ class CartesianCollector {
     return seen.count();
   }
 
+  static double range_m(const Sweep& sweep) {
+    double range_m = 0.0;
+    for (const Beam& beam : sweep.beams) {
+      range_m = std::max(range_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
+    }
+    return range_m;
+  }
+
   const PanelCommand& panel_;
   std::optional<std::pair<std::size_t, Sweep>> chosen_;
-  std::pair<std::size_t, std::size_t> fullness_;  ///< directions and beams of the chosen one
+  std::pair<double, std::size_t> fullness_;  ///< directions times range, and beams, of the chosen one
 };
 
 /// By the options, or by the water that the navigation logs tell of.

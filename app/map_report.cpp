@@ -40,6 +40,13 @@ std::string damage_text(std::size_t records, std::string_view first) {
   return fmt::format("{}, the first: {}", counted(records, "damaged record"), on_one_line(first));
 }
 
+std::string empty_map_text(const std::string& output) {
+  return fmt::format(
+      "{}: the map is empty: no echoes and no free space in range (see --min-range, --max-range, "
+      "--threshold and --silent)",
+      output);
+}
+
 std::string report_line(std::string_view label, std::string_view value) {
   return fmt::format("  {:<12}{}\n", label, value);
 }

@@ -26,6 +26,8 @@ std::string beams_text(std::size_t beams, std::size_t sweeps, std::size_t echoes
 /// "2 damaged records, the first: line 43: range 20000 m is longer than 10000 m"
 std::string damage_text(std::size_t records, std::string_view first);
 
+/// What is said of an empty map.
+std::string empty_map_text(const std::string& output);
 /// A line of a report, with the values aligned.
 std::string report_line(std::string_view label, std::string_view value);
 

@@ -293,6 +293,11 @@ Result<void> OccupancyArgs::validate() const {
     return usage_error(fmt::format("--free: must be at most --occupied, which is {}, is {}",
                                    number_text(*occupied_from), number_text(*free_below)));
   }
+  // It would make walls free: the usual threshold for occupied follows.
+  if (free_below > 0.5 && !occupied_from) {
+    return usage_error(
+        fmt::format("--free: above 0.5 needs --occupied, at least as high, is {}", number_text(*free_below)));
+  }
   return {};
 }
 

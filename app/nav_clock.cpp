@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <utility>
@@ -67,20 +69,31 @@ Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage,
   return times;
 }
 
+/// "2026-11-25"; REQUIRES a time since 1970
+std::string day_text(double time_s) {
+  constexpr double kDay_s = 86'400.0;
+  const std::chrono::sys_days day{std::chrono::days(static_cast<int>(std::floor(time_s / kDay_s)))};
+  const std::chrono::year_month_day date{day};
+  return fmt::format("{}-{:02}-{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()));
+}
+
 std::string zone_text(double zone_s) {
   const auto minutes = static_cast<int>(zone_s / 60.0);
   return fmt::format("UTC{}{}:{:02}", minutes < 0 ? '-' : '+', std::abs(minutes) / 60, std::abs(minutes) % 60);
 }
 
-Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, Damage damage) {
+/// @param dates  what is known of the dates, for the error
+Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, Damage damage, const std::string& dates) {
   const auto times = times_of(sonar, damage, Want::kTurns);
   if (!times) return tl::unexpected(times.error());
   const Result<ClockOffset> found = clock_offset(*times ? (*times)->changes : std::vector<YawChange>(), nav);
   if (!found) {
-    return fail(Error::Code::kUnsupported,
-                fmt::format("{}: the offset between its clock and that of --nav is not known and cannot be found: {}: "
-                            "give --nav-offset, the seconds to add to the times of --nav (0: one clock)",
-                            sonar.name, found.error().message));
+    return fail(
+        Error::Code::kUnsupported,
+        fmt::format("{}: the offset between its clock and that of --nav is not known{} and cannot be found: {}: "
+                    "give --nav-offset, the seconds to add to the times of --nav (0: one clock)",
+                    sonar.name, dates, found.error().message));
   }
   return NavOffset{found->offset_s, found->deviation_s,
                    fmt::format("the turning of the sonar's picture, {} parts of sweeps", found->changes)};
@@ -107,8 +120,10 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
     return zone_s ? NavOffset{*zone_s, std::nullopt, "both have dates, the sonar log's in " + zone_text(*zone_s)}
                   : by_dates;
   }
+  std::string dates;
   if (nav_has_dates) {
     if (const auto start_s = date_in_name(sonar.name)) {
+      dates = fmt::format(" (its name says {}, --nav is of {})", day_text(*start_s), day_text(nav_span->from_s));
       const auto zone_s = local_from_utc_s({*start_s + span.from_s, *start_s + span.to_s}, *nav_span);
       if (zone_s) {
         return NavOffset{*zone_s - *start_s, std::nullopt,
@@ -117,7 +132,7 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
     }
   }
   if (nav.clock() == NavClock::kUnknown && overlap(span, *nav_span)) return one_clock;
-  return by_picture(nav, sonar, damage);
+  return by_picture(nav, sonar, damage, dates);
 }
 
 std::string text_of(const NavOffset& offset) {

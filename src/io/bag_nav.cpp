@@ -16,6 +16,7 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
+#include "without_exceptions.hpp"
 
 // The navigation in bags, by type and fields of the messages (docs/formats.md).
 namespace pingvox {
@@ -338,24 +339,27 @@ class BagSurvey {
 }  // namespace
 
 Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
-  const std::span<const std::uint8_t> beginning = stream.beginning();
-  if (!looks_like_ros1_bag(beginning) && !looks_like_sqlite(beginning) && !looks_like_mcap(beginning)) {
-    return fail(Error::Code::kUnsupported, fmt::format("{}: is not a ROS bag", stream.name()));
-  }
-  const Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
-  if (!bag) return tl::unexpected(bag.error());
-  BagSurvey survey(**bag, fields);
-  for (;;) {
-    const Result<std::optional<BagMessage>> message = (*bag)->next();
-    if (!message) return tl::unexpected(message.error());
-    if (*message) {
-      if (const auto added = survey.add(**message); !added) return tl::unexpected(added.error());
+  const std::string name = stream.name();
+  return detail::without_exceptions(name, [&]() -> Result<BagContents> {
+    const std::span<const std::uint8_t> beginning = stream.beginning();
+    if (!looks_like_ros1_bag(beginning) && !looks_like_sqlite(beginning) && !looks_like_mcap(beginning)) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: is not a ROS bag", stream.name()));
     }
-    if (const auto kinds = survey.damage(); damage == Damage::kFail && !kinds.empty()) {
-      return fail(Error::Code::kCorrupt, fmt::format("{}: {}", (*bag)->name(), first_damage_text(kinds.front())));
+    const Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
+    if (!bag) return tl::unexpected(bag.error());
+    BagSurvey survey(**bag, fields);
+    for (;;) {
+      const Result<std::optional<BagMessage>> message = (*bag)->next();
+      if (!message) return tl::unexpected(message.error());
+      if (*message) {
+        if (const auto added = survey.add(**message); !added) return tl::unexpected(added.error());
+      }
+      if (const auto kinds = survey.damage(); damage == Damage::kFail && !kinds.empty()) {
+        return fail(Error::Code::kCorrupt, fmt::format("{}: {}", (*bag)->name(), first_damage_text(kinds.front())));
+      }
+      if (!*message) return survey.finish();
     }
-    if (!*message) return survey.finish();
-  }
+  });
 }
 
 Result<void> check_topics(std::span<const NavFields> fields, std::span<const BagTopicSummary> topics) {

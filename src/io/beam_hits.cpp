@@ -13,6 +13,7 @@
 
 #include "io/readers.hpp"
 #include "io/text.hpp"
+#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/file.hpp"
 
 // Thresholded beams of the Ictineu's MiniKing: the bins that were hit, as text, with the times of the beams in a file
@@ -60,13 +61,14 @@ tl::expected<HitBeam, std::string> hits_in(std::string_view line, std::size_t be
   return hits;
 }
 
-/// The file of times in the folder of the log.
+/// The file of times in the folder of the log. A log without a name, as from standard input, has none.
 Result<FileBytes> times_beside(const std::string& name) {
   std::vector<std::string> found;
+  const bool has_name = name != ByteStream::kStandardInput;
   std::error_code error;
   const std::filesystem::path parent = std::filesystem::path(name).parent_path();
   std::filesystem::directory_iterator entries(parent.empty() ? "." : parent, error), end;
-  for (; name != "-" && !error && entries != end; entries.increment(error)) {
+  for (; has_name && !error && entries != end; entries.increment(error)) {
     if (entries->path().filename().string().ends_with(kTimesEnd)) found.push_back(entries->path().string());
   }
   if (found.size() != 1) {

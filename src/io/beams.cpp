@@ -2,11 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "io/readers.hpp"
 #include "pingvox/io/format.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -17,9 +21,7 @@ tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wan
                      : fmt::format("{}: not {} that we know", name, wanted));
 }
 
-}  // namespace
-
-Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
+Result<std::unique_ptr<BeamSource>> open_any_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
   const std::optional<Format> streamed = streamed_format_of(stream.beginning());
   if (streamed && is_bag(*streamed)) return open_bag_beams(std::move(stream), damage, topic);
   if (streamed == Format::kPingViewer) return open_ping_viewer(std::move(stream), damage);
@@ -40,12 +42,8 @@ Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage,
   return wrong_format(file.name, "a log of beams", format);
 }
 
-Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, const BeamTopic& topic) {
-  return open_beams(ByteStream(std::move(file)), damage, topic);
-}
-
-Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
-                                               const std::optional<Eigen::Vector3d>& cloud_origin_m) {
+Result<std::unique_ptr<ScanSource>> open_any_scans(FileBytes file, Damage damage,
+                                                   const std::optional<Eigen::Vector3d>& cloud_origin_m) {
   const std::optional<Format> format = format_of(file.view());
   if (format == Format::kScanGraph) return open_scan_graph(std::move(file), damage);
   if (format == Format::kScanLog) return open_scan_log(std::move(file), damage);
@@ -55,6 +53,70 @@ Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
   if (format == Format::kXyz) return open_xyz(std::move(file), damage, cloud_origin_m);
   if (file.bytes.empty()) return fail(Error::Code::kUnsupported, fmt::format("{}: is empty", file.name));
   return wrong_format(file.name, "a log of scans", format);
+}
+
+/// A source that says so when memory runs out.
+class GuardedBeams final : public BeamSource {
+ public:
+  GuardedBeams(std::string name, std::unique_ptr<BeamSource> source)
+      : name_(std::move(name)), source_(std::move(source)) {}
+
+  Result<std::optional<Beam>> next() override {
+    return detail::without_exceptions(name_, [&] { return source_->next(); });
+  }
+  std::size_t skipped() const override { return source_->skipped(); }
+  std::vector<DamageKind> damage() const override { return source_->damage(); }
+  std::string first_damage() const override { return source_->first_damage(); }
+  const DeviceProfile* device() const override { return source_->device(); }
+  std::optional<double> share_read() const override { return source_->share_read(); }
+
+ private:
+  std::string name_;
+  std::unique_ptr<BeamSource> source_;
+};
+
+class GuardedScans final : public ScanSource {
+ public:
+  GuardedScans(std::string name, std::unique_ptr<ScanSource> source)
+      : name_(std::move(name)), source_(std::move(source)) {}
+
+  Result<std::optional<PointScan>> next() override {
+    return detail::without_exceptions(name_, [&] { return source_->next(); });
+  }
+  std::size_t skipped() const override { return source_->skipped(); }
+  std::string first_damage() const override { return source_->first_damage(); }
+  std::optional<double> share_read() const override { return source_->share_read(); }
+
+ private:
+  std::string name_;
+  std::unique_ptr<ScanSource> source_;
+};
+
+/// @param open  returns a source that may run out of memory
+template <class Guarded, class Open>
+auto guarded(const std::string& name, Open&& open) -> decltype(open()) {
+  return detail::without_exceptions(name, [&]() -> decltype(open()) {
+    auto source = open();
+    if (!source) return source;
+    return std::make_unique<Guarded>(name, *std::move(source));
+  });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
+  const std::string name = stream.name();
+  return guarded<GuardedBeams>(name, [&] { return open_any_beams(std::move(stream), damage, topic); });
+}
+
+Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, const BeamTopic& topic) {
+  return open_beams(ByteStream(std::move(file)), damage, topic);
+}
+
+Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
+                                               const std::optional<Eigen::Vector3d>& cloud_origin_m) {
+  const std::string name = file.name;
+  return guarded<GuardedScans>(name, [&] { return open_any_scans(std::move(file), damage, cloud_origin_m); });
 }
 
 Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::string& file, const std::string& place,

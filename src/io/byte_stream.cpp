@@ -61,8 +61,9 @@ namespace {
 Result<std::string> bag_in(const std::string& folder) {
   std::vector<std::string> bags;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::filesystem::path& path = entry.path();
+  // Not by a range: its increment throws.
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::filesystem::path& path = entry->path();
     if (path.extension() == ".db3" || path.extension() == ".mcap") bags.push_back(path.string());
   }
   if (error) return os_error(folder, error.value());
@@ -75,7 +76,7 @@ Result<std::string> bag_in(const std::string& folder) {
 
 Result<ByteStream> ByteStream::open(const std::string& path) {
   const bool standard_input = path == "-";
-  FileBytes beginning{standard_input ? "standard input" : path, {}};
+  FileBytes beginning{standard_input ? std::string(kStandardInput) : path, {}};
 
   Descriptor opened(standard_input ? -1 : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!standard_input && !opened.valid()) return os_error(beginning.name, errno);

@@ -2,19 +2,33 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace pingvox {
+
+std::uint16_t PrefixSums::sum(std::span<const std::uint8_t> bytes, std::size_t from, std::size_t to) {
+  assert(from <= to && to <= bytes.size());
+  while (sums_.size() <= to) sums_.push_back(static_cast<std::uint16_t>(sums_.back() + bytes[sums_.size() - 1]));
+  return static_cast<std::uint16_t>(sums_[to] - sums_[from]);
+}
+
+std::uint16_t FrameBytes::sum(std::size_t size) const {
+  if (sums != nullptr) return sums->sum(stream, start, start + size);
+  return static_cast<std::uint16_t>(
+      std::accumulate(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), 0U));
+}
 
 void FrameFinder::push(std::span<const std::uint8_t> bytes) {
   bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(start_));
   start_ = 0;
+  sums_.clear();
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
 }
 
 std::optional<FrameFinder::Frame> FrameFinder::next() {
   while (start_ < bytes_.size()) {
-    const auto rest = std::span<const std::uint8_t>(bytes_).subspan(start_);
-    FrameCheck check = check_(rest);
+    const std::span<const std::uint8_t> all(bytes_), rest = all.subspan(start_);
+    FrameCheck check = check_({rest, in_damage_ ? &sums_ : nullptr, all, start_});
     if (check.verdict == FrameCheck::Verdict::kIncomplete) {
       if (!ended_) return std::nullopt;
       check = {FrameCheck::Verdict::kBroken, rest.size(), kCutOff};

@@ -19,6 +19,7 @@
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -287,19 +288,21 @@ bool looks_like_off(Bytes bytes) {
 }
 
 Result<TriangleMesh> read_mesh(const FileBytes& file) {
-  const std::string_view text = text_of(file.view());
-  const auto read = [&]() -> Result<TriangleMesh> {
-    if (looks_like_ply(file.view())) return read_ply(file);
-    if (looks_like_binary_stl(file.view())) return read_stl_binary(file);
-    if (text.starts_with("solid")) return read_stl_text(file);
-    if (looks_like_off(file.view())) return read_off(file);
-    return fail(Error::Code::kUnsupported, fmt::format("{}: is no mesh that we know: OFF, PLY or STL", file.name));
-  };
-  Result<TriangleMesh> mesh = read();
-  if (mesh && mesh->triangles.empty()) {
-    return fail(Error::Code::kCorrupt, fmt::format("{}: holds no triangle", file.name));
-  }
-  return mesh;
+  return detail::without_exceptions(file.name, [&]() -> Result<TriangleMesh> {
+    const std::string_view text = text_of(file.view());
+    const auto read = [&]() -> Result<TriangleMesh> {
+      if (looks_like_ply(file.view())) return read_ply(file);
+      if (looks_like_binary_stl(file.view())) return read_stl_binary(file);
+      if (text.starts_with("solid") || looks_like_stl_text(file.view())) return read_stl_text(file);
+      if (looks_like_off(file.view())) return read_off(file);
+      return fail(Error::Code::kUnsupported, fmt::format("{}: is no mesh that we know: OFF, PLY or STL", file.name));
+    };
+    Result<TriangleMesh> mesh = read();
+    if (mesh && mesh->triangles.empty()) {
+      return fail(Error::Code::kCorrupt, fmt::format("{}: holds no triangle", file.name));
+    }
+    return mesh;
+  });
 }
 
 Result<void> write_mesh_ply(const TriangleMesh& mesh, std::ostream& out) {

@@ -29,13 +29,8 @@ std::size_t fixed_part(std::uint16_t id) {
   return id == static_cast<std::uint16_t>(PingMessage::kAutoDeviceData) ? 20 : 0;
 }
 
-std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
-  std::uint32_t sum = 0;
-  for (const std::uint8_t byte : bytes) sum += byte;
-  return static_cast<std::uint16_t>(sum);
-}
-
-FrameCheck check_frame(std::span<const std::uint8_t> bytes, std::size_t max_payload) {
+FrameCheck check_frame(const FrameBytes& at, std::size_t max_payload) {
+  const std::span<const std::uint8_t> bytes = at.bytes;
   const auto* b = static_cast<const std::uint8_t*>(std::memchr(bytes.data(), 'B', bytes.size()));
   const std::size_t before = b != nullptr ? static_cast<std::size_t>(b - bytes.data()) : bytes.size();
   if (before > 0) return {Verdict::kNothing, before};
@@ -47,8 +42,7 @@ FrameCheck check_frame(std::span<const std::uint8_t> bytes, std::size_t max_payl
   if (payload > max_payload) return {Verdict::kBroken, 4, "impossible length"};
   const std::size_t size = kHeader + payload + kChecksum;
   if (bytes.size() < size) return {Verdict::kIncomplete};
-  const std::span<const std::uint8_t> summed = bytes.first(size - kChecksum);
-  if (sum_of(summed) != u16_at(bytes, size - kChecksum)) return {Verdict::kBroken, size, "wrong checksum"};
+  if (at.sum(size - kChecksum) != u16_at(bytes, size - kChecksum)) return {Verdict::kBroken, size, "wrong checksum"};
   if (const std::size_t fixed = fixed_part(u16_at(bytes, 4)); fixed > 0) {
     const bool fits = payload >= fixed && payload - fixed == u16_at(bytes, kHeader + fixed - 2);
     if (!fits) return {Verdict::kBroken, size, "impossible length"};
@@ -58,12 +52,12 @@ FrameCheck check_frame(std::span<const std::uint8_t> bytes, std::size_t max_payl
 
 }  // namespace
 
-FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes) {
-  return check_frame(bytes, kMaxPing360Payload);
+FrameCheck check_ping_frame(const FrameBytes& at) {
+  return check_frame(at, kMaxPing360Payload);
 }
 
-FrameCheck check_sonarview_frame(std::span<const std::uint8_t> bytes) {
-  return check_frame(bytes, std::numeric_limits<std::uint16_t>::max());
+FrameCheck check_sonarview_frame(const FrameBytes& at) {
+  return check_frame(at, std::numeric_limits<std::uint16_t>::max());
 }
 
 PingMessage ping_message(std::span<const std::uint8_t> frame) {
@@ -87,7 +81,7 @@ std::vector<std::uint8_t> make_ping_frame(PingMessage message, std::uint8_t sour
   frame.push_back(source);
   frame.push_back(destination);
   frame.insert(frame.end(), payload.begin(), payload.end());
-  put(sum_of(frame));
+  put(FrameBytes{frame}.sum(frame.size()));
   return frame;
 }
 

@@ -27,7 +27,7 @@ bool begins_with_session(std::span<const std::uint8_t> bytes) {
 bool looks_like_sonarview(std::span<const std::uint8_t> beginning) {
   if (beginning.empty()) return false;
   if (begins_with_session(beginning)) return true;
-  if (check_sonarview_frame(beginning).verdict == FrameCheck::Verdict::kFrame) return true;
+  if (check_sonarview_frame({beginning}).verdict == FrameCheck::Verdict::kFrame) return true;
   // It may begin within a frame, or with a damaged one. A ping is certain by its checksum and both of its lengths.
   constexpr std::size_t kSearched = 16384;
   FrameFinder finder(check_sonarview_frame);

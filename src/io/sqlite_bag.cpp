@@ -46,7 +46,8 @@ std::string text_in(sqlite3_stmt* row, int column) {
 /// Name for sqlite3_open_v2. A database beside which there is no log of changes is opened so that nothing is written
 /// beside it.
 std::string uri_of(const std::string& path) {
-  std::string uri = "file:";
+  // Two slashes after the colon are followed by an authority, which is empty.
+  std::string uri = path.starts_with('/') ? "file://" : "file:";
   for (const char c : path) {
     const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' ||
                           c == '.' || c == '-' || c == '_';

@@ -12,6 +12,7 @@
 
 #include "io/readers.hpp"
 #include "io/text.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -83,22 +84,24 @@ bool looks_like_tum(std::span<const std::uint8_t> bytes) {
 }
 
 Result<Trajectory> read_tum(const FileBytes& file) {
-  Lines lines(text_of(file.view()));
-  const auto corrupt = [&](std::string_view what) {
-    return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), what));
-  };
-  std::vector<StampedPose> poses;
-  while (const auto line = lines.next_with_content()) {
-    const tl::expected<StampedPose, std::string> pose = pose_in(*line);
-    if (!pose) return corrupt(pose.error());
-    if (!poses.empty() && !(pose->time_s > poses.back().time_s)) {
-      return corrupt(
-          fmt::format("time {} s does not come after {} s of the pose before it", pose->time_s, poses.back().time_s));
+  return detail::without_exceptions(file.name, [&]() -> Result<Trajectory> {
+    Lines lines(text_of(file.view()));
+    const auto corrupt = [&](std::string_view what) {
+      return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), what));
+    };
+    std::vector<StampedPose> poses;
+    while (const auto line = lines.next_with_content()) {
+      const tl::expected<StampedPose, std::string> pose = pose_in(*line);
+      if (!pose) return corrupt(pose.error());
+      if (!poses.empty() && !(pose->time_s > poses.back().time_s)) {
+        return corrupt(
+            fmt::format("time {} s does not come after {} s of the pose before it", pose->time_s, poses.back().time_s));
+      }
+      poses.push_back(*pose);
     }
-    poses.push_back(*pose);
-  }
-  if (poses.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: holds no poses", file.name));
-  return Trajectory::make(std::move(poses), longest_step_in(text_of(file.view())));
+    if (poses.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: holds no poses", file.name));
+    return Trajectory::make(std::move(poses), longest_step_in(text_of(file.view())));
+  });
 }
 
 Result<void> write_tum(const Trajectory& trajectory, std::ostream& out) {

@@ -4,48 +4,96 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <memory>
+#include <optional>
 
 namespace pingvox {
 namespace {
 
-/// Unpacks what it can. @return the number of bytes
-std::size_t unpack_bz2(std::span<const std::uint8_t> packed, std::span<std::uint8_t> to) {
-  bz_stream stream = {};
-  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) return 0;
-  // libbz2 does not change its input, but takes it as char*.
-  stream.next_in = const_cast<char*>(reinterpret_cast<const char*>(packed.data()));
-  stream.avail_in = static_cast<unsigned>(packed.size());
-  stream.next_out = reinterpret_cast<char*>(to.data());
-  stream.avail_out = static_cast<unsigned>(to.size());
-  while (stream.avail_in > 0 && stream.avail_out > 0 && BZ2_bzDecompress(&stream) == BZ_OK) {
-  }
-  const std::size_t left = stream.avail_out;
-  BZ2_bzDecompressEnd(&stream);
-  return to.size() - left;
-}
+using Bytes = std::span<const std::uint8_t>;
+using Room = std::span<std::uint8_t>;
 
-std::size_t unpack_lz4(std::span<const std::uint8_t> packed, std::span<std::uint8_t> to) {
-  LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) return 0;
-  std::size_t done = 0;
-  while (!packed.empty() && done < to.size()) {
-    std::size_t taken = packed.size(), written = to.size() - done;
-    const std::size_t result = LZ4F_decompress(context, to.data() + done, &written, packed.data(), &taken, nullptr);
-    if (LZ4F_isError(result) != 0) break;
-    done += written;
+/// Each unpacks the next bytes into `room` and takes what it needs of `packed`.
+/// @return how many; nullopt: the data ended, or are damaged from here on
+class Bz2 {
+ public:
+  Bz2() : is_open_(BZ2_bzDecompressInit(&stream_, 0, 0) == BZ_OK) {}
+  ~Bz2() { BZ2_bzDecompressEnd(&stream_); }
+  Bz2(const Bz2&) = delete;
+  Bz2& operator=(const Bz2&) = delete;
+
+  std::optional<std::size_t> next(Bytes& packed, Room room) {
+    if (!is_open_) return std::nullopt;
+    // libbz2 does not change its input, but takes it as char*.
+    stream_.next_in = const_cast<char*>(reinterpret_cast<const char*>(packed.data()));
+    stream_.avail_in = static_cast<unsigned>(packed.size());
+    stream_.next_out = reinterpret_cast<char*>(room.data());
+    stream_.avail_out = static_cast<unsigned>(room.size());
+    is_open_ = BZ2_bzDecompress(&stream_) == BZ_OK;
+    packed = packed.last(stream_.avail_in);
+    const std::size_t written = room.size() - stream_.avail_out;
+    return written > 0 || is_open_ ? std::optional(written) : std::nullopt;
+  }
+
+ private:
+  bz_stream stream_ = {};
+  bool is_open_;
+};
+
+class Lz4 {
+ public:
+  Lz4() {
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION)) != 0) context_ = nullptr;
+  }
+  ~Lz4() { LZ4F_freeDecompressionContext(context_); }
+  Lz4(const Lz4&) = delete;
+  Lz4& operator=(const Lz4&) = delete;
+
+  std::optional<std::size_t> next(Bytes& packed, Room room) {
+    if (context_ == nullptr) return std::nullopt;
+    std::size_t taken = packed.size(), written = room.size();
+    const std::size_t result = LZ4F_decompress(context_, room.data(), &written, packed.data(), &taken, nullptr);
+    if (LZ4F_isError(result) != 0) return std::nullopt;
     packed = packed.subspan(taken);
-    if (taken == 0 && written == 0) break;
+    return written;
   }
-  LZ4F_freeDecompressionContext(context);
-  return done;
-}
 
-/// All or nothing: unpacking a part takes a window of up to 128 MB.
-std::size_t unpack_zstd(std::span<const std::uint8_t> packed, std::span<std::uint8_t> to) {
-  const std::size_t result = ZSTD_decompress(to.data(), to.size(), packed.data(), packed.size());
-  return ZSTD_isError(result) != 0 ? 0 : result;
+ private:
+  LZ4F_dctx* context_ = nullptr;
+};
+
+class Zstd {
+ public:
+  std::optional<std::size_t> next(Bytes& packed, Room room) {
+    if (!context_) return std::nullopt;
+    ZSTD_inBuffer in = {packed.data(), packed.size(), 0};
+    ZSTD_outBuffer out = {room.data(), room.size(), 0};
+    const std::size_t result = ZSTD_decompressStream(context_.get(), &out, &in);
+    packed = packed.subspan(in.pos);
+    if (ZSTD_isError(result) != 0) return std::nullopt;
+    return out.pos;
+  }
+
+ private:
+  static constexpr auto kFree = [](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); };
+  std::unique_ptr<ZSTD_DCtx, decltype(kFree)> context_{ZSTD_createDCtx()};
+};
+
+/// Unpacks at most `size` bytes. Grows with what is there, as a damaged size may be any.
+template <class Unpacker>
+void unpack_with(Unpacker unpacker, Bytes packed, std::size_t size, std::vector<std::uint8_t>& to) {
+  constexpr std::size_t kLeast = std::size_t{1} << 16, kUsualRatio = 4;
+  to.clear();
+  while (to.size() < size) {
+    const std::size_t done = to.size(), before = packed.size();
+    to.resize(done + std::min(size - done, std::max({kLeast, kUsualRatio * packed.size(), done})));
+    const std::optional<std::size_t> written = unpacker.next(packed, Room(to).subspan(done));
+    to.resize(done + written.value_or(0));
+    if (!written || (*written == 0 && packed.size() == before)) return;
+  }
 }
 
 }  // namespace
@@ -55,19 +103,17 @@ bool unpack(Compression compression, std::span<const std::uint8_t> packed, std::
   assert(compression != Compression::kNone);
   // No sonar compresses like this, but a damaged size does.
   constexpr std::uint64_t kMaxRatio = 1024, kMaxUnchecked = 65'536;
-  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMaxUnchecked + kMaxRatio * packed.size()) {
-    to.clear();
-    return false;
+  to.clear();
+  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMaxUnchecked + kMaxRatio * packed.size()) return false;
+  const auto whole = static_cast<std::size_t>(size);
+  if (compression == Compression::kBz2) {
+    unpack_with(Bz2(), packed, whole, to);
+  } else if (compression == Compression::kLz4) {
+    unpack_with(Lz4(), packed, whole, to);
+  } else {
+    unpack_with(Zstd(), packed, whole, to);
   }
-  to.resize(static_cast<std::size_t>(size));
-  std::size_t done = 0;
-  if (size > 0) {
-    done = compression == Compression::kBz2   ? unpack_bz2(packed, to)
-           : compression == Compression::kLz4 ? unpack_lz4(packed, to)
-                                              : unpack_zstd(packed, to);
-  }
-  to.resize(done);
-  return done == size;
+  return to.size() == whole;
 }
 
 }  // namespace pingvox

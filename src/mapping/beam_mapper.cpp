@@ -6,7 +6,7 @@
 
 #include "mapping/echo_mapper.hpp"
 #include "mapping/stopwatch.hpp"
-#include "mapping/without_exceptions.hpp"
+#include "without_exceptions.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 
 namespace pingvox {

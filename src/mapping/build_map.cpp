@@ -9,7 +9,7 @@
 
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
-#include "mapping/without_exceptions.hpp"
+#include "without_exceptions.hpp"
 #include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mapping/echo_mapper.hpp"
-#include "mapping/without_exceptions.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "without_exceptions.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -109,56 +111,60 @@ Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3
 }
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
-  const Result<std::optional<PositionSource>> found = position_source(log);
-  if (!found) return tl::unexpected(found.error());
-  const NavSource* position = *found ? &(*found)->source : nullptr;
-  // A source of both has them in one frame, which need not be that of others.
-  const Result<std::optional<NavSource>> turned = main_source(
-      log, NavQuantity::kAttitude, position != nullptr ? std::string_view(position->name) : std::string_view());
-  if (!turned) return tl::unexpected(turned.error());
-  const std::optional<NavSource>& attitude = *turned;
-  if (!attitude || position == nullptr) {
-    return fail(Error::Code::kUnsupported,
-                fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
-  }
-  const Result<Trajectory> rotations = trajectory_of(*attitude, offset_s, [](const Eigen::Vector3d& rpy) {
-    return pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z());
-  });
-  if (!rotations) return tl::unexpected(rotations.error());
-  const Result<Trajectory> translations = trajectory_of(*position, offset_s, translation);
-  if (!translations) return tl::unexpected(translations.error());
+  return detail::without_exceptions([&]() -> Result<NavTrajectory> {
+    const Result<std::optional<PositionSource>> found = position_source(log);
+    if (!found) return tl::unexpected(found.error());
+    const NavSource* position = *found ? &(*found)->source : nullptr;
+    // A source of both has them in one frame, which need not be that of others.
+    const Result<std::optional<NavSource>> turned = main_source(
+        log, NavQuantity::kAttitude, position != nullptr ? std::string_view(position->name) : std::string_view());
+    if (!turned) return tl::unexpected(turned.error());
+    const std::optional<NavSource>& attitude = *turned;
+    if (!attitude || position == nullptr) {
+      return fail(Error::Code::kUnsupported,
+                  fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
+    }
+    const Result<Trajectory> rotations = trajectory_of(*attitude, offset_s, [](const Eigen::Vector3d& rpy) {
+      return pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z());
+    });
+    if (!rotations) return tl::unexpected(rotations.error());
+    const Result<Trajectory> translations = trajectory_of(*position, offset_s, translation);
+    if (!translations) return tl::unexpected(translations.error());
 
-  std::vector<double> times_s;
-  for (const Trajectory* trajectory : {&*rotations, &*translations}) {
-    for (const StampedPose& pose : trajectory->poses()) times_s.push_back(pose.time_s);
-  }
-  std::sort(times_s.begin(), times_s.end());
-  times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
-  std::vector<StampedPose> poses;
-  for (const double time_s : times_s) {
-    const std::optional<Pose> rotation = rotations->at(time_s), place = translations->at(time_s);
-    if (rotation && place) poses.push_back({time_s, *place * *rotation});
-  }
-  if (poses.empty()) {
-    return fail(Error::Code::kUnsupported, fmt::format("attitude ({}) and position ({}) are never known together",
-                                                       attitude->name, position->name));
-  }
-  // A step with a gap in neither source is shorter than the limits of both, and one with a gap is longer than its
-  // limit.
-  const double longest_step_s = std::min(summary_of(*attitude).longest_step_s, summary_of(*position).longest_step_s);
-  Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_step_s);
-  if (!trajectory) return tl::unexpected(trajectory.error());
-  return NavTrajectory{*std::move(trajectory), attitude->name, position->name, (*found)->origin_fix};
+    std::vector<double> times_s;
+    for (const Trajectory* trajectory : {&*rotations, &*translations}) {
+      for (const StampedPose& pose : trajectory->poses()) times_s.push_back(pose.time_s);
+    }
+    std::sort(times_s.begin(), times_s.end());
+    times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
+    std::vector<StampedPose> poses;
+    for (const double time_s : times_s) {
+      const std::optional<Pose> rotation = rotations->at(time_s), place = translations->at(time_s);
+      if (rotation && place) poses.push_back({time_s, *place * *rotation});
+    }
+    if (poses.empty()) {
+      return fail(Error::Code::kUnsupported, fmt::format("attitude ({}) and position ({}) are never known together",
+                                                         attitude->name, position->name));
+    }
+    // A step with a gap in neither source is shorter than the limits of both, and one with a gap is longer than its
+    // limit.
+    const double longest_step_s = std::min(summary_of(*attitude).longest_step_s, summary_of(*position).longest_step_s);
+    Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_step_s);
+    if (!trajectory) return tl::unexpected(trajectory.error());
+    return NavTrajectory{*std::move(trajectory), attitude->name, position->name, (*found)->origin_fix};
+  });
 }
 
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
-  const Result<std::optional<PositionSource>> found = position_source(log);
-  if (!found) return tl::unexpected(found.error());
-  if (!*found) return fail(Error::Code::kUnsupported, "has no valid position");
-  const NavSource& position = (*found)->source;
-  Result<Trajectory> trajectory = trajectory_of(position, offset_s, translation);
-  if (!trajectory) return tl::unexpected(trajectory.error());
-  return NavTrajectory{*std::move(trajectory), "", position.name, (*found)->origin_fix};
+  return detail::without_exceptions([&]() -> Result<NavTrajectory> {
+    const Result<std::optional<PositionSource>> found = position_source(log);
+    if (!found) return tl::unexpected(found.error());
+    if (!*found) return fail(Error::Code::kUnsupported, "has no valid position");
+    const NavSource& position = (*found)->source;
+    Result<Trajectory> trajectory = trajectory_of(position, offset_s, translation);
+    if (!trajectory) return tl::unexpected(trajectory.error());
+    return NavTrajectory{*std::move(trajectory), "", position.name, (*found)->origin_fix};
+  });
 }
 
 }  // namespace pingvox

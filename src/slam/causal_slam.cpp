@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slam/causal_estimator.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 
@@ -34,18 +35,20 @@ CausalSlam::CausalSlam(CausalSlam&&) noexcept = default;
 CausalSlam& CausalSlam::operator=(CausalSlam&&) noexcept = default;
 
 Result<void> CausalSlam::add(Beam beam) {
-  if (state_->last_s && beam.time_s < *state_->last_s) {
-    return fail(Error::Code::kCorrupt, fmt::format("the times of the beams do not rise: {:.3f} s, then {:.3f} s",
-                                                   *state_->last_s, beam.time_s));
-  }
-  state_->last_s = beam.time_s;
-  state_->estimator.add_beam(beam.time_s);
-  const auto sweep = state_->assembler.add(std::move(beam));
-  if (!sweep) return {};
-  state_->take(*sweep);
-  if (state_->waiting < kSweepsOfStep) return {};
-  state_->waiting = 0;
-  return state_->estimator.solve();
+  return detail::without_exceptions([&]() -> Result<void> {
+    if (state_->last_s && beam.time_s < *state_->last_s) {
+      return fail(Error::Code::kCorrupt, fmt::format("the times of the beams do not rise: {:.3f} s, then {:.3f} s",
+                                                     *state_->last_s, beam.time_s));
+    }
+    state_->last_s = beam.time_s;
+    state_->estimator.add_beam(beam.time_s);
+    const auto sweep = state_->assembler.add(std::move(beam));
+    if (!sweep) return {};
+    state_->take(*sweep);
+    if (state_->waiting < kSweepsOfStep) return {};
+    state_->waiting = 0;
+    return state_->estimator.solve();
+  });
 }
 
 Result<void> CausalSlam::add(std::string_view source, NavQuantity quantity, const NavSample& sample) {
@@ -57,8 +60,10 @@ std::optional<StampedPose> CausalSlam::pose() const {
 }
 
 Result<SlamSolution> CausalSlam::finish() {
-  if (const auto rest = state_->assembler.finish()) state_->take(*rest);
-  return state_->estimator.finish();
+  return detail::without_exceptions([&]() -> Result<SlamSolution> {
+    if (const auto rest = state_->assembler.finish()) state_->take(*rest);
+    return state_->estimator.finish();
+  });
 }
 
 }  // namespace pingvox

@@ -11,6 +11,7 @@
 
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/option_errors.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -98,129 +99,132 @@ Result<void> DistanceFieldOptions::validate() const {
 }
 
 Result<DistanceField> DistanceField::make(const OccupancyMap& map, const DistanceFieldOptions& options) {
-  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-  DistanceField field;
-  field.cell_m_ = map.lattice().resolution_m();
-  field.cells_per_m_ = map.lattice().cells_per_m();
-  field.truncation_m_ = std::min(options.truncation_m, static_cast<double>(kTile) * field.cell_m_);
-  field.step_m_ = field.truncation_m_ / kFar;
+  return detail::without_exceptions([&]() -> Result<DistanceField> {
+    if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+    DistanceField field;
+    field.cell_m_ = map.lattice().resolution_m();
+    field.cells_per_m_ = map.lattice().cells_per_m();
+    field.truncation_m_ = std::min(options.truncation_m, static_cast<double>(kTile) * field.cell_m_);
+    field.step_m_ = field.truncation_m_ / kFar;
 
-  struct {
-    std::int64_t min_x = std::numeric_limits<std::int64_t>::max(), min_y = min_x, max_x = -min_x, max_y = -min_x;
-    bool has_occupied = false;
-  } known;
-  for_each_square(map, options, [&](const Square& s, bool is_occupied) {
-    known.min_x = std::min(known.min_x, s.first_x);
-    known.min_y = std::min(known.min_y, s.first_y);
-    known.max_x = std::max(known.max_x, s.first_x + s.size);
-    known.max_y = std::max(known.max_y, s.first_y + s.size);
-    known.has_occupied |= is_occupied;
-  });
-  if (!known.has_occupied) {
-    return fail(Error::Code::kUnsupported, fmt::format("nothing is occupied between the heights {:.3g} and {:.3g} m",
-                                                       options.min_z_m, options.max_z_m));
-  }
-  // A tile around: distances go on there.
-  known.min_x -= kTile;
-  known.min_y -= kTile;
-  const std::int64_t tiles_x = (known.max_x - known.min_x) / kTile + 2;
-  const std::int64_t tiles_y = (known.max_y - known.min_y) / kTile + 2;
-  const auto too_large = [&] {
-    return fail(Error::Code::kLimit, fmt::format("the layer of the map between {:.3g} and {:.3g} m is too large",
-                                                 options.min_z_m, options.max_z_m));
-  };
-  if (static_cast<double>(tiles_x) * static_cast<double>(tiles_y) > kMaxBoxTiles) return too_large();
-  field.first_x_ = static_cast<double>(known.min_x);
-  field.first_y_ = static_cast<double>(known.min_y);
-  field.size_x_ = static_cast<double>(tiles_x * kTile);
-  field.size_y_ = static_cast<double>(tiles_y * kTile);
-  field.tiles_x_ = static_cast<std::size_t>(tiles_x);
-  field.tiles_.assign(field.tiles_x_ * static_cast<std::size_t>(tiles_y), 0);
-
-  // What is known, tile by tile.
-  std::vector<std::uint8_t> states(kTileCells, kNothing);
-  std::vector<bool> has_occupied(1, false);
-  const auto tile_at = [&](std::size_t place) {
-    std::uint32_t& tile = field.tiles_[place];
-    if (tile == 0 && has_occupied.size() <= kMaxTiles) {
-      tile = static_cast<std::uint32_t>(has_occupied.size());
-      has_occupied.push_back(false);
-      states.resize(states.size() + kTileCells, kNothing);
+    struct {
+      std::int64_t min_x = std::numeric_limits<std::int64_t>::max(), min_y = min_x, max_x = -min_x, max_y = -min_x;
+      bool has_occupied = false;
+    } known;
+    for_each_square(map, options, [&](const Square& s, bool is_occupied) {
+      known.min_x = std::min(known.min_x, s.first_x);
+      known.min_y = std::min(known.min_y, s.first_y);
+      known.max_x = std::max(known.max_x, s.first_x + s.size);
+      known.max_y = std::max(known.max_y, s.first_y + s.size);
+      known.has_occupied |= is_occupied;
+    });
+    if (!known.has_occupied) {
+      return fail(Error::Code::kUnsupported, fmt::format("nothing is occupied between the heights {:.3g} and {:.3g} m",
+                                                         options.min_z_m, options.max_z_m));
     }
-    return tile;
-  };
-  bool fits = true;
-  for_each_square(map, options, [&](const Square& s, bool is_occupied) {
-    const std::int64_t x0 = s.first_x - known.min_x, y0 = s.first_y - known.min_y;
-    for (std::int64_t ty = y0 / kTile; ty <= (y0 + s.size - 1) / kTile && fits; ++ty) {
-      for (std::int64_t tx = x0 / kTile; tx <= (x0 + s.size - 1) / kTile && fits; ++tx) {
-        const std::uint32_t tile =
-            tile_at(static_cast<std::size_t>(ty) * field.tiles_x_ + static_cast<std::size_t>(tx));
-        fits = tile != 0;
-        if (!fits) return;
-        if (is_occupied) has_occupied[tile] = true;
-        const std::uint8_t state = is_occupied ? kOccupied : kFree;
-        for (std::int64_t y = std::max(y0, ty * kTile); y < std::min(y0 + s.size, (ty + 1) * kTile); ++y) {
-          for (std::int64_t x = std::max(x0, tx * kTile); x < std::min(x0 + s.size, (tx + 1) * kTile); ++x) {
-            std::uint8_t& cell = states[tile * kTileCells + static_cast<std::size_t>((y % kTile) * kTile + x % kTile)];
-            cell = std::max(cell, state);
+    // A tile around: distances go on there.
+    known.min_x -= kTile;
+    known.min_y -= kTile;
+    const std::int64_t tiles_x = (known.max_x - known.min_x) / kTile + 2;
+    const std::int64_t tiles_y = (known.max_y - known.min_y) / kTile + 2;
+    const auto too_large = [&] {
+      return fail(Error::Code::kLimit, fmt::format("the layer of the map between {:.3g} and {:.3g} m is too large",
+                                                   options.min_z_m, options.max_z_m));
+    };
+    if (static_cast<double>(tiles_x) * static_cast<double>(tiles_y) > kMaxBoxTiles) return too_large();
+    field.first_x_ = static_cast<double>(known.min_x);
+    field.first_y_ = static_cast<double>(known.min_y);
+    field.size_x_ = static_cast<double>(tiles_x * kTile);
+    field.size_y_ = static_cast<double>(tiles_y * kTile);
+    field.tiles_x_ = static_cast<std::size_t>(tiles_x);
+    field.tiles_.assign(field.tiles_x_ * static_cast<std::size_t>(tiles_y), 0);
+
+    // What is known, tile by tile.
+    std::vector<std::uint8_t> states(kTileCells, kNothing);
+    std::vector<bool> has_occupied(1, false);
+    const auto tile_at = [&](std::size_t place) {
+      std::uint32_t& tile = field.tiles_[place];
+      if (tile == 0 && has_occupied.size() <= kMaxTiles) {
+        tile = static_cast<std::uint32_t>(has_occupied.size());
+        has_occupied.push_back(false);
+        states.resize(states.size() + kTileCells, kNothing);
+      }
+      return tile;
+    };
+    bool fits = true;
+    for_each_square(map, options, [&](const Square& s, bool is_occupied) {
+      const std::int64_t x0 = s.first_x - known.min_x, y0 = s.first_y - known.min_y;
+      for (std::int64_t ty = y0 / kTile; ty <= (y0 + s.size - 1) / kTile && fits; ++ty) {
+        for (std::int64_t tx = x0 / kTile; tx <= (x0 + s.size - 1) / kTile && fits; ++tx) {
+          const std::uint32_t tile =
+              tile_at(static_cast<std::size_t>(ty) * field.tiles_x_ + static_cast<std::size_t>(tx));
+          fits = tile != 0;
+          if (!fits) return;
+          if (is_occupied) has_occupied[tile] = true;
+          const std::uint8_t state = is_occupied ? kOccupied : kFree;
+          for (std::int64_t y = std::max(y0, ty * kTile); y < std::min(y0 + s.size, (ty + 1) * kTile); ++y) {
+            for (std::int64_t x = std::max(x0, tx * kTile); x < std::min(x0 + s.size, (tx + 1) * kTile); ++x) {
+              std::uint8_t& cell =
+                  states[tile * kTileCells + static_cast<std::size_t>((y % kTile) * kTile + x % kTile)];
+              cell = std::max(cell, state);
+            }
           }
         }
       }
-    }
-  });
-  if (!fits) return too_large();
+    });
+    if (!fits) return too_large();
 
-  // Tiles next to something occupied, which may hold nothing themselves.
-  std::vector<std::size_t> near;
-  for (std::size_t place = 0; place < field.tiles_.size(); ++place) {
-    if (!has_occupied[field.tiles_[place]]) continue;
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t column = 0; column < 3; ++column)
-        near.push_back(place + (row - 1) * field.tiles_x_ + column - 1);
-    }
-  }
-  std::ranges::sort(near);
-  near.erase(std::ranges::unique(near).begin(), near.end());
-  for (const std::size_t place : near) {
-    if (tile_at(place) == 0) return too_large();
-  }
-
-  std::array<std::uint8_t, 2 * kTile * kTile + 1> steps{};
-  for (std::size_t square = 0; square < steps.size(); ++square) {
-    const double distance_m = std::sqrt(static_cast<double>(square)) * field.cell_m_;
-    steps[square] = static_cast<std::uint8_t>(std::min<double>(kFar, std::round(distance_m / field.step_m_)));
-  }
-  field.values_.resize(states.size());
-  std::ranges::transform(states, field.values_.begin(), [](std::uint8_t state) {
-    return static_cast<std::uint8_t>(kFar + (state == kNothing ? kUnknown : 0));
-  });
-  // A tile that is not near has nothing occupied beside it.
-  field.clear_cells_.resize(has_occupied.size() * kBlocks * kBlocks, kTile - 2);
-  const auto occupied = std::make_unique<Neighbourhood>();
-  for (const std::size_t place : near) {
-    for (std::size_t ty = 0; ty < 3; ++ty) {
-      for (std::size_t tx = 0; tx < 3; ++tx) {
-        const std::size_t other = place + (ty - 1) * field.tiles_x_ + tx - 1;
-        const std::size_t tile = other < field.tiles_.size() ? field.tiles_[other] : 0;
-        for (std::size_t i = 0; i < kTileCells; ++i) {
-          (*occupied)[ty * kTile + i / kTile][tx * kTile + i % kTile] = states[tile * kTileCells + i] == kOccupied;
-        }
+    // Tiles next to something occupied, which may hold nothing themselves.
+    std::vector<std::size_t> near;
+    for (std::size_t place = 0; place < field.tiles_.size(); ++place) {
+      if (!has_occupied[field.tiles_[place]]) continue;
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column)
+          near.push_back(place + (row - 1) * field.tiles_x_ + column - 1);
       }
     }
-    const auto squares = squared_distances(*occupied, kTile);
-    const std::size_t first = field.tiles_[place] * kTileCells;
-    for (std::size_t i = 0; i < kTileCells; ++i) {
-      const auto square = static_cast<std::size_t>(squares[i]);
-      // Less a diagonal: from the middle of a column to that of another is so much more than from point to point.
-      const double clear = std::floor(std::sqrt(static_cast<double>(square)) - std::numbers::sqrt2);
-      std::uint8_t& least = field.clear_cells_[field.block_of(field.tiles_[place], i % kTile, i / kTile)];
-      least = static_cast<std::uint8_t>(std::clamp<double>(clear, 0.0, least));
-      const std::uint8_t distance = square < steps.size() ? steps[square] : kFar;
-      field.values_[first + i] = static_cast<std::uint8_t>(distance + (states[first + i] == kNothing ? kUnknown : 0));
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    for (const std::size_t place : near) {
+      if (tile_at(place) == 0) return too_large();
     }
-  }
-  return field;
+
+    std::array<std::uint8_t, 2 * kTile * kTile + 1> steps{};
+    for (std::size_t square = 0; square < steps.size(); ++square) {
+      const double distance_m = std::sqrt(static_cast<double>(square)) * field.cell_m_;
+      steps[square] = static_cast<std::uint8_t>(std::min<double>(kFar, std::round(distance_m / field.step_m_)));
+    }
+    field.values_.resize(states.size());
+    std::ranges::transform(states, field.values_.begin(), [](std::uint8_t state) {
+      return static_cast<std::uint8_t>(kFar + (state == kNothing ? kUnknown : 0));
+    });
+    // A tile that is not near has nothing occupied beside it.
+    field.clear_cells_.resize(has_occupied.size() * kBlocks * kBlocks, kTile - 2);
+    const auto occupied = std::make_unique<Neighbourhood>();
+    for (const std::size_t place : near) {
+      for (std::size_t ty = 0; ty < 3; ++ty) {
+        for (std::size_t tx = 0; tx < 3; ++tx) {
+          const std::size_t other = place + (ty - 1) * field.tiles_x_ + tx - 1;
+          const std::size_t tile = other < field.tiles_.size() ? field.tiles_[other] : 0;
+          for (std::size_t i = 0; i < kTileCells; ++i) {
+            (*occupied)[ty * kTile + i / kTile][tx * kTile + i % kTile] = states[tile * kTileCells + i] == kOccupied;
+          }
+        }
+      }
+      const auto squares = squared_distances(*occupied, kTile);
+      const std::size_t first = field.tiles_[place] * kTileCells;
+      for (std::size_t i = 0; i < kTileCells; ++i) {
+        const auto square = static_cast<std::size_t>(squares[i]);
+        // Less a diagonal: from the middle of a column to that of another is so much more than from point to point.
+        const double clear = std::floor(std::sqrt(static_cast<double>(square)) - std::numbers::sqrt2);
+        std::uint8_t& least = field.clear_cells_[field.block_of(field.tiles_[place], i % kTile, i / kTile)];
+        least = static_cast<std::uint8_t>(std::clamp<double>(clear, 0.0, least));
+        const std::uint8_t distance = square < steps.size() ? steps[square] : kFar;
+        field.values_[first + i] = static_cast<std::uint8_t>(distance + (states[first + i] == kNothing ? kUnknown : 0));
+      }
+    }
+    return field;
+  });
 }
 
 Occupancy DistanceField::classify(const Eigen::Vector2d& point_m) const {

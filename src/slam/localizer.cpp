@@ -18,6 +18,7 @@
 #include "slam/beam_likelihood.hpp"
 #include "slam/particles.hpp"
 #include "slam/pose_search.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -381,21 +382,23 @@ void Localizer::add(const StampedPose& odometry_from_body) {
 }
 
 Result<void> Localizer::add(Beam beam) {
-  State& s = *state_;
-  if (s.time_s && !(beam.time_s >= *s.time_s)) {
-    return fail(Error::Code::kCorrupt,
-                fmt::format("the times of the beams do not rise: beam {} is at {:.3f} s, the one "
-                            "before it at {:.3f} s",
-                            s.beams, beam.time_s, *s.time_s));
-  }
-  s.move(s.time_s ? beam.time_s - *s.time_s : 0.0);
-  s.time_s = beam.time_s;
-  if (s.bearing_rad) s.turned_rad += std::abs(turn_between(*s.bearing_rad, beam.bearing_rad));
-  s.bearing_rad = beam.bearing_rad;
-  s.waiting.emplace(s.beams++, Placed{s.odometry_pose, s.level_from_body, s.turned_rad});
-  for (const EchoStream::BeamWithEcho& heard : s.stream.add(std::move(beam))) s.take(heard);
-  s.look_after();
-  return {};
+  return detail::without_exceptions([&]() -> Result<void> {
+    State& s = *state_;
+    if (s.time_s && !(beam.time_s >= *s.time_s)) {
+      return fail(Error::Code::kCorrupt,
+                  fmt::format("the times of the beams do not rise: beam {} is at {:.3f} s, the one "
+                              "before it at {:.3f} s",
+                              s.beams, beam.time_s, *s.time_s));
+    }
+    s.move(s.time_s ? beam.time_s - *s.time_s : 0.0);
+    s.time_s = beam.time_s;
+    if (s.bearing_rad) s.turned_rad += std::abs(turn_between(*s.bearing_rad, beam.bearing_rad));
+    s.bearing_rad = beam.bearing_rad;
+    s.waiting.emplace(s.beams++, Placed{s.odometry_pose, s.level_from_body, s.turned_rad});
+    for (const EchoStream::BeamWithEcho& heard : s.stream.add(std::move(beam))) s.take(heard);
+    s.look_after();
+    return {};
+  });
 }
 
 void Localizer::finish() {

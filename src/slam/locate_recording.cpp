@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "without_exceptions.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -124,48 +126,50 @@ std::optional<Trajectory> LocatedRecording::known_trajectory() const {
 Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const RecordedMotion& motion,
                                           const DistanceField& map, const LocateOptions& options,
                                           const std::function<void(double)>& progress) {
-  assert(!beams.empty());
-  Localizer localizer(map, options.localizer);
-  if (const auto& start = options.start) {
-    localizer.start(start->x_m, start->y_m, start->yaw_rad, start->deviation_m, start->deviation_rad);
-  }
-  Result<std::optional<SlamSmoother>> smoother = smoother_of(motion, options);
-  if (!smoother) return tl::unexpected(smoother.error());
+  return detail::without_exceptions([&]() -> Result<LocatedRecording> {
+    assert(!beams.empty());
+    Localizer localizer(map, options.localizer);
+    if (const auto& start = options.start) {
+      localizer.start(start->x_m, start->y_m, start->yaw_rad, start->deviation_m, start->deviation_rad);
+    }
+    Result<std::optional<SlamSmoother>> smoother = smoother_of(motion, options);
+    if (!smoother) return tl::unexpected(smoother.error());
 
-  LocatedRecording found;
-  const auto count = static_cast<double>(beams.size());
-  const double end_s = beams.back().time_s;
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (progress) progress(static_cast<double>(i) / count);
-    const double time_s = beams[i].time_s;
-    if (*smoother) (*smoother)->add(beams[i]);
-    const auto& odometry = motion.odometry_from_body;
-    if (const auto pose = odometry ? odometry->at(time_s) : std::nullopt) localizer.add({time_s, *pose});
-    if (const auto added = localizer.add(std::move(beams[i])); !added) return tl::unexpected(added.error());
-    note(localizer, time_s, found.poses);
-    found.mean_particles += static_cast<double>(localizer.particles()) / count;
-    found.most_particles = std::max(found.most_particles, localizer.particles());
-  }
-  localizer.finish();
-  note(localizer, end_s, found.poses);
-  if (found.poses.empty()) return fail(Error::Code::kUnsupported, "no echo fits anywhere in the map");
-  found.hypotheses = localizer.hypotheses();
-  found.is_sure = found.poses.back().was_sure;
-  if (options.estimation == Estimation::kCausal) {
-    for (LocatedPose& pose : found.poses) pose.is_known = pose.was_sure;
+    LocatedRecording found;
+    const auto count = static_cast<double>(beams.size());
+    const double end_s = beams.back().time_s;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      if (progress) progress(static_cast<double>(i) / count);
+      const double time_s = beams[i].time_s;
+      if (*smoother) (*smoother)->add(beams[i]);
+      const auto& odometry = motion.odometry_from_body;
+      if (const auto pose = odometry ? odometry->at(time_s) : std::nullopt) localizer.add({time_s, *pose});
+      if (const auto added = localizer.add(std::move(beams[i])); !added) return tl::unexpected(added.error());
+      note(localizer, time_s, found.poses);
+      found.mean_particles += static_cast<double>(localizer.particles()) / count;
+      found.most_particles = std::max(found.most_particles, localizer.particles());
+    }
+    localizer.finish();
+    note(localizer, end_s, found.poses);
+    if (found.poses.empty()) return fail(Error::Code::kUnsupported, "no echo fits anywhere in the map");
+    found.hypotheses = localizer.hypotheses();
+    found.is_sure = found.poses.back().was_sure;
+    if (options.estimation == Estimation::kCausal) {
+      for (LocatedPose& pose : found.poses) pose.is_known = pose.was_sure;
+      return found;
+    }
+
+    std::vector<Poses> segments = segments_of(found.poses);
+    Result<bool> fits = false;
+    if (*smoother) fits = smooth_all(**smoother, map, found.poses, segments);
+    if (!fits) return tl::unexpected(fits.error());
+    for (const Poses segment : segments) mark_known(segment);
+    // One place is left, and the map fits there all the time.
+    if (*fits && found.hypotheses.front().weight >= Localizer::kSureWeight) {
+      for (LocatedPose& pose : found.poses) pose.is_known = true;
+    }
     return found;
-  }
-
-  std::vector<Poses> segments = segments_of(found.poses);
-  Result<bool> fits = false;
-  if (*smoother) fits = smooth_all(**smoother, map, found.poses, segments);
-  if (!fits) return tl::unexpected(fits.error());
-  for (const Poses segment : segments) mark_known(segment);
-  // One place is left, and the map fits there all the time.
-  if (*fits && found.hypotheses.front().weight >= Localizer::kSureWeight) {
-    for (LocatedPose& pose : found.poses) pose.is_known = true;
-  }
-  return found;
+  });
 }
 
 }  // namespace pingvox

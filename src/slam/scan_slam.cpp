@@ -12,6 +12,7 @@
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/loop_finder.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -137,48 +138,50 @@ void ScanSlam::add(const PointScan& scan) {
 }
 
 Result<ScanSlamSolution> ScanSlam::solve() const {
-  const std::vector<LevelScan>& scans = state_->scans;
-  if (scans.size() < 2) {
-    return fail(Error::Code::kUnsupported, scans.empty() ? "there are no scans" : "there is only one scan");
-  }
-  ScanSlamReport report;
-  report.scans = scans.size();
-  report.reach_m = reach_of(scans);
-  if (!(report.reach_m > 0.0)) return fail(Error::Code::kUnsupported, "the scans have no points");
-  const auto [frames, numbers, frame_of] = key_frames(scans, report.reach_m);
-  report.key_frames = frames.size();
-
-  std::vector<Pose2> poses;
-  for (const KeyFrame& frame : frames) poses.push_back(frame.odometry);
-  const std::vector<PoseEdge> odometry = odometry_edges(frames, report.reach_m);
-  std::vector<PoseEdge> kept_loops;
-  std::vector<double> weights;
-  for (const auto& [share, yaw_rad] : kWindows) {
-    double before = 0.0;
-    for (std::size_t round = 0; round < kRoundsOfWindow; ++round) {
-      Loops loops = find_loops(frames, poses, {report.reach_m, share * report.reach_m, yaw_rad});
-      ++report.rounds;
-      report.loops_found = loops.found;
-      report.loops_kept = loops.kept.size();
-      weights = solve_pose_graph(poses, odometry, loops.kept);
-      const auto kept = static_cast<double>(loops.kept.size());
-      kept_loops = std::move(loops.kept);
-      if (kept <= (1.0 + kFewNew) * before) break;
-      before = kept;
+  return detail::without_exceptions([&]() -> Result<ScanSlamSolution> {
+    const std::vector<LevelScan>& scans = state_->scans;
+    if (scans.size() < 2) {
+      return fail(Error::Code::kUnsupported, scans.empty() ? "there are no scans" : "there is only one scan");
     }
-  }
+    ScanSlamReport report;
+    report.scans = scans.size();
+    report.reach_m = reach_of(scans);
+    if (!(report.reach_m > 0.0)) return fail(Error::Code::kUnsupported, "the scans have no points");
+    const auto [frames, numbers, frame_of] = key_frames(scans, report.reach_m);
+    report.key_frames = frames.size();
 
-  std::vector<StampedPose> stamped;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const Pose2 before = scans[i].odometry(), after = correct(before, frame_of[i], frames, poses);
-    Pose pose = scans[i].pose;
-    pose.linear() =
-        Eigen::AngleAxisd(after.yaw_rad - before.yaw_rad, Eigen::Vector3d::UnitZ()) * scans[i].pose.linear();
-    pose.translation().head<2>() = after.place_m;
-    stamped.push_back({static_cast<double>(scans[i].number), pose});
-  }
-  return Trajectory::make(std::move(stamped)).map([&](Trajectory trajectory) {
-    return ScanSlamSolution{std::move(trajectory), graph_of(numbers, poses, odometry, kept_loops, weights), report};
+    std::vector<Pose2> poses;
+    for (const KeyFrame& frame : frames) poses.push_back(frame.odometry);
+    const std::vector<PoseEdge> odometry = odometry_edges(frames, report.reach_m);
+    std::vector<PoseEdge> kept_loops;
+    std::vector<double> weights;
+    for (const auto& [share, yaw_rad] : kWindows) {
+      double before = 0.0;
+      for (std::size_t round = 0; round < kRoundsOfWindow; ++round) {
+        Loops loops = find_loops(frames, poses, {report.reach_m, share * report.reach_m, yaw_rad});
+        ++report.rounds;
+        report.loops_found = loops.found;
+        report.loops_kept = loops.kept.size();
+        weights = solve_pose_graph(poses, odometry, loops.kept);
+        const auto kept = static_cast<double>(loops.kept.size());
+        kept_loops = std::move(loops.kept);
+        if (kept <= (1.0 + kFewNew) * before) break;
+        before = kept;
+      }
+    }
+
+    std::vector<StampedPose> stamped;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      const Pose2 before = scans[i].odometry(), after = correct(before, frame_of[i], frames, poses);
+      Pose pose = scans[i].pose;
+      pose.linear() =
+          Eigen::AngleAxisd(after.yaw_rad - before.yaw_rad, Eigen::Vector3d::UnitZ()) * scans[i].pose.linear();
+      pose.translation().head<2>() = after.place_m;
+      stamped.push_back({static_cast<double>(scans[i].number), pose});
+    }
+    return Trajectory::make(std::move(stamped)).map([&](Trajectory trajectory) {
+      return ScanSlamSolution{std::move(trajectory), graph_of(numbers, poses, odometry, kept_loops, weights), report};
+    });
   });
 }
 

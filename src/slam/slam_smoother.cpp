@@ -17,6 +17,7 @@
 #include "slam/solution.hpp"
 #include "slam/sonar_odometry.hpp"
 #include "slam/sweep_loops.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {
@@ -96,12 +97,14 @@ Result<void> SlamSmoother::add(std::string_view source, NavQuantity quantity, co
 }
 
 Result<void> SlamSmoother::add(const NavLog& log) {
-  if (const auto checked = check_clocks(log, kReckoningQuantities); !checked) return checked;
-  for (NavSource source : log.sources()) {
-    for (NavSample& sample : source.samples) sample.time_s += state_->options.nav_offset_s;
-    add_samples(source, source_in(state_->sources, source.name, source.quantity));
-  }
-  return {};
+  return detail::without_exceptions([&]() -> Result<void> {
+    if (const auto checked = check_clocks(log, kReckoningQuantities); !checked) return checked;
+    for (NavSource source : log.sources()) {
+      for (NavSample& sample : source.samples) sample.time_s += state_->options.nav_offset_s;
+      add_samples(source, source_in(state_->sources, source.name, source.quantity));
+    }
+    return {};
+  });
 }
 
 namespace {
@@ -277,30 +280,34 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
 }  // namespace
 
 Result<SlamSolution> SlamSmoother::solve_in(const DistanceField& map, const Trajectory& near) const {
-  const SlamOptions& options = state_->options;
-  const Result<std::vector<HeardSweep>> sweeps = state_->all_sweeps();
-  if (!sweeps) return tl::unexpected(sweeps.error());
-  const Result<Recording> recording = recording_of(state_->beam_times_s, *sweeps, state_->sources, options);
-  if (!recording) return tl::unexpected(recording.error());
-  const Result<NavLog> log = NavLog::make(state_->sources, NavClock::kUnknown);
-  if (!log) return tl::unexpected(log.error());
-  return solve_in_map(*recording, *log, options, map, near);
+  return detail::without_exceptions([&]() -> Result<SlamSolution> {
+    const SlamOptions& options = state_->options;
+    const Result<std::vector<HeardSweep>> sweeps = state_->all_sweeps();
+    if (!sweeps) return tl::unexpected(sweeps.error());
+    const Result<Recording> recording = recording_of(state_->beam_times_s, *sweeps, state_->sources, options);
+    if (!recording) return tl::unexpected(recording.error());
+    const Result<NavLog> log = NavLog::make(state_->sources, NavClock::kUnknown);
+    if (!log) return tl::unexpected(log.error());
+    return solve_in_map(*recording, *log, options, map, near);
+  });
 }
 
 Result<SlamSolution> SlamSmoother::solve() const {
-  const SlamOptions& options = state_->options;
-  Result<std::vector<HeardSweep>> heard = state_->all_sweeps();
-  if (!heard) return tl::unexpected(heard.error());
-  const std::vector<HeardSweep>& sweeps = *heard;
-  const std::vector<double>& times_s = state_->beam_times_s;
-  if (options.estimation == Estimation::kCausal) return solve_causal(times_s, sweeps, state_->sources, options);
-  const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
-  if (!sources) return tl::unexpected(sources.error());
-  Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
-  if (!recording) return tl::unexpected(recording.error());
-  const std::optional<VelocityCheck> check =
-      velocity_check(recording->navigation.velocity, recording->navigation.headings.front(), sweeps, options);
-  return solve_batch(*std::move(recording), check, options);
+  return detail::without_exceptions([&]() -> Result<SlamSolution> {
+    const SlamOptions& options = state_->options;
+    Result<std::vector<HeardSweep>> heard = state_->all_sweeps();
+    if (!heard) return tl::unexpected(heard.error());
+    const std::vector<HeardSweep>& sweeps = *heard;
+    const std::vector<double>& times_s = state_->beam_times_s;
+    if (options.estimation == Estimation::kCausal) return solve_causal(times_s, sweeps, state_->sources, options);
+    const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
+    if (!sources) return tl::unexpected(sources.error());
+    Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
+    if (!recording) return tl::unexpected(recording.error());
+    const std::optional<VelocityCheck> check =
+        velocity_check(recording->navigation.velocity, recording->navigation.headings.front(), sweeps, options);
+    return solve_batch(*std::move(recording), check, options);
+  });
 }
 
 }  // namespace pingvox

@@ -74,10 +74,15 @@ Result<Background> Background::learn(BeamSource& source, const BackgroundOptions
     if (!*beam) break;
     Histogram* const row = histograms.data() + direction_of((*beam)->bearing_rad, kDirections) * cells;
     const std::vector<std::uint8_t>& intensities = (*beam)->intensities;
-    for (std::size_t bin = 0; bin < intensities.size(); ++bin) {
+    // The loudest bin of a cell: a beam counts once, however short its bins are.
+    for (std::size_t bin = 0; bin < intensities.size();) {
       const std::size_t cell = cell_of(**beam, bin);
       if (cell >= cells) break;
-      std::uint16_t& count = row[cell][intensities[bin] / kStep];
+      std::uint8_t loudest = 0;
+      for (; bin < intensities.size() && cell_of(**beam, bin) == cell; ++bin) {
+        loudest = std::max(loudest, intensities[bin]);
+      }
+      std::uint16_t& count = row[cell][loudest / kStep];
       count = static_cast<std::uint16_t>(std::min(count + 1, 0xffff));
     }
   }

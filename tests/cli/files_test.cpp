@@ -96,10 +96,10 @@ TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
       {"\xff\xfet\0i\0"s, {"UTF-16", "UTF-8"}},
       {"version https://git-lfs.github.com/spec/v1\n", {"git lfs pull"}},
       {"%time,field.header.seq,field.header.stamp,field.depth\n1,2,3,4.5\n", {"rostopic echo -p", "bag"}},
-      {"time;angle;range\n1;2;3\n", {"is text", "first line", "bin_length_m"}},
+      {"time;angle;range\n1;2;3\n", {"is text of no known format", "the line", "bin_length_m"}},
+      {"ping,angle,range\n1,2,3\n", {"'time_s,bearing_cw_deg,", "docs/formats.md"}},
       // Taken for counter-clockwise, a map would be its mirror image.
-      {"ping,angle,range\n1,2,3\n", {"time_s,bearing_cw_deg,", "clockwise from ahead", "bearing_deg is counter"}},
-      {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "bin_length_m"}},
+      {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "clockwise from ahead", "bearing_deg is counter"}},
   };
   for (const auto& [content, texts] : unknown_files) {
     SCOPED_TRACE(texts.front());

@@ -257,6 +257,8 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   // The vehicle does not turn, and nothing else tells.
   expect_error(map("beams.csv", "unix.csv"), 1, {"beams.csv", "--nav-offset"});
   expect_error(map("beams.csv", "boot.csv"), 1, {"beams.csv", "--nav-offset"});
+  here.write("20200926-110158491.csv", here.read("beams.csv"));
+  expect_error(map("20200926-110158491.csv", "unix.csv"), 1, {"its name says 2020-09-26, --nav is of 20"});
   const Outcome given =
       here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
   ASSERT_EQ(given.status, 0) << given.err;

@@ -1,3 +1,4 @@
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -110,6 +111,17 @@ TEST(Render, ReadsStandardInputOnceForAllPanels) {
   here.simulate_tank();
   EXPECT_EQ(rendered(here, {"-", "--size", "200", "--beside", "--view cartesian"}, {.in = here.read("tank.csv")}),
             rendered(here, {"tank.csv", "--size", "200", "--beside", "--view cartesian"}));
+}
+
+// Kills a picture of the short pings that a head was tried with before the dive.
+TEST(Render, ACartesianPictureShowsTheSweepThatSeesMost) {
+  const Workplace here;
+  std::string log = "time_s,bearing_deg,bin_length_m,intensities\n";
+  for (int i = 0; i < 400; ++i) log += fmt::format("{},{},0.001,0,9,9\n", i, i % 400 * 0.9);
+  for (int i = 400; i < 700; ++i) log += fmt::format("{},{},1,0,9,9\n", i, i % 400 * 0.9);
+  here.write("dive.csv", log);
+  EXPECT_EQ(rendered(here, {"dive.csv", "--view", "cartesian"}),
+            rendered(here, {"dive.csv", "--view", "cartesian", "--sweep", "2"}));
 }
 
 TEST(Render, SaysWhatAFileHasNoPictureOf) {

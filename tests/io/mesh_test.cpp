@@ -48,6 +48,16 @@ TEST(Mesh, ReadsStlAsTextAndAsBytes) {
   EXPECT_EQ(bytes.vertices_m[4], Vector3d(0.0, 0.0, 2.0));
 }
 
+// Kills a reader that is stricter than what recognises the format.
+TEST(Mesh, ReadsStlWithAnEmptyFirstLine) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const std::string text = "\nsolid a\n" + facet + "endsolid a\n";
+  const auto mesh = read_mesh({"a.stl", {text.begin(), text.end()}});
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 1U);
+}
+
 TEST(Mesh, ReadsPlyInAllThreeFormsAndStepsOverWhatItDoesNotKnow) {
   const TriangleMesh text = sample("ply_text");
   EXPECT_EQ(text.vertices_m[3], Vector3d(0.0, 1.0, 0.5));

@@ -84,6 +84,21 @@ TEST(SonarView, FramesAreFoundHoweverTheStreamIsCutIntoPieces) {
   }
 }
 
+// Kills a search through damage that takes the square of its length: a long frame may begin at each of its bytes.
+TEST(SonarView, SumsOfDamageAreNotMadeAnewAtEachByte) {
+  const auto check = [](const FrameBytes& at) {
+    // A frame behind a damaged one is told where the stream's sums are.
+    EXPECT_TRUE(at.start == 0 || at.bytes.size() <= 100 || at.sums != nullptr) << at.start;
+    return check_sonarview_frame(at);
+  };
+  Bytes stream;
+  for (int i = 0; i < 20'000; ++i) stream.insert(stream.end(), {'B', 'R', 0xff, 0x3f});
+  const Frames frames = {ping(3, {7, 8, 9}), ping(4, {1})};
+  for (const Bytes& frame : frames) stream.insert(stream.end(), frame.begin(), frame.end());
+  EXPECT_EQ(frames_in(check, stream, stream.size()), frames);
+  EXPECT_EQ(frames_in(check_sonarview_frame, stream, 5000), frames) << "sums begin anew with each piece";
+}
+
 TEST(SonarView, AWrongBitCostsItsFrameAndNoOther) {
   const Bytes before = ping(1, {1, 2}), hit = ping(2, {3, 'B', 'R', 0xff, 0x7f, 4}), behind = ping(3, {5, 6});
   for (std::size_t i = 0; i < hit.size(); ++i) {

@@ -37,6 +37,17 @@ std::vector<Beam> beams_of_a_vehicle(std::size_t sweeps, std::uint64_t seed = 1)
   return beams;
 }
 
+/// The same beams with bins this many times as short.
+std::vector<Beam> with_short_bins(std::vector<Beam> beams, std::size_t times) {
+  for (Beam& beam : beams) {
+    std::vector<std::uint8_t> fine;
+    for (const std::uint8_t bin : beam.intensities) fine.insert(fine.end(), times, bin);
+    beam.bin_length_m /= static_cast<double>(times);
+    beam.intensities = std::move(fine);
+  }
+  return beams;
+}
+
 Background learned(std::vector<Beam> beams, double range_m) {
   BeamsInMemory source(std::move(beams));
   Result<Background> background = Background::learn(source, {.range_m = range_m});
@@ -68,8 +79,9 @@ TEST(Background, IsTheVehicleAndNotTheWallsThatItPasses) {
 }
 
 // Kills a background of a direction that one sweep has seen once: its echoes would vanish.
+// Bins shorter than a cell are not beams.
 TEST(Background, NeedsSeveralBeamsOfADirection) {
-  const std::vector<Beam> beams = beams_of_a_vehicle(2);
+  const std::vector<Beam> beams = with_short_bins(beams_of_a_vehicle(2), 5);
   const Background background = learned(beams, 5.0);
   for (Beam beam : beams) {
     const Beam before = beam;
@@ -80,6 +92,10 @@ TEST(Background, NeedsSeveralBeamsOfADirection) {
 
 TEST(Background, DoesNotDependOnTheLengthOfBins) {
   const Background background = learned(beams_of_a_vehicle(12), 2.0);
+  const Background of_short_bins = learned(with_short_bins(beams_of_a_vehicle(12), 10), 2.0);
+  for (std::size_t n = 0; n < 360; ++n) {
+    EXPECT_EQ(background.beams()[n].intensities, of_short_bins.beams()[n].intensities) << n << " degrees";
+  }
   Beam fine{.bearing_rad = 20.0 * kDegree_rad, .bin_length_m = 0.00125, .intensities = {}};
   fine.intensities.assign(2000, 120);
   background.subtract_from(fine);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/result.hpp"
@@ -17,6 +18,7 @@ namespace pingvox {
 class ByteStream {
  public:
   static constexpr std::size_t kBeginning = std::size_t{1} << 16;
+  static constexpr std::string_view kStandardInput = "standard input";  ///< its name
 
   /// Bytes in memory.
   ByteStream(FileBytes file);  // NOLINT(google-explicit-constructor): functions of streams accept bytes in memory

@@ -24,8 +24,31 @@ struct FrameCheck {
   std::string_view why = {};  ///< kBroken: reason, as in "wrong checksum"
 };
 
-/// Checks for a frame at the start of `bytes`. REQUIRES at least one byte.
-using CheckFrame = FrameCheck (*)(std::span<const std::uint8_t> bytes);
+/// Sums of bytes modulo 2^16. In damage a long frame may seem to begin at each byte: summed anew each, they would take
+/// the square of its length.
+class PrefixSums {
+ public:
+  void clear() { sums_.resize(1); }
+  /// Of the bytes [from, to). REQUIRES the same bytes since the last clear().
+  std::uint16_t sum(std::span<const std::uint8_t> bytes, std::size_t from, std::size_t to);
+
+ private:
+  std::vector<std::uint16_t> sums_ = {0};  ///< sums_[n]: of the first n
+};
+
+/// The bytes of a stream from where a frame may begin.
+struct FrameBytes {
+  std::span<const std::uint8_t> bytes;  ///< at least one
+  PrefixSums* sums = nullptr;           ///< of a stream whose frames are damaged here; nullptr: there is none
+  std::span<const std::uint8_t> stream = {};
+  std::size_t start = 0;  ///< of `bytes` in `stream`
+
+  /// Sum of the first bytes modulo 2^16.
+  std::uint16_t sum(std::size_t size) const;
+};
+
+/// Checks for a frame at the start of the bytes.
+using CheckFrame = FrameCheck (*)(const FrameBytes& at);
 
 /// Finds the frames of a serial protocol in a stream pushed in pieces of any size. After a damaged frame it continues
 /// one byte further, not at the end that the frame claims, so that no valid frame is lost. Holds at most one frame and
@@ -64,6 +87,7 @@ class FrameFinder {
   std::uint64_t position_ = 0;      ///< the same in the stream
   bool in_damage_ = false;          ///< the last bytes were no frame
   std::uint64_t broken_until_ = 0;  ///< end that the last damaged frame claims
+  PrefixSums sums_;                 ///< of bytes_, once there is damage
   bool ended_ = false;
   std::vector<DamageKind> damage_;
 };

@@ -15,9 +15,9 @@ namespace pingvox {
 
 /// For FrameFinder: checks a frame, its checksum and the length of its message. No frame of a Ping360 has a payload of
 /// more than 4096 bytes; longer ones are damage.
-FrameCheck check_ping_frame(std::span<const std::uint8_t> bytes);
+FrameCheck check_ping_frame(const FrameBytes& at);
 /// The same for logs of SonarView, where payloads of other messages have up to 65,535 bytes.
-FrameCheck check_sonarview_frame(std::span<const std::uint8_t> bytes);
+FrameCheck check_sonarview_frame(const FrameBytes& at);
 
 /// Messages that a Ping360 and its host send each other.
 enum class PingMessage : std::uint16_t {

@@ -15,7 +15,7 @@ namespace pingvox {
 
 /// For FrameFinder: checks a frame, its two lengths, its end and the length of its message. The protocol has no
 /// checksum, so changed samples are not detected.
-FrameCheck check_seanet_frame(std::span<const std::uint8_t> bytes);
+FrameCheck check_seanet_frame(const FrameBytes& from);
 
 /// Kind of a message between host and head.
 enum class SeanetMessage : std::uint8_t {

@@ -1,0 +1,99 @@
+#include "io/unpack.hpp"
+
+#include <bzlib.h>
+#include <gtest/gtest.h>
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <array>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace pingvox {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+constexpr std::array kAll = {Compression::kBz2, Compression::kLz4, Compression::kZstd};
+
+Bytes packed_bz2(const Bytes& bytes) {
+  Bytes packed(bytes.size() + bytes.size() / 100 + 600);
+  auto size = static_cast<unsigned>(packed.size());
+  Bytes copy = bytes;
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(reinterpret_cast<char*>(packed.data()), &size,
+                                     reinterpret_cast<char*>(copy.data()), static_cast<unsigned>(copy.size()), 9, 0, 0),
+            BZ_OK);
+  packed.resize(size);
+  return packed;
+}
+
+Bytes packed_by(Compression compression, const Bytes& bytes) {
+  if (compression == Compression::kBz2) return packed_bz2(bytes);
+  Bytes packed(compression == Compression::kLz4 ? LZ4F_compressFrameBound(bytes.size(), nullptr)
+                                                : ZSTD_compressBound(bytes.size()));
+  packed.resize(compression == Compression::kLz4
+                    ? LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr)
+                    : ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 3));
+  return packed;
+}
+
+/// A megabyte that packs well, and some that hardly does.
+Bytes recorded() {
+  std::mt19937_64 random(1);
+  Bytes bytes(1'000'000);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(i < 900'000 ? i / 5000 : random());
+  }
+  return bytes;
+}
+
+TEST(Unpack, GivesBackWhatWasPacked) {
+  const Bytes bytes = recorded();
+  for (const Compression compression : kAll) {
+    Bytes to;
+    EXPECT_TRUE(unpack(compression, packed_by(compression, bytes), bytes.size(), to));
+    EXPECT_TRUE(to == bytes);
+    EXPECT_FALSE(unpack(compression, packed_by(compression, bytes), bytes.size() + 1, to)) << "one byte is missing";
+    EXPECT_TRUE(to == bytes);
+  }
+}
+
+// Kills a loop that ends when the room is full for the first time: frames one behind the other are one chunk.
+TEST(Unpack, ReadsFramesBehindEachOther) {
+  const Bytes bytes = recorded();
+  for (const Compression compression : {Compression::kLz4, Compression::kZstd}) {
+    const Bytes packed = packed_by(compression, bytes);
+    Bytes twice = packed, to;
+    twice.insert(twice.end(), packed.begin(), packed.end());
+    EXPECT_TRUE(unpack(compression, twice, 2 * bytes.size(), to));
+    EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), to.begin() + 1'000'000));
+  }
+}
+
+// Kills memory for what a damaged size claims.
+TEST(Unpack, TakesNoMemoryForBytesThatAreNotThere) {
+  const Bytes bytes = recorded();
+  for (const Compression compression : kAll) {
+    const Bytes packed = packed_by(compression, bytes);
+    Bytes to;
+    EXPECT_FALSE(unpack(compression, packed, 900 * packed.size(), to));
+    EXPECT_LT(to.capacity(), 4 * bytes.size());
+    EXPECT_FALSE(unpack(compression, packed, 2000 * packed.size(), to)) << "out of proportion";
+    EXPECT_TRUE(to.empty());
+  }
+}
+
+TEST(Unpack, KeepsTheBeginningOfDamagedData) {
+  const Bytes bytes = recorded();
+  for (const Compression compression : kAll) {
+    Bytes packed = packed_by(compression, bytes);
+    packed.resize(packed.size() - packed.size() / 4);
+    Bytes to;
+    EXPECT_FALSE(unpack(compression, packed, bytes.size(), to));
+    ASSERT_LT(to.size(), bytes.size());
+    EXPECT_TRUE(std::equal(to.begin(), to.end(), bytes.begin()));
+  }
+}
+
+}  // namespace
+}  // namespace pingvox
