@@ -250,7 +250,8 @@ Result<int> run(const CompareCommand& command, Console& console) {
                 fmt::format("{}: only maps of the same cells can be compared",
                             difference_of(command.a, a->map.lattice(), command.b, b->map.lattice())));
   }
-  const OccupancyMap world = b->map;  // what hides a cell of a layer may lie in another one
+  std::optional<OccupancyMap> world;  // what hides a cell of a layer may lie in another one
+  if (command.visible_from) world = b->map;
   if (command.layer_z_m) {
     if (auto kept = keep_layer(*a, command.a, *command.layer_z_m); !kept) return tl::unexpected(kept.error());
     if (auto kept = keep_layer(*b, command.b, *command.layer_z_m); !kept) return tl::unexpected(kept.error());
@@ -269,7 +270,7 @@ Result<int> run(const CompareCommand& command, Console& console) {
   std::optional<OccupancyMap> visible;
   AgreementOptions counted;
   if (command.visible_from) {
-    Result<OccupancyMap> cells = visible_cells_of(command, b->map, world);
+    Result<OccupancyMap> cells = visible_cells_of(command, b->map, *world);
     if (!cells) return tl::unexpected(cells.error());
     visible = *std::move(cells);
     counted = {judged_box(b->map), &*visible};

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,6 +21,7 @@
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "progress.hpp"
+#include "recordings.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"
 
@@ -335,13 +335,13 @@ Result<int> run(const LiveCommand& command, Console& console) {
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
   const auto since_1970_ms = std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count();
   const LiveStart start{watch.seconds(), static_cast<std::uint64_t>(since_1970_ms)};
-  const std::optional<std::filesystem::path> record = record_path(command, start);
-  Result<std::unique_ptr<LiveSource>> source = open_live_sonar(command, record, start);
+  Recordings recordings(record_path(command, start));
+  Result<std::unique_ptr<LiveSource>> source = open_live_sonar(command, recordings, start);
   if (!source) return tl::unexpected(source.error());
   std::optional<Navigation> nav;
   if (!command.nav.empty()) {
     Result<Navigation> opened =
-        Navigation::open(command.nav, record, start.s, static_cast<double>(start.since_1970_ms) / 1000.0);
+        Navigation::open(command.nav, recordings, start.s, static_cast<double>(start.since_1970_ms) / 1000.0);
     if (!opened) return tl::unexpected(opened.error());
     nav = *std::move(opened);
     for (const NavDevice& device : nav->devices()) {
@@ -357,6 +357,7 @@ Result<int> run(const LiveCommand& command, Console& console) {
     if (!opened) return tl::unexpected(opened.error());
     obstacles = *std::move(opened);
   }
+  recordings.keep();
   return LiveRun(command, console, std::move(*source), std::move(nav), std::move(obstacles), std::move(*mapper), *map)
       .run(*signals, watch);
 }

@@ -4,30 +4,22 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 namespace pingvox::app {
-namespace {
 
-template <class Recorder>
-Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record, const char* suffix) {
-  if (!record) return std::nullopt;
-  return Recorder::create(record->string() + suffix).map([](Recorder recorder) {
-    return std::optional(std::move(recorder));
-  });
-}
-
-}  // namespace
-
-Result<NavDevice> NavDevice::open(const LiveNavigation& from, const std::optional<std::filesystem::path>& record,
-                                  double since_1970_s) {
+Result<NavDevice> NavDevice::open(const LiveNavigation& from, std::optional<std::filesystem::path> record,
+                                  Recordings& recordings, double since_1970_s) {
   if (from.kind == LiveNavigation::Kind::kA50) {
-    Result<std::optional<RecordFile>> recorder = recorder_of<RecordFile>(record, ".jsonl");
+    if (record) *record += ".jsonl";
+    Result<std::optional<RecordFile>> recorder = recordings.create<RecordFile>(record);
     if (!recorder) return tl::unexpected(recorder.error());
     return A50Receiver::make(from.address, *std::move(recorder), since_1970_s).map([](A50Receiver receiver) {
       return NavDevice(std::move(receiver));
     });
   }
-  Result<std::optional<TlogRecorder>> recorder = recorder_of<TlogRecorder>(record, ".tlog");
+  if (record) *record += ".tlog";
+  Result<std::optional<TlogRecorder>> recorder = recordings.create<TlogRecorder>(record);
   if (!recorder) return tl::unexpected(recorder.error());
   return MavlinkReceiver::listen(from.address, *std::move(recorder), since_1970_s).map([](MavlinkReceiver receiver) {
     return NavDevice(std::move(receiver));
@@ -75,17 +67,16 @@ Result<void> NavDevice::read(double now_s, LivePoses& poses) {
   return {};
 }
 
-Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from,
-                                    const std::optional<std::filesystem::path>& record, double start_s,
+Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from, Recordings& recordings, double start_s,
                                     double since_1970_s) {
   std::vector<NavDevice> devices;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    std::optional<std::filesystem::path> name;
-    if (record) name = std::filesystem::path(*record).replace_extension();
+    std::optional<std::filesystem::path> name = recordings.sonar();
+    if (name) name->replace_extension();
     const auto before = std::span(from).first(i);
     const auto of_kind = std::ranges::count(before, from[i].kind, &LiveNavigation::kind);
     if (name && of_kind > 0) *name += fmt::format("-{}", of_kind + 1);
-    Result<NavDevice> device = NavDevice::open(from[i], name, since_1970_s);
+    Result<NavDevice> device = NavDevice::open(from[i], std::move(name), recordings, since_1970_s);
     if (!device) return tl::unexpected(device.error());
     devices.push_back(*std::move(device));
   }

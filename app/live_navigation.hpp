@@ -13,6 +13,7 @@
 #include "pingvox/device/mavlink_receiver.hpp"
 #include "pingvox/nav/live_poses.hpp"
 #include "pingvox/result.hpp"
+#include "recordings.hpp"
 
 namespace pingvox::app {
 
@@ -29,8 +30,8 @@ class NavDevice {
 
   /// @param record        name of the record, less its suffix; nullopt: nothing is recorded
   /// @param since_1970_s  time of the recording at 0 of the clock that `read` is told
-  static Result<NavDevice> open(const LiveNavigation& from, const std::optional<std::filesystem::path>& record,
-                                double since_1970_s);
+  static Result<NavDevice> open(const LiveNavigation& from, std::optional<std::filesystem::path> record,
+                                Recordings& recordings, double since_1970_s);
 
   /// As --nav has it, with the port that was chosen.
   std::string name() const;
@@ -51,11 +52,9 @@ class NavDevice {
 /// Pose of the vehicle by all navigation devices.
 class Navigation {
  public:
-  /// @param record        the sonar's log, beside which they are recorded; nullopt: nothing is recorded
   /// @param start_s       when the beams' clock was 0
   /// @param since_1970_s  the same as a date
-  static Result<Navigation> open(const std::vector<LiveNavigation>& from,
-                                 const std::optional<std::filesystem::path>& record, double start_s,
+  static Result<Navigation> open(const std::vector<LiveNavigation>& from, Recordings& recordings, double start_s,
                                  double since_1970_s);
 
   const std::vector<NavDevice>& devices() const { return devices_; }

@@ -21,15 +21,6 @@ std::string name_by_time(const LiveStart& start) {
   return fmt::format("{:%Y%m%d-%H%M%S}{:03}", local, start.since_1970_ms % 1000);
 }
 
-template <class Recorder>
-Result<std::optional<Recorder>> recorder_of(const std::optional<std::filesystem::path>& record,
-                                            const LiveStart& start) {
-  if (!record) return std::nullopt;
-  return Recorder::create(record->string(), start.since_1970_ms).map([](Recorder created) {
-    return std::optional(std::move(created));
-  });
-}
-
 }  // namespace
 
 std::optional<std::filesystem::path> record_path(const LiveCommand& command, const LiveStart& start) {
@@ -42,8 +33,7 @@ std::optional<std::filesystem::path> record_path(const LiveCommand& command, con
   return path;
 }
 
-Result<std::unique_ptr<LiveSource>> open_live_sonar(const LiveCommand& command,
-                                                    const std::optional<std::filesystem::path>& record,
+Result<std::unique_ptr<LiveSource>> open_live_sonar(const LiveCommand& command, Recordings& recordings,
                                                     const LiveStart& start) {
   const LiveDevice& device = command.device;
   if (device.kind == LiveDevice::Kind::kReplay) {
@@ -52,13 +42,15 @@ Result<std::unique_ptr<LiveSource>> open_live_sonar(const LiveCommand& command,
         .map([&](std::unique_ptr<BeamSource> log) { return replay_source(std::move(log), device.speed); });
   }
   if (device.kind == LiveDevice::Kind::kMicron) {
-    return recorder_of<SeanetRecorder>(record, start).map([&](std::optional<SeanetRecorder> recorder) {
-      return micron_source(device.address, command.micron, std::move(recorder), start.s);
-    });
+    return recordings.create<SeanetRecorder>(recordings.sonar(), start.since_1970_ms)
+        .map([&](std::optional<SeanetRecorder> recorder) {
+          return micron_source(device.address, command.micron, std::move(recorder), start.s);
+        });
   }
-  return recorder_of<PingViewerRecorder>(record, start).map([&](std::optional<PingViewerRecorder> recorder) {
-    return ping360_source(device.address, command.ping360, std::move(recorder), start.s);
-  });
+  return recordings.create<PingViewerRecorder>(recordings.sonar(), start.since_1970_ms)
+      .map([&](std::optional<PingViewerRecorder> recorder) {
+        return ping360_source(device.address, command.ping360, std::move(recorder), start.s);
+      });
 }
 
 }  // namespace pingvox::app

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/result.hpp"
+#include "recordings.hpp"
 
 namespace pingvox::app {
 
@@ -20,9 +21,7 @@ struct LiveStart {
 /// The file to record the sonar to; nullopt: none.
 std::optional<std::filesystem::path> record_path(const LiveCommand& command, const LiveStart& start);
 
-/// @param record  nullopt: none
-Result<std::unique_ptr<LiveSource>> open_live_sonar(const LiveCommand& command,
-                                                    const std::optional<std::filesystem::path>& record,
+Result<std::unique_ptr<LiveSource>> open_live_sonar(const LiveCommand& command, Recordings& recordings,
                                                     const LiveStart& start);
 
 }  // namespace pingvox::app

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,8 +30,9 @@ constexpr std::array kProgress = {Choice<ShowProgress>{"auto", ShowProgress::kAu
                                   Choice<ShowProgress>{"never", ShowProgress::kNever}};
 constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt}, Choice<Format>{"ot", Format::kOt},
                                     Choice<Format>{"pvx", Format::kPvx}};
-constexpr std::array kMotions = {Choice<Motion>{"still", Motion::kStill}, Choice<Motion>{"loop", Motion::kLoop}};
 constexpr double kGradian_deg = 0.9;
+/// Whose options are limited to it.
+constexpr std::string_view kHead = "a head", kReplayed = "a replay";
 
 Result<LiveDevice> device_from(const std::string& text) {
   constexpr std::string_view kPing360 = "ping360:", kMicron = "micron:", kReplay = "replay:";
@@ -68,7 +68,7 @@ Result<LiveDevice> device_from(const std::string& text) {
   }
   return usage_error(
       fmt::format("no such device '{}': must be ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], "
-                  "micron:/dev/ttyUSB0[@BAUD], micron:tcp://HOST:PORT or replay:FILE[@SPEED]",
+                  "micron:/dev/ttyUSB0[@BAUD], micron:tcp://HOST:PORT, micron:udp://HOST:PORT or replay:FILE[@SPEED]",
                   text));
 }
 
@@ -155,18 +155,75 @@ OptionTable::Group without(OptionTable::Group group, std::initializer_list<std::
   return group;
 }
 
-}  // namespace
-
-Result<Command> live_command(const Args& args) {
-  LiveCommand command;
+/// What is typed, where it is not in the command as such.
+struct LiveArgs {
   BuildArgs build;
   std::optional<Format> asked_format;
   std::string output, record;
   HeadMotion motion;
+  double range_m = Ping360Settings().range_m;
+  std::optional<double> timeout_s;
+};
+
+Result<void> set_head(LiveCommand& command, const LiveArgs& typed) {
   Ping360Settings& ping360 = command.ping360;
   MicronSettings& micron = command.micron;
-  double range_m = ping360.range_m;
-  std::optional<double> timeout_s;
+  ping360.range_m = micron.range_m = typed.range_m;
+  micron.gain = ping360.gain;
+  if (typed.timeout_s) ping360.timeout_s = micron.timeout_s = *typed.timeout_s;
+  const bool is_micron = command.device.kind == LiveDevice::Kind::kMicron;
+  if (const auto valid = is_micron ? apply(typed.motion, micron) : apply(typed.motion, ping360); !valid) return valid;
+  return is_micron ? micron.validate() : ping360.validate();
+}
+
+Result<Command> checked(LiveCommand command, const LiveArgs& typed, const Parsed& parsed, const Args& args) {
+  const bool is_replay = command.device.kind == LiveDevice::Kind::kReplay;
+  if (const auto used = check_limited(parsed.limited, {std::string(is_replay ? kReplayed : kHead)}); !used)
+    return tl::unexpected(used.error());
+  const Result<Format> output_as = output_format(typed.output, typed.asked_format, kMapFormats);
+  if (!output_as) return tl::unexpected(output_as.error());
+  command.format = *output_as;
+  command.map = typed.build.map;
+  command.output = typed.output;
+  if (const auto valid = typed.build.echoes.validate(); !valid) return tl::unexpected(valid.error());
+  command.build = typed.build.build_options();
+  command.head = typed.build.head;
+  if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
+  if (const auto ranges = check_ranges(command.build); !ranges) return tl::unexpected(ranges.error());
+  if (const auto valid = set_head(command, typed); !valid) return tl::unexpected(valid.error());
+  if (typed.output == "-") return usage_error("-o -: the map is written again and again: name a file");
+  if (command.map.depth != Lattice::kDefaultDepth && *output_as != Format::kPvx) {
+    return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", typed.output,
+                                   name_of(*output_as), Lattice::kDefaultDepth, command.map.depth));
+  }
+  if (!typed.record.empty()) {
+    if (is_replay) return usage_error("--record: a replay is a recording already");
+    command.record = typed.record;
+  }
+  if (!command.nav.empty() && is_replay) {
+    return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
+  }
+  CommandFiles files;
+  if (is_replay) files.read("DEVICE", command.device.address);
+  files.read("--config", parsed.config);
+  files.write("-o", typed.output);
+  files.write("--record", typed.record);
+  if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+  if (const auto folder = check_folder_of(typed.output); !folder) return tl::unexpected(folder.error());
+  command.made_by = "pingvox " PINGVOX_VERSION " live";
+  for (const std::string& word : args) {
+    command.made_by += ' ';
+    command.made_by += quote_for_shell(word);
+  }
+  return command;
+}
+
+}  // namespace
+
+Result<Command> live_command(const Args& args) {
+  LiveCommand command;
+  LiveArgs typed;
   const Take device = [&](const std::string& text) -> Result<void> {
     const Result<LiveDevice> taken = device_from(text);
     if (!taken) return tl::unexpected(taken.error());
@@ -177,7 +234,7 @@ Result<Command> live_command(const Args& args) {
   const Take format = [&](const std::string& text) -> Result<void> {
     const Result<Format> value = choice_value(kMapFormats, text);
     if (!value) return tl::unexpected(value.error());
-    asked_format = *value;
+    typed.asked_format = *value;
     return {};
   };
   const Take nav = [&](const std::string& text) -> Result<void> {
@@ -198,18 +255,18 @@ Result<Command> live_command(const Args& args) {
       "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; another one, at least a second later,\n"
       "ends at once.",
       {{"DEVICE", Positional::Count::kOne,
-        "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD] or micron:tcp://HOST:PORT (a "
-        "SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log at the pace of its times (SPEED max: as fast "
-        "as possible)",
+        "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD], micron:tcp://HOST:PORT or "
+        "micron:udp://HOST:PORT (a SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log at the pace of its "
+        "times (SPEED max: as fast as possible)",
         device}},
       {{"Output",
-        {output_option(output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
+        {output_option(typed.output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
          {"--format", 0, choices_text(kMapFormats), "format of the map where its name has none of these suffixes",
           "by suffix, else bt", format},
          {"--record", 0, "FILE",
           "record the bytes of the device: a Ping360's as a log of Ping Viewer, a Micron's as a capture of packets "
           "with their times; in a folder named by the time",
-          "none", store(record)},
+          "none", store(typed.record)},
          {"--write-every", 0, "S", "seconds from one written map to the next", number_text(command.write_every_s),
           within({0.1, 86'400.0}, store_number(command.write_every_s))},
          {"--beams", 0, "N", "stop after N beams", "never", store_number(command.max_beams)},
@@ -218,15 +275,16 @@ Result<Command> live_command(const Args& args) {
          choice("--progress", kProgress, "show the status on standard error; auto: on a terminal",
                 command.output_options.progress)}},
        {"Head",
-        {{"--range", 0, "M", "range of a ping", number_text(range_m), within({0.5, 300.0}, store_number(range_m))},
+        {{"--range", 0, "M", "range of a ping", number_text(typed.range_m),
+          within({0.5, 300.0}, store_number(typed.range_m))},
          {"--sector", 0, "FROM,TO", "sector to scan, in degrees from ahead, counter-clockwise", "full turns",
-          store_sector(motion)},
+          store_sector(typed.motion)},
          {"--step", 0, "DEG", "angle from beam to beam: a multiple of 0.9 (Ping360) or 0.05625 (Micron)",
-          number_text(motion.step_deg), store_number(motion.step_deg)},
-         choice("--gain", kGains, "gain of the receiver", ping360.gain),
+          number_text(typed.motion.step_deg), store_number(typed.motion.step_deg)},
+         choice("--gain", kGains, "gain of the receiver", command.ping360.gain),
          {"--timeout", 0, "S", "seconds to wait for an answer, in which the head may have to turn",
-          fmt::format("{}, of a Micron {}", ping360.timeout_s, micron.timeout_s),
-          within({0.01, 60.0}, store_optional(timeout_s))}}},
+          fmt::format("{}, of a Micron {}", command.ping360.timeout_s, command.micron.timeout_s),
+          within({0.01, 60.0}, store_optional(typed.timeout_s))}}},
        {"Navigation",
         {{"--nav", 0, "NAV",
           "where the vehicle is: mavlink:udp://:PORT, by what its autopilot sends to this port by MAVLink, or "
@@ -236,9 +294,9 @@ Result<Command> live_command(const Args& args) {
          {"--obstacles", 0, "udp://HOST:PORT",
           "send the nearest obstacle in each of 72 sectors by MAVLink (OBSTACLE_DISTANCE), five times a second", "none",
           obstacles}}},
-       map_group(build),
-       without(sensor_group(build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
-       without(echo_group(build.echoes), {"--background"}),
+       map_group(typed.build),
+       without(sensor_group(typed.build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
+       without(echo_group(typed.build.echoes), {"--background"}),
        {"Input", {config_option()}}},
       {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",
        "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",
@@ -250,7 +308,6 @@ Result<Command> live_command(const Args& args) {
       "options,\nis the same.\n"
       "With --json each line of standard output is one object, one a second and one at the end.\n"
       "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
-  constexpr std::string_view kHead = "a head", kReplayed = "a replay";
   for (OptionTable::Group& group : table.groups) {
     for (Option& option : group.options) {
       option.only_for.clear();  // there are no others than beams
@@ -258,160 +315,7 @@ Result<Command> live_command(const Args& args) {
       if (group.title == "Head") option.only_for = {std::string(kHead)};
     }
   }
-  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
-    const bool is_replay = command.device.kind == LiveDevice::Kind::kReplay;
-    if (const auto used = check_limited(parsed.limited, {std::string(is_replay ? kReplayed : kHead)}); !used)
-      return tl::unexpected(used.error());
-    const Result<Format> output_as = output_format(output, asked_format, kMapFormats);
-    if (!output_as) return tl::unexpected(output_as.error());
-    command.format = *output_as;
-    command.map = build.map;
-    command.output = output;
-    if (const auto valid = build.echoes.validate(); !valid) return tl::unexpected(valid.error());
-    command.build = build.build_options();
-    command.head = build.head;
-    if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
-    if (const auto ranges = check_ranges(command.build); !ranges) return tl::unexpected(ranges.error());
-    ping360.range_m = micron.range_m = range_m;
-    micron.gain = ping360.gain;
-    if (timeout_s) ping360.timeout_s = micron.timeout_s = *timeout_s;
-    const bool is_micron = command.device.kind == LiveDevice::Kind::kMicron;
-    if (const auto valid = is_micron ? apply(motion, micron) : apply(motion, ping360); !valid) {
-      return tl::unexpected(valid.error());
-    }
-    if (const auto valid = is_micron ? micron.validate() : ping360.validate(); !valid) {
-      return tl::unexpected(valid.error());
-    }
-    if (output == "-") return usage_error("-o -: the map is written again and again: name a file");
-    if (command.map.depth != Lattice::kDefaultDepth && *output_as != Format::kPvx) {
-      return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", output,
-                                     name_of(*output_as), Lattice::kDefaultDepth, command.map.depth));
-    }
-    if (!record.empty()) {
-      if (is_replay) return usage_error("--record: a replay is a recording already");
-      command.record = record;
-    }
-    if (!command.nav.empty() && is_replay) {
-      return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
-    }
-    CommandFiles files;
-    if (is_replay) files.read("DEVICE", command.device.address);
-    files.read("--config", parsed.config);
-    files.write("-o", output);
-    files.write("--record", record);
-    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
-    if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
-    command.made_by = "pingvox " PINGVOX_VERSION " live";
-    for (const std::string& word : args) {
-      command.made_by += ' ';
-      command.made_by += quote_for_shell(word);
-    }
-    return command;
-  });
-}
-
-Result<Command> emulate_command(const Args& args) {
-  using Device = EmulateCommand::Device;
-  EmulateCommand command;
-  HeadEmulatorOptions& head = command.head;
-  constexpr std::array kDevices = {Choice<Device>{"ping360", Device::kPing360},
-                                   Choice<Device>{"micron", Device::kMicron},
-                                   Choice<Device>{"mavlink", Device::kMavlink}, Choice<Device>{"a50", Device::kA50}};
-  std::string listen, send_to;
-  double lost = 0.0, doubled = 0.0, damaged = 0.0;
-  double rate = 0.0;  // 0: as usual
-  std::uint64_t seed = 1;
-  const Take device = [&](const std::string& text) -> Result<void> {
-    const Result<Device> value = choice_value(kDevices, text);
-    if (!value) return usage_error(fmt::format("no such device '{}': must be ping360, micron, mavlink or a50", text));
-    command.device = *value;
-    return {};
-  };
-  const Take world = [&](const std::string& text) -> Result<void> {
-    constexpr std::array<std::string_view, 4> kWorlds = {"tank", "harbour", "seabed", "cave"};
-    if (std::ranges::find(kWorlds, text) == kWorlds.end()) {
-      return usage_error(fmt::format("must be {}, not '{}'", fmt::join(kWorlds, " or "), text));
-    }
-    command.world = text;
-    return {};
-  };
-  const Limits fault{0.0, 0.5};
-  OptionTable table{
-      "emulate",
-      "Answers like a device in a simulated world, to try 'pingvox live' without one: a sonar head (ping360 or\n"
-      "micron), an autopilot that sends MAVLink (mavlink), or a DVL (a50). Prints the address to connect to.",
-      {{"DEVICE", Positional::Count::kOne, "ping360, micron, mavlink or a50", device}},
-      {{"Line",
-        {{"--listen", 0, "ADDRESS",
-          "of a head: udp://HOST:PORT (port 0: any that is free), tcp://HOST:PORT, or pty for a new pseudo terminal; "
-          "a50: tcp://HOST:PORT",
-          "udp://127.0.0.1:9092, micron: pty, a50: tcp://127.0.0.1:16171", store(listen)},
-         {"--to", 0, "ADDRESS", "mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
-         {"--lost", 0, "F", "fraction of bytes (of a head) or messages that are lost", "0",
-          within(fault, store_number(lost))},
-         {"--doubled", 0, "F", "fraction of bytes or messages that come twice", "0",
-          within(fault, store_number(doubled))},
-         {"--damaged", 0, "F", "fraction of bytes or messages with a wrong bit", "0",
-          within(fault, store_number(damaged))}}},
-       {"Vehicle",
-        {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},
-         choice("--trajectory", kMotions, "path of the vehicle; emulators with the same options agree on it",
-                command.motion),
-         {"--speed", 0, "M/S", "speed of the vehicle", number_text(command.speed_m_s),
-          within({0.01, 100.0}, store_number(command.speed_m_s))},
-         {"--rate", 0, "HZ", "pings (of a head) or reports (of navigation) per second", "20 or 10",
-          within({0.1, 100'000.0}, store_number(rate))},
-         {"--pings", 0, "N", "end after N pings", "never", store_number(command.max_pings)},
-         {"--stall-every", 0, "N", "be silent after each N pings, as a head that restarts", "never",
-          store_number(head.stall_every)},
-         {"--stall", 0, "S", "length of this silence in seconds", number_text(head.stall_s),
-          within({0.0, 3600.0}, store_number(head.stall_s))},
-         {"--lines", 0, "1|2", "micron: scan lines per request; 2 as full-duplex heads send them",
-          number_text(head.lines_per_request), within({1.0, 2.0}, store_number(head.lines_per_request))},
-         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(seed)}}}},
-      {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001",
-       "pingvox emulate micron", "pingvox emulate mavlink --trajectory loop", "pingvox emulate a50 --trajectory loop"},
-      "Exit status: 0 done, 1 failed, 2 invalid usage."};
-  const std::map<std::string_view, Condition> conditions = {
-      {"--listen", {"DEVICE", {"ping360", "micron", "a50"}}},
-      {"--to", {"DEVICE", {"mavlink"}}},
-      {"--pings", {"DEVICE", {"ping360", "micron"}}},
-      {"--stall-every", {"DEVICE", {"ping360", "micron"}}},
-      {"--stall", {"--stall-every", {}}},
-      {"--lines", {"DEVICE", {"micron"}}},
-      {"--speed", {"--trajectory", {"loop"}}},
-  };
-  for (OptionTable::Group& group : table.groups) {
-    for (Option& option : group.options) {
-      const auto condition = conditions.find(option.name);
-      if (condition != conditions.end()) option.only_with = {condition->second};
-    }
-  }
-  return parse_command(table, args, [&](const Parsed&) -> Result<Command> {
-    const bool is_micron = command.device == Device::kMicron;
-    const bool is_head = command.device == Device::kPing360 || is_micron, sends = command.device == Device::kMavlink;
-    command.line = sends ? send_to : listen;
-    if (command.line.empty()) {
-      command.line = is_micron ? "pty"
-                     : is_head ? "udp://127.0.0.1:9092"
-                     : sends   ? "udp://127.0.0.1:14550"
-                               : "tcp://127.0.0.1:16171";
-    }
-    const std::string_view scheme = sends ? "udp://" : "tcp://";
-    if (!is_head && !command.line.starts_with(scheme)) {
-      return usage_error(fmt::format("'{}': must be {}HOST:PORT", command.line, scheme));
-    }
-    if (rate > 0.0) head.pings_per_s = command.nav.reports_per_s = rate;
-    head.lost = command.nav.lost = lost;
-    head.doubled = command.nav.doubled = doubled;
-    head.damaged = command.nav.damaged = damaged;
-    head.seed = command.nav.seed = seed;
-    if (const auto valid = is_head ? head.validate() : command.nav.validate(); !valid) {
-      return tl::unexpected(valid.error());
-    }
-    return command;
-  });
+  return parse_command(table, args, [&](const Parsed& parsed) { return checked(command, typed, parsed, args); });
 }
 
 }  // namespace pingvox::app

@@ -11,12 +11,12 @@
 #include <random>
 #include <span>
 
+#include "bench/draw/chart.hpp"
 #include "bench/paired_timing.hpp"
 #include "bench/speed/same_map.hpp"
 #include "claim.hpp"
 #include "map/map_access.hpp"
 #include "pingvox/analysis/compare.hpp"
-#include "pingvox/viewer/chart.hpp"
 
 namespace pingvox::bench {
 namespace {

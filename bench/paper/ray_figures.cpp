@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/draw/render_ray.hpp"
 #include "paper_dda.hpp"
 #include "pingvox/geometry/ray_dda.hpp"
-#include "pingvox/viewer/render_ray.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
 
 namespace pingvox::bench {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "bench/tank_range.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"

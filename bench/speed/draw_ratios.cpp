@@ -8,8 +8,8 @@
 #include <system_error>
 #include <variant>
 
+#include "bench/draw/chart.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/viewer/chart.hpp"
 
 namespace pingvox::bench {
 namespace {

@@ -25,7 +25,7 @@ std::vector<NavSource> A50Receiver::read(double now_s) {
   // Bounded, so that a sender that never falls silent leaves time for the rest.
   constexpr int kMaxReads = 64;
   // The DVL reports at least twice a second.
-  constexpr double kSilence_s = 5.0, kSync_s = 1.0;
+  constexpr double kSilence_s = 5.0;
   std::vector<NavSource> samples;
   if (!link_ && (!open_at_s_ || now_s >= *open_at_s_)) open(now_s);
   std::array<std::uint8_t, 65536> bytes;
@@ -40,10 +40,7 @@ std::vector<NavSource> A50Receiver::read(double now_s) {
     }
   }
   if (link_ && now_s - heard_s_ > kSilence_s) close(fmt::format("{}: silent", address_), now_s);
-  if (recorder_ && now_s - synced_s_ >= kSync_s) {
-    recorder_->start_sync();
-    synced_s_ = now_s;
-  }
+  if (recorder_) recorder_->sync_if_due(now_s);
   return samples;
 }
 

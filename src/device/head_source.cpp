@@ -15,7 +15,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kSync_s = 1.0, kRest_s = 0.1;
+constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kRest_s = 0.1;
 
 /// Properties of a head that HeadSource needs.
 struct Ping360Head {
@@ -24,14 +24,9 @@ struct Ping360Head {
   using Recorder = PingViewerRecorder;
   static constexpr const char* kDevice = "ping360";
   static constexpr CheckFrame kCheck = check_ping_frame;
+  static constexpr auto kBeamIn = ping_beam_in;
   static constexpr bool kIsBrokenWhole = true;  ///< a damaged frame is known by its checksum, which comes last
 
-  /// nullopt: another message; error: why it is not valid.
-  static tl::expected<std::optional<Beam>, std::string> beam_in(std::span<const std::uint8_t> frame, double time_s) {
-    const std::optional<Ping360Ping> ping = ping360_ping(frame);
-    if (!ping) return std::nullopt;
-    return beam_of(*ping, time_s);
-  }
   /// Sent at the end; empty: nothing.
   static std::vector<std::uint8_t> last_message() { return Ping360Driver::motor_off(); }
 };
@@ -42,13 +37,8 @@ struct MicronHead {
   using Recorder = SeanetRecorder;
   static constexpr const char* kDevice = "micron";
   static constexpr CheckFrame kCheck = check_seanet_frame;
+  static constexpr auto kBeamIn = seanet_beam_in;
   static constexpr bool kIsBrokenWhole = false;
-
-  static tl::expected<std::optional<Beam>, std::string> beam_in(std::span<const std::uint8_t> frame, double time_s) {
-    const std::optional<SeanetLine> line = seanet_line(frame);
-    if (!line) return std::nullopt;
-    return beam_of(*line, time_s);
-  }
   // It stands still when it is not asked.
   static std::vector<std::uint8_t> last_message() { return {}; }
 };
@@ -63,24 +53,20 @@ class HeadSource final : public LiveSource {
         recorder_(std::move(recorder)),
         finder_(Head::kCheck),
         start_s_(now_s),
-        open_at_s_(now_s),
-        sync_at_s_(now_s + kSync_s) {}
+        open_at_s_(now_s) {}
 
   int descriptor() const override { return link_ ? link_->descriptor() : -1; }
 
   double due_s() const override {
     const double due_s = link_ ? driver_.due_s() : open_at_s_;
-    return recorder_ ? std::min(due_s, sync_at_s_) : due_s;
+    return recorder_ ? std::min(due_s, recorder_->sync_due_s()) : due_s;
   }
 
   Result<bool> step(double now_s, std::vector<Beam>& beams) override {
     if (!link_ && now_s >= open_at_s_) open(now_s);
     if (link_) read(now_s, beams);
     if (link_) send(now_s);
-    if (recorder_ && now_s >= sync_at_s_) {
-      recorder_->start_sync();
-      sync_at_s_ = now_s + kSync_s;
-    }
+    if (recorder_) recorder_->sync_if_due(now_s);
     return true;
   }
 
@@ -172,7 +158,7 @@ class HeadSource final : public LiveSource {
       const bool was_connected = driver_.is_connected();
       driver_.take(frame->bytes);
       if (driver_.is_connected() && !was_connected) ++status_.connections;
-      tl::expected<std::optional<Beam>, std::string> beam = Head::beam_in(frame->bytes, time_of(*frame));
+      tl::expected<std::optional<Beam>, std::string> beam = Head::kBeamIn(frame->bytes, time_of(*frame));
       if (beam && !*beam) continue;
       delay_s_ = kFirstDelay_s;
       beam ? beams.push_back(*std::move(*beam)) : void(++unusable_);
@@ -201,7 +187,7 @@ class HeadSource final : public LiveSource {
   std::uint64_t received_ = 0;
   std::size_t unusable_ = 0;
   LiveStatus status_;
-  double start_s_, open_at_s_, sync_at_s_, delay_s_ = kFirstDelay_s;
+  double start_s_, open_at_s_, delay_s_ = kFirstDelay_s;
 };
 
 }  // namespace

@@ -29,6 +29,7 @@ Result<std::vector<MavlinkNav::Report>> MavlinkReceiver::read(double now_s) {
     if (*got == 0) break;
     take(std::span(bytes).first(*got), now_s, reports);
   }
+  if (recorder_) recorder_->sync_if_due(now_s);
   return reports;
 }
 

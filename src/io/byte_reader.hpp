@@ -25,6 +25,11 @@ T value_from(std::span<const std::uint8_t> bytes, std::endian order) {
   return value;
 }
 
+/// A little-endian value inside of bytes. REQUIRES at least place + 2 bytes.
+inline std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
+  return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
+}
+
 /// Reads forward through bytes, with bounds checks.
 class ByteReader {
  public:

@@ -13,18 +13,6 @@
 namespace pingvox {
 namespace {
 
-tl::expected<std::optional<Beam>, std::string> ping_beam_in(std::span<const std::uint8_t> frame, double time_s) {
-  const std::optional<Ping360Ping> ping = ping360_ping(frame);
-  if (!ping) return std::nullopt;
-  return beam_of(*ping, time_s);
-}
-
-tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s) {
-  const std::optional<SeanetLine> line = seanet_line(frame);
-  if (!line) return std::nullopt;
-  return beam_of(*line, time_s);
-}
-
 const DeviceProfile* ping_device_of(std::span<const std::uint8_t>) {
   return find_device("ping360");
 }

@@ -152,19 +152,4 @@ std::vector<std::uint8_t> make_mavlink_frame(std::uint32_t message, std::span<co
   return frame;
 }
 
-void MavlinkStream::push(std::span<const std::uint8_t> bytes, const std::function<void(const MavlinkFrame&)>& take) {
-  held_.insert(held_.end(), bytes.begin(), bytes.end());
-  std::span<const std::uint8_t> rest(held_);
-  while (!rest.empty()) {
-    const MavlinkRead read = read_mavlink(rest);
-    if (read.is_cut) break;
-    const bool is_right = read.frame && (read.frame->check == MavlinkFrame::Check::kRight ||
-                                         read.frame->check == MavlinkFrame::Check::kRightPadded);
-    if (is_right) take(*read.frame);
-    skipped_ += is_right ? 0 : 1;
-    rest = rest.subspan(is_right ? read.length : 1);
-  }
-  held_.erase(held_.begin(), held_.end() - static_cast<std::ptrdiff_t>(rest.size()));
-}
-
 }  // namespace pingvox

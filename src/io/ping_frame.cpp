@@ -19,10 +19,6 @@ constexpr std::size_t kHeader = 8, kChecksum = 2;
 /// More than any message of a Ping360 needs; limits how many frames a damaged length delays.
 constexpr std::size_t kMaxPing360Payload = 4096;
 
-std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
-  return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
-}
-
 /// Size of a payload before its samples, including their count; 0: another message.
 std::size_t fixed_part(std::uint16_t id) {
   if (id == static_cast<std::uint16_t>(PingMessage::kDeviceData)) return 14;
@@ -109,6 +105,12 @@ tl::expected<Beam, std::string> beam_of(const Ping360Ping& ping, double time_s) 
   beam.intensities.assign(ping.data.begin(), ping.data.end());
   if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
   return beam;
+}
+
+tl::expected<std::optional<Beam>, std::string> ping_beam_in(std::span<const std::uint8_t> frame, double time_s) {
+  const std::optional<Ping360Ping> ping = ping360_ping(frame);
+  if (!ping) return std::nullopt;
+  return beam_of(*ping, time_s);
 }
 
 }  // namespace pingvox

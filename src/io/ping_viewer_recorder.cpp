@@ -1,6 +1,7 @@
 #include "pingvox/io/ping_viewer_recorder.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <array>
 #include <string>
@@ -59,7 +60,10 @@ Result<PingViewerRecorder> PingViewerRecorder::create(const std::string& path, s
   }
   header.put(kPingFamily);
   header.put(kPing360);
-  if (const auto written = recorder.file_.append(header.bytes()); !written) return tl::unexpected(written.error());
+  if (const auto written = recorder.file_.append(header.bytes()); !written) {
+    ::unlink(path.c_str());
+    return tl::unexpected(written.error());
+  }
   return recorder;
 }
 

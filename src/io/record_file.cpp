@@ -17,7 +17,7 @@ double recorded_time_s(std::uint64_t time_ms) {
 }
 
 Result<RecordFile> RecordFile::create(const std::string& path) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
   if (!file.valid()) return os_error(path, errno);
   return RecordFile(path, std::move(file));
 }
@@ -28,7 +28,7 @@ Result<void> RecordFile::append(std::span<const std::uint8_t> record) {
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
       const int error = written < 0 ? errno : EIO;
-      // On a full disk a part of the record may be written.
+      // On a full disk a part of the record may be written. A later record goes to the new end, by O_APPEND.
       static_cast<void>(::ftruncate(file_.get(), static_cast<off_t>(size_)));
       return os_error(path_, error);
     }
@@ -38,7 +38,10 @@ Result<void> RecordFile::append(std::span<const std::uint8_t> record) {
   return {};
 }
 
-void RecordFile::start_sync() {
+void RecordFile::sync_if_due(double now_s) {
+  constexpr double kInterval_s = 1.0;
+  if (now_s < sync_due_s_) return;
+  sync_due_s_ = now_s + kInterval_s;
   // It may fail where the file is not on a disk; the operating system writes everything in time anyway.
   static_cast<void>(::sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE));
 }

@@ -12,6 +12,7 @@
 
 #include "io/byte_reader.hpp"
 #include "io/ros_common_types.hpp"
+#include "io/text.hpp"
 
 namespace pingvox {
 namespace {
@@ -50,15 +51,11 @@ std::size_t size_of(RosNumber type) {
   }
 }
 
+/// Lines may end with CR LF.
+constexpr std::string_view kBlanks = " \t\r";
+
 std::size_t align(std::size_t offset, std::size_t alignment) {
   return (offset + alignment - 1) / alignment * alignment;
-}
-
-std::string_view trim(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t from = text.find_first_not_of(kBlank);
-  if (from == std::string_view::npos) return {};
-  return text.substr(from, text.find_last_not_of(kBlank) + 1 - from);
 }
 
 /// Cuts the first line off.
@@ -89,10 +86,10 @@ void add_sections(std::string_view type, std::string_view definition, std::vecto
   };
   if (!type.empty()) start(type, definition);
   while (!definition.empty()) {
-    const std::string_view line = trim(cut_line(definition));
+    const std::string_view line = trim(cut_line(definition), kBlanks);
     if (line.empty() || line.starts_with("===")) continue;
     if (line.starts_with("MSG:")) {
-      start(trim(line.substr(4)), definition);
+      start(trim(line.substr(4), kBlanks), definition);
     } else if (!sections.empty()) {
       Section& last = sections.back();
       const char* begin = last.text.empty() ? line.data() : last.text.data();
@@ -110,15 +107,15 @@ struct FieldLine {
 
 /// nullopt: an empty line, a comment or a constant.
 std::optional<FieldLine> field_in(std::string_view line) {
-  line = trim(line.substr(0, line.find('#')));
+  line = trim(line.substr(0, line.find('#')), kBlanks);
   const std::size_t end = line.find_first_of(" \t");
   if (end == std::string_view::npos) return std::nullopt;
   FieldLine field;
   field.type = line.substr(0, end);
-  const std::string_view rest = trim(line.substr(end));
+  const std::string_view rest = trim(line.substr(end), kBlanks);
   const std::size_t name_end = rest.find_first_of(" \t=");
   field.name = rest.substr(0, name_end);
-  if (name_end != std::string_view::npos && trim(rest.substr(name_end)).starts_with('=')) return std::nullopt;
+  if (name_end != std::string_view::npos && trim(rest.substr(name_end), kBlanks).starts_with('=')) return std::nullopt;
   if (const std::size_t bracket = field.type.find('['); bracket != std::string_view::npos) {
     const std::string_view size = field.type.substr(bracket + 1);
     field.is_array = true;
@@ -137,7 +134,7 @@ class LayoutMaker {
  public:
   LayoutMaker(std::string_view type, std::string_view definition, RosEncoding encoding) {
     layout_.encoding_ = encoding;
-    if (!trim(definition).empty()) add_sections(type, definition, sections_);
+    if (!trim(definition, kBlanks).empty()) add_sections(type, definition, sections_);
     if (encoding == RosEncoding::kCdr) add_sections({}, kCommonRosTypes, sections_);
   }
 

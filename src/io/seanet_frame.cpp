@@ -29,10 +29,6 @@ constexpr std::uint8_t kMessageBehind = 0x80;  ///< of the head's status
 constexpr std::array kFrameSizes = {std::pair{1, 25},  std::pair{4, 22},  std::pair{16, 14},
                                     std::pair{23, 14}, std::pair{24, 14}, std::pair{25, 18}};
 
-std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
-  return value_from<std::uint16_t>(bytes.subspan(place, 2), std::endian::little);
-}
-
 /// Value of an upper-case hexadecimal digit; -1: none.
 int hex_digit(std::uint8_t c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -165,6 +161,12 @@ const DeviceProfile* device_of(const SeanetLine& line) {
   // A DST head chirps, so its frequency does not identify it; assume the most common one.
   if (line.head_type == kDst) return find_device("micron");
   return find_device(line.transmit * kHz < 500e3 && line.transmit != 0 ? "seaking-325" : "miniking");
+}
+
+tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s) {
+  const std::optional<SeanetLine> line = seanet_line(frame);
+  if (!line) return std::nullopt;
+  return beam_of(*line, time_s);
 }
 
 }  // namespace pingvox

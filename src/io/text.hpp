@@ -35,8 +35,8 @@ class Lines {
   bool has_end_ = false;
 };
 
-/// Removes blanks and tabs at both ends.
-std::string_view trim(std::string_view text);
+/// Removes blanks and tabs, or other characters, at both ends.
+std::string_view trim(std::string_view text, std::string_view blanks = " \t");
 
 /// Cuts the next field off the front of `rest`, up to the separator or the end, and trims it. nullopt: no field is left
 /// (rest.data() is null; an empty last field is one).

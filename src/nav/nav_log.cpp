@@ -10,6 +10,8 @@
 #include <numbers>
 #include <utility>
 
+#include "pingvox/median.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -25,12 +27,6 @@ constexpr std::array kNames = {std::pair{NavQuantity::kVelocity, std::string_vie
                                std::pair{NavQuantity::kTemperature, std::string_view("temperature")}};
 
 constexpr double kMaxInAir_pa = 110'000.0, kSurface_pa = 101'325.0, kSeaWater_kg_m3 = 1025.0, kGravity_m_s2 = 9.80665;
-
-double median(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
 
 std::size_t valid_samples(const NavSource& source) {
   return static_cast<std::size_t>(

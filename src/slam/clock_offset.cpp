@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/median.hpp"
 #include "slam/navigation.hpp"
 
 namespace pingvox {

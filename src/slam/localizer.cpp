@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/option_errors.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
@@ -392,7 +393,7 @@ Result<void> Localizer::add(Beam beam) {
     }
     s.move(s.time_s ? beam.time_s - *s.time_s : 0.0);
     s.time_s = beam.time_s;
-    if (s.bearing_rad) s.turned_rad += std::abs(turn_between(*s.bearing_rad, beam.bearing_rad));
+    if (s.bearing_rad) s.turned_rad += std::abs(wrap_angle(beam.bearing_rad - *s.bearing_rad));
     s.bearing_rad = beam.bearing_rad;
     s.waiting.emplace(s.beams++, Placed{s.odometry_pose, s.level_from_body, s.turned_rad});
     for (const EchoStream::BeamWithEcho& heard : s.stream.add(std::move(beam))) s.take(heard);

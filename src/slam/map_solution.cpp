@@ -81,12 +81,12 @@ Result<SlamSolution> solve_in_map(Recording recording, const NavLog& log, const 
   if (!times_s) return tl::unexpected(times_s.error());
   std::vector<HeadingSource> headings = recording.navigation.headings;
   if (const NavSource* rate = log.best(NavQuantity::kTurnRate)) {
-    auto turned = gyro_heading(*rate, mount_of(options, rate->name), headings.front());
+    auto turned = gyro_heading(*rate, mount_of(options.body_from_source, rate->name), headings.front());
     if (turned) headings.insert(headings.begin(), *std::move(turned));
   }
   SlamProblem problem(*std::move(times_s), recording.navigation.velocity, std::move(headings), options.calibration);
-  Unknowns start =
-      begin_near(problem, near, mount_of(options, recording.navigation.velocity.name).translation().head<2>());
+  Unknowns start = begin_near(
+      problem, near, mount_of(options.body_from_source, recording.navigation.velocity.name).translation().head<2>());
   Before before;
   before.prior = prior_in_map(problem, start);
   SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start), std::move(before));

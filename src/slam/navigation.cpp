@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/median.hpp"
 
 namespace pingvox {
 namespace {
@@ -86,11 +87,9 @@ std::vector<double> noise_density(const std::vector<double>& times_s, std::span<
 
 }  // namespace
 
-double median(std::vector<double> numbers) {
-  assert(!numbers.empty());
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
+Pose mount_of(const std::map<std::string, Pose>& body_from_source, const std::string& source) {
+  const auto mount = body_from_source.find(source);
+  return mount == body_from_source.end() ? Pose::Identity() : mount->second;
 }
 
 TimeSeries::TimeSeries(std::vector<double> times_s, std::vector<double> values)
@@ -222,8 +221,7 @@ std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std:
   std::optional<HeadingSource> best;
   for (const NavSource& source : log.sources()) {
     if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
-    const auto mount = body_from_source.find(source.name);
-    auto heading = heading_source(source, mount != body_from_source.end() ? mount->second : Pose::Identity());
+    auto heading = heading_source(source, mount_of(body_from_source, source.name));
     if (heading && (!best || heading->yaw_rad.size() > best->yaw_rad.size())) best = *std::move(heading);
   }
   return best;

@@ -13,8 +13,8 @@
 /// What a vehicle's navigation says, prepared for dead reckoning.
 namespace pingvox {
 
-/// REQUIRES at least one number.
-double median(std::vector<double> numbers);
+/// How a source is mounted: the identity, if nothing is said of it.
+Pose mount_of(const std::map<std::string, Pose>& body_from_source, const std::string& source);
 
 /// Numbers over time, linear between the samples.
 class TimeSeries {

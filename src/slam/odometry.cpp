@@ -18,11 +18,6 @@ namespace {
 /// Sources that are silent for longer say nothing of the way in between.
 constexpr double kMaxStep_s = 5.0;
 
-Pose mount_of(const OdometryOptions& options, const std::string& source) {
-  const auto mount = options.body_from_source.find(source);
-  return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
-}
-
 Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
                      std::optional<VelocitySource>& velocity) {
   const HeadingCalibration* deviation = calibration.heading(heading.name);
@@ -61,13 +56,13 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
   std::optional<VelocitySource> velocity;
   if (const NavSource* best = log.best(NavQuantity::kVelocity))
-    velocity = velocity_source(*best, mount_of(options, best->name));
+    velocity = velocity_source(*best, mount_of(options.body_from_source, best->name));
   if (options.calibration) {
     if (const auto done = correct(*options.calibration, *heading, velocity); !done) return tl::unexpected(done.error());
   }
   const NavSource* rate = options.turns == TurnsBy::kTurnRate ? log.best(NavQuantity::kTurnRate) : nullptr;
   if (rate != nullptr) {
-    if (auto turned = gyro_heading(*rate, mount_of(options, rate->name), *heading)) {
+    if (auto turned = gyro_heading(*rate, mount_of(options.body_from_source, rate->name), *heading)) {
       turned->name = heading->name;
       heading = std::move(turned);
     }
@@ -95,8 +90,8 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   std::erase_if(times_s, [&](double time_s) { return time_s < from_s || time_s > to_s; });
 
   // What is measured at a place of the body is carried to its origin.
-  const Eigen::Vector3d place =
-      velocity ? mount_of(options, velocity->name).translation() : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d place = velocity ? mount_of(options.body_from_source, velocity->name).translation()
+                                         : Eigen::Vector3d(Eigen::Vector3d::Zero());
   std::vector<StampedPose> poses;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < times_s.size(); ++i) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose2.hpp"
 
 namespace pingvox {
 namespace {
@@ -56,7 +57,7 @@ PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& we
     if (!is_member(i)) continue;
     const PlanePose& p = particles.poses[i];
     squares += weights[i] * (std::pow(p.x - mean.x_m, 2) + std::pow(p.y - mean.y_m, 2));
-    turns += weights[i] * std::pow(turn_between(mean.yaw_rad, p.yaw), 2);
+    turns += weights[i] * std::pow(wrap_angle(p.yaw - mean.yaw_rad), 2);
   }
   mean.deviation_m = std::sqrt(squares / weight);
   mean.deviation_rad = std::sqrt(turns / weight);
@@ -65,12 +66,8 @@ PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& we
 
 }  // namespace
 
-double turn_between(double a_rad, double b_rad) {
-  return std::remainder(b_rad - a_rad, 2.0 * kPi);
-}
-
 bool is_near(double x_m, double y_m, double yaw_rad, const PlanePose& pose, double near_m, double near_rad) {
-  return std::hypot(x_m - pose.x, y_m - pose.y) <= near_m && std::abs(turn_between(yaw_rad, pose.yaw)) <= near_rad;
+  return std::hypot(x_m - pose.x, y_m - pose.y) <= near_m && std::abs(wrap_angle(pose.yaw - yaw_rad)) <= near_rad;
 }
 
 std::vector<double> Particles::weights() const {

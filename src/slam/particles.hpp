@@ -14,9 +14,6 @@ namespace pingvox {
 inline constexpr double kHypothesis_m = 0.5, kHypothesis_rad = 20.0 * kDegree_rad;
 inline constexpr std::size_t kMaxHypotheses = 100;
 
-/// From `a_rad` to `b_rad`, the short way round.
-double turn_between(double a_rad, double b_rad);
-
 /// Whether a pose is within some distance and angle of another.
 bool is_near(double x_m, double y_m, double yaw_rad, const PlanePose& pose, double near_m, double near_rad);
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "pingvox/median.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/sonar_odometry.hpp"
 
@@ -49,13 +50,8 @@ SonarMount sonar_mount(const Pose& pose) {
   return {pose.translation().head<2>(), std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0))};
 }
 
-Pose mount_of(const SlamOptions& options, const std::string& source) {
-  const auto mount = options.body_from_source.find(source);
-  return mount == options.body_from_source.end() ? Pose::Identity() : mount->second;
-}
-
 SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options) {
-  const Eigen::Vector3d place = mount_of(options, velocity.name).translation();
+  const Eigen::Vector3d place = mount_of(options.body_from_source, velocity.name).translation();
   return sonar_mount(Pose(Eigen::Translation3d(-place)) * options.body_from_sonar);
 }
 
@@ -105,13 +101,13 @@ std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& 
   if (fastest == nullptr) return std::nullopt;
   if (fastest->name == kSonarSource) return sonar_velocity(*fastest);
   const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
-  return velocity_source(*fastest, mount_of(options, fastest->name), window);
+  return velocity_source(*fastest, mount_of(options.body_from_source, fastest->name), window);
 }
 
 std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options) {
   std::vector<HeadingSource> headings, turns;
   for (const NavSource& source : log.sources()) {
-    const Pose mount = mount_of(options, source.name);
+    const Pose mount = mount_of(options.body_from_source, source.name);
     if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
       auto heading = heading_source(source, mount);
       if (!heading) continue;

@@ -24,8 +24,6 @@ inline constexpr double kKnotsOfSweep = 4.0;
 
 /// How the sonar is mounted in the plane.
 SonarMount sonar_mount(const Pose& body_from_sonar);
-/// How a source of navigation is mounted.
-Pose mount_of(const SlamOptions& options, const std::string& source);
 
 /// How the sonar is mounted, seen from the source of the velocity.
 SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pingvox/geometry/pose2.hpp"
+#include "pingvox/median.hpp"
 #include "slam/recording.hpp"
 
 namespace pingvox {
@@ -109,7 +110,7 @@ void report_velocity(const VelocitySource& velocity, SlamReport& report) {
 
 std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamProblem& problem, const Unknowns& unknowns,
                                   const std::optional<TimeSeries>& depth, const SlamOptions& options) {
-  const Eigen::Vector3d velocity_place = mount_of(options, problem.velocity().name).translation();
+  const Eigen::Vector3d velocity_place = mount_of(options.body_from_source, problem.velocity().name).translation();
   const HeadingSource& main = problem.headings().front();
   const std::vector<SlamProblem::Way> ways = problem.ways(unknowns);
   std::vector<StampedPose> poses;
@@ -132,7 +133,8 @@ std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamPro
 
 std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::vector<Eigen::Matrix3d>& of_knots,
                                            const SlamOptions& options) {
-  const Eigen::Vector2d velocity_place = mount_of(options, solver.problem().velocity().name).translation().head<2>();
+  const Eigen::Vector2d velocity_place =
+      mount_of(options.body_from_source, solver.problem().velocity().name).translation().head<2>();
   std::vector<PoseCovariance> covariances;
   for (std::size_t k = 0; k < of_knots.size(); ++k) {
     const double time_s = solver.problem().knot_times_s()[k];

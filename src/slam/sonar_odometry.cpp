@@ -12,6 +12,7 @@
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
+#include "pingvox/median.hpp"
 #include "slam/point_field.hpp"
 
 namespace pingvox {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/median.hpp"
 #include "pingvox/slam/loop_finder.hpp"
 
 namespace pingvox {

@@ -115,4 +115,15 @@ void draw_left_axis(Picture& picture, const Area& area, const std::vector<Tick>&
   draw_label(picture, area.x - left_axis_width(ticks), y, title, kTextScale, kInk, Reads::kUpwards);
 }
 
+void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const BarScale& scale,
+                    std::string_view note) {
+  if (!std::isfinite(scale.metres_per_px * scale.most_px)) return;
+  const double length_m = round_length(scale.metres_per_px * scale.most_px);
+  const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / scale.metres_per_px));
+  picture.fill(x, top + 8, bar, 3, kInk);
+  picture.fill(x, top + 2, 3, 15, kInk);
+  picture.fill(x + bar - 3, top + 2, 3, 15, kInk);
+  draw_label(picture, x + bar + kGap, top + 2, fmt::format("{} m{}", length_text(length_m), note), kTextScale, kInk);
+}
+
 }  // namespace pingvox

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "pingvox/viewer/chart.hpp"
 #include "pingvox/viewer/picture.hpp"
 #include "viewer/strokes.hpp"
 
 namespace pingvox {
+
+/// Scale of an axis.
+enum class Spacing { kLinear, kLogarithmic };
 
 /// Range of an axis.
 struct AxisScale {
@@ -40,6 +43,15 @@ std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks);
 void draw_bottom_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title);
 /// The same left of the area, the title rotated.
 void draw_left_axis(Picture& picture, const Area& area, const std::vector<Tick>& ticks, std::string_view title);
+
+struct BarScale {
+  double metres_per_px;  ///< > 0
+  double most_px;        ///< length of the bar
+};
+/// A bar of a round length and what it is, with a note behind; nothing where the length overflows a double, as that of
+/// a deep lattice may.
+void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const BarScale& scale,
+                    std::string_view note);
 
 /// Text centred at x.
 void draw_centred(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, std::string_view text, Rgb colour);

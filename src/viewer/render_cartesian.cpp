@@ -123,16 +123,6 @@ void draw_ring_labels(Picture& picture, const Disc& disc) {
   }
 }
 
-void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y, const Disc& disc) {
-  const double metres_per_px = disc.range_m / disc.radius_px;
-  const double length_m = round_length(130.0 * metres_per_px);
-  const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_px));
-  picture.fill(x, y + 8, bar, 3, kInk);
-  picture.fill(x, y + 2, 3, 15, kInk);
-  picture.fill(x + bar - 3, y + 2, 3, 15, kInk);
-  draw_label(picture, x + bar + kGap, y + 2, length_text(length_m) + " m; bearings in deg", kTextScale, kInk);
-}
-
 }  // namespace
 
 Result<void> CartesianPictureOptions::validate() const {
@@ -173,7 +163,7 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
     draw_disc(picture, disc.spot_at(echoes[i]->range_m, sweep.beams[i].bearing_rad), radius, options.style.echo);
   }
   draw_marker(picture, Marker::kPlus, disc.middle, 7.0, kRing);
-  draw_scale_bar(picture, kMargin, footer, disc);
+  draw_scale_bar(picture, kMargin, footer, {disc.range_m / disc.radius_px, 130.0}, "; bearings in deg");
   draw_echo_legend(picture, kMargin, footer + kFooterRow, options.style,
                    echoes.empty() ? Marked::kNothing : Marked::kEchoes,
                    sweep.extent == Sweep::Extent::kTurn ? Unrecorded::kHidden : Unrecorded::kShown);

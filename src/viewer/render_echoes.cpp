@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
@@ -122,14 +122,11 @@ std::string side_text(long degrees) {
   return degrees < 180 ? fmt::format("{} port", degrees) : fmt::format("{} stbd", 360 - degrees);
 }
 
-double turn_between(const Beam& from, const Beam& to) {
-  return std::remainder(to.bearing_rad - from.bearing_rad, 2.0 * std::numbers::pi);
-}
-
 /// Round bearings at the right, at the beams where the head passes them.
 void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& scale) {
   double turned_rad = 0.0;
-  for (std::size_t b = 1; b < beams.size(); ++b) turned_rad += std::abs(turn_between(beams[b - 1], beams[b]));
+  for (std::size_t b = 1; b < beams.size(); ++b)
+    turned_rad += std::abs(wrap_angle(beams[b].bearing_rad - beams[b - 1].bearing_rad));
   // A step that gives about ten labels.
   constexpr std::array kSteps = {10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0};
   double step_rad = kSteps.back() * kDegree_rad;
@@ -153,7 +150,7 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
   if (!beams.empty() && std::abs(bearing - std::round(bearing)) < 1e-6) mark(0, std::round(bearing));
   for (std::size_t b = 1; b < beams.size(); ++b) {
     const double before = bearing;
-    bearing += turn_between(beams[b - 1], beams[b]) / step_rad;
+    bearing += wrap_angle(beams[b].bearing_rad - beams[b - 1].bearing_rad) / step_rad;
     // Tolerance for a beam exactly on a round bearing.
     constexpr double kNear = 1e-6;
     const bool is_rising = bearing >= before;

@@ -244,18 +244,6 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
   picture.fill(x - 1, y - kArm, 3, 2 * kArm + 1, kCross);
 }
 
-void draw_scale_bar(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, double metres_per_pixel) {
-  constexpr double kMaxLength_px = 200.0;
-  // The extent of a deep lattice may overflow a double.
-  if (!std::isfinite(metres_per_pixel * kMaxLength_px)) return;
-  const double length_m = round_length(metres_per_pixel * kMaxLength_px);
-  const auto bar = static_cast<std::ptrdiff_t>(std::lround(length_m / metres_per_pixel));
-  picture.fill(x, top + 8, bar, 3, kInk);
-  picture.fill(x, top + 2, 3, 15, kInk);
-  picture.fill(x + bar - 3, top + 2, 3, 15, kInk);
-  draw_label(picture, x + bar + kGap, top + 2, length_text(length_m) + " m", kTextScale, kInk);
-}
-
 void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const MapOptions& map,
                  const MapColours& colours) {
   constexpr std::ptrdiff_t kSwatch = 32, kHigh = 18;
@@ -429,7 +417,7 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   draw_left_axis(picture, area, up_ticks, kAxes[axes.up]);
 
   const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
-  draw_scale_bar(picture, area.x, footer, metres_per_pixel);
+  draw_scale_bar(picture, area.x, footer, {metres_per_pixel, 200.0}, "");
   draw_legend(picture, area.x, footer + kFooterRow, map.options(), options.colours);
   draw_path_legend(picture, area.x, footer + 2 * kFooterRow, options.paths);
   for (std::size_t n = 0; n < options.paths.size(); ++n) {

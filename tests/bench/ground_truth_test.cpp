@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/tank_range.hpp"
 #include "pingvox/analysis/compare.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/build_map.hpp"
-#include "pingvox/sim/tank.hpp"
 
 namespace pingvox::bench {
 namespace {

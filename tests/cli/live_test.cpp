@@ -360,14 +360,45 @@ TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
   EXPECT_EQ(here.files(), (std::vector<std::string>{"dive-2.tlog", "dive.bin", "dive.tlog"}));
 }
 
+// Recordings that a failed call left behind were in the way of the next one.
+TEST(Live, LeavesNoRecordingsOfARunThatDidNotBegin) {
+  const Workplace here;
+  const int other = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in own = {};
+  own.sin_family = AF_INET;
+  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof own;
+  ASSERT_EQ(::bind(other, reinterpret_cast<const sockaddr*>(&own), size), 0);
+  ASSERT_EQ(::getsockname(other, reinterpret_cast<sockaddr*>(&own), &size), 0);
+  const std::string taken = "mavlink:udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  const std::string head = "ping360:udp://127.0.0.1:1";
+  expect_error(here.call(live(head, {"--nav", taken})), 1, {taken.substr(8), "in use"});
+  ::close(other);
+  EXPECT_THAT(here.files(), ElementsAre());
+
+  here.write("dive.tlog", "of an earlier dive");
+  expect_error(here.call(live(head, {"--nav", "mavlink:udp://127.0.0.1:0"})), 1, {"dive.tlog", "exists"});
+  EXPECT_THAT(here.files(), ElementsAre("dive.tlog"));
+  EXPECT_EQ(here.read("dive.tlog"), "of an earlier dive");
+
+  expect_error(here.call(live(head, {}), {.file_bytes = 10}), 1, {"dive.bin", "too large"});
+  EXPECT_THAT(here.files(), ElementsAre("dive.tlog"));
+}
+
 // An empty map replaced that of an earlier dive.
 TEST(Live, WithoutABeamTheOldMapStays) {
   const Workplace here;
   here.write("live.bt", "of an earlier dive");
-  const pid_t child = here.start({"live", "ping360:udp://127.0.0.1:1", "-o", "live.bt", "--write-every", "0.1"},
-                                 {.out_path = here.path("said"), .err_path = here.path("notes")});
-  EXPECT_TRUE(wait_until([&] { return here.has("notes") && !here.read("notes").empty(); }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // in which maps would be written
+  const pid_t child =
+      here.start({"live", "ping360:udp://127.0.0.1:1", "-o", "live.bt", "--write-every", "0.1", "--progress", "always"},
+                 {.out_path = here.path("said"), .err_path = here.path("notes")});
+  // The status is shown once a second, by the loop that writes maps: by the second one many would be written.
+  const auto has_two = [&] {
+    const std::string notes = here.has("notes") ? here.read("notes") : "", status = " 0 beams,";
+    return notes.find(status) != notes.rfind(status);
+  };
+  EXPECT_TRUE(wait_until(has_two));
+  EXPECT_EQ(here.read("live.bt"), "of an earlier dive");
   ::kill(child, SIGINT);
   EXPECT_EQ(status_of(child), 1);
   EXPECT_THAT(here.read("said"), HasSubstr("no map\n"));
@@ -404,7 +435,9 @@ TEST(Live, MapsBeamsBeforeTheirSweepEndsWithAVotePerBeam) {
 
 TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   const Workplace here;
-  expect_error(here.call({"live", "sonar", "-o", "a.bt"}), 2, {"no such device 'sonar'", "ping360:udp://HOST:PORT"});
+  expect_error(here.call({"live", "sonar", "-o", "a.bt"}), 2,
+               {"no such device 'sonar'", "ping360:udp://HOST:PORT", "micron:udp://HOST:PORT"});
+  EXPECT_THAT(here.call({"live", "--help"}).out, HasSubstr("micron:udp://HOST:PORT"));
   expect_error(here.call({"live", "replay:a.bin@0", "-o", "a.bt"}), 2, {"above 0"});
   // What can never be reached is not tried again and again.
   expect_error(here.call({"live", "ping360:udp://host", "-o", "a.bt"}), 2, {"DEVICE", "udp://HOST:PORT"});

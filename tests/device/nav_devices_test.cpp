@@ -1,5 +1,6 @@
 // Receivers of navigation and their emulators.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,11 +17,24 @@
 
 #include "pingvox/device/a50_receiver.hpp"
 #include "pingvox/device/link.hpp"
+#include "pingvox/device/live_source.hpp"
 #include "pingvox/device/mavlink_receiver.hpp"
 #include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/nav/live_poses.hpp"
+
+namespace {
+
+int syncs = 0;
+
+}  // namespace
+
+/// In place of the system's, so that its calls can be counted.
+extern "C" int sync_file_range(int /*file*/, off64_t /*from*/, off64_t /*bytes*/, unsigned /*flags*/) {
+  ++syncs;
+  return 0;
+}
 
 namespace pingvox {
 namespace {
@@ -186,6 +201,37 @@ TEST(A50Receiver, GivesUpALineThatIsSilentAndOneThatIsNotThere) {
   }
   EXPECT_THAT(receiver->status().problem, HasSubstr("Connection refused"));
   EXPECT_FALSE(A50Receiver::make("udp://127.0.0.1:1", std::nullopt, 0.0));
+}
+
+// Without it, what was recorded of a dive could be lost with the power for as long as the system keeps it in memory.
+TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
+  std::string folder = (std::filesystem::temp_directory_path() / "pingvox-sync-XXXXXX").string();
+  ASSERT_TRUE(::mkdtemp(folder.data()));
+  Result<TlogRecorder> tlog = TlogRecorder::create(folder + "/dive.tlog");
+  ASSERT_TRUE(tlog);
+  Result<MavlinkReceiver> autopilot = MavlinkReceiver::listen("udp://127.0.0.1:0", *std::move(tlog), 0.0);
+  ASSERT_TRUE(autopilot);
+  Result<RecordFile> lines = RecordFile::create(folder + "/dive.jsonl");
+  ASSERT_TRUE(lines);
+  Result<A50Receiver> dvl = A50Receiver::make("tcp://127.0.0.1:1", *std::move(lines), 0.0);
+  ASSERT_TRUE(dvl);
+  Result<PingViewerRecorder> log = PingViewerRecorder::create(folder + "/dive.bin");
+  ASSERT_TRUE(log);
+  const std::unique_ptr<LiveSource> head = ping360_source("udp://127.0.0.1:1", {}, *std::move(log), 0.0);
+  const auto syncs_of = [](const auto& read) {
+    const int before = syncs;
+    for (double now_s = 0.0; now_s < 9.75; now_s += 0.25) read(now_s);
+    return syncs - before;
+  };
+  EXPECT_EQ(syncs_of([&](double now_s) { EXPECT_TRUE(autopilot->read(now_s)); }), 10);
+  EXPECT_EQ(syncs_of([&](double now_s) { dvl->read(now_s); }), 10);
+  std::vector<Beam> beams;
+  EXPECT_EQ(syncs_of([&](double now_s) {
+              EXPECT_TRUE(head->step(now_s, beams));
+              EXPECT_LE(head->due_s(), now_s + 1.0);
+            }),
+            10);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

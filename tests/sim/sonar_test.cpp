@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bench/tank_range.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
@@ -14,6 +15,7 @@
 namespace pingvox {
 namespace {
 
+using bench::true_range_m;
 using testing::AllOf;
 using testing::HasSubstr;
 

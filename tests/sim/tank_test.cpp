@@ -6,11 +6,13 @@
 #include <limits>
 #include <numbers>
 
+#include "bench/tank_range.hpp"
 #include "pingvox/sim/scene.hpp"
 
 namespace pingvox {
 namespace {
 
+using bench::true_range_m;
 using testing::AllOf;
 using testing::HasSubstr;
 

@@ -60,7 +60,7 @@ class A50Receiver {
   A50Nav nav_;
   Status status_;
   std::optional<double> open_at_s_;  ///< nullopt: now
-  double heard_s_ = 0.0, synced_s_ = 0.0, delay_s_ = kFirstDelay_s;
+  double heard_s_ = 0.0, delay_s_ = kFirstDelay_s;
 };
 
 }  // namespace pingvox

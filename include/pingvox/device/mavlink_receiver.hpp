@@ -15,7 +15,7 @@
 namespace pingvox {
 
 /// Navigation that a vehicle sends by MAVLink to this host over UDP, as to a ground station. It never blocks and
-/// has no clock of its own: the caller polls it. Bytes are recorded before they are parsed.
+/// has no clock of its own: the caller polls it, at least once a second. Bytes are recorded before they are parsed.
 class MavlinkReceiver {
  public:
   struct Status {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -41,19 +40,5 @@ struct MavlinkSender {
 /// A frame of MAVLink 2. REQUIRES a message that `read_mavlink` can check, and at most its whole payload.
 std::vector<std::uint8_t> make_mavlink_frame(std::uint32_t message, std::span<const std::uint8_t> payload,
                                              const MavlinkSender& sender);
-
-/// Finds frames in bytes that arrive in pieces, as from a serial line. Only frames with a correct checksum are
-/// returned: others cannot be distinguished from bytes that look like a frame.
-class MavlinkStream {
- public:
-  /// Calls `take` for each frame that these bytes complete.
-  void push(std::span<const std::uint8_t> bytes, const std::function<void(const MavlinkFrame&)>& take);
-  /// Bytes so far that were in no such frame.
-  std::uint64_t skipped() const { return skipped_; }
-
- private:
-  std::vector<std::uint8_t> held_;  ///< less than a frame
-  std::uint64_t skipped_ = 0;
-};
 
 }  // namespace pingvox

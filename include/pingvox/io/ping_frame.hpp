@@ -59,4 +59,7 @@ std::optional<Ping360Ping> ping360_ping(std::span<const std::uint8_t> frame);
 /// Converts to a beam in the sensor frame, assuming kAssumedSoundSpeed_m_s; the error is the reason why it is invalid.
 tl::expected<Beam, std::string> beam_of(const Ping360Ping& ping, double time_s);
 
+/// The beam of a frame; nullopt: another message; the error is the reason why it is invalid. REQUIRES a valid frame.
+tl::expected<std::optional<Beam>, std::string> ping_beam_in(std::span<const std::uint8_t> frame, double time_s);
+
 }  // namespace pingvox

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -24,8 +25,11 @@ class RecordFile {
   /// Appends a record. It is passed to the operating system before this returns, and outlives this process.
   /// @return kIo: the file ends with the last whole record
   Result<void> append(std::span<const std::uint8_t> record);
-  /// Starts to flush the file to the disk, without waiting for it.
-  void start_sync();
+  /// Starts to flush the file to the disk, without waiting for it, unless it did so less than a second ago.
+  /// @param now_s  seconds of a clock that never goes back
+  void sync_if_due(double now_s);
+  /// When `sync_if_due` does so next.
+  double sync_due_s() const { return sync_due_s_; }
 
  private:
   RecordFile(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
@@ -33,6 +37,7 @@ class RecordFile {
   std::string path_;
   Descriptor file_;
   std::uint64_t size_ = 0;  ///< of whole records [bytes]
+  double sync_due_s_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace pingvox

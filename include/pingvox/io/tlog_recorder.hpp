@@ -23,8 +23,9 @@ class TlogRecorder {
   /// @return kIo: the file ends with the last whole record
   Result<void> append(std::uint64_t time_us, std::span<const std::uint8_t> frame);
 
-  /// Starts to flush the file to the disk, without waiting for it.
-  void start_sync() { file_.start_sync(); }
+  /// As those of RecordFile.
+  void sync_if_due(double now_s) { file_.sync_if_due(now_s); }
+  double sync_due_s() const { return file_.sync_due_s(); }
 
  private:
   explicit TlogRecorder(RecordFile file) : file_(std::move(file)) {}

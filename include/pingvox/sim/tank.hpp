@@ -19,9 +19,4 @@ struct TankOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Range [m] along the axis of a beam to the first wall or the floater, in closed form: independent of `World`, so that
-/// tests can compare the two.
-/// REQUIRES valid options.
-double true_range_m(const TankOptions& options, double bearing_rad);
-
 }  // namespace pingvox

@@ -1,4 +1,4 @@
-#include "pingvox/viewer/chart.hpp"
+#include "draw/chart.hpp"
 
 #include <fmt/core.h>
 
@@ -13,7 +13,7 @@
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"
 
-namespace pingvox {
+namespace pingvox::bench {
 namespace {
 
 constexpr std::ptrdiff_t kEdge = 24, kLegendRow = 24, kSwatch = 34;
@@ -301,4 +301,4 @@ Picture render_chart(const Chart& chart) {
   return picture;
 }
 
-}  // namespace pingvox
+}  // namespace pingvox::bench

@@ -7,11 +7,9 @@
 
 #include "pingvox/result.hpp"
 #include "pingvox/viewer/picture.hpp"
+#include "viewer/axis.hpp"
 
-namespace pingvox {
-
-/// Scale of an axis.
-enum class Spacing { kLinear, kLogarithmic };
+namespace pingvox::bench {
 
 /// A named series of numbers.
 struct Series {
@@ -48,4 +46,4 @@ struct Chart {
 /// REQUIRES a valid chart. Numbers that are not finite, or not above 0 on a logarithmic axis, are omitted.
 Picture render_chart(const Chart& chart);
 
-}  // namespace pingvox
+}  // namespace pingvox::bench

@@ -10,7 +10,7 @@
 #include "pingvox/result.hpp"
 #include "pingvox/viewer/picture.hpp"
 
-namespace pingvox {
+namespace pingvox::bench {
 
 /// A cell of a plane grid: (0, 0) covers 0..1 along both axes.
 struct GridCell {
@@ -38,4 +38,4 @@ RayFigure ray_figure(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Ray
 /// REQUIRES a valid figure
 Picture render_ray(const RayFigure& figure, std::size_t target_px = 600);
 
-}  // namespace pingvox
+}  // namespace pingvox::bench

@@ -1,4 +1,4 @@
-#include "pingvox/viewer/render_ray.hpp"
+#include "bench/draw/render_ray.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,7 @@
 
 #include "viewer/picture_text.hpp"
 
-using namespace pingvox;
-
+namespace pingvox::bench {
 namespace {
 
 const std::vector<std::pair<Rgb, char>> kLetters = {
@@ -53,3 +52,4 @@ TEST(RenderRay, DrawsLongRaysAndSinglePoints) {
 }
 
 }  // namespace
+}  // namespace pingvox::bench

@@ -1,4 +1,4 @@
-#include "pingvox/viewer/chart.hpp"
+#include "bench/draw/chart.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,17 +7,8 @@
 #include <limits>
 #include <set>
 
-#include "viewer/axis.hpp"
-
-using namespace pingvox;
-
+namespace pingvox::bench {
 namespace {
-
-std::vector<std::string> texts_of(const std::vector<Tick>& ticks) {
-  std::vector<std::string> texts;
-  for (const Tick& tick : ticks) texts.push_back(tick.text);
-  return texts;
-}
 
 std::set<std::uint32_t> colours_of(const Picture& picture) {
   std::set<std::uint32_t> colours;
@@ -45,30 +36,6 @@ double luminance(Rgb colour) {
 constexpr Rgb kFirst{16, 24, 72};
 constexpr std::array kColours = {kFirst,           Rgb{222, 100, 0}, Rgb{110, 50, 130}, Rgb{235, 184, 60},
                                  Rgb{0, 116, 128}, Rgb{90, 172, 220}};
-
-TEST(Ticks, AreRoundNumbersWithinTheAxis) {
-  using Texts = std::vector<std::string>;
-  EXPECT_EQ(texts_of(ticks_of({-0.31, 1.04}, 8)), (Texts{"-0.2", "0", "0.2", "0.4", "0.6", "0.8", "1"}));
-  EXPECT_EQ(texts_of(ticks_of({10.0, 0.0}, 3)), (Texts{"0", "5", "10"}));
-  EXPECT_EQ(texts_of(ticks_of({1.0, 1000.0, Spacing::kLogarithmic}, 8)), (Texts{"1", "10", "100", "1000"}));
-  EXPECT_EQ(texts_of(ticks_of({0.5, 20.0, Spacing::kLogarithmic}, 9)), (Texts{"0.5", "1", "2", "5", "10", "20"}));
-  // Far from 0, neighbours still differ.
-  EXPECT_EQ(texts_of(ticks_of({4600000.1, 4600001.1}, 2)), (Texts{"4600000.5", "4600001"}));
-  const std::vector<Tick> falling = ticks_of({10.0, 0.0}, 3);
-  EXPECT_DOUBLE_EQ(falling.front().share, 1.0);
-  EXPECT_DOUBLE_EQ(falling.back().share, 0.0);
-}
-
-TEST(Ticks, AreNoneWhereNumbersCannotBeTold) {
-  const double inf = std::numeric_limits<double>::infinity();
-  for (const auto& [from, to] :
-       {std::pair{0.0, inf}, std::pair{-inf, inf}, std::pair{1.0, 1.0}, std::pair{1e300, 1e300},
-        std::pair{-1.7e308, 1.7e308}, std::pair{1.0, std::nextafter(1.0, 2.0)}}) {
-    EXPECT_LE(ticks_of({from, to}, 8).size(), 9U);
-  }
-  EXPECT_TRUE(ticks_of({0.0, inf}, 8).empty());
-  EXPECT_TRUE(ticks_of({1.0, 1.0}, 8).empty());
-}
 
 TEST(Chart, LinesRiseFromTheLowerLeft) {
   const Chart chart{.series = {{"only", {1.0, 3.0}, {0.0, 10.0}}}};
@@ -172,3 +139,4 @@ TEST(Chart, RefusesWhatDoesNotFitTogether) {
 }
 
 }  // namespace
+}  // namespace pingvox::bench

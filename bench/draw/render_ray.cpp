@@ -1,4 +1,4 @@
-#include "pingvox/viewer/render_ray.hpp"
+#include "draw/render_ray.hpp"
 
 #include <fmt/core.h>
 
@@ -13,7 +13,7 @@
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"
 
-namespace pingvox {
+namespace pingvox::bench {
 namespace {
 
 constexpr double kMaxCoordinate = 1099511627776.0;  // 2^40: doubles still resolve a thousandth of a cell
@@ -188,4 +188,4 @@ Picture render_ray(const RayFigure& figure, std::size_t target_px) {
   return picture;
 }
 
-}  // namespace pingvox
+}  // namespace pingvox::bench

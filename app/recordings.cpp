@@ -1,0 +1,12 @@
+#include "recordings.hpp"
+
+#include <system_error>
+
+namespace pingvox::app {
+
+Recordings::~Recordings() {
+  std::error_code ignored;
+  for (const std::filesystem::path& path : created_) std::filesystem::remove(path, ignored);
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pingvox/result.hpp"
+
+namespace pingvox::app {
+
+/// The files that a run records to. A run that does not begin leaves none of them behind: they would be in the way of
+/// the next one.
+class Recordings {
+ public:
+  /// @param sonar  the sonar's log, beside which the others are; nullopt: nothing is recorded
+  explicit Recordings(std::optional<std::filesystem::path> sonar) : sonar_(std::move(sonar)) {}
+  Recordings(const Recordings&) = delete;
+  Recordings& operator=(const Recordings&) = delete;
+  /// Removes what was created, unless it is kept.
+  ~Recordings();
+
+  const std::optional<std::filesystem::path>& sonar() const { return sonar_; }
+
+  /// @param path  nullopt: nothing is recorded
+  /// @param date  what Recorder::create takes beside its path
+  template <class Recorder, class... Date>
+  Result<std::optional<Recorder>> create(const std::optional<std::filesystem::path>& path, Date... date) {
+    if (!path) return std::nullopt;
+    Result<Recorder> recorder = Recorder::create(path->string(), date...);
+    if (!recorder) return tl::unexpected(recorder.error());
+    created_.push_back(*path);
+    return std::optional<Recorder>(*std::move(recorder));
+  }
+
+  /// The run begins.
+  void keep() { created_.clear(); }
+
+ private:
+  std::optional<std::filesystem::path> sonar_;
+  std::vector<std::filesystem::path> created_;
+};
+
+}  // namespace pingvox::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+namespace pingvox {
+
+/// The middle one of the numbers in order, of an even count the upper one. REQUIRES at least one number.
+inline double median(std::vector<double> numbers) {
+  assert(!numbers.empty());
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+}  // namespace pingvox
