@@ -6,8 +6,8 @@
 
 #include "mapping/echo_mapper.hpp"
 #include "mapping/stopwatch.hpp"
-#include "without_exceptions.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 

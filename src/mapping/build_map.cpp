@@ -9,10 +9,10 @@
 
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
-#include "without_exceptions.hpp"
 #include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
+#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

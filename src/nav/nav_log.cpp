@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "pingvox/median.hpp"
+#include "median.hpp"
 
 namespace pingvox {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/median.hpp"
+#include "median.hpp"
 #include "slam/navigation.hpp"
 
 namespace pingvox {

@@ -11,8 +11,8 @@
 #include <span>
 #include <utility>
 
+#include "median.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/median.hpp"
 
 namespace pingvox {
 namespace {

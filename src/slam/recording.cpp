@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "pingvox/median.hpp"
+#include "median.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/sonar_odometry.hpp"
 

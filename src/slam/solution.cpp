@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "median.hpp"
 #include "pingvox/geometry/pose2.hpp"
-#include "pingvox/median.hpp"
 #include "slam/recording.hpp"
 
 namespace pingvox {

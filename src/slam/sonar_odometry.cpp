@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
+#include "median.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
-#include "pingvox/median.hpp"
 #include "slam/point_field.hpp"
 
 namespace pingvox {

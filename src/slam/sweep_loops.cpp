@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "median.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/median.hpp"
 #include "pingvox/slam/loop_finder.hpp"
 
 namespace pingvox {
