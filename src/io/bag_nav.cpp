@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/without_exceptions.hpp"
 #include "io/bag_topics.hpp"
 #include "io/dvl_a50.hpp"
 #include "io/nav_fields.hpp"
@@ -16,7 +17,6 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
-#include "without_exceptions.hpp"
 
 // The navigation in bags, by type and fields of the messages (docs/formats.md).
 namespace pingvox {

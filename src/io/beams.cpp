@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/without_exceptions.hpp"
 #include "io/readers.hpp"
 #include "pingvox/io/format.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

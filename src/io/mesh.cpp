@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "io/byte_reader.hpp"
 #include "io/byte_writer.hpp"
 #include "io/ply_header.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

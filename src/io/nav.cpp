@@ -7,12 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "base/without_exceptions.hpp"
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/format.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 

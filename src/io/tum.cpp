@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "mapping/echo_mapper.hpp"
 #include "mapping/stopwatch.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 

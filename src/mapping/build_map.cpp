@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
 #include "pingvox/cloud/trace_points.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "mapping/echo_mapper.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "median.hpp"
+#include "base/median.hpp"
 
 namespace pingvox {
 namespace {

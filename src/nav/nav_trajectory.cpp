@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "without_exceptions.hpp"
+#include "base/without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

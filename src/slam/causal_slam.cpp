@@ -5,8 +5,8 @@
 #include <cassert>
 #include <utility>
 
+#include "base/without_exceptions.hpp"
 #include "slam/causal_estimator.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "median.hpp"
+#include "base/median.hpp"
 #include "slam/navigation.hpp"
 
 namespace pingvox {

@@ -9,9 +9,9 @@
 #include <memory>
 #include <numbers>
 
+#include "base/without_exceptions.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/option_errors.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

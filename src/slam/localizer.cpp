@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/without_exceptions.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/geometry/random.hpp"
@@ -19,7 +20,6 @@
 #include "slam/beam_likelihood.hpp"
 #include "slam/particles.hpp"
 #include "slam/pose_search.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "without_exceptions.hpp"
+#include "base/without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -11,7 +11,7 @@
 #include <span>
 #include <utility>
 
-#include "median.hpp"
+#include "base/median.hpp"
 #include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "median.hpp"
+#include "base/median.hpp"
 #include "slam/echo_runs.hpp"
 #include "slam/sonar_odometry.hpp"
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/loop_finder.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "base/without_exceptions.hpp"
 #include "slam/causal_estimator.hpp"
 #include "slam/map_solution.hpp"
 #include "slam/recording.hpp"
@@ -17,7 +18,6 @@
 #include "slam/solution.hpp"
 #include "slam/sonar_odometry.hpp"
 #include "slam/sweep_loops.hpp"
-#include "without_exceptions.hpp"
 
 namespace pingvox {
 namespace {

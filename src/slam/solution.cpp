@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "median.hpp"
+#include "base/median.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/recording.hpp"
 

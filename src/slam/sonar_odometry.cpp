@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "median.hpp"
+#include "base/median.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/point_field.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "median.hpp"
+#include "base/median.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/loop_finder.hpp"
 

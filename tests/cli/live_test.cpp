@@ -381,7 +381,8 @@ TEST(Live, LeavesNoRecordingsOfARunThatDidNotBegin) {
   EXPECT_THAT(here.files(), ElementsAre("dive.tlog"));
   EXPECT_EQ(here.read("dive.tlog"), "of an earlier dive");
 
-  expect_error(here.call(live(head, {}), {.file_bytes = 10}), 1, {"dive.bin", "too large"});
+  // Less than the header of a recording, and more than the message.
+  expect_error(here.call(live(head, {}), {.file_bytes = 100}), 1, {"dive.bin", "too large"});
   EXPECT_THAT(here.files(), ElementsAre("dive.tlog"));
 }
 

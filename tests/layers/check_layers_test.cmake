@@ -29,6 +29,8 @@ endfunction()
 
 verdict(fine src/sonar/a.cpp "#include \"pingvox/geometry/pose.hpp\"")
 verdict(fine src/io/a.cpp "#include \"io/private.hpp\"")
+verdict(fine src/io/a.cpp "#include \"base/median.hpp\"")
+verdict("\"base/median.hpp\" is not public" include/pingvox/io/a.hpp "#include \"base/median.hpp\"")
 verdict(fine src/mapping/a.cpp "#include \"pingvox/cloud/trace_points.hpp\"")
 verdict("map must not include cloud" src/map/a.cpp "#include \"pingvox/cloud/trace_points.hpp\"")
 verdict(fine src/io/a.cpp "#include \"pingvox/map/occupancy_map.hpp\"")
