@@ -48,7 +48,7 @@ JsonObject hypothesis_json(const PoseHypothesis& h) {
 std::string sure_text(const LocatedRecording& found) {
   const std::vector<TimeSpan> sure = sure_spans(found);
   if (sure.empty()) return "never";
-  std::string text = found.is_sure ? "at the end" : "not at the end";
+  std::string text = found.is_sure() ? "at the end" : "not at the end";
   for (std::size_t i = 0; i < std::min(kShown, sure.size()); ++i) {
     text += fmt::format("{} {:.1f} to {:.1f}", i == 0 ? "; from" : ",", sure[i].from_s, sure[i].to_s);
   }
@@ -82,7 +82,7 @@ std::string locate_json(const LocatedRecording& found, const LocateInputs& input
       .add("sound_speed_m_s", inputs.sound_speed_m_s)
       .add("motion", inputs.motion.text);
   inputs.motion.clock ? json.add("nav_clock", json_of(*inputs.motion.clock)) : json.add_null("nav_clock");
-  json.add_truth("sure", found.is_sure).add("hypotheses", hypotheses).add("sure_spans", spans);
+  json.add_truth("sure", found.is_sure()).add("hypotheses", hypotheses).add("sure_spans", spans);
   if (sure.empty()) {
     json.add_null("converged_at_s");
   } else {

@@ -1,11 +1,11 @@
 #include "nav_clock.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -69,13 +69,10 @@ Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage,
   return times;
 }
 
-/// "2026-11-25"; REQUIRES a time since 1970
+/// "2026-11-25", of seconds since 1970
 std::string day_text(double time_s) {
-  constexpr double kDay_s = 86'400.0;
-  const std::chrono::sys_days day{std::chrono::days(static_cast<int>(std::floor(time_s / kDay_s)))};
-  const std::chrono::year_month_day date{day};
-  return fmt::format("{}-{:02}-{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                     static_cast<unsigned>(date.day()));
+  constexpr double kLast_s = 253'402'300'799.0;  // of the year 9999
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(std::clamp(time_s, 0.0, kLast_s))));
 }
 
 std::string zone_text(double zone_s) {

@@ -176,7 +176,7 @@ Result<void> set_head(LiveCommand& command, const LiveArgs& typed) {
   return is_micron ? micron.validate() : ping360.validate();
 }
 
-Result<Command> checked(LiveCommand command, const LiveArgs& typed, const Parsed& parsed, const Args& args) {
+Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Parsed& parsed, const Args& args) {
   const bool is_replay = command.device.kind == LiveDevice::Kind::kReplay;
   if (const auto used = check_limited(parsed.limited, {std::string(is_replay ? kReplayed : kHead)}); !used)
     return tl::unexpected(used.error());
@@ -315,7 +315,7 @@ Result<Command> live_command(const Args& args) {
       if (group.title == "Head") option.only_for = {std::string(kHead)};
     }
   }
-  return parse_command(table, args, [&](const Parsed& parsed) { return checked(command, typed, parsed, args); });
+  return parse_command(table, args, [&](const Parsed& parsed) { return finish_live(command, typed, parsed, args); });
 }
 
 }  // namespace pingvox::app

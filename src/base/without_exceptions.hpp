@@ -21,14 +21,13 @@ auto without_exceptions(F&& f) -> decltype(f()) {
 /// The same, with the name of what is read or written in the message.
 template <class F>
 auto without_exceptions(const std::string& name, F&& f) -> decltype(f()) {
-  return without_exceptions([&]() -> decltype(f()) {
-    std::string message = name + ": out of memory";  // while there is some
-    try {
-      return std::forward<F>(f)();
-    } catch (const std::exception&) {
-      return fail(Error::Code::kNoMemory, std::move(message));
-    }
-  });
+  try {
+    return std::forward<F>(f)();
+  } catch (const std::exception&) {
+    // There may be too little for the name, too.
+    return without_exceptions(
+        [&]() -> decltype(f()) { return fail(Error::Code::kNoMemory, name + ": out of memory"); });
+  }
 }
 
 }  // namespace pingvox::detail

@@ -11,6 +11,7 @@
 #include "base/without_exceptions.hpp"
 #include "io/readers.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/sonar/beam_source_decorator.hpp"
 
 namespace pingvox {
 namespace {
@@ -55,26 +56,21 @@ Result<std::unique_ptr<ScanSource>> open_any_scans(FileBytes file, Damage damage
   return wrong_format(file.name, "a log of scans", format);
 }
 
-/// A source that says so when memory runs out.
-class GuardedBeams final : public BeamSource {
+/// A source whose error names the file when memory runs out.
+class GuardedBeams final : public BeamSourceDecorator {
  public:
   GuardedBeams(std::string name, std::unique_ptr<BeamSource> source)
-      : name_(std::move(name)), source_(std::move(source)) {}
+      : BeamSourceDecorator(std::move(source)), name_(std::move(name)) {}
 
   Result<std::optional<Beam>> next() override {
-    return detail::without_exceptions(name_, [&] { return source_->next(); });
+    return detail::without_exceptions(name_, [&] { return source().next(); });
   }
-  std::size_t skipped() const override { return source_->skipped(); }
-  std::vector<DamageKind> damage() const override { return source_->damage(); }
-  std::string first_damage() const override { return source_->first_damage(); }
-  const DeviceProfile* device() const override { return source_->device(); }
-  std::optional<double> share_read() const override { return source_->share_read(); }
 
  private:
   std::string name_;
-  std::unique_ptr<BeamSource> source_;
 };
 
+/// The same of scans.
 class GuardedScans final : public ScanSource {
  public:
   GuardedScans(std::string name, std::unique_ptr<ScanSource> source)
@@ -94,7 +90,7 @@ class GuardedScans final : public ScanSource {
 
 /// @param open  returns a source that may run out of memory
 template <class Guarded, class Open>
-auto guarded(const std::string& name, Open&& open) -> decltype(open()) {
+auto open_guarded(const std::string& name, Open&& open) -> decltype(open()) {
   return detail::without_exceptions(name, [&]() -> decltype(open()) {
     auto source = open();
     if (!source) return source;
@@ -106,7 +102,7 @@ auto guarded(const std::string& name, Open&& open) -> decltype(open()) {
 
 Result<std::unique_ptr<BeamSource>> open_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
   const std::string name = stream.name();
-  return guarded<GuardedBeams>(name, [&] { return open_any_beams(std::move(stream), damage, topic); });
+  return open_guarded<GuardedBeams>(name, [&] { return open_any_beams(std::move(stream), damage, topic); });
 }
 
 Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, const BeamTopic& topic) {
@@ -116,7 +112,7 @@ Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage, co
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
                                                const std::optional<Eigen::Vector3d>& cloud_origin_m) {
   const std::string name = file.name;
-  return guarded<GuardedScans>(name, [&] { return open_any_scans(std::move(file), damage, cloud_origin_m); });
+  return open_guarded<GuardedScans>(name, [&] { return open_any_scans(std::move(file), damage, cloud_origin_m); });
 }
 
 Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::string& file, const std::string& place,

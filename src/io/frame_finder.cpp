@@ -14,8 +14,8 @@ std::uint16_t PrefixSums::sum(std::span<const std::uint8_t> bytes, std::size_t f
 
 std::uint16_t FrameBytes::sum(std::size_t size) const {
   if (sums != nullptr) return sums->sum(stream, start, start + size);
-  return static_cast<std::uint16_t>(
-      std::accumulate(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), 0U));
+  const std::span<const std::uint8_t> summed = stream.subspan(start, size);
+  return static_cast<std::uint16_t>(std::accumulate(summed.begin(), summed.end(), 0U));
 }
 
 void FrameFinder::push(std::span<const std::uint8_t> bytes) {
@@ -28,7 +28,7 @@ void FrameFinder::push(std::span<const std::uint8_t> bytes) {
 std::optional<FrameFinder::Frame> FrameFinder::next() {
   while (start_ < bytes_.size()) {
     const std::span<const std::uint8_t> all(bytes_), rest = all.subspan(start_);
-    FrameCheck check = check_({rest, in_damage_ ? &sums_ : nullptr, all, start_});
+    FrameCheck check = check_({all, start_, in_damage_ ? &sums_ : nullptr});
     if (check.verdict == FrameCheck::Verdict::kIncomplete) {
       if (!ended_) return std::nullopt;
       check = {FrameCheck::Verdict::kBroken, rest.size(), kCutOff};

@@ -26,7 +26,7 @@ std::size_t fixed_part(std::uint16_t id) {
 }
 
 FrameCheck check_frame(const FrameBytes& at, std::size_t max_payload) {
-  const std::span<const std::uint8_t> bytes = at.bytes;
+  const std::span<const std::uint8_t> bytes = at.bytes();
   const auto* b = static_cast<const std::uint8_t*>(std::memchr(bytes.data(), 'B', bytes.size()));
   const std::size_t before = b != nullptr ? static_cast<std::size_t>(b - bytes.data()) : bytes.size();
   if (before > 0) return {Verdict::kNothing, before};

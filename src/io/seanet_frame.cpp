@@ -52,7 +52,7 @@ bool fits_message(std::span<const std::uint8_t> frame) {
 }  // namespace
 
 FrameCheck check_seanet_frame(const FrameBytes& from) {
-  const std::span<const std::uint8_t> bytes = from.bytes;
+  const std::span<const std::uint8_t> bytes = from.bytes();
   const auto* at = static_cast<const std::uint8_t*>(std::memchr(bytes.data(), '@', bytes.size()));
   const std::size_t before = at != nullptr ? static_cast<std::size_t>(at - bytes.data()) : bytes.size();
   if (before > 0) return {Verdict::kNothing, before};

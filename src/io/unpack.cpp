@@ -45,24 +45,23 @@ class Bz2 {
 
 class Lz4 {
  public:
-  Lz4() {
-    if (LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION)) != 0) context_ = nullptr;
-  }
-  ~Lz4() { LZ4F_freeDecompressionContext(context_); }
-  Lz4(const Lz4&) = delete;
-  Lz4& operator=(const Lz4&) = delete;
-
   std::optional<std::size_t> next(Bytes& packed, Room room) {
-    if (context_ == nullptr) return std::nullopt;
+    if (!context_) return std::nullopt;
     std::size_t taken = packed.size(), written = room.size();
-    const std::size_t result = LZ4F_decompress(context_, room.data(), &written, packed.data(), &taken, nullptr);
+    const std::size_t result = LZ4F_decompress(context_.get(), room.data(), &written, packed.data(), &taken, nullptr);
     if (LZ4F_isError(result) != 0) return std::nullopt;
     packed = packed.subspan(taken);
     return written;
   }
 
  private:
-  LZ4F_dctx* context_ = nullptr;
+  static LZ4F_dctx* make_context() {
+    LZ4F_dctx* context = nullptr;
+    return LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0 ? nullptr : context;
+  }
+
+  static constexpr auto kFree = [](LZ4F_dctx* context) { LZ4F_freeDecompressionContext(context); };
+  std::unique_ptr<LZ4F_dctx, decltype(kFree)> context_{make_context()};
 };
 
 class Zstd {

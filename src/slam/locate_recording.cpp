@@ -153,7 +153,6 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     note(localizer, end_s, found.poses);
     if (found.poses.empty()) return fail(Error::Code::kUnsupported, "no echo fits anywhere in the map");
     found.hypotheses = localizer.hypotheses();
-    found.is_sure = found.poses.back().was_sure;
     if (options.estimation == Estimation::kCausal) {
       for (LocatedPose& pose : found.poses) pose.is_known = pose.was_sure;
       return found;

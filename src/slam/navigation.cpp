@@ -21,7 +21,7 @@ constexpr double kClip = 2.0;                ///< robust standard deviations
 constexpr double kMadToDeviation = 1.4826;   ///< of normal noise
 constexpr double kMinDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
-constexpr std::size_t kMostDifferences = 2048;  ///< of a window: more than a velocity at 30 Hz has
+constexpr std::size_t kMaxDifferences = 2048;  ///< in a window; more are thinned out
 /// Data sheets of DVLs give 1 to 2 mm/s, beside a share of the speed, that do not average out: the noise is not less
 /// than what drifts as far as 2 mm/s in 100 s.
 constexpr double kMinDensity = 0.002 * 10.0;
@@ -71,8 +71,8 @@ std::vector<double> noise_density(const std::vector<double>& times_s, std::span<
     while (times_s[first] < times_s[i] - kNoiseWindow_s) ++first;
     while (end < count && times_s[end] <= times_s[i] + kNoiseWindow_s) ++end;
     seconds.clear();
-    // Some of many suffice, evenly spread: all of them would take the square of the time.
-    const std::size_t step = (end - first) / kMostDifferences + 1;
+    // Thinned evenly where there are many: all of them would take a time that grows with the square of their number.
+    const std::size_t step = (end - first) / kMaxDifferences + 1;
     for (std::size_t j = first + 1; j + 1 < end; j += step) {
       for (const auto& axis : {ahead, left}) seconds.push_back(std::abs(axis[j - 1] - 2.0 * axis[j] + axis[j + 1]));
     }

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "pingvox/sonar/beam_source_decorator.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -35,24 +37,18 @@ std::uint8_t median_of(const Histogram& counts) {
   return static_cast<std::uint8_t>(step * kStep);
 }
 
-class BackgroundSubtractor final : public BeamSource {
+class BackgroundSubtractor final : public BeamSourceDecorator {
  public:
   BackgroundSubtractor(std::unique_ptr<BeamSource> source, Background background)
-      : source_(std::move(source)), background_(std::move(background)) {}
+      : BeamSourceDecorator(std::move(source)), background_(std::move(background)) {}
 
   Result<std::optional<Beam>> next() override {
-    Result<std::optional<Beam>> beam = source_->next();
+    Result<std::optional<Beam>> beam = source().next();
     if (beam && *beam) background_.subtract_from(**beam);
     return beam;
   }
-  std::size_t skipped() const override { return source_->skipped(); }
-  std::vector<DamageKind> damage() const override { return source_->damage(); }
-  std::string first_damage() const override { return source_->first_damage(); }
-  const DeviceProfile* device() const override { return source_->device(); }
-  std::optional<double> share_read() const override { return source_->share_read(); }
 
  private:
-  std::unique_ptr<BeamSource> source_;
   Background background_;
 };
 

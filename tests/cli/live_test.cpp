@@ -323,17 +323,28 @@ TEST(Live, MapsAlongTheWayThatAnEmulatedDvlTells) {
   EXPECT_GT(std::stod((*json)["same"]), 0.5 * std::stod((*json)["cells"])) << compared.out;
 }
 
-TEST(Live, TellsTheAutopilotWhatIsNear) {
-  const Head head({}, "100");
-  const Workplace here;
-  const int autopilot = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+/// A UDP socket on a free port of this host; -1: there is none.
+/// @param address  of it
+int bound_socket(std::string& address) {
+  const int bound = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
   sockaddr_in own = {};
   own.sin_family = AF_INET;
   own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof own;
-  ASSERT_EQ(::bind(autopilot, reinterpret_cast<const sockaddr*>(&own), size), 0);
-  ASSERT_EQ(::getsockname(autopilot, reinterpret_cast<sockaddr*>(&own), &size), 0);
-  const std::string address = "udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  if (::bind(bound, reinterpret_cast<const sockaddr*>(&own), size) != 0 ||
+      ::getsockname(bound, reinterpret_cast<sockaddr*>(&own), &size) != 0) {
+    return -1;
+  }
+  address = "udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  return bound;
+}
+
+TEST(Live, TellsTheAutopilotWhatIsNear) {
+  const Head head({}, "100");
+  const Workplace here;
+  std::string address;
+  const int autopilot = bound_socket(address);
+  ASSERT_GE(autopilot, 0);
   const Outcome outcome = here.call(live(head.address(), {"--beams", "100", "--obstacles", address}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::array<std::uint8_t, 300> frame = {};
@@ -363,14 +374,10 @@ TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
 // Recordings that a failed call left behind were in the way of the next one.
 TEST(Live, LeavesNoRecordingsOfARunThatDidNotBegin) {
   const Workplace here;
-  const int other = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in own = {};
-  own.sin_family = AF_INET;
-  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof own;
-  ASSERT_EQ(::bind(other, reinterpret_cast<const sockaddr*>(&own), size), 0);
-  ASSERT_EQ(::getsockname(other, reinterpret_cast<sockaddr*>(&own), &size), 0);
-  const std::string taken = "mavlink:udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  std::string address;
+  const int other = bound_socket(address);
+  ASSERT_GE(other, 0);
+  const std::string taken = "mavlink:" + address;
   const std::string head = "ping360:udp://127.0.0.1:1";
   expect_error(here.call(live(head, {"--nav", taken})), 1, {taken.substr(8), "in use"});
   ::close(other);

@@ -88,7 +88,7 @@ TEST(SonarView, FramesAreFoundHoweverTheStreamIsCutIntoPieces) {
 TEST(SonarView, SumsOfDamageAreNotMadeAnewAtEachByte) {
   const auto check = [](const FrameBytes& at) {
     // A frame behind a damaged one is told where the stream's sums are.
-    EXPECT_TRUE(at.start == 0 || at.bytes.size() <= 100 || at.sums != nullptr) << at.start;
+    EXPECT_TRUE(at.start == 0 || at.bytes().size() <= 100 || at.sums != nullptr) << at.start;
     return check_sonarview_frame(at);
   };
   Bytes stream;

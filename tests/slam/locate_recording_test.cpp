@@ -40,7 +40,7 @@ TEST(LocateRecording, KnowsThePosesBeforeASureOneOnlyWhenAllIsRecorded) {
   const Room room;
   const LocatedRecording batch = located(room, Estimation::kBatch), causal = located(room, Estimation::kCausal);
   ASSERT_EQ(batch.poses.size(), causal.poses.size());
-  EXPECT_TRUE(batch.is_sure);
+  EXPECT_TRUE(batch.is_sure());
   EXPECT_FALSE(batch.poses.front().was_sure);
   EXPECT_TRUE(std::ranges::all_of(batch.poses, &LocatedPose::is_known));
   EXPECT_TRUE(std::ranges::all_of(causal.poses, [](const LocatedPose& p) { return p.is_known == p.was_sure; }));
@@ -76,7 +76,7 @@ TEST(LocateRecording, APoseBeforeAJumpIsNotKnownByOneBehindIt) {
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_LT(found->poses.front().time_s, 0.1 * kJump);
   EXPECT_FALSE(found->poses.front().is_known);
-  EXPECT_TRUE(found->is_sure);
+  EXPECT_TRUE(found->is_sure());
   EXPECT_TRUE(found->poses.back().is_known);
 }
 

@@ -38,11 +38,11 @@ class PrefixSums {
 
 /// The bytes of a stream from where a frame may begin.
 struct FrameBytes {
-  std::span<const std::uint8_t> bytes;  ///< at least one
-  PrefixSums* sums = nullptr;           ///< of a stream whose frames are damaged here; nullptr: there is none
-  std::span<const std::uint8_t> stream = {};
-  std::size_t start = 0;  ///< of `bytes` in `stream`
+  std::span<const std::uint8_t> stream;
+  std::size_t start = 0;       ///< where the frame may begin; there is at least one byte from there on
+  PrefixSums* sums = nullptr;  ///< of the stream, where its frames are damaged; nullptr: each sum is made anew
 
+  std::span<const std::uint8_t> bytes() const { return stream.subspan(start); }
   /// Sum of the first bytes modulo 2^16.
   std::uint16_t sum(std::size_t size) const;
 };

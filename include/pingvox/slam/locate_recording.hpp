@@ -49,10 +49,10 @@ struct LocatedPose {
 struct LocatedRecording {
   std::vector<LocatedPose> poses;          ///< not empty; of each beam since the vehicle was found first
   std::vector<PoseHypothesis> hypotheses;  ///< at the end, the most likely first
-  bool is_sure = false;                    ///< at the end
   double mean_particles = 0.0;
   std::size_t most_particles = 0;
 
+  bool is_sure() const { return poses.back().was_sure; }  ///< at the end
   /// Poses as a trajectory.
   Result<Trajectory> trajectory() const;
   /// The poses that are known to be right, with gaps between them. nullopt: none.
