@@ -28,6 +28,7 @@
 #include "shell_words.hpp"
 #include "stopwatch.hpp"
 #include "threshold_range.hpp"
+#include "watched_beams.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -45,6 +46,8 @@ struct Totals {
   std::vector<UsedBeam> used_beams;  ///< of logs of beams, those that differ
   double sound_speed_m_s = kAssumedSoundSpeed_m_s;
   std::optional<Water> nav_water;  ///< by the navigation log, where it was asked
+  /// By how much the clock of the poses is off, by the turning of the sonar's picture: the greatest of all logs.
+  std::optional<ClockOffset> clock_check;
   double write_s = 0.0, total_s = 0.0;
 
   void add(const MappedLog& mapped, const Log& source, const std::string& name) {
@@ -172,6 +175,7 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("seconds", seconds)
       .add("map", held);
   if (!other_beams.empty()) json.add("other_beams", other_beams);
+  totals.clock_check ? json.add("clock_check", app::json_of(*totals.clock_check)) : json.add_null("clock_check");
   if (path.nav) json.add("nav", nav_json(path));
   return json.text() + "\n";
 }
@@ -203,7 +207,8 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   }
   if (totals.nav_water) beams += report_line("water", water_text(*totals.nav_water));
   return name + "\n" + report_line("read", read) +
-         (path.nav ? report_line("nav", nav_text(path)) + report_line("nav clock", text_of(path.nav->offset)) +
+         (path.nav ? report_line("nav", nav_text(path)) +
+                         report_line("nav clock", text_of(path.nav->offset, totals.clock_check)) +
                          report_line("frame", frame_text(*path.nav))
                    : "") +
          beams + map_text(map, map.counts()) +
@@ -251,10 +256,12 @@ class LogMapper {
     }
     totals_.report.seconds.read += read.seconds();
 
+    WatchedBeams* const watched = watch_turns(*log);
     const Progress progress = [&](const BuildReport& done) { draw(share_read(*log), done.beams); };
     const Result<MappedLog> mapped = map_log(*log, name, path_, build_, command_.head, map_, progress);
     if (!mapped) return tl::unexpected(mapped.error());
     totals_.add(*mapped, *log, name);
+    if (watched != nullptr) check_clock(*watched, name);
     if (mapped->is_nothing) {
       nothing_.push_back(text_of_nothing(*mapped, name));
       return {};
@@ -294,6 +301,30 @@ class LogMapper {
     if (share) share = (static_cast<double>(opened_ - 1) + *share) / static_cast<double>(command_.logs.size());
     bar_.draw(share, fmt::format("{}, {:.0f} s, {}", counted(totals_.report.beams + beams, "beam"), total_.seconds(),
                                  bytes_text(map_.memory_bytes())));
+  }
+
+  /// Where there are poses, and the head turns about an axis that is upright. nullptr: else.
+  WatchedBeams* watch_turns(Log& log) const {
+    constexpr double kUpright = 0.7;
+    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+    const bool is_upright = build_.body_from_sensor.rotation()(2, 2) > kUpright;
+    if (beams == nullptr || !is_upright || path_.trajectory.poses().size() < 2) return nullptr;
+    auto watched = std::make_unique<WatchedBeams>(std::move(*beams));
+    WatchedBeams* const source = watched.get();
+    *beams = std::move(watched);
+    return source;
+  }
+
+  void check_clock(WatchedBeams& watched, const std::string& name) {
+    const std::optional<ClockOffset> error = watched.clock_error_of(path_.trajectory);
+    if (!error) return;
+    std::optional<ClockOffset>& greatest = totals_.clock_check;
+    if (!greatest || std::abs(error->offset_s) > std::abs(greatest->offset_s)) greatest = error;
+    if (!error->is_apart()) return;
+    say(
+        fmt::format("{}: by the turning of the sonar's picture {:+.1f} +- {:.1f} s should be added to the times of the "
+                    "poses: is {} right?",
+                    name, error->offset_s, error->deviation_s, path_.nav ? "--nav-offset" : "the clock of --poses"));
   }
 
   void say_what_is_odd(const MappedLog& mapped, const std::string& name) {

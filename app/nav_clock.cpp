@@ -12,7 +12,6 @@
 
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/clock.hpp"
-#include "pingvox/slam/clock_offset.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -136,6 +135,18 @@ std::string text_of(const NavOffset& offset) {
   std::string text = fmt::format("{:+.3f} s", offset.offset_s);
   if (offset.deviation_s) text += fmt::format(" (sd {:.3f} s)", *offset.deviation_s);
   return text + ": " + offset.from;
+}
+
+std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check) {
+  return text_of(offset) + "; " +
+         (check ? fmt::format("{:+.1f} +- {:.1f} s from how the sonar's picture turns", check->offset_s,
+                              check->deviation_s)
+                : "not checked by the sonar");
+}
+
+JsonObject json_of(const ClockOffset& check) {
+  JsonObject json;
+  return json.add("offset_s", check.offset_s).add("sd_s", check.deviation_s).add("changes", check.changes);
 }
 
 JsonObject json_of(const NavOffset& offset) {

@@ -7,6 +7,7 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/clock_offset.hpp"
 
 namespace pingvox::app {
 
@@ -32,6 +33,10 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
 
 /// "+12.345 s (sd 0.021 s), by ..."
 std::string text_of(const NavOffset& offset);
+/// "+12.345 s (sd 0.021 s), by ...; -0.1 +- 0.3 s from how the sonar's picture turns"
+std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check);
+/// {"offset_s": ..., "sd_s": ..., "changes": ...}
+JsonObject json_of(const ClockOffset& check);
 /// {"offset_s": ..., "sd_s": ..., "from": ...}
 JsonObject json_of(const NavOffset& offset);
 

@@ -61,6 +61,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     const std::string shown = stream->name();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
     const Result<Format> format = identify_format(*stream);
+    if (!format && !unread) return tl::unexpected(format.error());
     const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
     if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));

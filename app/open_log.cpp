@@ -30,8 +30,8 @@ Result<Format> identify_format(const FileBytes& file) {
 Result<Format> identify_format(ByteStream& stream) {
   const std::span<const std::uint8_t> beginning = stream.beginning();
   if (const auto streamed = streamed_format_of(beginning)) return *streamed;
-  // A pipe may never end.
-  if (!stream.path() && beginning.size() == ByteStream::kBeginning && !may_be_known(beginning)) {
+  // The rest may be large, and that of a pipe may never end.
+  if (beginning.size() == ByteStream::kBeginning && !may_be_known(beginning)) {
     return unknown_file(stream.name(), beginning);
   }
   if (const Result<void> held = stream.load_all(); !held) return tl::unexpected(held.error());

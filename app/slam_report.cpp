@@ -176,6 +176,7 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
       .add("heading", report.heading)
       .add("frame", frame_text(report.heading))
       .add("nav_clock", json_of(inputs.nav_offset));
+  report.clock_check ? json.add("clock_check", json_of(*report.clock_check)) : json.add_null("clock_check");
   command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
   for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
@@ -206,7 +207,7 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   const SlamReport& report = solution.report;
   std::string text = title_of(command);
   text += report_line("read", beams_text(report.beams, report.sweeps, report.echoes));
-  text += report_line("nav clock", text_of(inputs.nav_offset));
+  text += report_line("nav clock", text_of(inputs.nav_offset, report.clock_check));
   if (inputs.nav_water) text += report_line("water", water_text(*inputs.nav_water));
   text += report_line("velocity", velocity_text(report));
   text += report_line("trajectory", fmt::format("{} over {:.1f} s", counted(solution.trajectory.poses().size(), "pose"),

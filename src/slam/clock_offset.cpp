@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/median.hpp"
 #include "slam/navigation.hpp"
+#include "slam/yaw_clock.hpp"
 
 namespace pingvox {
 namespace {
@@ -20,6 +22,7 @@ constexpr double kGrid_s = 0.05;    ///< of the yaw
 constexpr double kCoarse_s = 0.25;  ///< of the offsets that are tried
 constexpr std::size_t kMaxChanges = 2'000, kMinChanges = 8;
 constexpr double kMaxLength_s = 2.0 * 86'400.0;
+constexpr double kAny_s = std::numeric_limits<double>::infinity();
 constexpr double kMadToDeviation = 1.4826;  ///< of normal noise
 
 tl::unexpected<Error> cannot_tell(std::string why) {
@@ -163,37 +166,16 @@ std::vector<YawChange> thin(const std::vector<YawChange>& changes) {
   return kept;
 }
 
-}  // namespace
-
-Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
-  constexpr double kStep_s = 1.0;
-  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
-  std::vector<YawChange> changes;
-  const std::optional<HeadingSource> heading = best_heading(log, {});
-  if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s) return changes;
-  const TimeSeries& yaw = heading->yaw_rad;
-  // Counted: adding a step to a time that is damaged may leave it as it was.
-  const auto steps = static_cast<int>((yaw.to_s() - yaw.from_s()) / kStep_s);
-  for (int i = 0; i < steps; ++i) {
-    const double from_s = yaw.from_s() + i * kStep_s;
-    if (yaw.gap_s(from_s, from_s + kStep_s) > 0.0) continue;
-    changes.push_back({from_s, from_s + kStep_s, yaw.at(from_s + kStep_s) - yaw.at(from_s), 0.0});
-  }
-  return changes;
-}
-
-Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog& log) {
-  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
-  const std::optional<HeadingSource> heading = best_heading(log, {});
-  if (!heading) return cannot_tell("the navigation has no valid heading or attitude");
+/// @param most_s  offsets from -most_s to most_s are tried, as far as the two overlap then
+Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const TimeSeries& yaw_rad, double most_s) {
   if (all.size() < kMinChanges) return cannot_tell("too few sweeps show the same surroundings clearly");
   const std::vector<YawChange> changes = thin(all);
   const auto [first, last] = std::ranges::minmax(changes, {}, &YawChange::from_s);
   const double from_s = first.from_s, to_s = last.to_s;
-  if (heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s || to_s - from_s > kMaxLength_s) {
+  if (yaw_rad.to_s() - yaw_rad.from_s() > kMaxLength_s || to_s - from_s > kMaxLength_s) {
     return cannot_tell("a recording lasts longer than two days");
   }
-  const EvenYaw yaw(heading->yaw_rad);
+  const EvenYaw yaw(yaw_rad);
   const Comparison comparison(changes, yaw);
 
   // The scale of what is ordinary: first that of all changes, then that of what the best offset leaves of them.
@@ -207,7 +189,7 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
   const double usual_rad = kMadToDeviation * median(std::move(sizes));
   double deviation_rad = usual_rad > kMin_rad ? usual_rad : std::sqrt(squares / static_cast<double>(changes.size()));
   if (!(deviation_rad > kMin_rad)) return cannot_tell("the vehicle does not turn");
-  const double lowest_s = from_s - yaw.to_s(), highest_s = to_s - yaw.from_s();
+  const double lowest_s = std::max(from_s - yaw.to_s(), -most_s), highest_s = std::min(to_s - yaw.from_s(), most_s);
   Scan scan(comparison, lowest_s, highest_s, kCoarse_s, deviation_rad);
   const std::vector<double> rests = comparison.rests_rad(scan.offset_s(scan.best()));
   if (rests.size() < kMinChanges) return cannot_tell("too little of the turning is in both recordings");
@@ -236,6 +218,54 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
   constexpr double kMaxDeviation_s = 1.0;
   if (!(found.deviation_s <= kMaxDeviation_s)) return cannot_tell("the vehicle turns too evenly");
   return found;
+}
+
+}  // namespace
+
+bool ClockOffset::is_apart() const {
+  constexpr double kDeviations = 5.0, kLeast_s = 0.5;
+  return std::abs(offset_s) > std::max(kLeast_s, kDeviations * deviation_s);
+}
+
+Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
+  constexpr double kStep_s = 1.0;
+  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
+  std::vector<YawChange> changes;
+  const std::optional<HeadingSource> heading = best_heading(log, {});
+  if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s) return changes;
+  const TimeSeries& yaw = heading->yaw_rad;
+  // Counted: adding a step to a time that is damaged may leave it as it was.
+  const auto steps = static_cast<int>((yaw.to_s() - yaw.from_s()) / kStep_s);
+  for (int i = 0; i < steps; ++i) {
+    const double from_s = yaw.from_s() + i * kStep_s;
+    if (yaw.gap_s(from_s, from_s + kStep_s) > 0.0) continue;
+    changes.push_back({from_s, from_s + kStep_s, yaw.at(from_s + kStep_s) - yaw.at(from_s), 0.0});
+  }
+  return changes;
+}
+
+Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog& log) {
+  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
+  const std::optional<HeadingSource> heading = best_heading(log, {});
+  if (!heading) return cannot_tell("the navigation has no valid heading or attitude");
+  return clock_offset(all, heading->yaw_rad, kAny_s);
+}
+
+Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const TimeSeries& yaw_rad) {
+  constexpr double kNear_s = 20.0;
+  const Result<ClockOffset> offset = clock_offset(changes, yaw_rad, kAny_s);
+  return offset ? offset : clock_offset(changes, yaw_rad, kNear_s);
+}
+
+Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory) {
+  std::vector<double> times_s, yaws_rad;
+  for (const StampedPose& pose : trajectory.poses()) {
+    const Eigen::Vector3d ahead = pose.map_from_body.rotation().col(0);
+    const double yaw_rad = std::atan2(ahead.y(), ahead.x()), before_rad = yaws_rad.empty() ? yaw_rad : yaws_rad.back();
+    times_s.push_back(pose.time_s);
+    yaws_rad.push_back(before_rad + std::remainder(yaw_rad - before_rad, 2.0 * std::numbers::pi));
+  }
+  return clock_error(changes, TimeSeries(std::move(times_s), std::move(yaws_rad)));
 }
 
 }  // namespace pingvox

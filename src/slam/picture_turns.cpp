@@ -44,12 +44,17 @@ class TurnPicture {
       for (std::size_t i = 0; i < kRanges && has(n); ++i) cells_[n][i] -= mean[i] / known;
     }
     for (std::size_t n = 0; n < kDirections; ++n) fill_behind(n);
+    for (std::size_t n = 0; n < kDirections; ++n) {
+      for (const float cell : cells_[n]) energies_[n] += cell * cell;
+    }
   }
 
   double range_m() const { return range_m_; }
   bool has(std::size_t n) const { return beams_[n] > 0.0; }
   double time_s(std::size_t n) const { return time_s_[n]; }
   const std::array<float, kRanges>& row(std::size_t n) const { return cells_[n]; }
+  /// The sum of the squares of its row.
+  float energy(std::size_t n) const { return energies_[n]; }
 
   static std::size_t wrap(int n) { return static_cast<std::size_t>((n % kDirections + kDirections) % kDirections); }
 
@@ -106,23 +111,19 @@ class TurnPicture {
   double range_m_ = 0.0;
   std::vector<double> time_s_, beams_;  ///< by direction
   std::vector<Row> cells_;
+  std::array<float, kDirections> energies_{};
 };
 
 /// Normalised correlation of two windows of directions; 0 where nothing is heard.
 double correlation(const TurnPicture& a, int first_a, const TurnPicture& b, int first_b) {
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (int i = 0; i < kWindow; ++i) {
-    const auto& row_a = a.row(TurnPicture::wrap(first_a + i));
-    const auto& row_b = b.row(TurnPicture::wrap(first_b + i));
-    float row_ab = 0.0F, row_aa = 0.0F, row_bb = 0.0F;
-    for (std::size_t r = 0; r < kRanges; ++r) {
-      row_ab += row_a[r] * row_b[r];
-      row_aa += row_a[r] * row_a[r];
-      row_bb += row_b[r] * row_b[r];
-    }
+    const std::size_t in_a = TurnPicture::wrap(first_a + i), in_b = TurnPicture::wrap(first_b + i);
+    float row_ab = 0.0F;
+    for (std::size_t r = 0; r < kRanges; ++r) row_ab += a.row(in_a)[r] * b.row(in_b)[r];
     ab += static_cast<double>(row_ab);
-    aa += static_cast<double>(row_aa);
-    bb += static_cast<double>(row_bb);
+    aa += static_cast<double>(a.energy(in_a));
+    bb += static_cast<double>(b.energy(in_b));
   }
   const double scale = std::sqrt(aa * bb);
   return scale > 0.0 ? ab / scale : 0.0;

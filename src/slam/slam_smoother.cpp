@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "base/without_exceptions.hpp"
+#include "pingvox/slam/clock_offset.hpp"
 #include "slam/causal_estimator.hpp"
 #include "slam/map_solution.hpp"
 #include "slam/recording.hpp"
 #include "slam/slam_problem.hpp"
 #include "slam/slam_solver.hpp"
 #include "slam/solution.hpp"
+#include "slam/sonar_checks.hpp"
 #include "slam/sonar_odometry.hpp"
 #include "slam/sweep_loops.hpp"
 
@@ -56,6 +58,7 @@ Result<void> SlamOptions::validate() const {
 struct SlamSmoother::State {
   SlamOptions options;
   SweepAssembler assembler;
+  PictureTurns turns;  ///< only where echoes are matched
   std::vector<double> beam_times_s;
   std::vector<HeardSweep> sweeps;
   std::vector<NavSource> sources;
@@ -87,6 +90,7 @@ SlamSmoother& SlamSmoother::operator=(SlamSmoother&&) noexcept = default;
 
 void SlamSmoother::add(Beam beam) {
   state_->beam_times_s.push_back(beam.time_s);
+  if (state_->options.matching == Matching::kPairs) state_->turns.add(beam);
   if (const auto sweep = state_->assembler.add(std::move(beam))) {
     state_->sweeps.push_back(heard_sweep(*sweep, state_->options));
   }
@@ -137,24 +141,14 @@ void allow_noise(double density, VelocitySource& velocity) {
   velocity.density = TimeSeries(velocity.density.times_s(), std::move(densities));
 }
 
-void report_check(const std::optional<VelocityCheck>& check, SlamReport& report) {
-  if (!check) return;
-  report.velocity_check = SonarCheck{check->matched, check->difference_m_s};
-  if (!check->contradicts) return;
-  report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
-                                           report.velocity, check->difference_m_s, check->matched));
-}
-
-/// @param check  what the sonar says of the velocity
-Result<SlamSolution> solve_batch(Recording recording, const std::optional<VelocityCheck>& check,
-                                 const SlamOptions& options) {
+Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks, const SlamOptions& options) {
   Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
   if (!times_s) return tl::unexpected(times_s.error());
   const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
   if (!checked) return tl::unexpected(checked.error());
   VelocitySource& velocity = recording.navigation.velocity;
-  const bool contradicts = check && check->contradicts;
-  if (contradicts) allow_noise(check->difference_m_s * std::sqrt(check->over_s), velocity);
+  const bool contradicts = checks.contradict_velocity();
+  if (contradicts) allow_noise(checks.velocity->difference_m_s * std::sqrt(checks.velocity->over_s), velocity);
   SlamProblem problem(*std::move(times_s), velocity, recording.navigation.headings, options.calibration);
   Unknowns start = problem.dead_reckoning();
   SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start));
@@ -184,7 +178,7 @@ Result<SlamSolution> solve_batch(Recording recording, const std::optional<Veloci
   solution->report.sweeps = static_cast<std::size_t>(
       std::ranges::count_if(recording.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
   solution->covariances = covariances_of(solver, *of_knots, options);
-  report_check(check, solution->report);
+  report_checks(checks, solution->report);
   if (loops) {
     solution->report.submap_loops_found = loops->found;
     solution->report.submap_loops_kept = loops->kept;
@@ -225,19 +219,9 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
   return sources;
 }
 
-/// What the sonar says of a measured velocity, where sweeps are matched.
-std::optional<VelocityCheck> velocity_check(const VelocitySource& velocity, const HeadingSource& heading,
-                                            std::span<const HeardSweep> sweeps, const SlamOptions& options) {
-  constexpr std::size_t kSweeps = 60;  // those in the middle: they tell a sensor that is wrong
-  if (options.matching == Matching::kNone || velocity.by_sonar || sweeps.size() < 2) return std::nullopt;
-  const std::size_t count = std::min(kSweeps, sweeps.size());
-  return check_velocity(velocity, sweeps.subspan((sweeps.size() - count) / 2, count),
-                        velocity_from_sonar(velocity, options), heading);
-}
-
 /// All that was recorded, as it came.
 Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
-                                  std::vector<NavSource> sources, SlamOptions options) {
+                                  std::vector<NavSource> sources, const PictureTurns& turns, SlamOptions options) {
   const Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
   options.nav_offset_s = 0.0;  // the sources are on the clock of the beams
@@ -273,7 +257,7 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
   // Of all, not of the window.
   if (!solution || solution->report.by_sonar || !velocity) return solution;
   report_velocity(*velocity, solution->report);
-  report_check(velocity_check(*velocity, headings.front(), sweeps, options), solution->report);
+  report_checks(checks_of(*velocity, headings.front(), sweeps, turns, options), solution->report);
   return solution;
 }
 
@@ -299,14 +283,17 @@ Result<SlamSolution> SlamSmoother::solve() const {
     if (!heard) return tl::unexpected(heard.error());
     const std::vector<HeardSweep>& sweeps = *heard;
     const std::vector<double>& times_s = state_->beam_times_s;
-    if (options.estimation == Estimation::kCausal) return solve_causal(times_s, sweeps, state_->sources, options);
+    if (options.estimation == Estimation::kCausal) {
+      return solve_causal(times_s, sweeps, state_->sources, state_->turns, options);
+    }
     const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
     if (!sources) return tl::unexpected(sources.error());
     Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
     if (!recording) return tl::unexpected(recording.error());
-    const std::optional<VelocityCheck> check =
-        velocity_check(recording->navigation.velocity, recording->navigation.headings.front(), sweeps, options);
-    return solve_batch(*std::move(recording), check, options);
+    const Navigation& navigation = recording->navigation;
+    const SonarChecks checks =
+        checks_of(navigation.velocity, navigation.headings.front(), sweeps, state_->turns, options);
+    return solve_batch(*std::move(recording), checks, options);
   });
 }
 

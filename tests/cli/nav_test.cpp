@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "call.hpp"
+#include "json_reader.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -252,8 +253,11 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   };
   const Outcome by_name = map("20260101-120010000.csv", "unix.csv");
   ASSERT_EQ(by_name.status, 0) << by_name.err;
-  EXPECT_THAT(by_name.out, HasSubstr("-1767225610.000 s: the date in the name of the sonar log, in UTC+12:00\n"));
-  EXPECT_THAT(map("beams.csv", "unknown.csv").out, HasSubstr("+0.000 s: taken as one clock\n"));
+  EXPECT_THAT(
+      by_name.out,
+      HasSubstr("-1767225610.000 s: the date in the name of the sonar log, in UTC+12:00; not checked by the sonar\n"));
+  EXPECT_THAT(map("beams.csv", "unknown.csv").out,
+              HasSubstr("+0.000 s: taken as one clock; not checked by the sonar\n"));
   // The vehicle does not turn, and nothing else tells.
   expect_error(map("beams.csv", "unix.csv"), 1, {"beams.csv", "--nav-offset"});
   expect_error(map("beams.csv", "boot.csv"), 1, {"beams.csv", "--nav-offset"});
@@ -263,6 +267,37 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
       here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
   ASSERT_EQ(given.status, 0) << given.err;
   EXPECT_THAT(given.out, HasSubstr(R"("clock": {"offset_s": 0, "sd_s": null, "from": "--nav-offset"})"));
+}
+
+// A vehicle that turns on the spot, to and fro; its poses on the clock of the log and on one that is late.
+// Kills a clock that is not checked, one that is right and named, and an offset of the other sign.
+TEST(Nav, APathOnAnotherClockIsNamed) {
+  const Workplace here;
+  for (const double late_s : {0.0, 4.0}) {
+    std::string poses;
+    for (double time_s = 0.0; time_s <= 150.0; time_s += 0.5) {
+      const double half_rad = 0.3 * std::sin(0.047 * time_s) + 0.1 * std::sin(0.171 * time_s + 1.0);
+      poses += fmt::format("{} 0.5 -0.3 0 0 0 {} {}\n", time_s + late_s, std::sin(half_rad), std::cos(half_rad));
+    }
+    here.write(late_s == 0.0 ? "poses.tum" : "late.tum", poses);
+  }
+  const Outcome simulated = here.call({"simulate", "tank", "--poses", "poses.tum", "-o", "log.csv"});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  for (const auto& [poses, offset_s] : {std::pair("poses.tum", 0.0), std::pair("late.tum", -4.0)}) {
+    const Outcome mapped =
+        here.call({"map", "log.csv", "--poses", poses, "--resolution", "0.2", "-o", "x.bt", "--json"});
+    ASSERT_EQ(mapped.status, 0) << mapped.err;
+    const auto json = flat_json(mapped.out);
+    ASSERT_TRUE(json) << mapped.out;
+    EXPECT_NEAR(std::stod(json->at("clock_check.offset_s")), offset_s, 0.3);
+    const bool is_named = mapped.err.find("is the clock of --poses right?") != std::string::npos;
+    EXPECT_EQ(is_named, offset_s != 0.0) << mapped.err;
+  }
+  // A head that turns about a level axis sees nothing of how the vehicle turns.
+  const Outcome tilted = here.call({"map", "log.csv", "--poses", "late.tum", "--mount", "0,0,0,90,0,0", "--resolution",
+                                    "0.2", "-o", "x.bt", "--json"});
+  ASSERT_EQ(tilted.status, 0) << tilted.err;
+  EXPECT_THAT(tilted.out, HasSubstr("\"clock_check\": null"));
 }
 
 // Kills a map whose place on Earth nobody can tell.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -42,6 +43,9 @@ struct ClockOffset {
   double offset_s = 0.0;     ///< to add to the times of the navigation
   double deviation_s = 0.0;  ///< standard deviation
   std::size_t changes = 0;   ///< of yaw that were compared
+
+  /// Whether clocks that were said to agree do not: by more than five standard deviations and half a second.
+  bool is_apart() const;
 };
 
 /// The offset with which the heading (or attitude) with most samples explains changes of yaw best, whatever the overlap
@@ -50,5 +54,9 @@ struct ClockOffset {
 /// little
 ///         or evenly, or another offset that is nearly as good; kCorrupt when the clock of a heading was set back
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
+
+/// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
+/// As clock_offset, but where a vehicle goes round and turns alike each time, offsets up to 20 s.
+Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory);
 
 }  // namespace pingvox

@@ -14,6 +14,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/clock_offset.hpp"
 #include "pingvox/slam/distance_field.hpp"
 #include "pingvox/slam/slam_calibration.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
@@ -120,13 +121,16 @@ struct SlamReport {
   double longest_gap_s = 0.0;  ///< between valid velocities
   /// nullopt: too few sweeps match to tell, or none was asked to.
   std::optional<SonarCheck> velocity_check;
+  /// What is to be added to the times of the main heading, nav_offset_s already added, by the turning of the sonar's
+  /// picture: 0 if the clocks are right. nullopt: it cannot be told.
+  std::optional<ClockOffset> clock_check;
   double least_on_walls = 0.0;    ///< in a map: of all sweeps the least share of echoes that are on walls of it
   std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
   std::vector<std::string> not_observable;
   /// What of the calibration ended more than four standard deviations from what was believed beforehand: a mount, the
-  /// navigation of another vehicle, or the clock may be wrong. Also a velocity that the sonar contradicts.
+  /// navigation of another vehicle, or the clock may be wrong. Also a velocity or a clock that the sonar contradicts.
   std::vector<std::string> implausible;
   LargestSolution largest;
   std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity, and longest_gap_s is between matches

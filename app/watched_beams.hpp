@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/slam/clock_offset.hpp"
+#include "pingvox/sonar/beam_source_decorator.hpp"
+
+namespace pingvox::app {
+
+/// A log of beams that notes how the sonar's picture turns while it is read.
+class WatchedBeams final : public BeamSourceDecorator {
+ public:
+  explicit WatchedBeams(std::unique_ptr<BeamSource> source) : BeamSourceDecorator(std::move(source)) {}
+
+  Result<std::optional<Beam>> next() override {
+    Result<std::optional<Beam>> beam = source().next();
+    if (beam && *beam) turns_.add(**beam);
+    return beam;
+  }
+
+  /// By how much the times of the poses are off, by the beams read so far. nullopt: it cannot be told.
+  std::optional<ClockOffset> clock_error_of(const Trajectory& trajectory) {
+    const Result<ClockOffset> error = clock_error(turns_.finish(), trajectory);
+    return error ? std::optional(*error) : std::nullopt;
+  }
+
+ private:
+  PictureTurns turns_;
+};
+
+}  // namespace pingvox::app

@@ -1,0 +1,53 @@
+#include "slam/sonar_checks.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "slam/recording.hpp"
+#include "slam/yaw_clock.hpp"
+
+namespace pingvox {
+namespace {
+
+std::optional<VelocityCheck> velocity_check(const VelocitySource& velocity, const HeadingSource& heading,
+                                            std::span<const HeardSweep> sweeps, const SlamOptions& options) {
+  constexpr std::size_t kSweeps = 60;  // those in the middle: they tell a sensor that is wrong
+  if (velocity.by_sonar || sweeps.size() < 2) return std::nullopt;
+  const std::size_t count = std::min(kSweeps, sweeps.size());
+  return check_velocity(velocity, sweeps.subspan((sweeps.size() - count) / 2, count),
+                        velocity_from_sonar(velocity, options), heading);
+}
+
+std::optional<ClockOffset> clock_check(const HeadingSource& heading, const std::vector<YawChange>& changes) {
+  if (heading.name == kSonarSource) return std::nullopt;
+  const Result<ClockOffset> error = clock_error(changes, heading.yaw_rad);
+  return error ? std::optional(*error) : std::nullopt;
+}
+
+}  // namespace
+
+SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const HeardSweep> sweeps,
+                      PictureTurns turns, const SlamOptions& options) {
+  if (options.matching == Matching::kNone) return {};
+  return {velocity_check(velocity, heading, sweeps, options), clock_check(heading, turns.finish())};
+}
+
+void report_checks(const SonarChecks& checks, SlamReport& report) {
+  const auto& [velocity, clock] = checks;
+  if (velocity) report.velocity_check = SonarCheck{velocity->matched, velocity->difference_m_s};
+  report.clock_check = clock;
+  if (checks.contradict_velocity()) {
+    report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
+                                             report.velocity, velocity->difference_m_s, velocity->matched));
+  }
+  if (clock && clock->is_apart()) {
+    report.implausible.push_back(fmt::format("clock of {} ({:+.1f} +- {:.1f} s from how the sonar's picture turns)",
+                                             report.heading, clock->offset_s, clock->deviation_s));
+  }
+}
+
+}  // namespace pingvox
