@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "mapping_options.hpp"
 #include "option_values.hpp"
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/file.hpp"
 #include "toml_file.hpp"
 
@@ -62,12 +61,10 @@ std::string toml_lines(const Of& of, const std::array<Key<Of>, N>& keys) {
 
 /// As --nav-mount takes it.
 std::string mount_text(const Pose& pose) {
-  const Eigen::Matrix3d turn = pose.rotation();
-  const double roll_rad = std::atan2(turn(2, 1), turn(2, 2)), yaw_rad = std::atan2(turn(1, 0), turn(0, 0)),
-               pitch_rad = std::asin(std::clamp(-turn(2, 0), -1.0, 1.0));
+  const Eigen::Vector3d rpy_deg = rpy_of(pose.rotation()) / kDegree_rad;
   const Eigen::Vector3d at = pose.translation();
-  return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", at.x(), at.y(), at.z(), roll_rad / kDegree_rad,
-                     pitch_rad / kDegree_rad, yaw_rad / kDegree_rad);
+  return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", at.x(), at.y(), at.z(), rpy_deg.x(), rpy_deg.y(),
+                     rpy_deg.z());
 }
 
 Pose take_pose(TomlKeys& keys, std::string_view name) {

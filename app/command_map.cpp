@@ -121,9 +121,9 @@ JsonObject threshold_json(const BuildReport& report) {
   return json.add("min", *report.min_threshold).add("max", *report.max_threshold);
 }
 
-JsonObject nav_json(const VehiclePath& path) {
+JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& clock_check) {
   JsonObject json;
-  return json.add("attitude", path.nav->attitude)
+  json.add("attitude", path.nav->attitude)
       .add("position", path.nav->position)
       .add("poses", path.trajectory.poses().size())
       .add("gaps", path.trajectory.gaps())
@@ -131,6 +131,7 @@ JsonObject nav_json(const VehiclePath& path) {
       .add("velocity", path.nav->velocity)
       .add("clock", json_of(path.nav->offset))
       .add("frame", frame_text(*path.nav));
+  return clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
 }
 
 std::string json_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
@@ -175,8 +176,7 @@ std::string json_of(const Totals& totals, const VehiclePath& path, const Occupan
       .add("seconds", seconds)
       .add("map", held);
   if (!other_beams.empty()) json.add("other_beams", other_beams);
-  totals.clock_check ? json.add("clock_check", app::json_of(*totals.clock_check)) : json.add_null("clock_check");
-  if (path.nav) json.add("nav", nav_json(path));
+  if (path.nav) json.add("nav", nav_json(path, totals.clock_check));
   return json.text() + "\n";
 }
 

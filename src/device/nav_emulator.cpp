@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/mavlink.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/option_errors.hpp"
@@ -22,10 +22,8 @@ using Message = NavEmulator::Message;
 
 /// Roll, pitch and yaw of a forward-right-down body in north-east-down [rad].
 Eigen::Vector3d roll_pitch_yaw(const Pose& pose) {
-  const Eigen::Matrix3d r = pose.linear();
   // The conversion is its own inverse.
-  return from_ned::attitude(
-      {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))});
+  return from_ned::attitude(rpy_of(pose.linear()));
 }
 
 Eigen::Vector3d north_east_down(const Eigen::Vector3d& position_m) {

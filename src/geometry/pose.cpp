@@ -1,5 +1,8 @@
 #include "pingvox/geometry/pose.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace pingvox {
 
 Pose pose_from_rpy(const Eigen::Vector3d& position_m, double roll_rad, double pitch_rad, double yaw_rad) {
@@ -11,6 +14,10 @@ Pose pose_from_rpy(const Eigen::Vector3d& position_m, double roll_rad, double pi
                       .toRotationMatrix();
   pose.translation() = position_m;
   return pose;
+}
+
+Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
+  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
 }
 
 Pose interpolate(const Pose& a, const Pose& b, double share) {

@@ -9,6 +9,7 @@
 
 #include "io/byte_reader.hpp"
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose.hpp"
 
 namespace pingvox {
 namespace {
@@ -149,9 +150,7 @@ class Message {
     const Eigen::Vector3d xyz = fields.three<float>(8);
     const Eigen::Quaterniond q(fields.at<float>(4), xyz.x(), xyz.y(), xyz.z());
     if (std::fabs(q.norm() - 1.0) <= 1e-3) {
-      const Eigen::Matrix3d r = q.normalized().toRotationMatrix();
-      const Eigen::Vector3d rpy(std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
-                                std::atan2(r(1, 0), r(0, 0)));
+      const Eigen::Vector3d rpy = rpy_of(q.normalized().toRotationMatrix());
       put("ATTITUDE_QUATERNION", NavQuantity::kAttitude, sample_of(from_ned::attitude(rpy)));
     }
     put("ATTITUDE_QUATERNION", NavQuantity::kTurnRate, sample_of(from_ned::body(fields.three<float>(20))));

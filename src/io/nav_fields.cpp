@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/text.hpp"
+#include "pingvox/geometry/pose.hpp"
 
 namespace pingvox {
 namespace {
@@ -96,10 +97,6 @@ Result<void> NavFields::validate() const {
   if (!(unit > 0.0) || !std::isfinite(unit)) return bad("the unit must be above 0");
   if (!(time_unit_s > 0.0) || !std::isfinite(time_unit_s)) return bad("the unit of the time must be above 0");
   return {};
-}
-
-Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
-  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
 }
 
 std::optional<Eigen::Vector3d> rpy_of_quaternion(const Eigen::Vector4d& xyzw) {

@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -80,10 +79,7 @@ void add_mti(NavSources& sources, const std::vector<double>& row) {
   const Eigen::Matrix3d ned_from_mti =
       pose_from_rpy(Eigen::Vector3d::Zero(), row[1] * kDegree_rad, row[2] * kDegree_rad, row[3] * kDegree_rad).linear();
   const Eigen::Matrix3d body_from_mti = Eigen::AngleAxisd(kMtiYaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const Eigen::Matrix3d ned_from_body = ned_from_mti * body_from_mti.transpose();
-  const Eigen::Vector3d attitude(std::atan2(ned_from_body(2, 1), ned_from_body(2, 2)),
-                                 -std::asin(std::clamp(ned_from_body(2, 0), -1.0, 1.0)),
-                                 std::atan2(ned_from_body(1, 0), ned_from_body(0, 0)));
+  const Eigen::Vector3d attitude = rpy_of(ned_from_mti * body_from_mti.transpose());
   sources.add("MTi", NavQuantity::kAttitude, sample_at(row[0], from_ned::attitude(attitude)));
   sources.add("MTi", NavQuantity::kTurnRate,
               sample_at(row[0], from_ned::body(body_from_mti * Eigen::Vector3d(row[4], row[5], row[6]))));

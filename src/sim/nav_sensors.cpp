@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/random.hpp"
 #include "pingvox/option_errors.hpp"
 
@@ -42,10 +43,6 @@ Vector3d normal(Random& random, double deviation) {
   const double y = deviation * random.normal();
   const double z = deviation * random.normal();
   return {x, y, z};
-}
-
-double yaw_of(const Pose& pose) {
-  return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0));
 }
 
 /// Pose and speeds at one time, in the body frame.
@@ -111,12 +108,11 @@ NavSource simulate_attitude(const Trajectory& trajectory, double from_s, double 
   NavSource attitude{"IMU", NavQuantity::kAttitude, {}};
   const Vector3d deviation(o.attitude_noise_rad, o.attitude_noise_rad, std::numeric_limits<double>::quiet_NaN());
   sample(trajectory, from_s, to_s, o.attitude_per_s, [&](double time_s, const Moving& moving) {
-    const Eigen::Matrix3d& turned = moving.map_from_body.linear();
-    const double yaw = yaw_of(moving.map_from_body);
+    Vector3d rpy = rpy_of(moving.map_from_body.linear());
+    const double yaw = rpy.z();
     const double compass = e.constant_rad + e.sin1_rad * std::sin(yaw) + e.cos1_rad * std::cos(yaw) +
                            e.sin2_rad * std::sin(2.0 * yaw) + e.cos2_rad * std::cos(2.0 * yaw);
-    Vector3d rpy(std::atan2(turned(2, 1), turned(2, 2)), std::asin(std::clamp(-turned(2, 0), -1.0, 1.0)),
-                 yaw + compass);
+    rpy.z() += compass;
     rpy += normal(random, o.attitude_noise_rad);
     rpy.z() = std::remainder(rpy.z(), 2.0 * std::numbers::pi);
     attitude.samples.push_back(sample_at(time_s + o.delay_s, round_to(rpy, kAngleSteps), deviation));

@@ -260,8 +260,8 @@ Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Tim
 Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory) {
   std::vector<double> times_s, yaws_rad;
   for (const StampedPose& pose : trajectory.poses()) {
-    const Eigen::Vector3d ahead = pose.map_from_body.rotation().col(0);
-    const double yaw_rad = std::atan2(ahead.y(), ahead.x()), before_rad = yaws_rad.empty() ? yaw_rad : yaws_rad.back();
+    const double yaw_rad = rpy_of(pose.map_from_body.rotation()).z();
+    const double before_rad = yaws_rad.empty() ? yaw_rad : yaws_rad.back();
     times_s.push_back(pose.time_s);
     yaws_rad.push_back(before_rad + std::remainder(yaw_rad - before_rad, 2.0 * std::numbers::pi));
   }

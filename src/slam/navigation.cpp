@@ -141,12 +141,12 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
   std::vector<double> roll, pitch, yaw;
   for (const NavSample& sample : samples) {
     const Eigen::Vector3d rpy = is_attitude ? sample.value : Eigen::Vector3d(0.0, 0.0, sample.value.x());
-    const Eigen::Matrix3d world_from_body =
-        (pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z()) * body_from_source.inverse()).rotation();
-    roll.push_back(std::atan2(world_from_body(2, 1), world_from_body(2, 2)));
-    pitch.push_back(std::asin(std::clamp(-world_from_body(2, 0), -1.0, 1.0)));
-    const double turned = std::atan2(world_from_body(1, 0), world_from_body(0, 0));
-    yaw.push_back(yaw.empty() ? turned : yaw.back() + std::remainder(turned - yaw.back(), 2.0 * std::numbers::pi));
+    const Pose world_from_source = pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z());
+    const Eigen::Vector3d turned = rpy_of((world_from_source * body_from_source.inverse()).rotation());
+    roll.push_back(turned.x());
+    pitch.push_back(turned.y());
+    const double before = yaw.empty() ? turned.z() : yaw.back();
+    yaw.push_back(before + std::remainder(turned.z() - before, 2.0 * std::numbers::pi));
   }
   const std::vector<double> times_s = times_of(samples);
   HeadingSource heading{source.name, TimeSeries(times_s, std::move(yaw)), std::nullopt, std::nullopt};

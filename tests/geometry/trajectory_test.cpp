@@ -24,6 +24,22 @@ TEST(Pose, TurnsRollThenPitchThenYawAboutFixedAxes) {
   EXPECT_LT((pose_from_rpy({0, 0, 0}, 0.0, 0.1, 0.0) * Eigen::Vector3d(1, 0, 0)).z(), 0.0);
 }
 
+// Kills angles of other axes or of another order; both ends of the pitch are there.
+TEST(Pose, AnglesOfARotationAreThoseItWasMadeOf) {
+  for (const double roll : {-3.0, -0.4, 0.0, 2.1}) {
+    for (const double pitch : {-1.5, 0.3, 1.5}) {
+      for (const double yaw : {-2.9, 0.0, 0.7, 3.1}) {
+        const Eigen::Vector3d rpy = rpy_of(pose_from_rpy({1, 2, 3}, roll, pitch, yaw).linear());
+        EXPECT_TRUE(rpy.isApprox(Eigen::Vector3d(roll, pitch, yaw), 1e-9)) << rpy.transpose();
+      }
+    }
+  }
+  for (const double pitch : {-kPi / 2, kPi / 2}) {
+    // Roll and yaw are one turn there, and rounding must not leave the range of asin.
+    EXPECT_NEAR(rpy_of(pose_from_rpy({0, 0, 0}, 0.3, pitch, 1.2).linear()).y(), pitch, 1e-7);
+  }
+}
+
 TEST(Pose, InterpolationTakesTheShortWayAround) {
   const Pose middle = interpolate(pose_with_yaw(0.0, 170.0 * kPi / 180), pose_with_yaw(2.0, -170.0 * kPi / 180), 0.5);
   EXPECT_TRUE(middle.isApprox(pose_with_yaw(1.0, kPi), 1e-12));
