@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -61,7 +62,11 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     const std::string shown = stream->name();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
     const Result<Format> format = identify_format(*stream);
-    if (!format && !unread) return tl::unexpected(format.error());
+    if (!format && format.error().code != Error::Code::kUnsupported) return tl::unexpected(format.error());
+    if (!format && !unread) {
+      const std::string_view what = stream->beginning().empty() ? "is empty" : "is not a navigation log";
+      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, what));
+    }
     const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
     if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
