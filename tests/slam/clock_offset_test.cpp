@@ -20,17 +20,9 @@ namespace pingvox {
 namespace {
 
 using test::Room;
+using test::wander;
 using testing::HasSubstr;
 using Yaw = std::function<double(double)>;
-
-/// Turns to and fro, never twice the same way [rad].
-double wander(double time_s) {
-  double yaw = 0.0, phase = 0.0;
-  for (const double rad_s : {0.031, 0.047, 0.083, 0.127, 0.171, 0.229, 0.293}) {
-    yaw += 0.012 / rad_s * std::sin(rad_s * time_s + (phase += 1.7));
-  }
-  return yaw;
-}
 
 /// The turns that a sonar sees in the room, from the beam `first` on: ten in a second.
 std::vector<YawChange> seen(const Yaw& yaw, int first, int end) {

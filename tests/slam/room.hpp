@@ -15,6 +15,15 @@
 /// a sonar hears it.
 namespace pingvox::test {
 
+/// Turns to and fro, never twice the same way [rad].
+inline double wander(double time_s) {
+  double yaw = 0.0, phase = 0.0;
+  for (const double rad_s : {0.031, 0.047, 0.083, 0.127, 0.171, 0.229, 0.293}) {
+    yaw += 0.012 / rad_s * std::sin(rad_s * time_s + (phase += 1.7));
+  }
+  return yaw;
+}
+
 struct Room {
   static constexpr double kHalfX_m = 3.0, kHalfY_m = 2.0, kBlock_m = 1.0;
   bool has_block = true;

@@ -17,17 +17,9 @@ namespace pingvox {
 namespace {
 
 using test::Room;
+using test::wander;
 using testing::HasSubstr;
 using Yaw = std::function<double(double)>;
-
-/// Turns to and fro, never twice the same way [rad].
-double wander(double time_s) {
-  double yaw = 0.0, phase = 0.0;
-  for (const double rad_s : {0.031, 0.047, 0.083, 0.127, 0.171}) {
-    yaw += 0.02 / rad_s * std::sin(rad_s * time_s + (phase += 1.7));
-  }
-  return yaw;
-}
 
 /// Turns the same way once in 40 s, and not like a sine: that shifted by some seconds is nearly one with a smaller
 /// amplitude.
@@ -82,6 +74,14 @@ TEST(SonarChecks, RoundsThatAreAlikeTellTheClockNearZero) {
   const SlamReport report = report_of(round_and_round, late(5.0, Estimation::kBatch), kBeams);
   ASSERT_TRUE(report.clock_check);
   EXPECT_NEAR(report.clock_check->offset_s, -5.0, 0.5);
+  EXPECT_TRUE(names_the_clock(report));
+}
+
+// Kills a search that ends near zero.
+TEST(SonarChecks, AClockThatIsMinutesOffIsNamedWithItsOffset) {
+  const SlamReport report = report_of(wander, late(100.0, Estimation::kBatch), 3000);
+  ASSERT_TRUE(report.clock_check);
+  EXPECT_NEAR(report.clock_check->offset_s, -100.0, 0.3);
   EXPECT_TRUE(names_the_clock(report));
 }
 

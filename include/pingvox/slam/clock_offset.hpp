@@ -56,7 +56,8 @@ struct ClockOffset {
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
 
 /// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
-/// As clock_offset, but where a vehicle goes round and turns alike each time, offsets up to 20 s.
+/// As clock_offset, but of offsets up to ten minutes, and up to 20 s where a vehicle goes round and turns alike each
+/// time.
 Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory);
 
 }  // namespace pingvox
