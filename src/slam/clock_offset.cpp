@@ -254,9 +254,9 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
 Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const TimeSeries& yaw_rad) {
   // A search over all of a long recording would take longer than to map it.
   constexpr double kNear_s = 20.0, kFar_s = 600.0;
-  const Result<ClockOffset> near = clock_offset(changes, yaw_rad, kNear_s);
+  Result<ClockOffset> near = clock_offset(changes, yaw_rad, kNear_s);
   if (near && !near->is_apart()) return near;
-  const Result<ClockOffset> far = clock_offset(changes, yaw_rad, kFar_s);
+  Result<ClockOffset> far = clock_offset(changes, yaw_rad, kFar_s);
   return far ? far : near;
 }
 
