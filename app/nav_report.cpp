@@ -62,16 +62,16 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     const std::string shown = stream->name();
     const std::optional<std::string> unread = describe_unread_file(stream->beginning());
     const Result<Format> format = identify_format(*stream);
-    if (!format && format.error().code != Error::Code::kUnsupported) return tl::unexpected(format.error());
-    if (!format && !unread) {
+    if (!format) {
+      if (format.error().code != Error::Code::kUnsupported) return tl::unexpected(format.error());
       const std::string_view what = stream->beginning().empty() ? "is empty" : "is not a navigation log";
-      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, what));
+      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, unread ? std::string_view(*unread) : what));
     }
     const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
     if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
     }
-    if (!contents && format && kind_of(*format) == FormatKind::kTrajectory) {
+    if (!contents && kind_of(*format) == FormatKind::kTrajectory) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a navigation log: 'map' and 'render' take it "
                                                          "by --poses, 'locate' by --odometry",
                                                          shown, description_of(*format)));

@@ -23,8 +23,7 @@ class WatchedBeams final : public BeamSourceDecorator {
 
   /// By how much the times of the poses are off, by the beams read so far. nullopt: it cannot be told.
   std::optional<ClockOffset> clock_error_of(const Trajectory& trajectory) {
-    const Result<ClockOffset> error = clock_error(turns_.finish(), trajectory);
-    return error ? std::optional(*error) : std::nullopt;
+    return clock_error(turns_.finish(), trajectory);
   }
 
  private:

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -251,22 +250,20 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
   return clock_offset(all, heading->yaw_rad, kAny_s);
 }
 
-Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const TimeSeries& yaw_rad) {
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const TimeSeries& yaw_rad) {
   // A search over all of a long recording would take longer than to map it.
   constexpr double kNear_s = 20.0, kFar_s = 600.0;
-  Result<ClockOffset> near = clock_offset(changes, yaw_rad, kNear_s);
-  if (near && !near->is_apart()) return near;
-  Result<ClockOffset> far = clock_offset(changes, yaw_rad, kFar_s);
-  return far ? far : near;
+  const Result<ClockOffset> near = clock_offset(changes, yaw_rad, kNear_s);
+  if (near && !near->is_apart()) return *near;
+  if (const Result<ClockOffset> far = clock_offset(changes, yaw_rad, kFar_s)) return *far;
+  return near ? std::optional(*near) : std::nullopt;
 }
 
-Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory) {
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory) {
   std::vector<double> times_s, yaws_rad;
   for (const StampedPose& pose : trajectory.poses()) {
-    const double yaw_rad = rpy_of(pose.map_from_body.rotation()).z();
-    const double before_rad = yaws_rad.empty() ? yaw_rad : yaws_rad.back();
     times_s.push_back(pose.time_s);
-    yaws_rad.push_back(before_rad + std::remainder(yaw_rad - before_rad, 2.0 * std::numbers::pi));
+    add_yaw(rpy_of(pose.map_from_body.rotation()).z(), yaws_rad);
   }
   return clock_error(changes, TimeSeries(std::move(times_s), std::move(yaws_rad)));
 }

@@ -134,6 +134,11 @@ double TimeSeries::longest_step_s() const {
   return longest_s;
 }
 
+void add_yaw(double yaw_rad, std::vector<double>& yaws_rad) {
+  const double before_rad = yaws_rad.empty() ? yaw_rad : yaws_rad.back();
+  yaws_rad.push_back(before_rad + std::remainder(yaw_rad - before_rad, 2.0 * std::numbers::pi));
+}
+
 std::optional<HeadingSource> heading_source(const NavSource& source, const Pose& body_from_source) {
   const std::vector<NavSample> samples = usable(source);
   if (samples.empty()) return std::nullopt;
@@ -145,8 +150,7 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
     const Eigen::Vector3d turned = rpy_of((world_from_source * body_from_source.inverse()).rotation());
     roll.push_back(turned.x());
     pitch.push_back(turned.y());
-    const double before = yaw.empty() ? turned.z() : yaw.back();
-    yaw.push_back(before + std::remainder(turned.z() - before, 2.0 * std::numbers::pi));
+    add_yaw(turned.z(), yaw);
   }
   const std::vector<double> times_s = times_of(samples);
   HeadingSource heading{source.name, TimeSeries(times_s, std::move(yaw)), std::nullopt, std::nullopt};

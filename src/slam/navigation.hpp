@@ -56,6 +56,9 @@ struct HeadingSource {
   bool drifts = false;                            ///< tells how the body turned, from 0 at the beginning
 };
 
+/// Adds a yaw as the angle that is nearest to the one before: without a jump at the half turn.
+void add_yaw(double yaw_rad, std::vector<double>& yaws_rad);
+
 /// Turned into the frame of the body by the mount. nullopt: no valid sample.
 std::optional<HeadingSource> heading_source(const NavSource& source, const Pose& body_from_source);
 

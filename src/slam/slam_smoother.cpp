@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/without_exceptions.hpp"
-#include "pingvox/slam/clock_offset.hpp"
 #include "slam/causal_estimator.hpp"
 #include "slam/map_solution.hpp"
 #include "slam/recording.hpp"

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
-#include <vector>
 
 #include "slam/recording.hpp"
 #include "slam/yaw_clock.hpp"
@@ -22,18 +20,14 @@ std::optional<VelocityCheck> velocity_check(const VelocitySource& velocity, cons
                         velocity_from_sonar(velocity, options), heading);
 }
 
-std::optional<ClockOffset> clock_check(const HeadingSource& heading, const std::vector<YawChange>& changes) {
-  if (heading.name == kSonarSource) return std::nullopt;
-  const Result<ClockOffset> error = clock_error(changes, heading.yaw_rad);
-  return error ? std::optional(*error) : std::nullopt;
-}
-
 }  // namespace
 
 SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const HeardSweep> sweeps,
                       PictureTurns turns, const SlamOptions& options) {
   if (options.matching == Matching::kNone) return {};
-  return {velocity_check(velocity, heading, sweeps, options), clock_check(heading, turns.finish())};
+  SonarChecks checks{velocity_check(velocity, heading, sweeps, options), std::nullopt};
+  if (heading.name != kSonarSource) checks.clock = clock_error(turns.finish(), heading.yaw_rad);
+  return checks;
 }
 
 void report_checks(const SonarChecks& checks, SlamReport& report) {

@@ -4,11 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "pingvox/slam/slam_smoother.hpp"
 #include "tests/slam/room.hpp"

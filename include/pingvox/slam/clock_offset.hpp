@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "pingvox/geometry/trajectory.hpp"
@@ -57,7 +58,7 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const Na
 
 /// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
 /// As clock_offset, but of offsets up to ten minutes, and up to 20 s where a vehicle goes round and turns alike each
-/// time.
-Result<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory);
+/// time. nullopt: it cannot be told.
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory);
 
 }  // namespace pingvox
