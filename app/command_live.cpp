@@ -110,12 +110,15 @@ class LiveRun {
   /// Without a beam there is no map, and an older one stays.
   bool has_mapped() const { return mapper_.report().beams > 0; }
 
-  /// The latest one that is known.
+  /// The latest one that is known. nullopt: it is too old to say where obstacles are.
   std::optional<Pose> last_pose() const {
+    constexpr double kOldest_s = 2.0;
     if (!nav_) return Pose::Identity();
     const std::optional<double> until_s = nav_->poses().known_until_s();
-    return until_s ? nav_->poses().at(*until_s) : std::nullopt;
+    return until_s && nav_->now_s() - *until_s <= kOldest_s ? nav_->poses().at(*until_s) : std::nullopt;
   }
+
+  std::size_t not_mapped() const { return unmapped_ + mapper_.report().skipped; }
 
   /// The oldest beams are dropped when too many wait: the record has them.
   void queue_arrived(double now_s) {
@@ -241,7 +244,7 @@ class LiveRun {
     bar_.draw(std::nullopt,
               fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, {:.0f} ms late, map {}",
                           status.is_connected ? "" : "not connected, ", beams_, beams_per_s, mapper_.report().echoes,
-                          status.unanswered + status.damaged, unmapped_, 1e3 * recent_.latency_s,
+                          status.unanswered + status.damaged, not_mapped(), 1e3 * recent_.latency_s,
                           bytes_text(map_.memory_bytes())));
     recent_ = {now_s, beams_, 0.0};
   }
@@ -256,7 +259,7 @@ class LiveRun {
         .add("beams", beams_)
         .add("mapped", mapper_.report().beams)
         .add("echoes", mapper_.report().echoes)
-        .add("not_mapped", unmapped_)
+        .add("not_mapped", not_mapped())
         .add("latency_ms", round_to_us(1e3 * recent_.latency_s))
         .add("unanswered", status.unanswered)
         .add("damaged", status.damaged)
@@ -293,8 +296,8 @@ class LiveRun {
     const BuildReport& report = mapper_.report();
     std::string text =
         (has_mapped() ? on_one_line(command_.output) : "no map") + "\n" +
-        report_line("heard", fmt::format("{}; {} not mapped", beams_text(beams_, report.sweeps, report.echoes),
-                                         unmapped_ + report.skipped)) +
+        report_line("heard",
+                    fmt::format("{}; {} not mapped", beams_text(beams_, report.sweeps, report.echoes), not_mapped())) +
         report_line("line", fmt::format("{} unanswered, {} damaged, {}", status.unanswered, status.damaged,
                                         counted(status.connections, "connection")));
     if (nav_) {

@@ -303,13 +303,11 @@ class LogMapper {
                                  bytes_text(map_.memory_bytes())));
   }
 
-  /// Where there are poses, and the head turns about an axis that is upright. nullptr: else.
+  /// Where there are poses. nullptr: else.
   WatchedBeams* watch_turns(Log& log) const {
-    constexpr double kUpright = 0.7;
     auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
-    const bool is_upright = build_.body_from_sensor.rotation()(2, 2) > kUpright;
-    if (beams == nullptr || !is_upright || path_.trajectory.poses().size() < 2) return nullptr;
-    auto watched = std::make_unique<WatchedBeams>(std::move(*beams));
+    if (beams == nullptr || path_.trajectory.poses().size() < 2) return nullptr;
+    auto watched = std::make_unique<WatchedBeams>(std::move(*beams), build_.body_from_sensor);
     WatchedBeams* const source = watched.get();
     *beams = std::move(watched);
     return source;
@@ -322,9 +320,10 @@ class LogMapper {
     if (!greatest || std::abs(error->offset_s) > std::abs(greatest->offset_s)) greatest = error;
     if (!error->is_apart()) return;
     say(
-        fmt::format("{}: by the turning of the sonar's picture {:+.1f} +- {:.1f} s should be added to the times of the "
-                    "poses: is {} right?",
-                    name, error->offset_s, error->deviation_s, path_.nav ? "--nav-offset" : "the clock of --poses"));
+        fmt::format("{}: by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of "
+                    "the poses: is {} right?",
+                    name, error->offset_s, error->deviation_s, error->is_one_of_several ? ", or another number," : "",
+                    path_.nav ? "--nav-offset" : "the clock of --poses"));
   }
 
   void say_what_is_odd(const MappedLog& mapped, const std::string& name) {
@@ -359,7 +358,8 @@ Result<int> run(const MapCommand& command, Console& console) {
   const Stopwatch total;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const Result<VehiclePath> path = vehicle_path(command.path, command.logs.front(), command.bag, command.damage);
+  const SonarLog first{command.logs.front(), command.bag.beams, command.build.body_from_sensor};
+  const Result<VehiclePath> path = vehicle_path(command.path, first, command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
   BuildOptions build = command.build;
   Totals totals;

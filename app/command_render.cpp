@@ -226,7 +226,8 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
 Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   Result<OccupancyMap> map = OccupancyMap::make(panel.map);
   if (!map) return map;
-  const Result<VehiclePath> path = vehicle_path(panel.path, panel.input, command.bag, command.damage);
+  const SonarLog sonar{panel.input, command.bag.beams, panel.build.body_from_sensor};
+  const Result<VehiclePath> path = vehicle_path(panel.path, sonar, command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
   const std::string name = file.name;
   Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);

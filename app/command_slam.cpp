@@ -119,7 +119,8 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
   if (!nav) return tl::unexpected(nav.error());
   Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), command.bag.beams}, command.damage);
+      nav_offset(command.nav_offset_s, nav->log,
+                 {command.logs.front(), command.bag.beams, command.slam.body_from_sonar}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   SlamInputs inputs;
   inputs.nav_offset = *std::move(offset);

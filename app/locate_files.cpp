@@ -36,7 +36,8 @@ Result<LocateMotion> read_motion(const LocateCommand& command) {
     motion.water = *water;
   }
   Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, nav->log, {command.logs.front(), command.bag.beams}, command.damage);
+      nav_offset(command.nav_offset_s, nav->log,
+                 {command.logs.front(), command.bag.beams, command.localizer.body_from_sonar}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   OdometryOptions options = command.nav;
   options.offset_s = offset->offset_s;

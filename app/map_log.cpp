@@ -97,7 +97,7 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
                           kind_of(*format) == FormatKind::kNav ? ": give it with --nav" : ""));
 }
 
-Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, const BagArgs& bag, Damage damage) {
+Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, const BagArgs& bag, Damage damage) {
   if (path.navs.empty()) {
     return trajectory_of(path.poses).map([](Trajectory trajectory) {
       return VehiclePath{std::move(trajectory), std::nullopt};
@@ -112,7 +112,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, c
                     "for --poses)",
                     fmt::join(path.navs, ", "), has_position(nav->log) ? "attitude" : "position or velocity"));
   }
-  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, {log, bag.beams}, damage);
+  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, log, damage);
   if (!offset) return tl::unexpected(offset.error());
   const std::optional<WaterAround> water = water_around(nav->log);
   const auto name_files = [&](Error error) {

@@ -42,7 +42,7 @@ struct VehiclePath {
 /// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
 /// reckoning.
 /// @param log  whose clock its times are to be on
-Result<VehiclePath> vehicle_path(const PathArgs& path, const std::string& log, const BagArgs& bag, Damage damage);
+Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, const BagArgs& bag, Damage damage);
 /// Trajectory of one navigation log; positions without an attitude give poses without rotation.
 /// @param fields  as for read_nav_log
 Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields);

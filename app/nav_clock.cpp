@@ -53,7 +53,7 @@ Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage,
   const auto source = open(sonar, damage);
   if (!source) return tl::unexpected(source.error());
   std::optional<SonarTimes> times;
-  PictureTurns turns;
+  PictureTurns turns(sonar.body_from_sonar);
   for (;;) {
     Result<std::optional<Beam>> beam = (*source)->next();
     if (!beam) return tl::unexpected(beam.error());
@@ -139,14 +139,17 @@ std::string text_of(const NavOffset& offset) {
 
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check) {
   return text_of(offset) + "; " +
-         (check ? fmt::format("{:+.1f} +- {:.1f} s from how the sonar's picture turns", check->offset_s,
-                              check->deviation_s)
+         (check ? fmt::format("{:+.1f} +- {:.1f} s{} from how the sonar's picture turns", check->offset_s,
+                              check->deviation_s, check->is_one_of_several ? ", or another," : "")
                 : "not checked by the sonar");
 }
 
 JsonObject json_of(const ClockOffset& check) {
   JsonObject json;
-  return json.add("offset_s", check.offset_s).add("sd_s", check.deviation_s).add("changes", check.changes);
+  return json.add("offset_s", check.offset_s)
+      .add("sd_s", check.deviation_s)
+      .add("changes", check.changes)
+      .add_truth("several", check.is_one_of_several);
 }
 
 JsonObject json_of(const NavOffset& offset) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "json.hpp"
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
@@ -22,6 +23,7 @@ struct NavOffset {
 struct SonarLog {
   std::string name;  ///< "-" is standard input
   BeamTopic topic;   ///< of a bag
+  Pose body_from_sonar = Pose::Identity();
 };
 
 /// The offset between the clocks of a sonar log and of navigation: what was `given`, else by their dates, else by the
@@ -35,7 +37,7 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
 std::string text_of(const NavOffset& offset);
 /// "+12.345 s (sd 0.021 s), by ...; -0.1 +- 0.3 s from how the sonar's picture turns"
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check);
-/// {"offset_s": ..., "sd_s": ..., "changes": ...}
+/// {"offset_s": ..., "sd_s": ..., "changes": ..., "several": ...}
 JsonObject json_of(const ClockOffset& check);
 /// {"offset_s": ..., "sd_s": ..., "from": ...}
 JsonObject json_of(const NavOffset& offset);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/slam/clock_offset.hpp"
 #include "pingvox/sonar/beam_source_decorator.hpp"
@@ -13,7 +14,8 @@ namespace pingvox::app {
 /// A log of beams that notes how the sonar's picture turns while it is read.
 class WatchedBeams final : public BeamSourceDecorator {
  public:
-  explicit WatchedBeams(std::unique_ptr<BeamSource> source) : BeamSourceDecorator(std::move(source)) {}
+  WatchedBeams(std::unique_ptr<BeamSource> source, const Pose& body_from_sensor)
+      : BeamSourceDecorator(std::move(source)), turns_(body_from_sensor) {}
 
   Result<std::optional<Beam>> next() override {
     Result<std::optional<Beam>> beam = source().next();

@@ -117,7 +117,7 @@ class HeadSource final : public LiveSource {
 
   void send(double now_s) {
     const std::optional<std::vector<std::uint8_t>> message = driver_.message(now_s);
-    if (driver_.is_lost()) return close(address_ + ": no answer", now_s);
+    if (driver_.is_lost()) return close(address_ + ": " + driver_.problem(), now_s);
     if (!message) return;
     if (const auto sent = link_->write(*message); !sent) close(sent.error().message, now_s);
   }

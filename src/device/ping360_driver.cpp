@@ -1,5 +1,7 @@
 #include "pingvox/device/ping360_driver.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -16,6 +18,16 @@ namespace {
 
 constexpr std::uint8_t kHost = 0, kHead = 2;
 constexpr int kTurn_grad = 400;
+
+/// What a head says of a message that it refuses: the message's number, then text.
+std::string text_of_nack(std::span<const std::uint8_t> payload) {
+  std::string text;
+  for (std::size_t i = sizeof(std::uint16_t); i < payload.size(); ++i) {
+    const bool is_printable = payload[i] >= ' ' && payload[i] <= '~';
+    if (is_printable) text += static_cast<char>(payload[i]);
+  }
+  return text.empty() ? "without a reason" : text;
+}
 
 }  // namespace
 
@@ -53,6 +65,7 @@ Ping360Driver::Ping360Driver(const Ping360Settings& settings)
 void Ping360Driver::connect() {
   is_known_ = is_waiting_ = false;
   unanswered_in_a_row_ = 0;
+  refusal_.clear();
 }
 
 bool Ping360Driver::is_lost() const {
@@ -60,9 +73,14 @@ bool Ping360Driver::is_lost() const {
   return unanswered_in_a_row_ >= kMaxUnanswered;
 }
 
+std::string Ping360Driver::problem() const {
+  return refusal_.empty() ? "no answer" : fmt::format("refused: {}", refusal_);
+}
+
 void Ping360Driver::take(std::span<const std::uint8_t> frame) {
   constexpr std::uint8_t kPing360 = 2;
   const PingMessage message = ping_message(frame);
+  if (message == PingMessage::kNack) refusal_ = text_of_nack(ping_payload(frame));
   if (message == PingMessage::kDeviceInformation && !is_known_) {
     const std::span<const std::uint8_t> payload = ping_payload(frame);
     if (payload.empty() || payload[0] != kPing360) return;
@@ -76,6 +94,7 @@ void Ping360Driver::take(std::span<const std::uint8_t> frame) {
     if (!ping || ping->angle_grad != angle_grad_) return;
     is_waiting_ = false;
     unanswered_in_a_row_ = 0;
+    refusal_.clear();
     turn();
   }
 }

@@ -72,16 +72,18 @@ class Comparison {
   }
 
   /// By how much the yaw makes the sum of squares smaller than a vehicle that does not turn would, each square at most
-  /// that of three deviations; in squares of the deviation.
+  /// that of three deviations; in squares of the deviation. -infinity where the yaw is known for too few changes.
   double gain(double offset_s, double deviation_rad) const {
     const double most = 9.0 * deviation_rad * deviation_rad;
     double gain = 0.0;
+    std::size_t known = 0;
     for (const YawChange& change : changes_) {
       const double rest = rest_rad(change, offset_s);
       if (std::isnan(rest)) continue;
+      ++known;
       gain += std::min(change.by_rad * change.by_rad, most) - std::min(rest * rest, most);
     }
-    return gain / (deviation_rad * deviation_rad);
+    return known < kMinChanges ? -kAny_s : gain / (deviation_rad * deviation_rad);
   }
 
   std::vector<double> rests_rad(double offset_s) const {
@@ -190,11 +192,13 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const TimeSe
   if (!(deviation_rad > kMin_rad)) return cannot_tell("the vehicle does not turn");
   const double lowest_s = std::max(from_s - yaw.to_s(), -most_s), highest_s = std::min(to_s - yaw.from_s(), most_s);
   Scan scan(comparison, lowest_s, highest_s, kCoarse_s, deviation_rad);
-  const std::vector<double> rests = comparison.rests_rad(scan.offset_s(scan.best()));
-  if (rests.size() < kMinChanges) return cannot_tell("too little of the turning is in both recordings");
-  deviation_rad = std::max(kMin_rad, kMadToDeviation * median(rests));
+  if (scan.gains[scan.best()] == -kAny_s) return cannot_tell("too little of the turning is in both recordings");
+  if (!(scan.gains[scan.best()] > 0.0)) return cannot_tell("the heading does not turn as the picture does");
+  deviation_rad = std::max(kMin_rad, kMadToDeviation * median(comparison.rests_rad(scan.offset_s(scan.best()))));
   scan = Scan(comparison, lowest_s, highest_s, kCoarse_s, deviation_rad);
   const std::size_t top = scan.best();
+  const bool is_cut_off = (top == 0 && lowest_s == -most_s) || (top + 1 == scan.gains.size() && highest_s == most_s);
+  if (is_cut_off) return cannot_tell("the best offset is the largest that was tried");
 
   // Five standard deviations from no turning, and from any other offset.
   constexpr double kSure = 25.0, kSecond = 0.75;
@@ -252,11 +256,17 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
 
 std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const TimeSeries& yaw_rad) {
   // A search over all of a long recording would take longer than to map it.
-  constexpr double kNear_s = 20.0, kFar_s = 600.0;
-  const Result<ClockOffset> near = clock_offset(changes, yaw_rad, kNear_s);
-  if (near && !near->is_apart()) return *near;
-  if (const Result<ClockOffset> far = clock_offset(changes, yaw_rad, kFar_s)) return *far;
-  return near ? std::optional(*near) : std::nullopt;
+  constexpr std::array<double, 3> kMost_s = {20.0, 40.0, 600.0};
+  std::optional<ClockOffset> found;
+  for (const double most_s : kMost_s) {
+    if (const Result<ClockOffset> wider = clock_offset(changes, yaw_rad, most_s)) {
+      found = *wider;
+      if (!found->is_apart()) break;
+    } else if (found) {
+      found->is_one_of_several = true;
+    }
+  }
+  return found;
 }
 
 std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory) {

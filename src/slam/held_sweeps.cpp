@@ -12,7 +12,7 @@ constexpr std::size_t kOfSquare = 24;
 /// nullopt: farther away than any vehicle goes.
 std::optional<std::pair<int, int>> square_of(const Eigen::Vector2d& place_m) {
   const Eigen::Vector2d square = (place_m / kFarReach_m).array().floor();
-  if (!(square.cwiseAbs().maxCoeff() < 1e9)) return std::nullopt;
+  if (!(square.array().abs() < 1e9).all()) return std::nullopt;  // NaN is not, either
   return std::pair{static_cast<int>(square.x()), static_cast<int>(square.y())};
 }
 

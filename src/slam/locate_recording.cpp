@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <utility>
 
 #include "base/without_exceptions.hpp"
+#include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/geometry/pose2.hpp"
+#include "slam/level_head.hpp"
 
 namespace pingvox {
 namespace {
@@ -36,21 +42,27 @@ SlamOptions smoother_options(const OdometryOptions& nav, const LocalizerOptions&
 /// nullopt: poses are those of the filter.
 Result<std::optional<SlamSmoother>> smoother_of(const RecordedMotion& motion, const LocateOptions& options) {
   if (options.estimation == Estimation::kCausal || !motion.nav) return std::nullopt;
+  if (!is_level(options.localizer.body_from_sonar)) return std::nullopt;
   SlamSmoother smoother(smoother_options(motion.nav_options, options.localizer));
   if (const auto added = smoother.add(*motion.nav); !added) return tl::unexpected(added.error());
   return std::optional(std::move(smoother));
 }
 
-/// Where the poses jump, as when the vehicle was carried away or was lost and is found.
+/// Where the poses jump or turn at once, as when the vehicle was carried away or was lost and is found.
 std::vector<Poses> segments_of(Poses poses) {
   constexpr double kJump_m = 0.5, kFastest_m_s = 2.0;
+  constexpr double kTurn_rad = 20.0 * kDegree_rad, kFastest_rad_s = 90.0 * kDegree_rad;
+  const auto follows = [&](const LocatedPose& before, const LocatedPose& pose) {
+    const double step_s = pose.time_s - before.time_s;
+    const Pose &from = before.map_from_body, &to = pose.map_from_body;
+    const double turn_rad = rpy_of(from.rotation().transpose() * to.rotation()).z();
+    return (to.translation() - from.translation()).head<2>().norm() <= kJump_m + kFastest_m_s * step_s &&
+           std::abs(turn_rad) <= kTurn_rad + kFastest_rad_s * step_s;
+  };
   std::vector<Poses> segments;
   std::size_t first = 0;
   for (std::size_t i = 1; i <= poses.size(); ++i) {
-    if (i < poses.size()) {
-      const Eigen::Vector3d way_m = poses[i].map_from_body.translation() - poses[i - 1].map_from_body.translation();
-      if (way_m.head<2>().norm() <= kJump_m + kFastest_m_s * (poses[i].time_s - poses[i - 1].time_s)) continue;
-    }
+    if (i < poses.size() && follows(poses[i - 1], poses[i])) continue;
     segments.push_back(poses.subspan(first, i - first));
     first = i;
   }
@@ -88,12 +100,24 @@ Result<bool> smooth_all(const SlamSmoother& smoother, const DistanceField& map, 
 
 /// Marks the poses that are known once all is recorded: in a segment those until the last one that was sure, and after
 /// it where the map fits.
-void mark_known(Poses segment) {
+/// @param doubt_s  before the last one that was sure; 0: the segment is the last one
+void mark_known(Poses segment, double doubt_s) {
   std::size_t sure_end = segment.size();
   while (sure_end > 0 && !segment[sure_end - 1].was_sure) --sure_end;
+  if (sure_end == 0) return;
+  const double doubt_from_s = segment[sure_end - 1].time_s - doubt_s;
   for (std::size_t i = 0; i < segment.size(); ++i) {
-    segment[i].is_known = i < sure_end || (sure_end > 0 && segment[i].is_smoothed);
+    segment[i].is_known = doubt_s > 0.0 ? segment[i].time_s < doubt_from_s : i < sure_end || segment[i].is_smoothed;
   }
+}
+
+/// The time in which the head turns once.
+double turn_s(std::span<const Beam> beams) {
+  double turned_rad = 0.0;
+  for (std::size_t i = 1; i < beams.size(); ++i) {
+    turned_rad += std::abs(wrap_angle(beams[i].bearing_rad - beams[i - 1].bearing_rad));
+  }
+  return (beams.back().time_s - beams.front().time_s) * 2.0 * std::numbers::pi / turned_rad;
 }
 
 /// A filter's pose after a beam.
@@ -138,6 +162,8 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     LocatedRecording found;
     const auto count = static_cast<double>(beams.size());
     const double end_s = beams.back().time_s;
+    // Where the vehicle was carried away the filter becomes unsure within a turn of the head.
+    const double doubt_s = turn_s(beams);
     for (std::size_t i = 0; i < beams.size(); ++i) {
       if (progress) progress(static_cast<double>(i) / count);
       const double time_s = beams[i].time_s;
@@ -162,9 +188,9 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     Result<bool> fits = false;
     if (*smoother) fits = smooth_all(**smoother, map, found.poses, segments);
     if (!fits) return tl::unexpected(fits.error());
-    for (const Poses segment : segments) mark_known(segment);
+    for (const Poses& segment : segments) mark_known(segment, &segment == &segments.back() ? 0.0 : doubt_s);
     // One place is left, and the map fits there all the time.
-    if (*fits && found.hypotheses.front().weight >= Localizer::kSureWeight) {
+    if (*fits && !found.hypotheses.empty() && found.hypotheses.front().weight >= Localizer::kSureWeight) {
       for (LocatedPose& pose : found.poses) pose.is_known = true;
     }
     return found;

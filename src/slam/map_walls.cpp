@@ -87,6 +87,9 @@ MapWalls::MapWalls(const DistanceField& field) : cell_m_(field.cell_m()) {
 
 std::optional<MapWalls::Line> MapWalls::nearest(const Eigen::Vector2d& point_m, const Eigen::Vector2d& ray,
                                                 double reach_m) const {
+  // Beyond it squares have no number.
+  constexpr double kFarthest_m = 1e8;
+  if (!(point_m.cwiseAbs().array() < kFarthest_m).all()) return std::nullopt;
   const auto nearest_of = [&](const Columns& columns, const auto& counts) {
     std::optional<std::uint32_t> best;
     double best_square = reach_m * reach_m;

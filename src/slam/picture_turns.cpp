@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pingvox/slam/clock_offset.hpp"
+#include "slam/level_head.hpp"
 
 namespace pingvox {
 namespace {
@@ -160,7 +161,13 @@ std::optional<YawChange> change_of(const TurnPicture& before, const TurnPicture&
 
 }  // namespace
 
+PictureTurns::PictureTurns(const Pose& body_from_sonar)
+    : sense_(!is_level(body_from_sonar)        ? 0.0
+             : is_upside_down(body_from_sonar) ? -1.0
+                                               : 1.0) {}
+
 void PictureTurns::add(Beam beam) {
+  if (sense_ == 0.0) return;
   if (auto sweep = assembler_.add(std::move(beam))) compare(*std::move(sweep));
 }
 
@@ -175,7 +182,10 @@ void PictureTurns::compare(Sweep sweep) {
     const TurnPicture before(before_), after(sweep);
     const bool same_range = std::abs(before.range_m() - after.range_m()) <= kSameRange * after.range_m();
     for (int first = 0; first < kDirections && same_range && after.range_m() > kBlanking_m; first += kWindow) {
-      if (const auto change = change_of(before, after, first)) changes_.push_back(*change);
+      auto change = change_of(before, after, first);
+      if (!change) continue;
+      change->by_rad *= sense_;
+      changes_.push_back(*change);
     }
   }
   before_ = std::move(sweep);

@@ -9,6 +9,7 @@
 
 #include "base/median.hpp"
 #include "slam/echo_runs.hpp"
+#include "slam/level_head.hpp"
 #include "slam/sonar_odometry.hpp"
 
 namespace pingvox {
@@ -58,7 +59,9 @@ SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions
 HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
   HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
                    echo_runs(sweep, options.filter, options.echo)};
+  const double sense = is_upside_down(options.body_from_sonar) ? -1.0 : 1.0;
   for (EchoRun& run : heard.runs) {
+    run.bearing_rad *= sense;
     run.range_m *= options.sound_speed_ratio;
     run.half_length_m *= options.sound_speed_ratio;
   }

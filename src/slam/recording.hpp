@@ -22,13 +22,13 @@ namespace pingvox {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kKnotsOfSweep = 4.0;
 
-/// How the sonar is mounted in the plane.
+/// How the sonar is mounted in the plane, where bearings run counter-clockwise.
 SonarMount sonar_mount(const Pose& body_from_sonar);
 
 /// How the sonar is mounted, seen from the source of the velocity.
 SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options);
 
-/// The echoes of a sweep, by the options.
+/// The echoes of a sweep, by the options; bearings run counter-clockwise, seen from above the vehicle.
 HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options);
 /// Usual time of a sweep: of complete ones, where there are any. REQUIRES a sweep.
 double sweep_duration_s(std::span<const HeardSweep> sweeps);

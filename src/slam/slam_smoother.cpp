@@ -11,6 +11,7 @@
 
 #include "base/without_exceptions.hpp"
 #include "slam/causal_estimator.hpp"
+#include "slam/level_head.hpp"
 #include "slam/map_solution.hpp"
 #include "slam/recording.hpp"
 #include "slam/slam_problem.hpp"
@@ -39,6 +40,11 @@ PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance) {
 
 Result<void> SlamOptions::validate() const {
   if (!std::isfinite(nav_offset_s)) return fail(Error::Code::kBadOption, "nav_offset_s: must be finite");
+  if (!is_level(body_from_sonar)) {
+    return fail(
+        Error::Code::kBadOption,
+        "body_from_sonar, the mount of the sonar: must be finite and level within 45 degrees, upside down or not");
+  }
   if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
     return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
   }
@@ -81,6 +87,7 @@ Result<std::vector<HeardSweep>> SlamSmoother::State::all_sweeps() const {
 
 SlamSmoother::SlamSmoother(SlamOptions options) : state_(std::make_unique<State>()) {
   assert(options.validate());
+  state_->turns = PictureTurns(options.body_from_sonar);
   state_->options = std::move(options);
 }
 SlamSmoother::~SlamSmoother() = default;

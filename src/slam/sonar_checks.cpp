@@ -39,8 +39,9 @@ void report_checks(const SonarChecks& checks, SlamReport& report) {
                                              report.velocity, velocity->difference_m_s, velocity->matched));
   }
   if (clock && clock->is_apart()) {
-    report.implausible.push_back(fmt::format("clock of {} ({:+.1f} +- {:.1f} s from how the sonar's picture turns)",
-                                             report.heading, clock->offset_s, clock->deviation_s));
+    report.implausible.push_back(fmt::format("clock of {} ({:+.1f} +- {:.1f} s{} from how the sonar's picture turns)",
+                                             report.heading, clock->offset_s, clock->deviation_s,
+                                             clock->is_one_of_several ? ", or another," : ""));
   }
 }
 

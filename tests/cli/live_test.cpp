@@ -358,6 +358,38 @@ TEST(Live, TellsTheAutopilotWhatIsNear) {
   EXPECT_GT(near, 18) << "of 72 sectors";
 }
 
+// Kills obstacles around where the vehicle was long ago.
+TEST(Live, TellsNoObstaclesWhereTheVehicleFellSilent) {
+  const Head head({}, "40");
+  const Workplace here;
+  std::string address;
+  const int autopilot = bound_socket(address);
+  ASSERT_GE(autopilot, 0);
+  const pid_t child = here.start({"live", head.address(), "--nav", "mavlink:udp://127.0.0.1:0", "-o", "live.bt",
+                                  "--range", "4", "--step", "18", "--vote", "beam", "--obstacles", address},
+                                 {.err_path = here.path("notes")});
+  const std::string name = "mavlink:udp://127.0.0.1:";
+  EXPECT_TRUE(
+      wait_until([&] { return here.has("notes") && here.read("notes").find(": listening\n") != std::string::npos; }));
+  const std::string notes = here.read("notes");
+  const std::size_t at = notes.find(name);
+  ASSERT_NE(at, std::string::npos) << notes;
+  std::array<std::uint8_t, 300> frame = {};
+  const auto is_told = [&] { return ::recv(autopilot, frame.data(), frame.size(), 0) > 0; };
+  {
+    const Vehicle vehicle(static_cast<std::uint16_t>(std::stoi(notes.substr(at + name.size()))));
+    EXPECT_TRUE(wait_until(is_told));
+  }
+  EXPECT_TRUE(wait_until([&] {
+    while (is_told()) continue;
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    return !is_told();
+  }));
+  ::kill(child, SIGTERM);
+  EXPECT_EQ(status_of(child), 0) << here.read("notes");
+  ::close(autopilot);
+}
+
 TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
   const Head head;
   const Workplace here;

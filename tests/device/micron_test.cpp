@@ -134,6 +134,21 @@ TEST(MicronDriver, WaitsForTheHeadConfiguresItAndAsksForLines) {
   EXPECT_TRUE(is_request(driver.message(1.2)));
 }
 
+// Kills a head that never gets its parameters since it was ready, with older ones, before they were sent.
+TEST(MicronDriver, AHeadThatSaysThatItIsReadyBeforeItWasConfiguredIsConfigured) {
+  MicronDriver driver({});
+  driver.message(0.0);
+  driver.take(kAliveReady);
+  driver.message(0.0);
+  driver.take(user_data(264, 1));
+  driver.take(kAliveReady);  // in the same read
+  const auto command = driver.message(0.1);
+  ASSERT_TRUE(command);
+  EXPECT_TRUE(micron_command_in(seanet_payload(*command)));
+  driver.take(kAliveReady);
+  EXPECT_TRUE(is_request(driver.message(0.2)));
+}
+
 // Kills a request for each line of a head that answers with two: they would pile up in it.
 TEST(MicronDriver, AsksAfterTheSecondLineOfAHeadThatSendsTwo) {
   MicronDriver driver = scanning({}, user_data(175, 0));

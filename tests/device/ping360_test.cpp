@@ -93,6 +93,23 @@ TEST(Ping360Driver, RepeatsWhatIsNotAnsweredAndGivesUpAfterThree) {
   EXPECT_TRUE(driver.is_lost());
 }
 
+// Kills a head that is taken for silent where it says what is wrong.
+TEST(Ping360Driver, SaysWhyTheHeadRefuses) {
+  Ping360Driver driver({.timeout_s = 1.0});
+  driver.message(0.0);
+  EXPECT_EQ(driver.problem(), "no answer");
+  driver.take(information());
+  driver.message(0.0);
+  constexpr std::string_view kRefused = "\x29\x0atransmit\x1b too long";
+  const std::vector<std::uint8_t> payload(kRefused.begin(), kRefused.end());
+  driver.take(make_ping_frame(PingMessage::kNack, 2, 0, payload));
+  EXPECT_EQ(driver.problem(), "refused: transmit too long");
+  driver.take(make_ping_frame(PingMessage::kNack, 2, 0, {}));
+  EXPECT_EQ(driver.problem(), "refused: without a reason");
+  driver.take(answer_of(0));
+  EXPECT_EQ(driver.problem(), "no answer");
+}
+
 // A line that doubles an answer must not make the head skip an angle.
 TEST(Ping360Driver, TakesOnlyTheAnswerThatItWaitsFor) {
   Ping360Driver driver({});

@@ -90,6 +90,16 @@ TEST(ClockOffset, IsRefusedWhereItCannotBeTold) {
   // Another dive.
   const Yaw other = [](double time_s) { return 0.5 * std::sin(0.083 * time_s) + 0.3 * std::sin(0.059 * time_s + 2.0); };
   EXPECT_FALSE(clock_offset(seen(wander, 0, 900), log_of(other, 0.0, 90.0, 0.05, 0.0)));
+  // Its yaw counts the other way round.
+  const auto opposite = clock_offset(seen(wander, 0, 900), log_of([](double t) { return -wander(t); }, 0, 90, 0.05, 0));
+  ASSERT_FALSE(opposite);
+  EXPECT_THAT(opposite.error().message, HasSubstr("does not turn as the picture does"));
+}
+
+TEST(ClockOffset, AHeadThatTurnsAboutALevelAxisShowsNoTurns) {
+  PictureTurns turns(pose_from_rpy(Eigen::Vector3d::Zero(), std::numbers::pi / 2.0, 0.0, 0.0));
+  for (int i = 0; i < 900; ++i) turns.add(Room{}.beam(i, {0.4, -0.3, wander(0.1 * i)}));
+  EXPECT_TRUE(turns.finish().empty());
 }
 
 TEST(ClockOffset, OfTwoLogsOfOneVehicle) {

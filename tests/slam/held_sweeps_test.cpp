@@ -26,7 +26,10 @@ TEST(HeldSweeps, NearAreAllWithinTheReachInOrder) {
   for (const auto& sweep : held.near(place, 60.0)) near.push_back(sweep->place.number);
   EXPECT_GT(near.size(), 5U);
   EXPECT_EQ(near, expected);
-  EXPECT_TRUE(held.near({1e300, 0.0}, 60.0).empty());
+  for (const double far : {1e300, std::nan("")}) {
+    EXPECT_TRUE(held.near({far, 0.0}, 60.0).empty());
+    EXPECT_TRUE(held.near({0.0, far}, 60.0).empty());
+  }
 }
 
 }  // namespace

@@ -80,6 +80,26 @@ TEST(LocateRecording, APoseBeforeAJumpIsNotKnownByOneBehindIt) {
   EXPECT_TRUE(found->poses.back().is_known);
 }
 
+// Kills a place that counts as known on both sides of a turn that the filter did not follow.
+TEST(LocateRecording, APoseBeforeATurnAtOnceIsNotKnownByOneBehindIt) {
+  const Room room;
+  constexpr int kTurn = 150;  // found after one turn of the head, sure after two
+  const Room::State there = {kPlace.x, kPlace.y, kPlace.yaw + 2.0};
+  std::vector<Beam> beams;
+  std::vector<StampedPose> odometry;
+  for (int i = 0; i < 500; ++i) {
+    beams.push_back(room.beam(i, i < kTurn ? kPlace : there));
+    odometry.push_back({0.1 * i, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, i < kTurn ? 0.0 : 2.0)});
+  }
+  RecordedMotion motion;
+  motion.odometry_from_body = *Trajectory::make(std::move(odometry));
+  const auto found = locate_recording(std::move(beams), motion, field_of(room), {});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_LT(found->poses.front().time_s, 0.1 * kTurn);
+  EXPECT_FALSE(found->poses.front().is_known);
+  EXPECT_TRUE(found->poses.back().is_known);
+}
+
 /// Round the middle of the room in 80 seconds, heading along the way.
 Room::State state_at(double time_s) {
   const double angle = 2.0 * std::numbers::pi * time_s / 80.0;

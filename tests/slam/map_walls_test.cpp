@@ -63,5 +63,14 @@ TEST(MapWalls, AreTheSideOfAPileThatIsSeen) {
   }
 }
 
+// Kills a search through two milliards of squares for a pose that has left the world.
+TEST(MapWalls, AreNotWhereNoMapReaches) {
+  const MapWalls walls(*DistanceField::make(Room{}.map(), {}));
+  for (const double far : {1e9, 1e300, std::nan("")}) {
+    EXPECT_FALSE(walls.nearest({far, 0.0}, {1.0, 0.0}, 10.0));
+    EXPECT_FALSE(walls.nearest({0.0, -far}, {1.0, 0.0}, 10.0));
+  }
+}
+
 }  // namespace
 }  // namespace pingvox::test

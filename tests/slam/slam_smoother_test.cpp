@@ -66,6 +66,39 @@ TEST(SlamSmoother, GivesTheSameBytesForTheSameSeed) {
   }
 }
 
+// Kills bearings of a head that hangs upside down that are taken as those of one that stands.
+TEST(SlamSmoother, AHeadThatIsUpsideDownSeesTheSame) {
+  const Basin basin{.duration_s = 200.0};
+  const auto upright = solve(basin, {});
+  SlamOptions options;
+  options.body_from_sonar = pose_from_rpy(Eigen::Vector3d::Zero(), std::numbers::pi, 0.0, basin.sonar_yaw_rad);
+  SlamSmoother smoother(options);
+  add(smoother, basin.sources());
+  for (Beam beam : basin.beams()) {
+    beam.bearing_rad = wrap_bearing(-beam.bearing_rad);
+    smoother.add(beam);
+  }
+  const auto turned_over = smoother.solve();
+  ASSERT_TRUE(upright && turned_over);
+  EXPECT_GT(upright->report.pairs, 1000U);
+  for (std::size_t i = 0; i < upright->trajectory.poses().size(); ++i) {
+    const Pose &a = upright->trajectory.poses()[i].map_from_body, &b = turned_over->trajectory.poses()[i].map_from_body;
+    ASSERT_TRUE(a.isApprox(b, 1e-6)) << i;
+  }
+}
+
+TEST(SlamSmoother, RefusesAHeadThatLooksOutOfThePlane) {
+  SlamOptions options;
+  for (const double roll_rad : {1.0, -1.6, 2.1, std::nan("")}) {
+    options.body_from_sonar = pose_from_rpy(Eigen::Vector3d::Zero(), roll_rad, 0.0, 0.0);
+    const auto valid = options.validate();
+    ASSERT_FALSE(valid) << roll_rad;
+    EXPECT_THAT(valid.error().message, HasSubstr("body_from_sonar"));
+  }
+  options.body_from_sonar = pose_from_rpy(Eigen::Vector3d::Zero(), std::numbers::pi - 0.5, 0.3, 2.0);
+  EXPECT_TRUE(options.validate());
+}
+
 TEST(SlamSmoother, SharesTheConstantOfTwoHeadings) {
   PINGVOX_SKIP_UNDER_SANITIZERS();
   const Basin basin;

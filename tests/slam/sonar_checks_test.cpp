@@ -28,7 +28,12 @@ double round_and_round(double time_s) {
 /// What the smoother reports of a vehicle that turns on the spot in a room, ten beams a second.
 SlamReport report_of(const Yaw& yaw, const SlamOptions& options, int beams = 1500) {
   SlamSmoother smoother(options);
-  for (int i = 0; i < beams; ++i) smoother.add(Room{}.beam(i, {0.4, -0.3, yaw(0.1 * i)}));
+  const bool is_upside_down = options.body_from_sonar.rotation()(2, 2) < 0.0;
+  for (int i = 0; i < beams; ++i) {
+    Beam beam = Room{}.beam(i, {0.4, -0.3, yaw(0.1 * i)});
+    if (is_upside_down) beam.bearing_rad = wrap_bearing(-beam.bearing_rad);
+    smoother.add(std::move(beam));
+  }
   for (int i = -100; i < beams + 100; ++i) {
     NavSample sample;
     sample.time_s = 0.1 * i;
@@ -74,11 +79,38 @@ TEST(SonarChecks, RoundsThatAreAlikeTellTheClockNearZero) {
   EXPECT_TRUE(names_the_clock(report));
 }
 
+// Kills an offset that is a round less or more than the true one and said as if it were the only one.
+TEST(SonarChecks, AnOffsetThatRoundsThatAreAlikeDoNotTellIsOneOfSeveral) {
+  const SlamReport report = report_of(round_and_round, late(25.0, Estimation::kBatch), 3000);
+  ASSERT_TRUE(report.clock_check);
+  EXPECT_NEAR(report.clock_check->offset_s, 15.0, 0.5) << "-25, and a round of 40 s";
+  EXPECT_TRUE(report.clock_check->is_one_of_several);
+  EXPECT_THAT(report.implausible, testing::Contains(HasSubstr("s, or another, from")));
+}
+
+// Kills the border of what was tried that is taken for the best.
+TEST(SonarChecks, AnOffsetJustBeyondTheFirstSearchIsFound) {
+  const Yaw slower = [](double time_s) { return round_and_round(time_s * 40.0 / 90.0); };
+  const SlamReport report = report_of(slower, late(25.0, Estimation::kBatch), 6000);
+  ASSERT_TRUE(report.clock_check);
+  EXPECT_NEAR(report.clock_check->offset_s, -25.0, 0.5);
+  EXPECT_TRUE(names_the_clock(report));
+}
+
+TEST(SonarChecks, AHeadThatIsUpsideDownChecksTheClockAsWell) {
+  SlamOptions options = late(4.0, Estimation::kBatch);
+  options.body_from_sonar = pose_from_rpy(Eigen::Vector3d::Zero(), std::numbers::pi, 0.0, 0.4);
+  const SlamReport report = report_of(wander, options);
+  ASSERT_TRUE(report.clock_check);
+  EXPECT_NEAR(report.clock_check->offset_s, -4.0, 0.3);
+}
+
 // Kills a search that ends near zero.
 TEST(SonarChecks, AClockThatIsMinutesOffIsNamedWithItsOffset) {
   const SlamReport report = report_of(wander, late(100.0, Estimation::kBatch), 3000);
   ASSERT_TRUE(report.clock_check);
   EXPECT_NEAR(report.clock_check->offset_s, -100.0, 0.3);
+  EXPECT_FALSE(report.clock_check->is_one_of_several);
   EXPECT_TRUE(names_the_clock(report));
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pingvox/device/receiver_gain.hpp"
@@ -65,6 +66,8 @@ class MicronDriver {
   bool is_connected() const { return state_ == State::kScanning; }
   /// Several messages in a row were not answered: the line has to be opened again.
   bool is_lost() const;
+  /// Why.
+  std::string problem() const { return "no answer"; }
   /// Messages that were not answered in time.
   std::size_t unanswered() const { return unanswered_; }
 

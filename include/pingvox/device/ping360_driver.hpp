@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pingvox/device/receiver_gain.hpp"
@@ -66,6 +67,8 @@ class Ping360Driver {
   bool is_connected() const { return is_known_; }
   /// Several messages in a row were not answered: the line has to be opened again.
   bool is_lost() const;
+  /// Why: "no answer", or with which words the head refused the messages.
+  std::string problem() const;
   /// Messages that were not answered in time.
   std::size_t unanswered() const { return unanswered_; }
 
@@ -86,6 +89,7 @@ class Ping360Driver {
   double rest_until_s_ = 0.0;  ///< for the rest of an answer that has begun
   int unanswered_in_a_row_ = 0;
   std::size_t unanswered_ = 0;
+  std::string refusal_;  ///< empty: none since the last answer
 };
 
 }  // namespace pingvox

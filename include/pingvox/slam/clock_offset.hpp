@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
@@ -23,6 +24,10 @@ struct YawChange {
 /// 30 degrees are looked for in the next sweep, up to 60 degrees away; those that are not found clearly give nothing.
 class PictureTurns {
  public:
+  /// @param body_from_sonar  the picture of a head that is upside down turns with the vehicle; one that is tilted by
+  ///                         45 degrees or more shows no turns
+  explicit PictureTurns(const Pose& body_from_sonar = Pose::Identity());
+
   /// Takes the next beam, which must be valid.
   void add(Beam beam);
   /// The changes of yaw found so far; the beams since the last whole sweep count as one.
@@ -31,6 +36,7 @@ class PictureTurns {
  private:
   void compare(Sweep sweep);
 
+  double sense_;  ///< 1; -1 of a head that is upside down; 0 of one that shows no turns
   SweepAssembler assembler_;
   Sweep before_;
   std::vector<YawChange> changes_;
@@ -45,6 +51,9 @@ struct ClockOffset {
   double deviation_s = 0.0;  ///< standard deviation
   std::size_t changes = 0;   ///< of yaw that were compared
 
+  /// Some seconds more or less would explain them as well: the vehicle turns alike each time it goes round.
+  bool is_one_of_several = false;
+
   /// Whether clocks that were said to agree do not: by more than five standard deviations and half a second.
   bool is_apart() const;
 };
@@ -57,8 +66,8 @@ struct ClockOffset {
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
 
 /// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
-/// As clock_offset, but of offsets up to ten minutes, and up to 20 s where a vehicle goes round and turns alike each
-/// time. nullopt: it cannot be told.
+/// As clock_offset, but of offsets up to ten minutes. Where a vehicle goes round and turns alike each time, the
+/// smallest one that explains them, up to 40 s. nullopt: it cannot be told.
 std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory);
 
 }  // namespace pingvox

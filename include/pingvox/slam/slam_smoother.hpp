@@ -49,6 +49,7 @@ struct SlamOptions {
   std::size_t causal_sweeps = 80;
   std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
 
+  /// Within 45 degrees of level, or of upside down.
   Pose body_from_sonar = Pose::Identity();
   /// How a source of navigation is mounted: body_from_source by the source's name; the identity for others. Headings
   /// and velocities are turned by it. The sonar is carried by the body at its place relative to the velocity's source.
