@@ -11,6 +11,7 @@
 #include "locate_files.hpp"
 #include "locate_report.hpp"
 #include "map_report.hpp"
+#include "nav_clock.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/slam/locate_recording.hpp"
@@ -121,6 +122,10 @@ Result<int> run(const LocateCommand& command, Console& console) {
   if (!found) return fail(found.error().code, fmt::format("{}: {}", command.logs.front(), found.error().message));
   seconds.locate = locating.seconds();
 
+  if (found->clock_check && found->clock_check->is_apart()) {
+    const char* const option = command.odometry ? "the clock of --odometry" : "--nav-offset";
+    console.say(fmt::format("{}: {}", command.logs.front(), wrong_clock_text(*found->clock_check, option)));
+  }
   const Result<std::optional<Trajectory>> trajectory = trajectory_of(*found, command, console);
   if (!trajectory) return tl::unexpected(trajectory.error());
   if (*trajectory) {

@@ -319,11 +319,8 @@ class LogMapper {
     std::optional<ClockOffset>& greatest = totals_.clock_check;
     if (!greatest || std::abs(error->offset_s) > std::abs(greatest->offset_s)) greatest = error;
     if (!error->is_apart()) return;
-    say(
-        fmt::format("{}: by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of "
-                    "the poses: is {} right?",
-                    name, error->offset_s, error->deviation_s, error->is_one_of_several ? ", or another number," : "",
-                    path_.nav ? "--nav-offset" : "the clock of --poses"));
+    const char* const option = path_.nav ? "--nav-offset" : "the clock of --poses";
+    say(fmt::format("{}: {}", name, wrong_clock_text(*error, option)));
   }
 
   void say_what_is_odd(const MappedLog& mapped, const std::string& name) {

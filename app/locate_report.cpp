@@ -82,6 +82,7 @@ std::string locate_json(const LocatedRecording& found, const LocateInputs& input
       .add("sound_speed_m_s", inputs.sound_speed_m_s)
       .add("motion", inputs.motion.text);
   inputs.motion.clock ? json.add("nav_clock", json_of(*inputs.motion.clock)) : json.add_null("nav_clock");
+  found.clock_check ? json.add("clock_check", json_of(*found.clock_check)) : json.add_null("clock_check");
   json.add_truth("sure", found.is_sure()).add("hypotheses", hypotheses).add("sure_spans", spans);
   if (sure.empty()) {
     json.add_null("converged_at_s");
@@ -102,7 +103,7 @@ std::string locate_text(const LocatedRecording& found, const LocateCommand& comm
                      : command.output == "-" ? "standard output\n"
                                              : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
-  if (motion.clock) text += report_line("nav clock", text_of(*motion.clock));
+  if (motion.clock) text += report_line("nav clock", text_of(*motion.clock, found.clock_check));
   if (motion.water) text += report_line("water", water_text(*motion.water));
   text += report_line(
       "trajectory",

@@ -131,17 +131,19 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
   return by_picture(nav, sonar, damage, dates);
 }
 
-std::string text_of(const NavOffset& offset) {
-  std::string text = fmt::format("{:+.3f} s", offset.offset_s);
-  if (offset.deviation_s) text += fmt::format(" (sd {:.3f} s)", *offset.deviation_s);
-  return text + ": " + offset.from;
-}
-
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check) {
-  return text_of(offset) + "; " +
+  const std::string deviation = offset.deviation_s ? fmt::format(" (sd {:.3f} s)", *offset.deviation_s) : "";
+  return fmt::format("{:+.3f} s{}: {}; ", offset.offset_s, deviation, offset.from) +
          (check ? fmt::format("{:+.1f} +- {:.1f} s{} from how the sonar's picture turns", check->offset_s,
                               check->deviation_s, check->is_one_of_several ? ", or another," : "")
                 : "not checked by the sonar");
+}
+
+std::string wrong_clock_text(const ClockOffset& check, std::string_view option) {
+  return fmt::format(
+      "by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of the "
+      "poses: is {} right?",
+      check.offset_s, check.deviation_s, check.is_one_of_several ? ", or another number," : "", option);
 }
 
 JsonObject json_of(const ClockOffset& check) {

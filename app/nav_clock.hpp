@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "json.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -33,10 +34,10 @@ struct SonarLog {
 Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& nav, const SonarLog& sonar,
                              Damage damage);
 
-/// "+12.345 s (sd 0.021 s), by ..."
-std::string text_of(const NavOffset& offset);
 /// "+12.345 s (sd 0.021 s), by ...; -0.1 +- 0.3 s from how the sonar's picture turns"
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check);
+/// What to do where the check is apart. @param option  the option that may be wrong
+std::string wrong_clock_text(const ClockOffset& check, std::string_view option);
 /// {"offset_s": ..., "sd_s": ..., "changes": ..., "several": ...}
 JsonObject json_of(const ClockOffset& check);
 /// {"offset_s": ..., "sd_s": ..., "from": ...}

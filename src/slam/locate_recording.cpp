@@ -160,6 +160,7 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     if (!smoother) return tl::unexpected(smoother.error());
 
     LocatedRecording found;
+    PictureTurns turns(options.localizer.body_from_sonar);
     const auto count = static_cast<double>(beams.size());
     const double end_s = beams.back().time_s;
     // Where the vehicle was carried away the filter becomes unsure within a turn of the head.
@@ -169,6 +170,7 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
       const double time_s = beams[i].time_s;
       if (*smoother) (*smoother)->add(beams[i]);
       const auto& odometry = motion.odometry_from_body;
+      if (odometry) turns.add(beams[i]);
       if (const auto pose = odometry ? odometry->at(time_s) : std::nullopt) localizer.add({time_s, *pose});
       if (const auto added = localizer.add(std::move(beams[i])); !added) return tl::unexpected(added.error());
       note(localizer, time_s, found.poses);
@@ -179,6 +181,7 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     note(localizer, end_s, found.poses);
     if (found.poses.empty()) return fail(Error::Code::kUnsupported, "no echo fits anywhere in the map");
     found.hypotheses = localizer.hypotheses();
+    if (motion.odometry_from_body) found.clock_check = clock_error(turns.finish(), *motion.odometry_from_body);
     if (options.estimation == Estimation::kCausal) {
       for (LocatedPose& pose : found.poses) pose.is_known = pose.was_sure;
       return found;

@@ -15,6 +15,7 @@ namespace pingvox::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(Locate, FindsTheSonarInTheTankOfAnotherRun) {
   const Workplace here;
@@ -148,6 +149,22 @@ TEST(Locate, NavigationOnAnotherClockIsMovedOrRefused) {
   const Outcome found = here.call(given);
   ASSERT_EQ(found.status, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr(R"("nav_clock": {"offset_s": -1767225600, "sd_s": null, "from": "--nav-offset"})"));
+}
+
+TEST(Locate, NamesAnOffsetOfTheClockThatTheSonarContradicts) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "harbour", "-o", "a.csv", "--trajectory", "loop", "--nav", "nav.csv", "--nav-delay",
+                       "0", "--truth", "t", "--resolution", "0.1"})
+                .status,
+            0);
+  const auto located = [&](const char* offset_s) {
+    return here.call({"locate", "a.csv", "--map", "t/world.bt", "--nav", "nav.csv", "--nav-offset", offset_s, "-o",
+                      "a.tum", "--json"});
+  };
+  const Outcome right = located("0"), wrong = located("5");
+  EXPECT_THAT(right.out, HasSubstr(R"("clock_check": {"offset_s": )"));
+  EXPECT_THAT(right.err, Not(HasSubstr("right?")));
+  EXPECT_THAT(wrong.err, HasSubstr("should be added to the times of the poses: is --nav-offset right?"));
 }
 
 }  // namespace

@@ -146,6 +146,27 @@ TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
   EXPECT_LT(error_m(*smoothed), 0.7 * error_m(*causal));
 }
 
+// Kills an odometry on another clock that is followed without a word, and an offset of the wrong sign.
+TEST(LocateRecording, ChecksTheClockOfTheOdometry) {
+  const Room room;
+  for (const double late_s : {0.0, 4.0}) {
+    std::vector<Beam> beams;
+    std::vector<StampedPose> odometry;
+    for (int i = 0; i < 900; ++i) {
+      const double yaw_rad = wander(0.1 * i);
+      beams.push_back(room.beam(i, {kPlace.x, kPlace.y, yaw_rad}));
+      odometry.push_back({0.1 * i + late_s, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, yaw_rad)});
+    }
+    RecordedMotion motion;
+    motion.odometry_from_body = *Trajectory::make(std::move(odometry));
+    const auto found = locate_recording(std::move(beams), motion, field_of(room), {});
+    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_TRUE(found->clock_check) << late_s;
+    EXPECT_NEAR(found->clock_check->offset_s, -late_s, 0.3);
+    EXPECT_EQ(found->clock_check->is_apart(), late_s != 0.0);
+  }
+}
+
 TEST(LocateRecording, RefusesTimesThatRunBackwards) {
   const Room room;
   std::vector<Beam> beams = beams_at(room, kPlace, 3);

@@ -49,6 +49,8 @@ struct LocatedPose {
 struct LocatedRecording {
   std::vector<LocatedPose> poses;          ///< not empty; of each beam since the vehicle was found first
   std::vector<PoseHypothesis> hypotheses;  ///< at the end, the most likely first
+  /// By how much the times of the odometry are off (clock_error). nullopt: no odometry, or it cannot be told.
+  std::optional<ClockOffset> clock_check;
   double mean_particles = 0.0;
   std::size_t most_particles = 0;
 
