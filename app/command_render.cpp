@@ -297,6 +297,12 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
   const auto to_draw = [&](OccupancyMap map) -> Result<Prepared> {
     Result<OccupancyMap> looked_at = panel.occupancy.apply_to(std::move(map));
     if (!looked_at) return fail(looked_at.error().code, fmt::format("render: {}", looked_at.error().message));
+    // Leaves that reach beyond the limits end there. Where nothing is known the picture says so.
+    const SliceOptions limits{panel.map_picture.min_z_m, panel.map_picture.max_z_m};
+    if (limits.min_z_m || limits.max_z_m) {
+      Result<OccupancyMap> within = map_of_slice(*looked_at, limits);
+      if (within) looked_at = std::move(within);
+    }
     return Prepared(MapToDraw{*std::move(looked_at), view});
   };
   if (view == PictureView::kPolar || view == PictureView::kCartesian) {
@@ -332,7 +338,7 @@ Result<std::vector<MapPath>> read_paths(const std::vector<std::string>& files) {
 Result<void> check_layer(const MapToDraw& shown, const PanelCommand& panel) {
   const auto z_m = panel.map_picture.layer_z_m;
   if (shown.view != PictureView::kSlice || !z_m) return {};
-  if (const auto layer = slice_of(shown.map, {z_m, z_m}); !layer) {
+  if (const auto layer = check_slice(shown.map, {z_m, z_m}); !layer) {
     return fail(layer.error().code, fmt::format("{}: {}", panel.input, layer.error().message));
   }
   return {};

@@ -181,6 +181,13 @@ Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& er
   });
 }
 
+/// Of a vehicle that stands still: its pose at the first and at the last beam.
+Result<Trajectory> true_poses(const Trajectory& way, const std::vector<TruthRecorder::Sent>& sent) {
+  if (way.poses().size() > 1 || sent.size() < 2) return way;
+  const Pose& pose = way.poses().front().map_from_body;
+  return Trajectory::make({{sent.front().ping.time_s, pose}, {sent.back().ping.time_s, pose}});
+}
+
 Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map, double cell_m, const Trajectory& way,
                          const SonarSimulator& simulator, const TruthRecorder& recorder, const SonarOptions& sonar,
                          const std::optional<SimulatedNav>& nav) {
@@ -190,7 +197,9 @@ Result<void> write_truth(const SimulateCommand& command, const OccupancyMap& map
   if (error) return fail(Error::Code::kIo, fmt::format("{}: {}", *command.truth, error.message()));
   const auto in_folder = [&folder](const char* name) { return (folder / name).string(); };
 
-  if (auto written = write_trajectory(in_folder("poses.tum"), way); !written) return written;
+  const Result<Trajectory> poses = true_poses(way, recorder.sent());
+  if (!poses) return tl::unexpected(poses.error());
+  if (auto written = write_trajectory(in_folder("poses.tum"), *poses); !written) return written;
   if (auto written = write_ranges(in_folder("ranges.csv"), simulator, recorder.sent(), sonar); !written) return written;
   auto written = write_file(in_folder("world.ply"), [&](std::ostream& out) {
     return write_mesh_ply(simulator.world().mesh(0.1 * cell_m), out);

@@ -54,8 +54,9 @@ Result<Command> map_command(const Args& args) {
   };
 
   OptionTable::Group map_options = map_group(build);
-  map_options.options.push_back(
-      choice("--parents", kParents, "value of an inner node: maximum or mean of its children", map.parents));
+  map_options.options.push_back(choice("--parents", kParents,
+                                       "value of an inner node: maximum or mean of its children; only .pvx keeps it",
+                                       map.parents));
   map_options.options.push_back(
       {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count});
   for (Option& option : occupancy_options(command.occupancy)) map_options.options.push_back(std::move(option));

@@ -33,9 +33,10 @@ WideWord layer_of(const Lattice& lattice, double z_m) {
 /// The first and the last layer of a slice.
 std::pair<WideWord, WideWord> layers_of(const Lattice& lattice, const SliceOptions& options) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
-  const WideWord first = layer_of(lattice, options.min_z_m.value_or(-kInf));
-  // A range that ends with a face does not reach into the layer above it. A hair of one is rounding.
+  // A range that ends with a face does not reach into the layer above it, nor one that begins with a face into the
+  // layer below. A hair of one is rounding.
   const double hair_m = 1e-6 * lattice.resolution_m();
+  const WideWord first = layer_of(lattice, options.min_z_m.value_or(-kInf) + hair_m);
   const WideWord last = layer_of(lattice, options.max_z_m.value_or(kInf) - hair_m);
   return {first, std::max(first, last)};
 }
@@ -66,11 +67,11 @@ struct Frame {
   std::size_t columns = 0, rows = 0;
 };
 
-Result<Frame> frame_of(const OccupancyMap& map, const SliceOptions& options, std::size_t most) {
+/// What is known of a slice.
+Result<KeyBox> known_box(const OccupancyMap& map, const SliceOptions& options) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   const WideWord none = ~WideWord{0};
-  Frame frame{{{none, none, none}, {0, 0, 0}}, 0, 0};
-  KeyBox& box = frame.box;
+  KeyBox box{{none, none, none}, {0, 0, 0}};
   for_each_in_slice(map, options, [&](const Leaf&, const KeyBox& cells) {
     box.first = {std::min(box.first.x, cells.first.x), std::min(box.first.y, cells.first.y),
                  std::min(box.first.z, cells.first.z)};
@@ -80,15 +81,20 @@ Result<Frame> frame_of(const OccupancyMap& map, const SliceOptions& options, std
   if (box.first.x > box.last.x) {
     return fail(Error::Code::kUnsupported, fmt::format("nothing is known{}", heights_text(options)));
   }
+  return box;
+}
+
+Result<Frame> frame_of(const OccupancyMap& map, const SliceOptions& options, std::size_t most) {
+  const Result<KeyBox> known = known_box(map, options);
+  if (!known) return tl::unexpected(known.error());
+  const KeyBox& box = *known;
   const double columns = static_cast<double>(box.last.x - box.first.x) + 1.0;
   const double rows = static_cast<double>(box.last.y - box.first.y) + 1.0;
   if (columns * rows > static_cast<double>(most)) {
     return fail(Error::Code::kLimit,
                 fmt::format("a grid of {:.0f} x {:.0f} cells would be more than {}", columns, rows, most));
   }
-  frame.columns = static_cast<std::size_t>(columns);
-  frame.rows = static_cast<std::size_t>(rows);
-  return frame;
+  return Frame{box, static_cast<std::size_t>(columns), static_cast<std::size_t>(rows)};
 }
 
 template <class T>
@@ -150,10 +156,24 @@ Result<Raster<Occupancy>> slice_of(const OccupancyMap& map, const SliceOptions& 
   return raster;
 }
 
+Result<void> check_slice(const OccupancyMap& map, const SliceOptions& options) {
+  return known_box(map, options).map([](const KeyBox&) {});
+}
+
 Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& options) {
-  if (const auto frame = frame_of(map, options, kMaxRasterCells); !frame) return tl::unexpected(frame.error());
+  if (const auto known = check_slice(map, options); !known) return tl::unexpected(known.error());
   const int levels = map.lattice().depth();
   const auto [first, last] = layers_of(map.lattice(), options);
+  double cut_columns = 0.0;
+  for_each_leaf(map, [&, low = first, high = last](const Leaf& leaf) {
+    const KeyBox cells = cells_of(leaf, levels);
+    const bool is_cut = cells.first.z <= high && cells.last.z >= low && (cells.first.z < low || cells.last.z > high);
+    if (is_cut) cut_columns += std::pow(static_cast<double>(cells.last.x - cells.first.x) + 1.0, 2);
+  });
+  if (cut_columns > static_cast<double>(kMaxRasterCells)) {
+    return fail(Error::Code::kLimit, fmt::format("leaves that are cut{} have {:.0f} columns of cells, more than {}",
+                                                 heights_text(options), cut_columns, kMaxRasterCells));
+  }
   OccupancyMap out(map.options());
   Editor editor = out.edit();
   for_each_leaf(map, [&, low = first, high = last](const Leaf& leaf) { set_layers(editor, leaf, low, high, levels); });

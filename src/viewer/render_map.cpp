@@ -96,7 +96,8 @@ WideWord shift_right(WideWord word, int bits) {
 
 /// Lower and upper height of the layer of cells at `z_m`; nullopt outside of the lattice.
 std::optional<std::pair<double, double>> layer_at(const Lattice& lattice, double z_m) {
-  const auto key = lattice.key_of<WideWord>({0.0, 0.0, z_m});
+  // A hair below a face is rounding.
+  const auto key = lattice.key_of<WideWord>({0.0, 0.0, z_m + 1e-6 * lattice.resolution_m()});
   if (!key) return std::nullopt;
   const double low_m = lattice.lowest_corner_of(*key, lattice.depth()).z();
   return std::pair(low_m, low_m + lattice.resolution_m());

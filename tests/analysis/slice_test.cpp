@@ -55,6 +55,48 @@ TEST(Slice, EndsWithAFaceAndOneHeightIsOneLayer) {
   EXPECT_EQ(draw_slice("#...", {1e8, 1e9}), 'x');
 }
 
+// Kills a height that is a rounding below its face: -1.12 m is 56.00000000000001 cells of 2 cm below the origin.
+TEST(Slice, AHeightOnAFaceIsInTheCellAbove) {
+  for (const double cell_m : {0.01, 0.02, 0.05, 0.1}) {
+    OccupancyMap map({.resolution_m = cell_m});
+    const auto layers = {-300, -112, -56, -55, -28, -14, -3, -1, 0, 1, 3, 14, 29, 57, 113};
+    {
+      Editor editor = map.edit();
+      for (const int layer : layers) {
+        const auto key = map.lattice().key_of(Eigen::Vector3d(0.5 * cell_m, 0.5 * cell_m, (layer + 0.5) * cell_m));
+        editor.set(*key, 16, layer % 2 == 0 ? kWall : kWater);
+      }
+    }
+    for (const int layer : layers) {
+      const double z_m = layer * cell_m;
+      const auto at = slice_of(map, {z_m, z_m});
+      ASSERT_TRUE(at) << z_m;
+      EXPECT_EQ(at->values.front(), layer % 2 == 0 ? Occupancy::kOccupied : Occupancy::kFree) << z_m;
+      const auto from = map_of_slice(map, {z_m, std::nullopt});
+      ASSERT_TRUE(from) << z_m;
+      EXPECT_NEAR(from->bounds()->min.z(), z_m, 1e-9);
+    }
+  }
+}
+
+// Kills a map of a slice that needs a raster as wide as the map.
+TEST(Slice, OfAWideMapWithFewCellsIsAMap) {
+  OccupancyMap map({.resolution_m = 0.02});
+  {
+    Editor editor = map.edit();
+    for (const Eigen::Vector3d& place : {Eigen::Vector3d(-200, -200, 0.01), Eigen::Vector3d(200, 200, 0.01)}) {
+      editor.set(*map.lattice().key_of(place), 16, kWall);
+    }
+  }
+  const auto raster = slice_of(map, {0.0, 0.0});
+  ASSERT_FALSE(raster);
+  EXPECT_EQ(raster.error().code, Error::Code::kLimit);
+  EXPECT_TRUE(check_slice(map, {0.0, 0.0}));
+  const auto layer = map_of_slice(map, {0.0, 0.0});
+  ASSERT_TRUE(layer) << layer.error().message;
+  EXPECT_EQ(layer->bounds()->max.x(), map.bounds()->max.x());
+}
+
 TEST(Slice, KeepsUnknownApartFromFree) {
   OccupancyMap map({.resolution_m = 1.0});
   {

@@ -124,6 +124,17 @@ TEST(Render, ACartesianPictureShowsTheSweepThatSeesMost) {
             rendered(here, {"dive.csv", "--view", "cartesian", "--sweep", "2"}));
 }
 
+// Kills leaves that are drawn as a whole where the limits cut them.
+TEST(Render, HeightsBeyondTheLimitsAreNotDrawnFromTheSide) {
+  const Workplace here;
+  here.simulate_tank();
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.ot"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "tank.ot", "-o", "coarse.ot", "--cut-depth", "12"}).status, 0);
+  ASSERT_EQ(here.call({"convert", "coarse.ot", "-o", "layers.ot", "--min-z", "-0.2", "--max-z", "0.2"}).status, 0);
+  EXPECT_EQ(rendered(here, {"coarse.ot", "--view", "side", "--min-z", "-0.2", "--max-z", "0.2"}),
+            rendered(here, {"layers.ot", "--view", "side"}));
+}
+
 TEST(Render, SaysWhatAFileHasNoPictureOf) {
   const Workplace here;
   here.simulate_tank();

@@ -48,6 +48,15 @@ TEST(Simulate, WritesTheTruthBesideTheLog) {
   EXPECT_NE(compared.out, "");
 }
 
+// Kills a truth that has no pose but for the first beam.
+TEST(Simulate, TheTrueTrajectoryOfAStillVehicleCoversItsLog) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "tank.csv", "--turns", "1", "--truth", "truth"}).status, 0);
+  const Outcome mapped = here.call({"map", "tank.csv", "--poses", "truth/poses.tum", "-o", "tank.bt", "--json"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr(R"("skipped": 0,)"));
+}
+
 TEST(Simulate, HearsAMeshWhereItStands) {
   const Workplace here;
   // A wall 2 m ahead, once in each format.

@@ -56,6 +56,38 @@ TEST(ObstacleSectors, TheNearestCellCountsInEachSectorThatItReachesInto) {
   for (const std::size_t i : {33U, 39U, 0U}) EXPECT_EQ(found.sectors[i].what, What::kUnknown) << i;
 }
 
+// Kills the middle of a pruned leaf that is taken for its nearest cell.
+TEST(ObstacleSectors, APrunedLeafIsAsNearAsItsCells) {
+  for (const Eigen::Vector3d& here :
+       {Eigen::Vector3d(0.0, 0.8, 0.8), Eigen::Vector3d(2.1, 0.4, 0.1), Eigen::Vector3d(1.7, 4.9, 1.0)}) {
+    OccupancyMap pruned = empty_map(), whole = empty_map();
+    const int levels = pruned.lattice().depth();
+    {
+      // 1.6 m to a side: 16 cells.
+      Editor one = pruned.edit(), each = whole.edit();
+      one.set(*pruned.lattice().key_of({1.65, 0.05, 0.05}), levels - 4, LogOdds(2.0F));
+      for (double x = 1.65; x < 3.2; x += 0.1) {
+        for (double y = 0.05; y < 1.6; y += 0.1) {
+          for (double z = 0.05; z < 1.6; z += 0.1) {
+            // Alternating beliefs are not pruned.
+            const auto key = whole.lattice().key_of({x, y, z});
+            each.set(*key, levels, LogOdds((key->x + key->y + key->z) % 2 == 0 ? 2.0F : 1.5F));
+          }
+        }
+      }
+    }
+    const Pose pose = pose_from_rpy(here, 0.0, 0.0, 0.3);
+    for (const double reach_m : {10.0, 2.2}) {
+      const ObstacleSectors a = nearest_obstacles(pruned, pose, {.max_range_m = reach_m}),
+                            b = nearest_obstacles(whole, pose, {.max_range_m = reach_m});
+      for (std::size_t i = 0; i < a.sectors.size(); ++i) {
+        EXPECT_EQ(a.sectors[i].what, b.sectors[i].what) << i;
+        EXPECT_NEAR(a.sectors[i].range_m, b.sectors[i].range_m, 1e-9) << i;
+      }
+    }
+  }
+}
+
 TEST(ObstacleSectors, LeaveOutTheVehicleItselfAndWhatIsAboveBelowOrFarAway) {
   OccupancyMap map = empty_map();
   const Pose pose = pose_from_rpy({0.0, 0.0, -5.0}, 0.3, 0.2, 0.0);

@@ -48,8 +48,12 @@ enum class Surface {
 /// @return kUnsupported when nothing is occupied there; kLimit beyond a quarter of kMaxRasterCells
 Result<Raster<float>> heights_of(const OccupancyMap& map, const SliceOptions& options, Surface surface);
 
+/// @return kUnsupported when nothing is known in a slice
+Result<void> check_slice(const OccupancyMap& map, const SliceOptions& options);
+
 /// The cells of a slice as a map with the same options; cells of other layers are unknown.
-/// @return kUnsupported when nothing is known there; kLimit when the slice is beyond kMaxRasterCells
+/// @return kUnsupported when nothing is known there; kLimit when leaves that the slice cuts have more than
+///         kMaxRasterCells columns of cells
 Result<OccupancyMap> map_of_slice(const OccupancyMap& map, const SliceOptions& options);
 
 }  // namespace pingvox
