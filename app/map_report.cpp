@@ -15,7 +15,7 @@ JsonObject bounds_json(const std::optional<Box>& bounds) {
 std::string bounds_text(const std::optional<Box>& bounds) {
   if (!bounds) return "nothing is known";
   const auto& [min, max] = *bounds;
-  return fmt::format("x {:.6g}..{:.6g}, y {:.6g}..{:.6g}, z {:.6g}..{:.6g} m", min.x(), max.x(), min.y(), max.y(),
+  return fmt::format("x {:.9g}..{:.9g}, y {:.9g}..{:.9g}, z {:.9g}..{:.9g} m", min.x(), max.x(), min.y(), max.y(),
                      min.z(), max.z());
 }
 

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "io/byte_writer.hpp"
+#include "io/coordinates.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 // Shared by the writers of clouds.
@@ -22,11 +24,17 @@ inline std::uint64_t occupied_leaves(const OccupancyMap& map) {
   return leaves;
 }
 
-/// Five floats for each occupied leaf: x, y, z of its centre, its log-odds, its size.
+/// How the centres of a map's leaves are written.
+inline Coordinates coordinates_of(const OccupancyMap& map) {
+  const std::optional<Box> bounds = map.bounds();
+  return coordinates_up_to(bounds ? bounds->min.cwiseAbs().cwiseMax(bounds->max.cwiseAbs()).maxCoeff() : 0.0);
+}
+
+/// For each occupied leaf x, y, z of its centre, and as floats its log-odds and its size.
 inline void put_occupied(const OccupancyMap& map, ByteWriter& writer) {
+  const Coordinates coordinates = coordinates_of(map);
   for_each_occupied(map, [&](const Leaf& leaf) {
-    const Eigen::Vector3f centre_m = leaf.centre_m().cast<float>();
-    for (const float value : centre_m) writer.put(value);
+    put_point(leaf.centre_m(), coordinates, writer);
     writer.put(leaf.belief.value());
     writer.put(static_cast<float>(leaf.edge_m()));
   });

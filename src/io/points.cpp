@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -16,21 +17,26 @@ Result<std::size_t> write_points(ScanSource& scans, Format format, std::ostream&
     return fail(Error::Code::kUnsupported,
                 fmt::format("points cannot be written as .{}: .ply, .pcd and .xyz can hold them", name_of(format)));
   }
-  std::vector<Eigen::Vector3f> points_m;
+  std::vector<Eigen::Vector3d> points_m;
+  double farthest_m = 0.0;
   for (;;) {
     const Result<std::optional<PointScan>> scan = scans.next();
     if (!scan) return tl::unexpected(scan.error());
     if (!*scan) break;
-    for (const Eigen::Vector3d& point_m : (*scan)->points_m) points_m.emplace_back(point_m.cast<float>());
+    for (const Eigen::Vector3d& point_m : (*scan)->points_m) {
+      points_m.push_back(point_m);
+      farthest_m = std::max(farthest_m, point_m.cwiseAbs().maxCoeff());
+    }
   }
   ByteWriter writer(out);
-  if (format == Format::kPly) writer.put(ply_header("points of scans", points_m.size(), {"x", "y", "z"}));
-  if (format == Format::kPcd) writer.put(pcd_header("points of scans", points_m.size(), {"x", "y", "z"}));
-  for (const Eigen::Vector3f& p : points_m) {
+  const Coordinates coordinates = coordinates_up_to(farthest_m);
+  if (format == Format::kPly) writer.put(ply_header("points of scans", points_m.size(), coordinates, {}));
+  if (format == Format::kPcd) writer.put(pcd_header("points of scans", points_m.size(), coordinates, {}));
+  for (const Eigen::Vector3d& point_m : points_m) {
     if (format == Format::kXyz) {
-      writer.put(fmt::format("{} {} {}\n", p.x(), p.y(), p.z()));
+      writer.put(text_of(point_m, coordinates) + "\n");
     } else {
-      for (const float value : p) writer.put(value);
+      put_point(point_m, coordinates, writer);
     }
   }
   if (!writer.finish()) return fail(Error::Code::kIo, "the points could not be written");

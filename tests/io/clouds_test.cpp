@@ -1,9 +1,14 @@
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <sstream>
+#include <utility>
 
+#include "io/map_samples.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/points.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {
@@ -174,6 +179,33 @@ TEST(Cloud, IsSeenFromWhereTheCallerSays) {
     const auto scan = (*source)->next();
     ASSERT_TRUE(scan && *scan) << name;
     EXPECT_EQ((*scan)->origin_m, place) << name;
+  }
+}
+
+// Kills cells of a map in UTM coordinates that are written as one point.
+TEST(Clouds, CoordinatesFarFromTheOriginAreKept) {
+  OccupancyMap map({.resolution_m = 0.05, .depth = 30});
+  const std::vector<Vector3d> points = {{500000.025, 4600000.025, 0.025}, {500000.075, 4600000.075, 0.025}};
+  {
+    Editor editor = map.edit();
+    for (const Vector3d& point : points) editor.set(*map.lattice().key_of<WideWord>(point), 30, LogOdds(2.0F));
+  }
+  const auto expect_points = [&](std::vector<std::uint8_t> bytes, const char* name) {
+    SCOPED_TRACE(name);
+    const PointScan read = cloud_in({name, std::move(bytes)});
+    ASSERT_EQ(read.points_m.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_LT((read.points_m[i] - points[i]).norm(), 2e-3);
+  };
+  for (const auto& [format, name] :
+       {std::pair(Format::kPly, "a.ply"), std::pair(Format::kPcd, "a.pcd"), std::pair(Format::kXyz, "a.xyz")}) {
+    expect_points(samples::to_bytes(map, format), name);
+    std::string text;
+    for (const Vector3d& p : points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+    auto scans = open_scans({"points.xyz", bytes_of(text)}, Damage::kFail);
+    ASSERT_TRUE(scans) << scans.error().message;
+    std::ostringstream out;
+    ASSERT_TRUE(write_points(**scans, format, out));
+    expect_points(bytes_of(out.str()), name);
   }
 }
 
