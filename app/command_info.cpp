@@ -54,6 +54,17 @@ double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
 }
 
+std::string_view name_of(BeamClock clock) {
+  switch (clock) {
+    case BeamClock::kTimeOfDay:
+      return "time of day";
+    case BeamClock::kNone:
+      return "none";
+    default:
+      return "own";
+  }
+}
+
 void add_device(Summary& summary, const DeviceProfile& device, Format format) {
   const auto degrees = [](double angle_rad) { return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6; };
   const double width_deg = degrees(device.beam_width_rad), height_deg = degrees(device.beam_height_rad);
@@ -165,6 +176,7 @@ class BeamSurvey {
         .add("bin_length_m", beams_ > 0 ? lengths.front().first : std::numeric_limits<double>::quiet_NaN())
         .add("bin_lengths", lengths_json(lengths))
         .add("duration_s", last_s_ - first_s_)
+        .add("clock", name_of(source.clock()))
         .add("sector_deg", sector)
         .add("echoes", echoes_)
         .add("threshold", threshold)
@@ -177,7 +189,7 @@ class BeamSurvey {
                       report_line("bin length", lengths_text(lengths)) +
                       report_line("range", fmt::format("{:.6g} m", longest_m_)) +
                       report_line("sector", fmt::format("{:.6g} degrees", sector)) +
-                      report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", last_s_ - first_s_, first_s_)) +
+                      report_line("duration", duration_text(source.clock())) +
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
     if (const DeviceProfile* device = source.device()) add_device(summary, *device, format);
@@ -191,6 +203,12 @@ class BeamSurvey {
     if (complete_.size() == sweeps_) return fmt::format("{}, all complete", sweeps_);
     if (complete_.empty()) return fmt::format("{}, none complete", sweeps_);
     return fmt::format("{}, complete: {}", sweeps_, numbers_text(complete_));
+  }
+
+  std::string duration_text(BeamClock clock) const {
+    if (clock == BeamClock::kNone) return "not known: the log has no times";
+    return fmt::format("{:.3f} s, from {:.3f} s{}", last_s_ - first_s_, first_s_,
+                       clock == BeamClock::kTimeOfDay ? " of the day" : "");
   }
 
   void take(const std::optional<Sweep>& sweep) {
@@ -381,6 +399,18 @@ std::string other_fields_text(const std::vector<BagTopicSummary>& topics) {
   return text.empty() ? text : "fields in the messages of other topics (for --fields):\n" + text;
 }
 
+/// A bag without beams.
+Summary summarize_contents(const BagContents& bag, const std::string& name, Format format) {
+  Summary summary;
+  summary.json.add("kind", "nav").add("format", name_of(format));
+  add_nav(summary.json, bag.nav);
+  summary.text = headline(name, format) + nav_text(bag.nav);
+  add_damage(summary, bag.nav.damage);
+  add_topics(summary, bag.topics);
+  summary.text += other_fields_text(bag.topics);
+  return summary;
+}
+
 /// A bag: its beams, or what else it holds, then its topics and its navigation.
 Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoCommand& command) {
   const std::string name = stream.name();
@@ -394,17 +424,11 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
     topic.fields.clear();
   }
   const bool is_navigated = !bag->nav.log.sources().empty();
-  if (!has_beams(*bag) && !command.bag.beams.fields) {
-    Summary summary;
-    summary.json.add("kind", "nav").add("format", name_of(format));
-    add_nav(summary.json, bag->nav);
-    summary.text = headline(name, format) + nav_text(bag->nav);
-    add_damage(summary, bag->nav.damage);
-    add_topics(summary, bag->topics);
-    summary.text += other_fields_text(bag->topics);
-    return summary;
-  }
+  if (!has_beams(*bag) && !command.bag.beams.fields) return summarize_contents(*bag, name, format);
   Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
+  // Messages of a sonar's type may hold none, as LaserScans of a lidar do.
+  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported;
+  if (has_none && is_navigated && command.bag.beams.name.empty()) return summarize_contents(*bag, name, format);
   if (!summary) return summary;
   add_topics(*summary, bag->topics);
   if (is_navigated) {

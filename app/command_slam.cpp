@@ -52,6 +52,9 @@ Result<Read> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCom
   for (const std::string& name : command.logs) {
     const auto log = first ? std::exchange(first, nullptr) : open_slam_beams(name, command);
     if (!log) return tl::unexpected(log.error());
+    if (!command.navs.empty()) {
+      if (const auto has = check_has_times(**log, name); !has) return tl::unexpected(has.error());
+    }
     for (;;) {
       Result<std::optional<Beam>> beam = (*log)->next();
       if (!beam) return tl::unexpected(beam.error());

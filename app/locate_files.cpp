@@ -79,6 +79,9 @@ Result<std::vector<Beam>> read_beams(const LocateCommand& command, std::size_t& 
     if (source == nullptr) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", shown));
     }
+    if (!command.navs.empty()) {
+      if (const auto has = check_has_times(**source, shown); !has) return tl::unexpected(has.error());
+    }
     Result<std::vector<Beam>> read = read_all(**source);
     if (!read) return tl::unexpected(read.error());
     skipped += (*source)->skipped();

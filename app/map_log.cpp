@@ -212,6 +212,9 @@ Result<void> check_ranges(const BuildOptions& options) {
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,
                           const HeadArgs& head, OccupancyMap& map, const Progress& progress) {
   const auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+  if (beams != nullptr && path.nav) {
+    if (const auto has = check_has_times(**beams, name); !has) return tl::unexpected(has.error());
+  }
   const DeviceProfile* device = beams != nullptr ? (*beams)->device() : nullptr;
   BuildOptions of_head = head.apply_to(options, device);
   of_head.body_from_sensor.pretranslate(path.sonar_moved_m);

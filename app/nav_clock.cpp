@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <memory>
@@ -41,6 +42,7 @@ bool overlap(const TimeSpan& a, const TimeSpan& b) {
 /// Times and turns of the sonar log, from one pass over it.
 struct SonarTimes {
   TimeSpan span;
+  BeamClock clock = BeamClock::kOwn;
   std::vector<YawChange> changes;
 };
 
@@ -52,6 +54,7 @@ Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage,
                                            const std::optional<TimeSpan>& enough = std::nullopt) {
   const auto source = open(sonar, damage);
   if (!source) return tl::unexpected(source.error());
+  if (const auto has = check_has_times(**source, sonar.name); !has) return tl::unexpected(has.error());
   std::optional<SonarTimes> times;
   PictureTurns turns(sonar.body_from_sonar);
   for (;;) {
@@ -59,13 +62,20 @@ Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage,
     if (!beam) return tl::unexpected(beam.error());
     if (!*beam) break;
     const double time_s = (*beam)->time_s;
-    if (!times) times = SonarTimes{{time_s, time_s}, {}};
+    if (!times) times = SonarTimes{{time_s, time_s}, (*source)->clock(), {}};
     times->span = {std::min(times->span.from_s, time_s), std::max(times->span.to_s, time_s)};
     if (enough && overlap(times->span, *enough)) break;
     if (want == Want::kTurns) turns.add(*std::move(*beam));
   }
   if (times) times->changes = turns.finish();
   return times;
+}
+
+/// Zero of the log's clock by the date in its name, which is that of its start: seconds since 1970 if it were UTC.
+std::optional<double> zero_in_name(const std::string& name, BeamClock clock) {
+  constexpr double kDay_s = 86'400.0;
+  const std::optional<double> start_s = date_in_name(name);
+  return start_s && clock == BeamClock::kTimeOfDay ? std::floor(*start_s / kDay_s) * kDay_s : start_s;
 }
 
 /// "2026-11-25", of seconds since 1970
@@ -97,6 +107,12 @@ Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, Damage da
 
 }  // namespace
 
+Result<void> check_has_times(const BeamSource& source, const std::string& name) {
+  if (source.clock() != BeamClock::kNone) return {};
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: --nav: the log has no times, so that navigation cannot be joined to it", name));
+}
+
 Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& nav, const SonarLog& sonar,
                              Damage damage) {
   if (given) return NavOffset{*given, std::nullopt, "--nav-offset"};
@@ -118,11 +134,11 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
   }
   std::string dates;
   if (nav_has_dates) {
-    if (const auto start_s = date_in_name(sonar.name)) {
-      dates = fmt::format(" (its name says {}, --nav is of {})", day_text(*start_s), day_text(nav_span->from_s));
-      const auto zone_s = local_from_utc_s({*start_s + span.from_s, *start_s + span.to_s}, *nav_span);
+    if (const auto zero_s = zero_in_name(sonar.name, (*times)->clock)) {
+      dates = fmt::format(" (its name says {}, --nav is of {})", day_text(*zero_s), day_text(nav_span->from_s));
+      const auto zone_s = local_from_utc_s({*zero_s + span.from_s, *zero_s + span.to_s}, *nav_span);
       if (zone_s) {
-        return NavOffset{*zone_s - *start_s, std::nullopt,
+        return NavOffset{*zone_s - *zero_s, std::nullopt,
                          "the date in the name of the sonar log, in " + zone_text(*zone_s)};
       }
     }

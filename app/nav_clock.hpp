@@ -27,6 +27,10 @@ struct SonarLog {
   Pose body_from_sonar = Pose::Identity();
 };
 
+/// kUnsupported when navigation cannot be joined to the log, which has no times.
+/// @param name  of the log
+Result<void> check_has_times(const BeamSource& source, const std::string& name);
+
 /// The offset between the clocks of a sonar log and of navigation: what was `given`, else by their dates, else by the
 /// turning of the sonar's picture. Times without dates that overlap are taken as those of one clock, unless the
 /// navigation counts from the start of its device.

@@ -40,6 +40,10 @@ Result<void> check_contents(std::span<const NavFields> fields, const std::vector
   return there ? there : fail(there.error().code, fmt::format("{}: {}", names, there.error().message));
 }
 
+bool overlap(const NavSource& a, const NavSource& b) {
+  return a.samples.front().time_s < b.samples.back().time_s && b.samples.front().time_s < a.samples.back().time_s;
+}
+
 }  // namespace
 
 Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
@@ -100,9 +104,15 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
           sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });
       if (same == sources.end()) {
         sources.push_back(std::move(source));
-      } else {
-        add_samples(source, *same);
+        continue;
       }
+      if (own == NavClock::kBoot && overlap(*same, source)) {
+        return fail(Error::Code::kUnsupported,
+                    fmt::format("{}: its times count from another start of the device than those of {}: {} ({}) has "
+                                "the same times in both",
+                                name, names.front(), source.name, name_of(source.quantity)));
+      }
+      add_samples(source, *same);
     }
   }
   const auto there = check_contents(fields, topics, fmt::format("{}", fmt::join(names, ", ")));

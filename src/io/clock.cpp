@@ -27,10 +27,10 @@ std::optional<double> date_in_name(std::string_view path) {
 }
 
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc) {
-  constexpr int kQuarters = 14 * 4;
+  constexpr int kWest = 12 * 4, kEast = 14 * 4;
   constexpr double kQuarter_s = 900.0;
   std::optional<double> found;
-  for (int quarter = -kQuarters; quarter <= kQuarters; ++quarter) {
+  for (int quarter = -kWest; quarter <= kEast; ++quarter) {
     const double shift_s = quarter * kQuarter_s;
     if (utc.from_s + shift_s > local.to_s || utc.to_s + shift_s < local.from_s) continue;
     if (found) return std::nullopt;

@@ -22,6 +22,14 @@ const DeviceProfile* seanet_device_of(std::span<const std::uint8_t> frame) {
   return line ? device_of(*line) : nullptr;
 }
 
+unsigned only_head(std::span<const std::uint8_t>) {
+  return 0;
+}
+
+unsigned seanet_head_of(std::span<const std::uint8_t> frame) {
+  return static_cast<unsigned>(seanet_sender(frame));
+}
+
 /// Maps positions of the byte stream to positions in the file and times.
 class PlacesInFile {
  public:
@@ -68,6 +76,7 @@ class RawCapture final : public FrameContainer {
 
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
+  BeamClock clock() const override { return BeamClock::kNone; }
 
   Result<std::optional<Piece>> next() override {
     constexpr std::size_t kAtOnce = std::size_t{1} << 16;
@@ -102,6 +111,7 @@ class FrameLog final : public DeviceLog {
   }
 
   std::optional<double> share_read() const override { return container_->share_read(); }
+  BeamClock clock() const override { return container_->clock(); }
 
  private:
   Result<std::optional<Beam>> read() override {
@@ -118,6 +128,9 @@ class FrameLog final : public DeviceLog {
       if (!beam) {
         add_damage(unusable_, "impossible values", places_.file_byte(frame->at));
         if (damage_ == Damage::kFail) return damage_error({beam.error(), 1, unusable_.front().first_byte});
+      } else if (*beam && !is_of_first_head(protocol_.head_of(frame->bytes))) {
+        add_damage(unusable_, kOtherHead, places_.file_byte(frame->at));
+        if (damage_ == Damage::kFail) return damage_error({kOtherHead, 1, places_.file_byte(frame->at)});
       } else if (*beam) {
         if (device_ == nullptr) device_ = protocol_.device_of(frame->bytes);
         places_.forget_before(frame->end());
@@ -172,17 +185,17 @@ class FrameLog final : public DeviceLog {
 }  // namespace
 
 const FrameProtocol& ping_protocol() {
-  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of};
+  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, only_head};
   return kPing;
 }
 
 const FrameProtocol& sonarview_protocol() {
-  static constexpr FrameProtocol kSonarView = {check_sonarview_frame, ping_beam_in, ping_device_of};
+  static constexpr FrameProtocol kSonarView = {check_sonarview_frame, ping_beam_in, ping_device_of, only_head};
   return kSonarView;
 }
 
 const FrameProtocol& seanet_protocol() {
-  static constexpr FrameProtocol kSeanet = {check_seanet_frame, seanet_beam_in, seanet_device_of};
+  static constexpr FrameProtocol kSeanet = {check_seanet_frame, seanet_beam_in, seanet_device_of, seanet_head_of};
   return kSeanet;
 }
 

@@ -30,6 +30,7 @@ class FrameContainer {
   virtual const std::string& name() const = 0;
   virtual Result<std::optional<Piece>> next() = 0;  ///< nullopt: the end
   virtual std::optional<double> share_read() const = 0;
+  virtual BeamClock clock() const { return BeamClock::kOwn; }
   /// Damage of the container itself, with positions in the file.
   const std::vector<DamageKind>& damage() const { return damage_; }
 
@@ -44,6 +45,8 @@ struct FrameProtocol {
   tl::expected<std::optional<Beam>, std::string> (*beam_in)(std::span<const std::uint8_t> frame, double time_s);
   /// The head that sent a beam.
   const DeviceProfile* (*device_of)(std::span<const std::uint8_t> frame);
+  /// The head's number on the line.
+  unsigned (*head_of)(std::span<const std::uint8_t> frame);
 };
 
 const FrameProtocol& ping_protocol();

@@ -98,6 +98,7 @@ class PrintedFrames final : public FrameContainer {
 
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
+  BeamClock clock() const override { return BeamClock::kNone; }
 
   Result<std::optional<Piece>> next() override {
     for (;;) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/date.hpp"
+#include "io/device_log.hpp"
 #include "io/readers.hpp"
 #include "io/seanet_bearing.hpp"
 #include "io/stream_reader.hpp"
@@ -32,7 +33,12 @@ enum Column : std::size_t {
   kFirstSample
 };
 
-tl::expected<Beam, std::string> beam_in(std::string_view line) {
+struct NodeBeam {
+  unsigned node = 0;  ///< number of the head
+  Beam beam;
+};
+
+tl::expected<NodeBeam, std::string> beam_in(std::string_view line) {
   std::array<std::string_view, kFirstSample> fields;
   for (std::string_view& field : fields) {
     const auto cut = cut_field(line, ',');
@@ -47,6 +53,8 @@ tl::expected<Beam, std::string> beam_in(std::string_view line) {
   if (!bearing_rad) {
     return tl::unexpected(fmt::format("\"{}\" is no bearing of 0..6400", printable(fields[kBearing])));
   }
+  const auto node = count_in(fields[kNode]);
+  if (!node || *node > 255) return tl::unexpected(fmt::format("\"{}\" is no node", printable(fields[kNode])));
   if (!range_scale || *range_scale > 0xffff) {
     return tl::unexpected(fmt::format("\"{}\" is no range scale", printable(fields[kRangeScale])));
   }
@@ -66,7 +74,7 @@ tl::expected<Beam, std::string> beam_in(std::string_view line) {
   }
   beam.bin_length_m = seanet_bin_length_m(static_cast<std::uint16_t>(*range_scale), beam.intensities.size());
   if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
-  return beam;
+  return NodeBeam{static_cast<unsigned>(*node), std::move(beam)};
 }
 
 class DumpLog : public BeamSource {
@@ -81,20 +89,23 @@ class DumpLog : public BeamSource {
       if (!*line) return std::nullopt;
       // Lines of other devices.
       if (!(*line)->starts_with("SON,")) continue;
-      tl::expected<Beam, std::string> beam = beam_in(**line);
-      if (beam) {
-        set_time(*beam);
-        return std::move(*beam);
+      tl::expected<NodeBeam, std::string> read = beam_in(**line);
+      if (read && first_head_.is(read->node)) {
+        set_time(read->beam);
+        return std::move(read->beam);
       }
-      add_damage(kinds_, reader_.line_has_end() ? "damaged line" : FrameFinder::kCutOff, at);
+      const std::string_view kind = read ? kOtherHead : reader_.line_has_end() ? "damaged line" : FrameFinder::kCutOff;
+      add_damage(kinds_, kind, at);
       if (damage_ == Damage::kFail) {
-        return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", reader_.name(), at, beam.error()));
+        return fail(Error::Code::kCorrupt,
+                    fmt::format("{}: byte {}: {}", reader_.name(), at, read ? std::string(kOtherHead) : read.error()));
       }
     }
   }
   std::vector<DamageKind> damage() const override { return kinds_; }
   const DeviceProfile* device() const override { return find_device("micron"); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
+  BeamClock clock() const override { return BeamClock::kTimeOfDay; }
 
  private:
   /// Unwraps times of day at midnight.
@@ -106,6 +117,7 @@ class DumpLog : public BeamSource {
 
   StreamReader reader_;
   Damage damage_;
+  FirstHead first_head_;
   double days_s_ = 0.0, last_s_ = 0.0;
   std::vector<DamageKind> kinds_;
 };

@@ -165,6 +165,7 @@ const DeviceProfile* device_of(const SeanetLine& line) {
 
 tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s) {
   const std::optional<SeanetLine> line = seanet_line(frame);
+  if (!line && frame[10] == kHeadData) return tl::unexpected(std::string("part of a line that is cut into packets"));
   if (!line) return std::nullopt;
   return beam_of(*line, time_s);
 }

@@ -22,8 +22,8 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::string_view kMagic = "SeaNetV4 Log File V";
 
-/// Of a record: offsets of its time, its message and mtHeadData's device block; minimum and maximum size.
-constexpr std::size_t kTime = 2, kMessage = 12, kDeviceBlock = 17, kMinRecord = 17, kMaxRecord = 4096;
+/// Of a record: offsets of its time, its sender, its message and mtHeadData's device block; minimum and maximum size.
+constexpr std::size_t kTime = 2, kFrom = 10, kMessage = 12, kDeviceBlock = 17, kMinRecord = 17, kMaxRecord = 4096;
 constexpr std::uint8_t kHeadData = 2;
 
 template <class T>
@@ -86,11 +86,11 @@ class V4Log final : public DeviceLog {
       in_damage_ = false;
       const Bytes record = bytes->first(*size);
       if (record[kMessage] == kHeadData) {
-        tl::expected<Beam, std::string> beam = beam_in(record);
+        const bool is_other = !is_of_first_head(record[kFrom]);
+        tl::expected<Beam, std::string> beam = is_other ? tl::unexpected(std::string(kOtherHead)) : beam_in(record);
         if (!beam) {
-          if (const auto counted = report_damage("impossible values", beam.error()); !counted) {
-            return tl::unexpected(counted.error());
-          }
+          const auto counted = report_damage(is_other ? kOtherHead : "impossible values", beam.error());
+          if (!counted) return tl::unexpected(counted.error());
         }
         reader_.skip(*size);
         if (beam) return std::move(*beam);

@@ -199,6 +199,32 @@ TEST(Nav, SeveralLogsOfADiveAreOne) {
                {"early.csv, late.csv", "no valid attitude"});
 }
 
+// Kills two dives that are merged as one because the clock of the device began at 0 in both.
+TEST(Nav, TwoStartsOfADeviceAreNotOneDive) {
+  const Workplace here;
+  here.simulate_tank();
+  const auto nav_from = [](double begin_s, const char* clock) {
+    std::string nav = fmt::format("# clock: {}\ntime_s,source,quantity,x,y,z\n", clock);
+    for (int i = 0; i < 40; ++i) {
+      nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", begin_s + i * 0.5);
+    }
+    return nav;
+  };
+  here.write("first.csv", nav_from(0.0, "boot"));
+  here.write("second.csv", nav_from(5.0, "boot"));
+  here.write("later.csv", nav_from(20.0, "boot"));
+  here.write("unix.csv", nav_from(0.0, "unix"));
+  here.write("again.csv", nav_from(5.0, "unix"));
+  const auto map = [&](const char* one, const char* other) {
+    return here.call({"map", "tank.csv", "-o", "o.bt", "--nav", one, "--nav", other, "--nav-offset", "0"});
+  };
+  expect_error(map("first.csv", "second.csv"), 1,
+               {"second.csv: its times count from another start of the device than those of first.csv"});
+  const Outcome parts = map("first.csv", "later.csv"), twice = map("unix.csv", "again.csv");
+  EXPECT_EQ(parts.status, 0) << parts.err;
+  EXPECT_EQ(twice.status, 0) << twice.err;
+}
+
 TEST(Nav, WithoutAPositionAVelocityGivesDeadReckoning) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--turns", "2"}).status, 0);
@@ -268,6 +294,57 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
       here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
   ASSERT_EQ(given.status, 0) << given.err;
   EXPECT_THAT(given.out, HasSubstr(R"("clock": {"offset_s": 0, "sd_s": null, "from": "--nav-offset"})"));
+}
+
+// Kills navigation that is joined to times made up for a log without any, whatever the offset is known from.
+TEST(Nav, IsRefusedForALogWithoutTimes) {
+  const Workplace here;
+  std::string log;
+  for (int i = 0; i < 40; ++i) {
+    const int angle = 10 * i, sum = 1264 + angle % 256 + angle / 256;
+    log += fmt::format(
+        "ID: 2300 - device_data\n"
+        "Header: start_1: 66 start_2: 82 payload_length: 18 message_id: 2300 src_device_id: 2 dst_device_id: 0\n"
+        "- mode: 0\n- gain_setting: 0\n- angle: {}\n- transmit_duration: 16\n- sample_period: 90\n"
+        "- transmit_frequency: 1000\n- number_of_samples: 4\n- data_length: 4\n"
+        "- data: ['0x4c', '0x98', '0x4', '0xff']\nChecksum: {}\n",
+        angle, sum);
+  }
+  here.write("log.txt", log);
+  here.write("nav.csv",
+             "time_s,source,quantity,x,y,z\n0,a,attitude,0,0,0\n0,a,position,0,0,0\n9,a,attitude,0,0,1\n"
+             "9,a,position,0,0,0\n");
+  const Outcome info = here.call({"info", "log.txt"});
+  EXPECT_THAT(info.out, HasSubstr("beams       40\n"));
+  EXPECT_THAT(info.out, HasSubstr("not known: the log has no times"));
+  EXPECT_EQ(here.call({"map", "log.txt", "-o", "map.bt"}).status, 0);
+  for (const std::vector<std::string>& offset : {std::vector<std::string>{}, {"--nav-offset", "0"}}) {
+    for (std::vector<std::string> call : {std::vector<std::string>{"map", "log.txt", "-o", "o.bt"},
+                                          {"slam", "log.txt", "-o", "o.tum"},
+                                          {"locate", "log.txt", "--map", "map.bt", "-o", "o.tum"}}) {
+      call.insert(call.end(), {"--nav", "nav.csv"});
+      call.insert(call.end(), offset.begin(), offset.end());
+      expect_error(here.call(call), 1, {"log.txt: --nav: the log has no times"});
+    }
+  }
+}
+
+// Kills a time of day that is added to the time of day in the name, and one that is taken as a time since 1970.
+TEST(Nav, TimesOfDayCountFromMidnightOfTheDateInTheName) {
+  const Workplace here;
+  std::string log;
+  for (int i = 0; i < 40; ++i) {
+    log += fmt::format("SON,12:00:{:02}.000,2,16,8967,60,84,0,8,81,0,6399,16,{},4,0,9,80,9\n", i, 160 * i);
+  }
+  here.write("20260101-120000000.csv", log);
+  std::string nav = "# clock: unix\ntime_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 160; ++i) {
+    nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", 1767261600.0 + i * 0.25);
+  }
+  here.write("nav.csv", nav);
+  const Outcome mapped = here.call({"map", "20260101-120000000.csv", "--nav", "nav.csv", "-o", "map.bt"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("-1767218400.000 s: the date in the name of the sonar log, in UTC+2:00"));
 }
 
 // A vehicle that turns on the spot, to and fro; its poses on the clock of the log and on one that is late.

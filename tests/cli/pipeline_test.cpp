@@ -67,8 +67,9 @@ Args map_keys() {
 }
 
 Args info_log_keys() {
-  return {"kind",          "format",        "beams",    "sweeps",       "bins.min",   "all_sweeps", "echoes",
-          "threshold.min", "threshold.max", "bins.max", "bin_length_m", "duration_s", "sector_deg", "skipped"};
+  return {"kind",         "format",     "beams",         "sweeps",        "bins.min",
+          "all_sweeps",   "echoes",     "threshold.min", "threshold.max", "bins.max",
+          "bin_length_m", "duration_s", "clock",         "sector_deg",    "skipped"};
 }
 
 Args info_map_keys() {

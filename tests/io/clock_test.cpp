@@ -33,6 +33,8 @@ TEST(Clock, TheTimeZoneIsTheOnlyOneWithWhichTheLogsOverlap) {
   EXPECT_THAT(local_from_utc_s({3600.0 - 100.0, 3600.0 + 200.0}, {0.0, 300.0}), Optional(3600.0));
   EXPECT_THAT(local_from_utc_s({-12600.0, -12590.0}, {0.0, 300.0}), Optional(-12600.0)) << "Newfoundland";
   EXPECT_EQ(local_from_utc_s({3600.0, 3700.0}, {0.0, 1000.0}), std::nullopt) << "an hour, and a quarter less";
+  EXPECT_THAT(local_from_utc_s({14 * 3600.0, 14 * 3600.0 + 10.0}, {0.0, 300.0}), Optional(14 * 3600.0)) << "Kiribati";
+  EXPECT_EQ(local_from_utc_s({-13 * 3600.0, -13 * 3600.0 + 10.0}, {0.0, 300.0}), std::nullopt) << "no zone";
   EXPECT_EQ(local_from_utc_s({400.0, 500.0}, {0.0, 300.0}), std::nullopt) << "neither";
 }
 

@@ -55,6 +55,13 @@ TEST(PingText, IsReadAsTheFrameThatWasPrinted) {
   EXPECT_LT(all.items[0].time_s, all.items[1].time_s);
 }
 
+// Times of a printed log are not times of the dive: kills navigation that is joined to them.
+TEST(PingText, HasNoClock) {
+  const auto source = open_beams({"print.txt", bytes_of(kPing)});
+  ASSERT_TRUE(source);
+  EXPECT_EQ((*source)->clock(), BeamClock::kNone);
+}
+
 TEST(PingText, WhatDoesNotFitItsChecksumIsSkipped) {
   for (const auto& [what, with] : {std::pair{"0x98", "0x99"}, {"angle: 150", "angle: 151"}, {"1414", "1415"}}) {
     const auto all = beams_of_text(kPing + replaced(kPing, what, with) + kPing);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -223,6 +224,45 @@ std::vector<std::uint8_t> v4log(const std::vector<std::uint16_t>& bearings) {
     log.insert(log.end(), at.begin() + 13, at.end() - 1);
   }
   return log;
+}
+
+// Kills navigation that is joined to the made-up times of a capture, and a time of day that is added to a start.
+TEST(Seanet, LogsTellWhatTheirTimesCountFrom) {
+  const auto clock_of = [](const std::vector<std::uint8_t>& log) {
+    const auto source = open_beams({"log", log});
+    return source ? std::optional((*source)->clock()) : std::nullopt;
+  };
+  EXPECT_EQ(clock_of(from_hex(kLine)), BeamClock::kNone);
+  EXPECT_EQ(clock_of(v4log({3200, 3216})), BeamClock::kOwn);
+  EXPECT_EQ(clock_of(bytes_of("SON,23:59:59.178,2,16,8967,60,84,0,8,81,2400,4000,16,3216,1,7\r\n")),
+            BeamClock::kTimeOfDay);
+}
+
+// Kills sweeps of two heads as one picture, in each kind of log.
+TEST(Seanet, BeamsOfASecondHeadOnTheLineAreCounted) {
+  auto other = line_at(3300);
+  other[7] = 4;
+  auto v4 = v4log({3200, 3216, 3232});
+  v4[100 + 52 + 10] = 4;
+  const std::string first = "SON,00:00:00.500,2,16,8967,60,84,0,8,81,2400,4000,16,3232,3,1,2,3\n";
+  const std::string second = "SON,00:00:00.600,4,16,8967,60,84,0,8,81,2400,4000,16,3232,3,1,2,3\n";
+  for (const FileBytes& file : {FileBytes{"capture", joined({line_at(3200), other, line_at(3216)})},
+                                {"a.V4LOG", v4},
+                                {"dump.csv", bytes_of(first + second + first)}}) {
+    const auto all = all_beams(file);
+    EXPECT_EQ(all.items.size(), 2U) << file.name;
+    EXPECT_EQ(all.skipped, 1U) << file.name;
+    EXPECT_THAT(all_beams(file, Damage::kFail).error, testing::EndsWith("beam of another head")) << file.name;
+  }
+}
+
+// Kills a log that lacks beams and does not say so.
+TEST(Seanet, LinesThatAreCutIntoPacketsAreCounted) {
+  auto part = line_at(3300);
+  part[11] = 0;
+  const auto all = all_beams({"capture", joined({line_at(3200), part, line_at(3216)})});
+  EXPECT_EQ(all.items.size(), 2U);
+  EXPECT_EQ(all.skipped, 1U);
 }
 
 TEST(Seanet, AV4logIsReadUpToItsIndexAndOnBehindDamage) {

@@ -15,7 +15,7 @@ struct TimeSpan {
   double from_s = 0.0, to_s = 0.0;
 };
 
-/// Offset of local time from UTC: the multiple of a quarter of an hour, at most 14 hours, with which the two spans
+/// Offset of local time from UTC: the multiple of a quarter of an hour, from -12 to +14 hours, with which the two spans
 /// overlap. nullopt: there is none, or several.
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc);
 

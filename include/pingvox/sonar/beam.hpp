@@ -13,6 +13,13 @@
 
 namespace pingvox {
 
+/// What the times of the beams of a source count from.
+enum class BeamClock {
+  kOwn,        ///< a clock of the log, the device or the computer, with or without a date
+  kTimeOfDay,  ///< midnight, in the time zone of the computer that recorded
+  kNone,       ///< nothing: the log has no times, those of its beams are by the usual rate of a serial line
+};
+
 /// Intensities that the sonar received from one ping in one direction.
 struct Beam {
   double time_s = 0.0;        ///< on the log's own clock; finite
@@ -61,6 +68,7 @@ class BeamSource {
   virtual std::string first_damage() const;
   /// The sonar head, if the log or its format names it; else nullptr.
   virtual const DeviceProfile* device() const { return nullptr; }
+  virtual BeamClock clock() const { return BeamClock::kOwn; }
   /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };

@@ -10,13 +10,15 @@
 
 namespace pingvox {
 
-/// A source that changes the beams of another: what was skipped, the head and the share that was read are the other's.
+/// A source that changes the beams of another: what was skipped, the head, the clock and the share
+/// that was read are the other's.
 class BeamSourceDecorator : public BeamSource {
  public:
   std::size_t skipped() const override { return source_->skipped(); }
   std::vector<DamageKind> damage() const override { return source_->damage(); }
   std::string first_damage() const override { return source_->first_damage(); }
   const DeviceProfile* device() const override { return source_->device(); }
+  BeamClock clock() const override { return source_->clock(); }
   std::optional<double> share_read() const override { return source_->share_read(); }
 
  protected:
