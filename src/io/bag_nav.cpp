@@ -22,22 +22,52 @@
 namespace pingvox {
 namespace {
 
+/// What the messages of a topic so far say about later ones.
+struct TopicState {
+  DeadReckoningFrame frame;
+  double altitude_m = 0.0;                 ///< the last one that a receiver knew
+  std::optional<double> pressure_unit_pa;  ///< nullopt: there was no pressure yet
+};
+
+/// Unit of a pressure, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
+double pressure_unit_pa(double pressure) {
+  constexpr double kMaxBar = 50.0, kMaxKpa = 500.0, kMaxHpa = 50'000.0;
+  if (pressure < kMaxBar) return 1e5;
+  if (pressure < kMaxKpa) return 1e3;
+  return pressure < kMaxHpa ? 1e2 : 1.0;
+}
+
 /// Where the samples of one message go.
 class Samples {
  public:
-  Samples(NavSources& sources, const std::string& name, double time_s, DeadReckoningFrame& frame)
-      : sources_(sources), name_(name), time_s_(time_s), frame_(frame) {}
+  Samples(NavSources& sources, const std::string& name, double time_s, TopicState& state)
+      : sources_(sources), name_(name), time_s_(time_s), state_(state) {}
 
   /// Adds a position by dead reckoning and its attitude. They are not valid after a reset, because they are in another
   /// frame then.
   void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
-    const bool valid = frame_.holds(time_s_, position_m);
+    const bool valid = state_.frame.holds(time_s_, position_m);
     add(NavQuantity::kPosition, position_m, valid);
     add(NavQuantity::kAttitude, attitude, valid);
   }
 
   /// A report of a DVL in its own format, which contains the delay of the message.
-  void add(const A50Report& report) { add_a50_report(sources_, name_, time_s_ - report.latency_s, report, frame_); }
+  void add(const A50Report& report) {
+    add_a50_report(sources_, name_, time_s_ - report.latency_s, report, state_.frame);
+  }
+
+  /// Degrees; NaN for an altitude that is not known. The last one is taken then, so that the height does not jump.
+  void add_fix(double latitude_deg, double longitude_deg, double altitude_m, bool valid) {
+    if (std::isfinite(altitude_m)) state_.altitude_m = altitude_m;
+    add(NavQuantity::kFix, {latitude_deg * kDegree_rad, longitude_deg * kDegree_rad, state_.altitude_m}, valid);
+  }
+
+  /// In the unit of the topic: that of its first pressure, which was not yet deep under water.
+  void add_pressure(double pressure) {
+    constexpr double kVacuum_bar = 0.1;  // of a sensor that does not answer yet
+    if (!state_.pressure_unit_pa && pressure > kVacuum_bar) state_.pressure_unit_pa = pressure_unit_pa(pressure);
+    add(NavQuantity::kPressure, {pressure * state_.pressure_unit_pa.value_or(1.0), 0.0, 0.0});
+  }
 
   void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
     NavSample sample;
@@ -51,7 +81,7 @@ class Samples {
   NavSources& sources_;
   const std::string& name_;
   double time_s_;
-  DeadReckoningFrame& frame_;
+  TopicState& state_;
 };
 
 /// Three numbers from the field of the first on.
@@ -64,14 +94,6 @@ void add_attitude(const RosFields& message, std::size_t first, bool valid, Sampl
   const auto rpy = rpy_of_quaternion(
       {message.number(first), message.number(first + 1), message.number(first + 2), message.number(first + 3)});
   if (rpy) samples.add(NavQuantity::kAttitude, *rpy, valid);
-}
-
-/// Pressure in Pa, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
-double pascals(double pressure) {
-  constexpr double kMaxBar = 50.0, kMaxKpa = 500.0, kMaxHpa = 50'000.0;
-  if (pressure < kMaxBar) return pressure * 1e5;
-  if (pressure < kMaxKpa) return pressure * 1e3;
-  return pressure < kMaxHpa ? pressure * 1e2 : pressure;
 }
 
 void add_imu(const RosFields& message, Samples& samples) {
@@ -95,22 +117,20 @@ void add_twist(const RosFields& message, Samples& samples) {
 }
 
 void add_fix(const RosFields& message, Samples& samples) {
-  const Eigen::Vector3d fix = three(message, 0);
-  samples.add(NavQuantity::kFix, {fix.x() * kDegree_rad, fix.y() * kDegree_rad, fix.z()}, message.number(3) >= 0.0);
+  samples.add_fix(message.number(0), message.number(1), message.number(2), message.number(3) >= 0.0);
 }
 
 void add_xsens_fix(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kFix, {message.number(0) * kDegree_rad, message.number(1) * kDegree_rad, 0.0},
-              message.number(2) > 0.0);
+  samples.add_fix(message.number(0), message.number(1), 0.0, message.number(2) > 0.0);
 }
 
 void add_pressure(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kPressure, {pascals(message.number(0)), 0.0, 0.0});
+  samples.add_pressure(message.number(0));
 }
 
 void add_depth_pressure_temperature(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
-  samples.add(NavQuantity::kPressure, {pascals(message.number(1)), 0.0, 0.0});
+  samples.add_pressure(message.number(1));
   samples.add(NavQuantity::kTemperature, {message.number(2), 0.0, 0.0});
 }
 
@@ -259,7 +279,7 @@ class BagSurvey {
       reader.add(message_, *topic.known, message.time_s, name, sources_);
     }
     if (!topic.readers.empty()) return {};
-    Samples samples(sources_, name, topic.known->time_of(message_, message.time_s), topic.frame);
+    Samples samples(sources_, name, topic.known->time_of(message_, message.time_s), topic.state);
     kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
     return {};
   }
@@ -282,7 +302,7 @@ class BagSurvey {
     std::size_t summary;
     std::optional<KnownTopic> known;
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
-    DeadReckoningFrame frame;
+    TopicState state;
   };
 
   Result<void> add_topics() {

@@ -37,6 +37,19 @@ bool has(const std::vector<std::size_t>& columns, std::size_t column) {
   return std::count(columns.begin(), columns.end(), column) == 1;
 }
 
+/// What the comments above the names of the columns say; spreadsheets fill them up with commas.
+NavClock clock_in(std::string_view text) {
+  NavClock clock = NavClock::kUnknown;
+  Lines lines(text);
+  for (auto line = lines.next(); line && (trim(*line).empty() || line->starts_with('#')); line = lines.next()) {
+    if (!line->starts_with(kClockLine)) continue;
+    const std::string_view name = trim(line->substr(kClockLine.size()), " \t,");
+    if (name == name_of(NavClock::kUnix)) clock = NavClock::kUnix;
+    if (name == name_of(NavClock::kBoot)) clock = NavClock::kBoot;
+  }
+  return clock;
+}
+
 struct NamedSample {
   std::string source;
   NavQuantity quantity;
@@ -94,12 +107,7 @@ bool looks_like_nav_csv(std::span<const std::uint8_t> bytes) {
 NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
   NavReading reading;
   const std::string_view text = text_of(bytes);
-  if (text.starts_with(kClockLine)) {
-    Lines first(text);
-    const std::string_view clock = trim(first.next().value_or("").substr(kClockLine.size()));
-    if (clock == name_of(NavClock::kUnix)) reading.clock = NavClock::kUnix;
-    if (clock == name_of(NavClock::kBoot)) reading.clock = NavClock::kBoot;
-  }
+  reading.clock = clock_in(text);
   Lines lines(text);
   const auto columns = columns_in(lines.next_with_content().value_or(""));
   NavSources sources;

@@ -99,6 +99,7 @@ std::optional<double> midnight(std::string_view day, std::string_view month, std
 /// When a sentence was true.
 struct SentenceTime {
   std::optional<double> midnight_s, of_day_s;
+  bool is_sure = true;  ///< false: the receiver has no fix, and its date may be one from the factory
 };
 
 SentenceTime time_in(const Sentence& sentence) {
@@ -106,7 +107,7 @@ SentenceTime time_in(const Sentence& sentence) {
     const std::string_view date = sentence.field(9);
     const bool has_date = date.size() == 6;
     return {has_date ? midnight(date.substr(0, 2), date.substr(2, 2), date.substr(4)) : std::nullopt,
-            time_of_day(sentence.field(1))};
+            time_of_day(sentence.field(1)), sentence.field(2) == "A"};
   }
   if (sentence.is("ZDA")) {
     return {midnight(sentence.field(2), sentence.field(3), sentence.field(4)), time_of_day(sentence.field(1))};
@@ -121,21 +122,26 @@ class Clock {
  public:
   explicit Clock(std::string_view text) {
     std::vector<DamageKind> ignored;
-    std::optional<double> date_s;
+    std::optional<double> sure_s, unsure_s;
     for_each_sentence(text, ignored, [&](const Sentence& sentence) {
       const SentenceTime time = time_in(sentence);
       if (time.of_day_s && !time_s_) time_s_ = time.of_day_s;
+      std::optional<double>& date_s = time.is_sure ? sure_s : unsure_s;
       if (time.of_day_s && time.midnight_s && !date_s) date_s = *time.midnight_s + *time.of_day_s;
     });
+    has_sure_date_ = sure_s.has_value();
+    const std::optional<double> date_s = sure_s ? sure_s : unsure_s;
     has_date_ = date_s.has_value();
     if (has_date_) time_s_ = on_day_near(*time_s_, *date_s);
   }
 
   bool has_date() const { return has_date_; }
+  bool has_time() const { return time_s_.has_value(); }
   /// nullopt: no sentence of the log has a time.
   std::optional<double> time_of(const Sentence& sentence) {
     if (const SentenceTime time = time_in(sentence); time.of_day_s) {
-      time_s_ = time.midnight_s ? *time.midnight_s + *time.of_day_s : on_day_near(*time.of_day_s, *time_s_);
+      const bool has_date = time.midnight_s && (time.is_sure || !has_sure_date_);
+      time_s_ = has_date ? *time.midnight_s + *time.of_day_s : on_day_near(*time.of_day_s, *time_s_);
     }
     return time_s_;
   }
@@ -146,7 +152,7 @@ class Clock {
   }
 
   std::optional<double> time_s_;
-  bool has_date_ = false;
+  bool has_date_ = false, has_sure_date_ = false;
 };
 
 /// Latitude and longitude of four fields: ddmm.mmm, N or S, dddmm.mmm, E or W. nullopt: there is none.
@@ -252,9 +258,14 @@ NavReading read_nmea(std::span<const std::uint8_t> bytes) {
   if (clock.has_date()) reading.clock = NavClock::kUnix;
   NmeaNav nav;
   reading.records = for_each_sentence(text, reading.damage, [&](const Sentence& sentence) {
-    if (const auto time_s = clock.time_of(sentence)) nav.add(sentence, *time_s);
+    nav.add(sentence, clock.time_of(sentence).value_or(0.0));
   });
   reading.sources = nav.take();
+  if (clock.has_time()) return reading;
+  std::size_t samples = 0;
+  for (const NavSource& source : reading.sources) samples += source.samples.size();
+  if (samples > 0) reading.damage.push_back({"sample of a log without any time", samples, std::nullopt});
+  reading.sources.clear();
   return reading;
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "call.hpp"
+#include "tests/support/bag_writer.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -59,6 +60,31 @@ TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
   EXPECT_THAT(here.call({"map", kBag, "--nav", kBag, "-o", "net.bt"}).err, Not(HasSubstr("did not move")));
   const std::string without = PINGVOX_SOURCE_DIR "/fuzz/corpus/mcap/image_without_chunk";
   EXPECT_THAT(here.call({"map", without, "-o", "net.bt"}).err, Not(HasSubstr("--nav")));
+}
+
+// A lidar's scans are of the type of a sonar's beams. Kills a bag whose navigation nobody can list.
+TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
+  const Workplace here;
+  bags::Mcap mcap;
+  mcap.topic(1, "/scan", "lab_msgs/msg/LaserScan",
+             "float64 angle_min\nfloat64 angle_max\nfloat64 range_max\nfloat64[] intensities\n");
+  mcap.topic(2, "/depth", "std_msgs/msg/Float64", "");
+  bags::Bytes scan = {0, 1, 0, 0}, depth = {0, 1, 0, 0};
+  for (const double number : {-1.0, 1.0, 30.0}) bags::put(scan, number);
+  bags::put(scan, std::uint64_t{0});
+  bags::put(depth, 2.5);
+  mcap.message(1, 1'000'000'000'000U, scan);
+  mcap.message(2, 1'001'000'000'000U, depth);
+  mcap.end_chunk();
+  const bags::Bytes file = mcap.closed();
+  here.write("lidar.mcap", std::string(file.begin(), file.end()));
+  const Outcome info = here.call({"info", "lidar.mcap", "--json"});
+  ASSERT_EQ(info.status, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr(R"("kind": "nav")"));
+  EXPECT_THAT(info.out, HasSubstr(R"("name": "/depth", "quantity": "depth", "samples": 1)"));
+  expect_error(here.call({"info", "lidar.mcap", "--topic", "/scan"}), 1,
+               {"lidar.mcap: has no beams in the topic /scan"});
+  expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
 }
 
 TEST(Bags, ATopicIsChosenByName) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,6 +65,53 @@ TEST(BagNav, TellsUnitsOfPressureByTheirSize) {
   EXPECT_NEAR(pascals(101.3), 101'300.0, 1e-6);
   EXPECT_NEAR(pascals(1500.0), 150'000.0, 1e-6);
   EXPECT_NEAR(pascals(150'000.0), 150'000.0, 1e-6);
+}
+
+/// The values of one quantity in messages of a topic, one after the other.
+std::vector<Eigen::Vector3d> values_of(std::string_view topic, std::string_view type, std::string_view definition,
+                                       const std::vector<std::vector<double>>& messages, NavQuantity quantity) {
+  bags::Mcap mcap;
+  mcap.topic(1, topic, type, definition);
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    bags::Bytes message = {0, 1, 0, 0};
+    for (const double number : messages[i]) bags::put(message, number);
+    mcap.message(1, 1'000'000'000'000U + i * 1'000'000'000U, message);
+  }
+  mcap.end_chunk();
+  const auto nav = read_nav(FileBytes{"dive.mcap", mcap.closed()});
+  EXPECT_TRUE(nav);
+  std::vector<Eigen::Vector3d> values;
+  if (!nav) return values;
+  for (const NavSource& source : nav->log.sources()) {
+    if (source.quantity != quantity) continue;
+    for (const NavSample& sample : source.samples) values.push_back(sample.value);
+  }
+  return values;
+}
+
+// A log in kPa, from the surface to 60 m: kills a unit that changes at 500 kPa, and one of a sensor that starts with 0.
+TEST(BagNav, ATopicHasOneUnitOfPressure) {
+  const auto values = values_of("/bar30/pressure", "std_msgs/msg/Float64", "",
+                                {{0.0}, {101.3}, {499.0}, {501.0}, {700.0}}, NavQuantity::kPressure);
+  ASSERT_THAT(values, SizeIs(5));
+  EXPECT_NEAR(values[1].x(), 101'300.0, 1e-6);
+  EXPECT_NEAR(values[2].x(), 499'000.0, 1e-6);
+  EXPECT_NEAR(values[3].x(), 501'000.0, 1e-6);
+  EXPECT_NEAR(values[4].x(), 700'000.0, 1e-6);
+}
+
+// Kills fixes that are lost, or jump to height 0, where the receiver knows no altitude.
+TEST(BagNav, AFixWithoutAltitudeKeepsTheLastOne) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto values =
+      values_of("/gps", "lab_msgs/msg/NavSatFix",
+                "float64 latitude\nfloat64 longitude\nfloat64 altitude\n"
+                "Status status\n================\nMSG: lab_msgs/Status\nfloat64 status\n",
+                {{60.0, 10.0, kNone, 0.0}, {60.0, 10.0, 41.5, 0.0}, {60.0, 10.0, kNone, 0.0}}, NavQuantity::kFix);
+  ASSERT_THAT(values, SizeIs(3));
+  EXPECT_EQ(values[0].z(), 0.0);
+  EXPECT_EQ(values[1].z(), 41.5);
+  EXPECT_EQ(values[2].z(), 41.5);
 }
 
 TEST(BagNav, TurnsADvlThatLooksDown) {

@@ -1,3 +1,4 @@
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,6 +35,20 @@ TEST(NavCsv, TakesColumnsByNameAndLeavesOutUnknownOnes) {
   EXPECT_TRUE(std::isnan(dvl.samples[0].deviation.y()));
   EXPECT_FALSE(dvl.samples[0].valid);
   EXPECT_TRUE(nav->log.sources()[1].samples.at(0).valid);
+}
+
+// As editors and spreadsheets leave it. Kills a clock that is only known in the first bytes.
+TEST(NavCsv, TheClockIsInAnyCommentAboveTheColumns) {
+  constexpr std::string_view kSamples = "time_s,source,quantity,x,y,z\n1,dvl,velocity,1,2,3\n";
+  for (const std::string_view comments :
+       {"\xef\xbb\xbf# clock: unix\n", "# clock: unix,,,,,\r\n", "\n# a dive\n# clock: unix\n"}) {
+    const auto nav = read(fmt::format("{}{}", comments, kSamples));
+    ASSERT_TRUE(nav) << nav.error().message;
+    EXPECT_EQ(nav->log.clock(), NavClock::kUnix) << comments;
+  }
+  const auto nav = read(fmt::format("{}# clock: unix\n", kSamples));
+  ASSERT_TRUE(nav);
+  EXPECT_EQ(nav->log.clock(), NavClock::kUnknown) << "below the samples";
 }
 
 TEST(NavCsv, LeavesOutLinesThatAreNoSample) {

@@ -71,6 +71,28 @@ TEST(Nmea, TakesTheDayFromTheNearestDateAndRollsItAtMidnight) {
   EXPECT_LT(samples_of(nav, "GPGGA").at(1).value.x(), 0.0) << "south";
 }
 
+// Kills a log that begins decades before its dive, and one whose only dates are thrown away.
+TEST(Nmea, ADateWithoutAFixCountsWhereThereIsNoOther) {
+  const std::string cold = "$GPRMC,000002.00,V,,,,,,,060180,,,N*70\r\n$GPHDT,90.0,T*0C\r\n";
+  const NavFile nav = read(cold + kRmc + "$GPHDT,90.0,T*0C\r\n");
+  EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
+  EXPECT_DOUBLE_EQ(samples_of(nav, "GPRMC").at(0).time_s, kRmc_s);
+  EXPECT_NEAR(samples_of(nav, "GPHDT").at(0).time_s, kRmc_s, 43'200.0) << "a heading of a receiver that starts";
+  const NavFile under_water = read("$GPRMC,235957.50,V,,,,,,,311223,,,N*77\r\n$GPHDT,90.0,T*0C\r\n");
+  EXPECT_EQ(under_water.log.clock(), NavClock::kUnix);
+  EXPECT_DOUBLE_EQ(samples_of(under_water, "GPHDT").at(0).time_s, kRmc_s - 2.0);
+}
+
+// Kills headings that vanish without a word.
+TEST(Nmea, ALogWithoutAnyTimeIsTold) {
+  const NavFile nav = read("$GPHDT,90.0,T*0C\r\n");
+  EXPECT_TRUE(nav.log.sources().empty());
+  ASSERT_EQ(nav.damage.size(), 1U);
+  EXPECT_EQ(nav.damage[0].what, "sample of a log without any time");
+  EXPECT_EQ(nav.damage[0].count, 1U);
+  EXPECT_TRUE(read("$GPGSA,A,1,,,,,,,,,,,,,,,*1E\r\n").damage.empty()) << "no navigation";
+}
+
 TEST(Nmea, WhatIsEmptyIsNotZero) {
   const NavFile nav = read(std::string(kRmc) + "$HEHDT,,T*01\r\n$GNRMC,000001.00,V,,,,,,,010124,,,N*64\r\n");
   EXPECT_EQ(nav.records, 3U);
