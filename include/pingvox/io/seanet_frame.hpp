@@ -64,8 +64,8 @@ std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_bl
 /// Samples of 4 bits are scaled to 0..255.
 tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s);
 
-/// The beam of a frame; nullopt: another message; the error is the reason why there is none: values that are impossible,
-/// or a line that is cut into several packets. REQUIRES a valid frame.
+/// The beam of a frame; nullopt: another message; the error is the reason why there is none: values that are
+/// impossible, or a line that is cut into several packets. REQUIRES a valid frame.
 tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s);
 
 /// The head by type and frequency of a line; nullptr if unknown.
