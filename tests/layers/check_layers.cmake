@@ -1,5 +1,5 @@
 # cmake -DROOT=DIR -P check_layers.cmake: walks the includes of DIR/include and DIR/src and fails on each one that the
-# layers (docs/architecture.md) do not allow.
+# layers (docs/architecture.md) do not allow, and on casts of pointers in layers that have no raw bytes to look at.
 cmake_minimum_required(VERSION 3.25)
 
 # Layer -> the layers that it may include, itself apart.
@@ -26,6 +26,9 @@ set(private_png io)
 set(private_CLI "")
 set(private_octomap "")
 
+# PINGVOX_RAW_LAYERS in cmake/pingvox_targets.cmake: only there sanitizers check the alignment of pointers.
+set(raw_layers map cloud io device)
+
 file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/include/*" "${ROOT}/src/*")
 set(arrows 0)
 set(wrong "")
@@ -49,6 +52,10 @@ foreach(file IN LISTS files)
   if(NOT from IN_LIST layers)
     list(APPEND wrong "${file}: '${from}' is no layer")
     continue()
+  endif()
+  file(STRINGS "${ROOT}/${file}" casts REGEX "reinterpret_cast")
+  if(casts AND NOT from IN_LIST raw_layers)
+    list(APPEND wrong "${file}: no reinterpret_cast in ${from}")
   endif()
   file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
   foreach(line IN LISTS lines)
@@ -90,6 +97,6 @@ if(arrows EQUAL 0)
 endif()
 if(wrong)
   list(JOIN wrong "\n  " text)
-  message(FATAL_ERROR "Includes against the layers:\n  ${text}")
+  message(FATAL_ERROR "Against the layers:\n  ${text}")
 endif()
 message("${arrows} includes in ${count} files keep to the layers")

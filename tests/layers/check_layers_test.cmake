@@ -56,6 +56,8 @@ verdict("\"private.hpp\" does not say its layer" src/io/a.cpp "#include \"privat
 verdict("<opencv2/core.hpp> is not for map" src/map/a.cpp "#include <opencv2/core.hpp>")
 verdict("<opencv2/core.hpp> is not for sonar" include/pingvox/sonar/a.hpp "#include <opencv2/core.hpp>")
 verdict("<octomap/OcTree.h> is not for map" src/map/a.cpp "#include <octomap/OcTree.h>")
+verdict(fine src/io/a.cpp "auto c = reinterpret_cast<const char*>(p);")
+verdict("no reinterpret_cast in slam" src/slam/a.cpp "auto c = reinterpret_cast<const char*>(p);")
 verdict("'gui' is no layer" src/gui/a.cpp "#include \"pingvox/result.hpp\"")
 
 file(REMOVE_RECURSE "${SCRATCH}")
