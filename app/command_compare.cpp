@@ -87,7 +87,7 @@ void add_share(JsonObject& json, std::string_view key, const std::optional<doubl
   }
 }
 
-std::string json_of(const CompareCommand& command, const MapComparison& found, const MapAgreement& agreement) {
+std::string comparison_json(const CompareCommand& command, const MapComparison& found, const MapAgreement& agreement) {
   JsonObject classes, against_b, json;
   classes.add("occupied_a", agreement.occupied_a)
       .add("occupied_b", agreement.occupied_b)
@@ -162,17 +162,17 @@ std::string text_of(const MapComparison& found, const MapAgreement& agreement, S
                                                share_text(agreement.free_true())));
 }
 
-JsonObject json_of(const ErrorStatistics& error) {
+JsonObject statistics_json(const ErrorStatistics& error) {
   JsonObject json;
   return json.add("mean", error.mean_m).add("sd", error.sd_m).add("rmse", error.rmse_m).add("max", error.max_m);
 }
 
-std::string json_of(const TrajectoryScore& score) {
+std::string score_json(const TrajectoryScore& score) {
   JsonObject absolute, relative, json;
-  absolute.add("none", json_of(score.none))
-      .add("first_fix", json_of(score.first_fix))
-      .add("translation", json_of(score.translation))
-      .add("se2", json_of(score.se2).add("rotation_deg", score.se2_turn_rad / kDegree_rad));
+  absolute.add("none", statistics_json(score.none))
+      .add("first_fix", statistics_json(score.first_fix))
+      .add("translation", statistics_json(score.translation))
+      .add("se2", statistics_json(score.se2).add("rotation_deg", score.se2_turn_rad / kDegree_rad));
   relative.add("per_m", score.per_m).add("segment_m", score.segment_m);
   json.add("poses", score.poses)
       .add("outside", score.outside)
@@ -226,7 +226,7 @@ Result<int> compare_trajectories(const CompareCommand& command, const Result<Fil
   if (!b) return tl::unexpected(b.error());
   const Result<TrajectoryScore> score = score_trajectory(*a, *b);
   if (!score) return fail(score.error().code, fmt::format("{}: {}", command.b, score.error().message));
-  const Result<void> summary = command.output_options.report == Report::kJson ? console.print(json_of(*score))
+  const Result<void> summary = command.output_options.report == Report::kJson ? console.print(score_json(*score))
                                                                               : console.summarise(text_of(*score), "");
   if (!summary) return tl::unexpected(summary.error());
   return score->outside == 0 && score->max_difference_m <= kSame_m ? 0 : 1;
@@ -278,7 +278,7 @@ Result<int> run(const CompareCommand& command, Console& console) {
   const MapAgreement agreement = agreement_of(a->map, b->map, counted);
   const auto text = [&] { return visible ? text_of(agreement) : text_of(*found, agreement, sameness); };
   const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(command, *found, agreement))
+                                   ? console.print(comparison_json(command, *found, agreement))
                                    : console.summarise(text(), "");
   if (!summary) return tl::unexpected(summary.error());
   return found->equal() ? 0 : 1;

@@ -71,8 +71,8 @@ LocateOptions options_of(const LocateCommand& command, const LocateMotion& motio
 }
 
 /// nullopt: none is sure.
-Result<std::optional<Trajectory>> trajectory_of(const LocatedRecording& found, const LocateCommand& command,
-                                                Console& console) {
+Result<std::optional<Trajectory>> found_trajectory(const LocatedRecording& found, const LocateCommand& command,
+                                                   Console& console) {
   if (command.written == WrittenPoses::kSure) return found.known_trajectory();
   if (const std::size_t unsure = unsure_poses(found); unsure > 0) {
     console.say(
@@ -126,7 +126,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
     const char* const option = command.odometry ? "the clock of --odometry" : "--nav-offset";
     console.say(fmt::format("{}: {}", command.logs.front(), wrong_clock_text(*found->clock_check, option)));
   }
-  const Result<std::optional<Trajectory>> trajectory = trajectory_of(*found, command, console);
+  const Result<std::optional<Trajectory>> trajectory = found_trajectory(*found, command, console);
   if (!trajectory) return tl::unexpected(trajectory.error());
   if (*trajectory) {
     inputs.written = (*trajectory)->poses().size();

@@ -134,7 +134,7 @@ JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& c
   return clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
 }
 
-std::string json_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
+std::string report_json(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
   const BuildReport& report = totals.report;
   const MapCounts counts = map.counts();
   JsonObject seconds;
@@ -385,7 +385,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   totals.total_s = total.seconds();
 
   const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(json_of(totals, *path, *map))
+                                   ? console.print(report_json(totals, *path, *map))
                                    : console.summarise(text_of(totals, *path, *map, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (map->empty()) {

@@ -15,7 +15,8 @@
 namespace pingvox::app {
 namespace {
 
-constexpr std::array kMotions = {Choice<Motion>{"still", Motion::kStill}, Choice<Motion>{"loop", Motion::kLoop}};
+constexpr std::array kEmulatedMotions = {Choice<Motion>{"still", Motion::kStill},
+                                         Choice<Motion>{"loop", Motion::kLoop}};
 
 }  // namespace
 
@@ -64,7 +65,7 @@ Result<Command> emulate_command(const Args& args) {
           within(fault, store_number(damaged))}}},
        {"Vehicle",
         {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},
-         choice("--trajectory", kMotions, "path of the vehicle; emulators with the same options agree on it",
+         choice("--trajectory", kEmulatedMotions, "path of the vehicle; emulators with the same options agree on it",
                 command.motion),
          {"--speed", 0, "M/S", "speed of the vehicle", number_text(command.speed_m_s),
           within({0.01, 100.0}, store_number(command.speed_m_s))},

@@ -25,11 +25,8 @@ using Gain = ReceiverGain;
 
 constexpr std::array kGains = {Choice<Gain>{"low", Gain::kLow}, Choice<Gain>{"normal", Gain::kNormal},
                                Choice<Gain>{"high", Gain::kHigh}};
-constexpr std::array kProgress = {Choice<ShowProgress>{"auto", ShowProgress::kAuto},
-                                  Choice<ShowProgress>{"always", ShowProgress::kAlways},
-                                  Choice<ShowProgress>{"never", ShowProgress::kNever}};
-constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt}, Choice<Format>{"ot", Format::kOt},
-                                    Choice<Format>{"pvx", Format::kPvx}};
+constexpr std::array kTreeFormats = {Choice<Format>{"bt", Format::kBt}, Choice<Format>{"ot", Format::kOt},
+                                     Choice<Format>{"pvx", Format::kPvx}};
 constexpr double kGradian_deg = 0.9;
 /// Whose options are limited to it.
 constexpr std::string_view kHead = "a head", kReplayed = "a replay";
@@ -180,7 +177,7 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
   const bool is_replay = command.device.kind == LiveDevice::Kind::kReplay;
   if (const auto used = check_limited(parsed.limited, {std::string(is_replay ? kReplayed : kHead)}); !used)
     return tl::unexpected(used.error());
-  const Result<Format> output_as = output_format(typed.output, typed.asked_format, kMapFormats);
+  const Result<Format> output_as = output_format(typed.output, typed.asked_format, kTreeFormats);
   if (!output_as) return tl::unexpected(output_as.error());
   command.format = *output_as;
   command.map = typed.build.map;
@@ -232,7 +229,7 @@ Result<Command> live_command(const Args& args) {
     return Link::check(taken->address);
   };
   const Take format = [&](const std::string& text) -> Result<void> {
-    const Result<Format> value = choice_value(kMapFormats, text);
+    const Result<Format> value = choice_value(kTreeFormats, text);
     if (!value) return tl::unexpected(value.error());
     typed.asked_format = *value;
     return {};
@@ -261,7 +258,7 @@ Result<Command> live_command(const Args& args) {
         device}},
       {{"Output",
         {output_option(typed.output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
-         {"--format", 0, choices_text(kMapFormats), "format of the map where its name has none of these suffixes",
+         {"--format", 0, choices_text(kTreeFormats), "format of the map where its name has none of these suffixes",
           "by suffix, else bt", format},
          {"--record", 0, "FILE",
           "record the bytes of the device: a Ping360's as a log of Ping Viewer, a Micron's as a capture of packets "

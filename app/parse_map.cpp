@@ -16,12 +16,6 @@ namespace pingvox::app {
 namespace {
 
 constexpr std::array kParents = {Choice<Parents>{"max", Parents::kMax}, Choice<Parents>{"mean", Parents::kMean}};
-constexpr std::array kProgress = {Choice<ShowProgress>{"auto", ShowProgress::kAuto},
-                                  Choice<ShowProgress>{"always", ShowProgress::kAlways},
-                                  Choice<ShowProgress>{"never", ShowProgress::kNever}};
-constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<Format>{"ot", Format::kOt},
-                                    Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},
-                                    Choice<Format>{"pcd", Format::kPcd}, Choice<Format>{"xyz", Format::kXyz}};
 
 }  // namespace
 

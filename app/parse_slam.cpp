@@ -18,9 +18,6 @@ namespace {
 
 constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
                                    Choice<Matching>{"none", Matching::kNone}};
-constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<Format>{"ot", Format::kOt},
-                                    Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},
-                                    Choice<Format>{"pcd", Format::kPcd}, Choice<Format>{"xyz", Format::kXyz}};
 
 }  // namespace
 

@@ -14,6 +14,14 @@
 /// Options shared by commands.
 namespace pingvox::app {
 
+inline constexpr std::array kProgress = {Choice<ShowProgress>{"auto", ShowProgress::kAuto},
+                                         Choice<ShowProgress>{"always", ShowProgress::kAlways},
+                                         Choice<ShowProgress>{"never", ShowProgress::kNever}};
+/// Of maps and of their occupied cells.
+inline constexpr std::array kMapFormats = {Choice<Format>{"bt", Format::kBt},   Choice<Format>{"ot", Format::kOt},
+                                           Choice<Format>{"pvx", Format::kPvx}, Choice<Format>{"ply", Format::kPly},
+                                           Choice<Format>{"pcd", Format::kPcd}, Choice<Format>{"xyz", Format::kXyz}};
+
 Option output_option(std::string& target, std::string help);
 Option config_option();
 Option strict_option(Damage& damage);

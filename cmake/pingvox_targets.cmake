@@ -18,6 +18,10 @@ function(pingvox_compile_options target)
   target_compile_options(
     ${target} PRIVATE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wshadow> -Wconversion -Wnon-virtual-dtor
                       -Wold-style-cast -Woverloaded-virtual $<$<BOOL:${PINGVOX_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # A source that another file includes looks like a header, whose types have to be the same everywhere.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
   if(PINGVOX_SANITIZE)
     string(REPLACE "," ";" sanitizers "${PINGVOX_SANITIZE}")
     target_compile_options(${target} PRIVATE -fsanitize=${PINGVOX_SANITIZE} -fno-omit-frame-pointer
@@ -70,8 +74,13 @@ set(PINGVOX_RAW_LAYERS map cloud io device)
 # pingvox_layer(NAME [DEPENDS LAYER...]): one folder of src/ and include/pingvox/ as one target.
 function(pingvox_layer name)
   cmake_parse_arguments(LAYER "" "" "DEPENDS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp"
-       "${PROJECT_SOURCE_DIR}/src/${name}/kernels/*.cpp")
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
+  file(GLOB kernels CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/kernels/*.cpp")
+  if(kernels)
+    # Highway includes each once for every kind of vector.
+    set_source_files_properties(${kernels} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    list(APPEND sources ${kernels})
+  endif()
   list(TRANSFORM LAYER_DEPENDS PREPEND pingvox_)
   if(sources)
     add_library(pingvox_${name} STATIC ${sources})

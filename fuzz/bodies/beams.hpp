@@ -41,7 +41,7 @@ inline BeamsRead beams_in(std::span<const std::uint8_t> bytes, Damage damage) {
   return read;
 }
 
-inline bool same(const Beam& a, const Beam& b) {
+inline bool is_same(const Beam& a, const Beam& b) {
   return a.time_s == b.time_s && a.bearing_rad == b.bearing_rad && a.bin_length_m == b.bin_length_m &&
          a.intensities == b.intensities;
 }
@@ -53,7 +53,7 @@ inline std::size_t beams(std::span<const std::uint8_t> bytes) {
   const BeamsRead strict = beams_in(bytes, Damage::kFail);
   require(strict.beams.size() <= lenient.beams.size(), "a strict read gives no more");
   for (std::size_t i = 0; i < strict.beams.size(); ++i) {
-    require(same(strict.beams[i], lenient.beams[i]), "a strict read gives the same");
+    require(is_same(strict.beams[i], lenient.beams[i]), "a strict read gives the same");
   }
   if (lenient.beams.empty()) return 0;
 
@@ -64,7 +64,7 @@ inline std::size_t beams(std::span<const std::uint8_t> bytes) {
   const BeamsRead back = beams_in({reinterpret_cast<const std::uint8_t*>(csv.data()), csv.size()}, Damage::kFail);
   require(!back.failed && back.beams.size() == lenient.beams.size(), "what is written is read");
   for (std::size_t i = 0; i < back.beams.size(); ++i) {
-    require(same(back.beams[i], lenient.beams[i]), "what is read is what was written");
+    require(is_same(back.beams[i], lenient.beams[i]), "what is read is what was written");
   }
   return lenient.beams.size();
 }

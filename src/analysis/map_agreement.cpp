@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kMaxCount = std::numeric_limits<std::uint64_t>::max();
 
 /// Cells from `first` to `last` along each axis, both included. REQUIRES at least one.
-struct CellRange {
+struct CellSpan {
   std::array<WideWord, 3> first, last;
 
   std::uint64_t cells() const {
@@ -28,8 +28,8 @@ struct CellRange {
   }
 };
 
-std::optional<CellRange> common(const CellRange& a, const CellRange& b) {
-  CellRange out{};
+std::optional<CellSpan> common(const CellSpan& a, const CellSpan& b) {
+  CellSpan out{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.first[axis] = std::max(a.first[axis], b.first[axis]);
     out.last[axis] = std::min(a.last[axis], b.last[axis]);
@@ -39,7 +39,7 @@ std::optional<CellRange> common(const CellRange& a, const CellRange& b) {
 }
 
 template <KeyWord W>
-CellRange cells_of(const Lattice& lattice, const BasicKey<W>& key, int depth) {
+CellSpan cells_of(const Lattice& lattice, const BasicKey<W>& key, int depth) {
   const int bits = lattice.depth() - depth;
   const WideWord steps = bits == 0 ? 0 : ~WideWord{0} >> (kMaxDepth - bits);
   const std::array<WideWord, 3> first = {key.x, key.y, key.z};
@@ -47,10 +47,10 @@ CellRange cells_of(const Lattice& lattice, const BasicKey<W>& key, int depth) {
 }
 
 /// The cells with their middle in a box; nullopt: none.
-std::optional<CellRange> cells_in(const Lattice& lattice, const std::optional<Box>& box) {
-  const CellRange all = cells_of(lattice, WideKey{}, 0);
+std::optional<CellSpan> cells_in(const Lattice& lattice, const std::optional<Box>& box) {
+  const CellSpan all = cells_of(lattice, WideKey{}, 0);
   if (!box) return all;
-  CellRange range = all;
+  CellSpan range = all;
   const double half = std::ldexp(1.0, lattice.depth() - 1);
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = static_cast<std::size_t>(axis);
@@ -84,7 +84,7 @@ bool is_near(const OccupancyMap& map, const BasicKey<W>& key, Occupancy kind, st
 
 /// How many cells of a range are near one of a kind. REQUIRES few enough to visit each.
 template <KeyWord W>
-std::uint64_t count_near(const CellRange& range, const OccupancyMap& to, Occupancy kind, std::uint32_t near_cells) {
+std::uint64_t count_near(const CellSpan& range, const OccupancyMap& to, Occupancy kind, std::uint32_t near_cells) {
   std::uint64_t near = 0;
   for (WideWord x = range.first[0];; ++x) {
     for (WideWord y = range.first[1];; ++y) {
@@ -101,35 +101,35 @@ std::uint64_t count_near(const CellRange& range, const OccupancyMap& to, Occupan
 
 /// Calls f(cells) for each occupied leaf of a map, as far as it lies in a range.
 template <KeyWord W, class F>
-void for_each_occupied(const OccupancyMap& map, const CellRange& within, F&& f) {
+void for_each_occupied(const OccupancyMap& map, const CellSpan& within, F&& f) {
   for_each_leaf(map, [&](const Leaf& leaf) {
     if (classify(leaf.belief, map.options().thresholds) != Occupancy::kOccupied) return;
     if (const auto cells = common(cells_of(map.lattice(), leaf.key, leaf.depth), within)) f(*cells);
   });
 }
 
-std::uint64_t occupied_cells(const OccupancyMap& map, const CellRange& within) {
+std::uint64_t occupied_cells(const OccupancyMap& map, const CellSpan& within) {
   std::uint64_t sum = 0;
   with_key_word(map.lattice().depth(), [&]<KeyWord W>() {
-    for_each_occupied<W>(map, within, [&](const CellRange& cells) { detail::add_saturated(sum, cells.cells()); });
+    for_each_occupied<W>(map, within, [&](const CellSpan& cells) { detail::add_saturated(sum, cells.cells()); });
   });
   return sum;
 }
 
 /// How many occupied cells of one map, within a range, are near one of the other's.
 template <KeyWord W>
-std::uint64_t occupied_near(const OccupancyMap& of, const OccupancyMap& to, const CellRange& within,
+std::uint64_t occupied_near(const OccupancyMap& of, const OccupancyMap& to, const CellSpan& within,
                             std::uint32_t near_cells) {
   std::uint64_t near = 0;
   for_each_occupied<W>(
-      of, within, [&](const CellRange& cells) { near += count_near<W>(cells, to, Occupancy::kOccupied, near_cells); });
+      of, within, [&](const CellSpan& cells) { near += count_near<W>(cells, to, Occupancy::kOccupied, near_cells); });
   return near;
 }
 
 /// Walks both trees at once: the time follows from their nodes, not from their cells.
 class Walk {
  public:
-  Walk(const OccupancyMap& a, const OccupancyMap& b, const CellRange& within, std::uint32_t near_cells,
+  Walk(const OccupancyMap& a, const OccupancyMap& b, const CellSpan& within, std::uint32_t near_cells,
        MapAgreement& out)
       : a_(a.options().thresholds),
         b_(b.options().thresholds),
@@ -140,7 +140,7 @@ class Walk {
 
   void visit(const std::optional<NodeView>& a, const std::optional<NodeView>& b, const WideKey& key, int depth) {
     if (!a && !b) return;
-    const std::optional<CellRange> cells = common(cells_of(map_b_.lattice(), key, depth), within_);
+    const std::optional<CellSpan> cells = common(cells_of(map_b_.lattice(), key, depth), within_);
     if (!cells) return;
     if ((!a || a->is_leaf()) && (!b || b->is_leaf())) {
       count(a ? classify(a->belief(), a_) : Occupancy::kUnknown, b ? classify(b->belief(), b_) : Occupancy::kUnknown,
@@ -164,7 +164,7 @@ class Walk {
     return node && !node->is_leaf() ? node->child(octant) : node;
   }
 
-  void count(Occupancy a, Occupancy b, const CellRange& range) {
+  void count(Occupancy a, Occupancy b, const CellSpan& range) {
     const std::uint64_t cells = range.cells();
     if (a == Occupancy::kOccupied) detail::add_saturated(out_.occupied_a, cells);
     if (b == Occupancy::kOccupied) detail::add_saturated(out_.occupied_b, cells);
@@ -175,7 +175,7 @@ class Walk {
     if (a == Occupancy::kFree && b != a) look_around(range, cells);
   }
 
-  void look_around(const CellRange& range, std::uint64_t cells) {
+  void look_around(const CellSpan& range, std::uint64_t cells) {
     detail::add_saturated(freed_only_by_a_, cells);
     if (freed_only_by_a_ > MapAgreement::kMaxLookedAround) return;
     with_key_word(map_b_.lattice().depth(),
@@ -184,7 +184,7 @@ class Walk {
 
   Thresholds a_, b_;
   const OccupancyMap& map_b_;
-  const CellRange& within_;
+  const CellSpan& within_;
   std::uint32_t near_cells_;
   MapAgreement& out_;
   std::uint64_t freed_only_by_a_ = 0, near_free_ = 0;
@@ -242,7 +242,7 @@ std::optional<double> MapAgreement::free_true_near() const {
 MapAgreement agreement_of(const OccupancyMap& a, const OccupancyMap& b, const AgreementOptions& options) {
   assert(a.lattice() == b.lattice() && (options.visible == nullptr || options.visible->lattice() == a.lattice()));
   MapAgreement out;
-  const std::optional<CellRange> within = cells_in(a.lattice(), options.box);
+  const std::optional<CellSpan> within = cells_in(a.lattice(), options.box);
   if (!within) return out;
   Walk walk(a, b, *within, options.near_cells, out);
   walk.visit(a.root(), b.root(), {}, 0);

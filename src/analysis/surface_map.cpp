@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMaxCells = 0x1p26;
+constexpr double kMaxSurfaceCells = 0x1p26;
 
 /// Cells that the triangles pass through, roughly and rather more: those of the area, of the edges, of the corners.
 double cells_about(const TriangleMesh& mesh, double cell_m) {
@@ -42,11 +42,11 @@ Result<OccupancyMap> surface_map(const TriangleMesh& mesh, const MapOptions& opt
                 fmt::format("a corner at {:g}, {:g}, {:g} m is outside of a map of {} levels with cells of {} m",
                             vertex_m.x(), vertex_m.y(), vertex_m.z(), lattice.depth(), cell_m));
   }
-  if (const double cells = cells_about(mesh, cell_m); !(cells <= kMaxCells)) {
+  if (const double cells = cells_about(mesh, cell_m); !(cells <= kMaxSurfaceCells)) {
     return fail(
         Error::Code::kLimit,
         fmt::format("its surface would be about {:.2g} cells of {} m, more than {:.2g}: are its lengths metres?", cells,
-                    cell_m, kMaxCells));
+                    cell_m, kMaxSurfaceCells));
   }
   const std::int64_t half = std::int64_t{1} << std::min(lattice.depth() - 1, 61);
   const CellRange all{Cell::Constant(-half), Cell::Constant(half - 1)};

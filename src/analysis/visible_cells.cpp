@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t kMaxCells = 20'000'000;
+constexpr std::uint64_t kMaxOccupied = 20'000'000;
 constexpr std::size_t kMaxViews = 1000;
 
 /// Poses without those that are nearly equal to the one before.
@@ -111,9 +111,9 @@ Result<OccupancyMap> visible_cells(const OccupancyMap& surface, const OccupancyM
                                    std::span<const Pose> map_from_sensor, const ViewOptions& options) {
   if (auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   if (!(surface.lattice() == world.lattice())) return fail(Error::Code::kBadOption, "maps of different lattices");
-  if (const std::uint64_t cells = surface.counts().occupied_cells; cells > kMaxCells) {
+  if (const std::uint64_t cells = surface.counts().occupied_cells; cells > kMaxOccupied) {
     return fail(Error::Code::kLimit,
-                fmt::format("{} occupied cells are too many to look at each (at most {})", cells, kMaxCells));
+                fmt::format("{} occupied cells are too many to look at each (at most {})", cells, kMaxOccupied));
   }
   const Lattice& lattice = world.lattice();
   OccupancyMap visible(surface.options());

@@ -7,6 +7,8 @@
 
 namespace pingvox {
 
+/// Median absolute deviation to standard deviation, of normal noise.
+inline constexpr double kMadToDeviation = 1.4826;
 /// The middle one of the numbers in order, of an even count the upper one. REQUIRES at least one number.
 inline double median(std::vector<double> numbers) {
   assert(!numbers.empty());

@@ -8,6 +8,9 @@
 /// Parameters of a SeaNet head.
 namespace pingvox {
 
+/// Of a head, in steps.
+inline constexpr int kMicronTurn = 6400;
+
 /// Parameters of a single-channel head (mtHeadCommand of 66 bytes, docs/formats.md), in raw units.
 struct MicronCommand {
   /// Bits of `control`: samples of 8 bits, full turns; what else is usual.

@@ -13,7 +13,6 @@
 namespace pingvox {
 namespace {
 
-constexpr int kTurn = 6400;
 constexpr double kMinRange_m = 0.5, kMaxRange_m = 300.0;
 
 std::vector<std::uint8_t> ask(SeanetMessage message) {
@@ -41,8 +40,8 @@ Result<void> MicronSettings::validate() const {
   errors.require_within("step", step, 1, 255);
   errors.require_within("timeout_s", timeout_s, 0.01, 60.0);
   if (sector) {
-    errors.require_within("left", sector->left, 0, kTurn - 1);
-    errors.require_within("right", sector->right, 0, kTurn - 1);
+    errors.require_within("left", sector->left, 0, kMicronTurn - 1);
+    errors.require_within("right", sector->right, 0, kMicronTurn - 1);
   }
   return errors.result("micron");
 }

@@ -12,7 +12,7 @@
 namespace pingvox {
 namespace {
 
-constexpr int kTurn = 6400, kAhead = 3200;
+constexpr int kAhead = 3200;
 constexpr double kAlive_s = 1.0, kCentre_s = 0.5;
 constexpr std::size_t kMaxBins = 1500;
 
@@ -36,8 +36,8 @@ std::vector<std::uint8_t> version() {
 
 /// Of a DST head.
 std::vector<std::uint8_t> user_data(int lines_per_request) {
-  constexpr std::size_t kSize = 264 - 14, kDuplex = 146 - 13;
-  std::vector<std::uint8_t> payload(kSize, 0);
+  constexpr std::size_t kUserDataSize = 264 - 14, kDuplex = 146 - 13;
+  std::vector<std::uint8_t> payload(kUserDataSize, 0);
   payload[kDuplex] = lines_per_request == 2 ? 0 : 1;
   return frame_from_head(SeanetMessage::kUserData, payload);
 }
@@ -102,16 +102,16 @@ std::vector<std::uint8_t> MicronEmulator::alive(double now_s) const {
 void MicronEmulator::turn() {
   const int step = command_->step;
   if ((command_->control & MicronCommand::kContinuous) != 0) {
-    bearing_ = (bearing_ + step) % kTurn;
+    bearing_ = (bearing_ + step) % kMicronTurn;
     return;
   }
   // Places in the sector, clockwise from its left end.
-  const int width = (command_->right - command_->left + kTurn) % kTurn;
-  int place = (bearing_ - command_->left + kTurn) % kTurn;
+  const int width = (command_->right - command_->left + kMicronTurn) % kMicronTurn;
+  int place = (bearing_ - command_->left + kMicronTurn) % kMicronTurn;
   if (place > width) place = 0;  // it turns there first
   if (place + sense_ * step < 0 || place + sense_ * step > width) sense_ = -sense_;
   place = std::clamp(place + sense_ * step, 0, width);
-  bearing_ = (command_->left + place) % kTurn;
+  bearing_ = (command_->left + place) % kMicronTurn;
 }
 
 std::vector<std::uint8_t> MicronEmulator::line() {

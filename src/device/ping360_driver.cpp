@@ -16,9 +16,6 @@
 namespace pingvox {
 namespace {
 
-constexpr std::uint8_t kHost = 0, kHead = 2;
-constexpr int kTurn_grad = 400;
-
 /// What a head says of a message that it refuses: the message's number, then text.
 std::string text_of_nack(std::span<const std::uint8_t> payload) {
   std::string text;
@@ -117,12 +114,13 @@ std::optional<std::vector<std::uint8_t>> Ping360Driver::message(double now_s) {
   put_u16(wanted, static_cast<std::uint16_t>(PingMessage::kDeviceInformation));
   // Another host may have left the head scanning (auto_transmit), which only this ends.
   std::vector<std::uint8_t> messages = motor_off();
-  std::ranges::copy(make_ping_frame(PingMessage::kGeneralRequest, kHost, kHead, wanted), std::back_inserter(messages));
+  std::ranges::copy(make_ping_frame(PingMessage::kGeneralRequest, kPingHost, kPingHead, wanted),
+                    std::back_inserter(messages));
   return messages;
 }
 
 std::vector<std::uint8_t> Ping360Driver::motor_off() {
-  return make_ping_frame(PingMessage::kMotorOff, kHost, kHead, {});
+  return make_ping_frame(PingMessage::kMotorOff, kPingHost, kPingHead, {});
 }
 
 void Ping360Driver::turn() {
@@ -149,7 +147,7 @@ std::vector<std::uint8_t> Ping360Driver::ping() const {
   put_u16(payload, sampling_.samples);
   payload.push_back(1);  // transmit
   payload.push_back(0);
-  return make_ping_frame(PingMessage::kTransducer, kHost, kHead, payload);
+  return make_ping_frame(PingMessage::kTransducer, kPingHost, kPingHead, payload);
 }
 
 }  // namespace pingvox

@@ -14,12 +14,10 @@
 namespace pingvox {
 namespace {
 
-constexpr std::uint8_t kHost = 0, kHead = 2;
 constexpr std::size_t kMaxSamples = 1200, kTransducerSize = 14, kAutoTransmitSize = 16;
-constexpr int kTurn_grad = 400;
 
 std::vector<std::uint8_t> frame_from_head(PingMessage message, std::span<const std::uint8_t> payload) {
-  return make_ping_frame(message, kHead, kHost, payload);
+  return make_ping_frame(message, kPingHead, kPingHost, payload);
 }
 
 /// An answer that names the message that it is to.

@@ -8,7 +8,9 @@
 /// The words of a .bt file (docs/formats.md): one for each inner node, two bits for each of its eight children.
 namespace pingvox {
 
+namespace bt {
 inline constexpr unsigned kUnknown = 0, kFree = 1, kOccupied = 2, kInner = 3;
+}
 inline constexpr unsigned kAllFree = 0x5555, kAllOccupied = 0xAAAA;
 
 constexpr unsigned state_of(unsigned word, std::size_t octant) {
@@ -81,7 +83,7 @@ inline EightWords mixed_words(const EightWords& words) {
   return reinterpret_cast<EightWords>((words != 0) & (words != kAllFree) & (words != kAllOccupied));
 }
 
-/// The word of the parent: kInner where a child is mixed, else the common state of its children.
+/// The word of the parent: bt::kInner where a child is mixed, else the common state of its children.
 inline unsigned word_above(const EightWords& words, const EightWords& mixed) {
   constexpr EightWords kPlaces{1, 1 << 2, 1 << 4, 1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 14};
   const EightWords states = ((words | mixed) & 3) * kPlaces;

@@ -75,8 +75,8 @@ class TreeReader {
     detail::Group group;
     for (std::size_t octant = 0; octant < 8; ++octant) {
       const unsigned state = state_of(word, octant);
-      if (state == kUnknown) continue;
-      if (state != kInner) {
+      if (state == bt::kUnknown) continue;
+      if (state != bt::kInner) {
         group.child[octant] = detail::Entry::leaf(belief_of(state));
         continue;
       }
@@ -110,7 +110,7 @@ class TreeReader {
   }
 
   float belief_of(unsigned state) const {
-    return (state == kOccupied ? options_.clamp.highest : options_.clamp.lowest).value();
+    return (state == bt::kOccupied ? options_.clamp.highest : options_.clamp.lowest).value();
   }
 
   /// The entry, or kLimit when the tree exceeds the limit.
@@ -140,7 +140,7 @@ class TreeWords {
         end_(words_.get()) {
     const unsigned state = add(tree_.root, 0);
     // A root without children would be read as occupied by liboctomap.
-    if (state == kFree || state == kOccupied) *end_++ = state == kFree ? kAllFree : kAllOccupied;
+    if (state == bt::kFree || state == bt::kOccupied) *end_++ = state == bt::kFree ? kAllFree : kAllOccupied;
   }
 
   std::span<std::uint16_t> words() { return {words_.get(), end_}; }
@@ -171,7 +171,7 @@ class TreeWords {
 
   /// Appends the words of a subtree and returns the state of its root.
   unsigned add(const detail::Entry& entry, int depth) {
-    if (entry.is_none()) return kUnknown;
+    if (entry.is_none()) return bt::kUnknown;
     if (entry.is_leaf()) return state_of(LogOdds(entry.value));
     if (depth < kBrickDepth) return add(tree_.groups[entry.link], depth);
     const detail::BrickView brick = tree_.bricks[entry.link];
@@ -188,12 +188,14 @@ class TreeWords {
       return word & 3U;
     }
     *at = static_cast<std::uint16_t>(word);
-    return kInner;
+    return bt::kInner;
   }
 
   /// Whether all known cells below a node are free, by the maximum: for most bricks without reading their values, which
   /// are four fifths of the memory.
-  bool is_all_free(const detail::Entry& entry) const { return has_maxima_ && state_of(LogOdds(entry.value)) == kFree; }
+  bool is_all_free(const detail::Entry& entry) const {
+    return has_maxima_ && state_of(LogOdds(entry.value)) == bt::kFree;
+  }
 
   unsigned add(const detail::CellStates& cells) {
     const EightWords octants = words_of(cells.free, cells.occupied);
@@ -207,19 +209,19 @@ class TreeWords {
       end += are_inner[octant] & 1U;
     }
     end_ = end;
-    return kInner;
+    return bt::kInner;
   }
 
   unsigned state_of(LogOdds belief) const {
     switch (classify(belief, thresholds_)) {
       case Occupancy::kOccupied:
-        return kOccupied;
+        return bt::kOccupied;
       case Occupancy::kFree:
-        return kFree;
+        return bt::kFree;
       case Occupancy::kUnknown:
         break;
     }
-    return kUnknown;
+    return bt::kUnknown;
   }
 
   detail::TreeView tree_;

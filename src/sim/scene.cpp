@@ -20,8 +20,6 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
-
 /// One fixed seed, so that the scenes never change.
 constexpr std::uint64_t kSceneSeed = 2014;
 
@@ -85,7 +83,7 @@ class Waves {
  public:
   Waves(Random& random, double longest) {
     for (std::size_t n = 0; n < waves_.size(); ++n) {
-      const double angle = 2.0 * kPi * random.uniform();
+      const double angle = 2.0 * std::numbers::pi * random.uniform();
       const double length = longest * std::pow(0.62, static_cast<double>(n));
       waves_[n].turns_x = std::cos(angle) / length;
       waves_[n].turns_y = std::sin(angle) / length;
@@ -95,7 +93,8 @@ class Waves {
   }
   double at(double x, double y) const {
     double sum = 0.0;
-    for (const Wave& w : waves_) sum += w.height * std::sin(2.0 * kPi * (w.turns_x * x + w.turns_y * y + w.phase));
+    for (const Wave& w : waves_)
+      sum += w.height * std::sin(2.0 * std::numbers::pi * (w.turns_x * x + w.turns_y * y + w.phase));
     return sum;
   }
 
@@ -112,11 +111,11 @@ TriangleMesh hull(const Vector3d& middle_of_deck, double length, double beam, do
   return tube(kSections + 1, kAround, [&](std::size_t section, std::size_t i) -> Vector3d {
     const double along = 2.0 * static_cast<double>(section) / kSections - 1.0;
     // Half of the points make the deck, half the sides and the keel.
-    const double angle = 2.0 * kPi * static_cast<double>(i) / kAround;
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kAround;
     const double half_beam = 0.5 * beam * (1.0 - std::pow(along, 4.0));
     const double depth = draught * (1.0 - std::pow(along, 6.0));
     const double across = std::copysign(std::pow(std::abs(std::cos(angle)), 0.5), std::cos(angle));
-    const double down = angle < kPi ? 0.0 : std::pow(std::abs(std::sin(angle)), 0.5);
+    const double down = angle < std::numbers::pi ? 0.0 : std::pow(std::abs(std::sin(angle)), 0.5);
     return middle_of_deck + Vector3d(0.5 * length * along, half_beam * across, -depth * down);
   });
 }
@@ -324,7 +323,7 @@ Scene seabed_scene(const SeabedOptions& o) {
   const auto add_boulder = [&](double x, double y, const Vector3d& radii) {
     Pose pose = Pose::Identity();
     pose.translation() = Vector3d(x, y, bottom(x, y));
-    pose.linear() = Eigen::AngleAxisd(2.0 * kPi * random.uniform(), Vector3d::UnitZ()).toRotationMatrix();
+    pose.linear() = Eigen::AngleAxisd(2.0 * std::numbers::pi * random.uniform(), Vector3d::UnitZ()).toRotationMatrix();
     world.add(Ellipsoid{pose, radii}, kRock);
   };
   // Tall ones, between the lanes.
@@ -372,7 +371,7 @@ Scene cave_scene(const CaveOptions& o) {
                        [&](std::size_t row, std::size_t i) -> Vector3d {
                          const double share = static_cast<double>(row) / static_cast<double>(rows - 1);
                          const double x = start + share * o.length_m;
-                         const double angle = 2.0 * kPi * static_cast<double>(i) / kAround;
+                         const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kAround;
                          const double y = std::cos(angle);
                          const double z = std::sin(angle);
                          // Waves on the tunnel's wall, laid out so that they meet all the way around.

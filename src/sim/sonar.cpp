@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
-
 /// Amplitudes are rounded to 1 / kScale, and noise uses integers and square roots only, so that the last bit of exp()
 /// or cos(), which differs between machines, does not change a byte.
 constexpr double kScale = 256.0;
@@ -49,7 +47,7 @@ double amplitude(double off_rad, double width_rad, double side_lobes) {
   constexpr double kHalfPower = 1.391557;  // sin(u) / u = sqrt(1 / 2)
   const double u = std::abs(kHalfPower * std::sin(off_rad) / std::sin(0.5 * width_rad));
   if (u < 1e-9) return 1.0;
-  return std::sin(u) / u * (u > kPi ? side_lobes : 1.0);
+  return std::sin(u) / u * (u > std::numbers::pi ? side_lobes : 1.0);
 }
 
 /// Two-way power.
@@ -131,7 +129,7 @@ std::vector<std::uint32_t> clean_beam(const World& all_world, const Pose& map_fr
       // Steps of direction between neighbouring rays, sideways and upwards.
       Vector3d sideways = map_from_sensor.linear() * Vector3d(-std::sin(bearing), std::cos(bearing), 0.0) *
                           (across_step * std::cos(elevation));
-      Vector3d upwards = map_from_sensor.linear() * direction_of(bearing, elevation + 0.5 * kPi) * up_step;
+      Vector3d upwards = map_from_sensor.linear() * direction_of(bearing, elevation + 0.5 * std::numbers::pi) * up_step;
       SoundRay ray{map_from_sensor.translation(), map_from_sensor.linear() * direction_of(bearing, elevation)};
       double way = 0.0;
       double share = gain;
@@ -217,7 +215,7 @@ TrueRange true_range(const World& all_world, const Pose& map_from_sensor, double
   double best_y = 0.0;
   for (int ring = 1; ring <= kRings; ++ring) {
     for (int around = 0; around < kAround; ++around) {
-      const double angle = 2.0 * kPi * around / kAround;
+      const double angle = 2.0 * std::numbers::pi * around / kAround;
       const double x = std::cos(angle) * ring / kRings;
       const double y = std::sin(angle) * ring / kRings;
       if (look(x, y)) {
@@ -282,7 +280,8 @@ Result<std::optional<Beam>> SonarSimulator::next() {
     if (is_lost) continue;
 
     const std::size_t direction = sent_ % options_.beams_per_turn;
-    const double turned = 2.0 * kPi * static_cast<double>(direction) / static_cast<double>(options_.beams_per_turn);
+    const double turned =
+        2.0 * std::numbers::pi * static_cast<double>(direction) / static_cast<double>(options_.beams_per_turn);
     ping_ = {time, pose, wrap_bearing(-turned)};
     const double step = options_.bearing_step_rad;
     Beam beam{.time_s = time,

@@ -15,7 +15,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::array<double, 3> kGates_m = {3.0, 2.0, 1.5};
+constexpr std::array<double, 3> kSweepGates_m = {3.0, 2.0, 1.5};
 /// For so long the compasses' deviations are found, and the frame of the poses turns with them.
 constexpr double kSettle_s = 600.0;
 /// Samples so long before the window tell noise and outliers at its beginning.
@@ -130,7 +130,7 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
     if (determined) loops = close_new_loops(solver);
     determined = determined && loops;
     const double widest_m = kGateOfReach * solver.reach_m();
-    for (const double gate_m : kGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
+    for (const double gate_m : kSweepGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
     if (!determined) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
     loops_.found += loops->found;
     loops_.kept += loops->kept;

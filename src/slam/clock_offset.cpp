@@ -22,7 +22,6 @@ constexpr double kCoarse_s = 0.25;  ///< of the offsets that are tried
 constexpr std::size_t kMaxChanges = 2'000, kMinChanges = 8;
 constexpr double kMaxLength_s = 2.0 * 86'400.0;
 constexpr double kAny_s = std::numeric_limits<double>::infinity();
-constexpr double kMadToDeviation = 1.4826;  ///< of normal noise
 
 tl::unexpected<Error> cannot_tell(std::string why) {
   return fail(Error::Code::kUnsupported, std::move(why));

@@ -24,9 +24,8 @@
 namespace pingvox {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 /// Up to a beam short of it counts: heads jitter.
-constexpr double kTurn = 1.98 * kPi;
+constexpr double kTurn = 1.98 * std::numbers::pi;
 constexpr std::size_t kMaxTurnBeams = 2000;  ///< of a head that stands still
 constexpr std::size_t kMaxSearchBeams = 400;
 /// Averages of the echoes' likelihood are over this many echoes, about.
@@ -79,8 +78,8 @@ Result<void> MotionNoise::validate() const {
   OptionErrors errors;
   errors.require_within("position_m_per_sqrt_s", position_m_per_sqrt_s, 0.0, 100.0);
   errors.require_within("position_m_per_sqrt_m", position_m_per_sqrt_m, 0.0, 100.0);
-  errors.require_within("yaw_rad_per_sqrt_s", yaw_rad_per_sqrt_s, 0.0, 2.0 * kPi);
-  errors.require_within("yaw_rad_per_sqrt_rad", yaw_rad_per_sqrt_rad, 0.0, 2.0 * kPi);
+  errors.require_within("yaw_rad_per_sqrt_s", yaw_rad_per_sqrt_s, 0.0, 2.0 * std::numbers::pi);
+  errors.require_within("yaw_rad_per_sqrt_rad", yaw_rad_per_sqrt_rad, 0.0, 2.0 * std::numbers::pi);
   return errors.result("motion noise");
 }
 
@@ -164,7 +163,7 @@ void Localizer::State::move(double step_s) {
     const PlanePose now = plane_pose(*next);
     if (last) {
       step = PlaneFrame(plane_pose(*last)).inverse() * now;
-      step.yaw = std::remainder(step.yaw, 2.0 * kPi);
+      step.yaw = std::remainder(step.yaw, 2.0 * std::numbers::pi);
     }
     level_from_body = Eigen::AngleAxisd(-now.yaw, Eigen::Vector3d::UnitZ()) * next->rotation();
     height_m = next->translation().z();
@@ -204,7 +203,8 @@ void Localizer::State::take(const EchoStream::BeamWithEcho& heard) {
                        range_m * level * options.sound_speed_ratio, heard.echo.has_value()};
   const HeardBeam in_odometry = transform(PlaneFrame(placed.odometry), beam);
   turn.push_back({in_odometry, placed.turned_rad});
-  while (!turn.empty() && (turn.size() > kMaxTurnBeams || turn.front().turned_rad < turned_rad - 2.0 * kPi)) {
+  while (!turn.empty() &&
+         (turn.size() > kMaxTurnBeams || turn.front().turned_rad < turned_rad - 2.0 * std::numbers::pi)) {
     turn.pop_front();
   }
   if (!particles.poses.empty()) weigh(transform(odometry.inverse(), in_odometry));
@@ -255,7 +255,7 @@ void Localizer::State::look_after() {
   }
   if (lost_rad && turned_rad - *lost_rad >= kTurn && turned_rad - searched_rad >= kTurn) {
     search();
-  } else if (turned_rad - grouped_rad >= 0.5 * kPi) {
+  } else if (turned_rad - grouped_rad >= 0.5 * std::numbers::pi) {
     group();
     // Once the turn that the search used, or that did not fit, is behind.
     const bool is_one = !groups.empty() && groups.front().weight >= kSureWeight;

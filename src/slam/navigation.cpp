@@ -18,7 +18,6 @@ namespace pingvox {
 namespace {
 
 constexpr double kClip = 2.0;                ///< robust standard deviations
-constexpr double kMadToDeviation = 1.4826;   ///< of normal noise
 constexpr double kMinDeviation_m_s = 0.005;  ///< resolution of common logs
 constexpr double kNoiseWindow_s = 30.0;
 constexpr std::size_t kMaxDifferences = 2048;  ///< in a window; more are thinned out

@@ -16,8 +16,6 @@
 namespace pingvox {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// How many boxes of 0.1 m and 3 degrees the chosen particles lie in.
 std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::size_t>& chosen) {
   std::unordered_set<std::uint64_t> bins;
@@ -28,7 +26,7 @@ std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::
              0x1FFFFFU;
     };
     bins.insert(part(p.x, 0.1) | part(p.y, 0.1) << 21U |
-                part(std::remainder(p.yaw, 2.0 * kPi), 3.0 * kDegree_rad) << 42U);
+                part(std::remainder(p.yaw, 2.0 * std::numbers::pi), 3.0 * kDegree_rad) << 42U);
   }
   return bins.size();
 }

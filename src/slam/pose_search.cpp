@@ -15,7 +15,6 @@
 namespace pingvox {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kCoarseEchoes = 60;
 constexpr double kStep_m = 0.2, kYawSteps = 90.0;
 constexpr double kMaxPoses = 1.5e6;  ///< of the coarse grid: beyond, its places are farther apart
@@ -40,7 +39,7 @@ std::vector<HeardBeam> some_echoes(std::span<const HeardBeam> beams, std::size_t
 std::vector<ScoredPose> coarse_search(const DistanceField& field, const std::vector<HeardBeam>& echoes,
                                       const BeamLikelihood& model, double step_m) {
   const std::vector<Eigen::Vector2d> places = field.places(step_m, kReach_m);
-  const double yaw_step = 2.0 * kPi / kYawSteps;
+  const double yaw_step = 2.0 * std::numbers::pi / kYawSteps;
   std::vector<EndTable> tables;
   for (const HeardBeam& echo : echoes) {
     // Half a step away at the most on each axis; that is 0.29 steps of standard deviation.
@@ -137,7 +136,7 @@ std::vector<ScoredPose> without_neighbours(std::vector<ScoredPose> poses, double
     if (kept.size() >= most) break;
     const bool is_near = std::ranges::any_of(kept, [&](const ScoredPose& other) {
       return std::hypot(pose.pose.x - other.pose.x, pose.pose.y - other.pose.y) <= near_m &&
-             std::abs(std::remainder(pose.pose.yaw - other.pose.yaw, 2.0 * kPi)) <= near_rad;
+             std::abs(std::remainder(pose.pose.yaw - other.pose.yaw, 2.0 * std::numbers::pi)) <= near_rad;
     });
     if (!is_near) kept.push_back(pose);
   }
@@ -166,7 +165,7 @@ std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const
   std::vector<ScoredPose> candidates = coarse_search(field, echoes, model, step_m);
   std::vector<BeamJudge> judges;
   for (const HeardBeam& beam : beams) judges.emplace_back(beam, field, model);
-  const Steps steps{0.5 * step_m, kPi / kYawSteps, 1};
+  const Steps steps{0.5 * step_m, std::numbers::pi / kYawSteps, 1};
   const auto at_ends = [&](const PlanePose& pose) {
     const PlaneFrame frame(pose);
     double sum = 0.0;

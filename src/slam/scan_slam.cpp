@@ -20,8 +20,8 @@ namespace {
 /// A key frame after so much way, as a share of the reach, or turn.
 constexpr double kStep = 0.04, kTurn_rad = 20.0 * kDegree_rad;
 /// Half of the window of the search: share of the reach, and yaw. A window is used until it brings few new loops.
-constexpr std::array kWindows = {std::pair(0.8, 24.0 * kDegree_rad), std::pair(0.3, 14.0 * kDegree_rad),
-                                 std::pair(0.12, 6.0 * kDegree_rad)};
+constexpr std::array kSearchWindows = {std::pair(0.8, 24.0 * kDegree_rad), std::pair(0.3, 14.0 * kDegree_rad),
+                                       std::pair(0.12, 6.0 * kDegree_rad)};
 constexpr std::size_t kRoundsOfWindow = 4;
 constexpr double kFewNew = 0.05;
 
@@ -155,7 +155,7 @@ Result<ScanSlamSolution> ScanSlam::solve() const {
     const std::vector<PoseEdge> odometry = odometry_edges(frames, report.reach_m);
     std::vector<PoseEdge> kept_loops;
     std::vector<double> weights;
-    for (const auto& [share, yaw_rad] : kWindows) {
+    for (const auto& [share, yaw_rad] : kSearchWindows) {
       double before = 0.0;
       for (std::size_t round = 0; round < kRoundsOfWindow; ++round) {
         Loops loops = find_loops(frames, poses, {report.reach_m, share * report.reach_m, yaw_rad});

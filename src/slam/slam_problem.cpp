@@ -20,7 +20,8 @@ constexpr double kConstant_rad = 3.0 * kDegree_rad, kHarmonic_rad = 5.0 * kDegre
 /// A source whose headings differ more than this from the main one's says where it turned, not where north is.
 constexpr double kRelative_rad = 20.0 * kDegree_rad;
 /// Of a heading at a knot, and of its change over one second; the change where the source is silent.
-constexpr double kHeading_rad = 2.0 * kDegree_rad, kTurn_rad = 0.3 * kDegree_rad, kTurnInGap_rad = 20.0 * kDegree_rad;
+constexpr double kHeading_rad = 2.0 * kDegree_rad, kTurnIn1s_rad = 0.3 * kDegree_rad,
+                 kTurnInGap_rad = 20.0 * kDegree_rad;
 /// Of the velocity where its source is silent: from knot to knot, and of a motion that is the same for all of a gap.
 constexpr double kVelocityInGap_m_s = 0.3, kSteadyInGap_m_s = 0.1;
 /// Longest step of the integration.
@@ -303,7 +304,7 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
     const double from_s = knot_times_s_[k], to_s = knot_times_s_[k + 1];
     const double gap_s = headings_.front().yaw_rad.gap_s(from_s, to_s);
     const double weight =
-        1.0 / std::sqrt(kTurn_rad * kTurn_rad * (to_s - from_s) + kTurnInGap_rad * kTurnInGap_rad * gap_s);
+        1.0 / std::sqrt(kTurnIn1s_rad * kTurnIn1s_rad * (to_s - from_s) + kTurnInGap_rad * kTurnInGap_rad * gap_s);
     const HeadingResidual a = heading_residual(unknowns, 0, k), b = heading_residual(unknowns, 0, k + 1);
     Row r = row(k, weight * wrap_angle(b.residual_rad - a.residual_rad));
     r.by_knot[2] = -weight * a.by_error;

@@ -26,10 +26,10 @@ constexpr std::array kTurns_rad_s = {0.0, 0.06, -0.06, 0.12, -0.12};
 constexpr double kMaxChange_m_s = 0.25, kMaxMove = 0.5;
 constexpr double kMaxTurnChange_rad_s = 2.5 * kDegree_rad, kMaxHeadingError_rad = 4.0 * kDegree_rad;
 /// Cells in the reach of the sonar, in each round: coarse ones bear echoes that are not where they should be yet.
-constexpr std::array kCellsOfReach = {25.0, 50.0, 100.0, 100.0};
+constexpr std::array kRoundCells = {25.0, 50.0, 100.0, 100.0};
 /// What is farther from the vehicle than this, in reaches, is left out.
 constexpr double kFarthest = 3.0;
-constexpr double kMinScore = 0.35;
+constexpr double kMinPairScore = 0.35;
 constexpr std::size_t kMinEchoes = 20;
 /// A peak that is wider than this along some direction is one of a straight wall: it does not tell the way along it.
 constexpr double kMaxSpread_cells = 2.3;
@@ -89,11 +89,11 @@ std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, doubl
 }
 
 /// How the vehicle moved between the middles of each sweep and the next one.
-using Steps = std::vector<std::optional<Motion>>;
+using Motions = std::vector<std::optional<Motion>>;
 
 /// The motion at a place among the steps, by the last known one of the first `before` steps and the first known one
 /// from `after` on: between them it changes evenly. Zero where none is known.
-Motion motion_at(double place, std::size_t before, std::size_t after, const Steps& steps) {
+Motion motion_at(double place, std::size_t before, std::size_t after, const Motions& steps) {
   while (before > 0 && !steps[before - 1]) --before;
   while (after < steps.size() && !steps[after]) ++after;
   const bool has_before = before > 0, has_after = after < steps.size();
@@ -143,7 +143,7 @@ std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> 
   const Pose2 expected{way_by_velocity(from_s, to_s, expected_rad_s, vehicle) * velocity_m_s,
                        has_heading ? 0.0 : expected_rad_s * duration_s};
   if (!(expected.place_m.norm() < within_m)) return std::nullopt;
-  const auto found = PointField(around, cell_m, window.cells).match(points_m, expected, window, kMinScore);
+  const auto found = PointField(around, cell_m, window.cells).match(points_m, expected, window, kMinPairScore);
   if (!found) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(found->covariance.topLeftCorner<2, 2>().eval());
   if (std::sqrt(spread.eigenvalues()[1]) > kMaxSpread_cells * cell_m) return std::nullopt;
@@ -155,18 +155,18 @@ std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> 
 }
 
 /// The steps as if the vehicle went ahead at one speed all the time: the one that fits best.
-Steps steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehicle) {
+Motions steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehicle) {
   const std::span<const double> turns_rad_s(kTurns_rad_s.begin(), vehicle.heading != nullptr ? 1 : kTurns_rad_s.size());
-  Steps best(sweeps.size() - 1);
+  Motions best(sweeps.size() - 1);
   double highest = 0.0;
   for (const double speed_m_s : kSpeeds_m_s) {
-    Steps steps(sweeps.size() - 1);
+    Motions steps(sweeps.size() - 1);
     double sum = 0.0;
     for (std::size_t k = 0; k < steps.size(); ++k) {
       double score = 0.0;
       for (const double turn_rad_s : turns_rad_s) {
         const Motion motion{{speed_m_s, 0.0}, turn_rad_s};
-        const auto match = match_with_next(k, sweeps, {motion, motion, motion, motion}, kCellsOfReach.front(), vehicle);
+        const auto match = match_with_next(k, sweeps, {motion, motion, motion, motion}, kRoundCells.front(), vehicle);
         if (!match || match->score <= score) continue;
         score = match->score;
         steps[k] = match->motion;
@@ -181,8 +181,9 @@ Steps steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehi
 }
 
 /// The steps once more, each where those before and after it lead.
-Steps refine(const Steps& steps, std::span<const HeardSweep> sweeps, double cells_of_reach, const Vehicle& vehicle) {
-  Steps refined(steps.size());
+Motions refine(const Motions& steps, std::span<const HeardSweep> sweeps, double cells_of_reach,
+               const Vehicle& vehicle) {
+  Motions refined(steps.size());
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const auto at = static_cast<double>(k);
     const Guess guess{motion_at(at - 1.0, k, k, steps), motion_at(at - 0.5, k, k, steps),
@@ -200,7 +201,7 @@ double sweep_step_s(std::span<const HeardSweep> sweeps) {
 }
 
 /// Whether a sweep did not match between others that did.
-bool misses_one_within(const Steps& steps) {
+bool misses_one_within(const Motions& steps) {
   const auto known = [](const std::optional<Motion>& step) { return step.has_value(); };
   const auto first = std::ranges::find_if(steps, known);
   const auto last = std::ranges::find_if(steps.rbegin(), steps.rend(), known).base();
@@ -240,8 +241,8 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMoun
                          {std::string(kSonarSource), NavQuantity::kHeading, {}}};
   if (sweeps.size() < 2) return odometry;
   const Vehicle vehicle{body_from_sonar, heading};
-  Steps steps = steps_at_one_speed(sweeps, vehicle);
-  for (const double cells : kCellsOfReach) steps = refine(steps, sweeps, cells, vehicle);
+  Motions steps = steps_at_one_speed(sweeps, vehicle);
+  for (const double cells : kRoundCells) steps = refine(steps, sweeps, cells, vehicle);
 
   std::vector<NavSample>&velocities = odometry.velocity.samples, &headings = odometry.heading.samples;
   const double begin_s = sweeps.front().from_s, end_s = sweeps.back().to_s;

@@ -95,7 +95,7 @@ class Squares {
 };
 
 /// nullopt: no training bins.
-std::optional<double> noise_of(const Training& training, const Squares& squares, CfarOptions::Noise noise) {
+std::optional<double> noise_around(const Training& training, const Squares& squares, CfarOptions::Noise noise) {
   const std::size_t n = training.before.size() + training.behind.size();
   if (n == 0) return std::nullopt;
   const auto mean = [&squares](std::span<const std::uint8_t> part) {
@@ -142,7 +142,7 @@ std::optional<std::size_t> first_above_noise(std::span<const std::uint8_t> bins,
   const Squares squares(bins);
   for (std::size_t i = 1; i < bins.size(); ++i) {
     if (bins[i] <= bins[i - 1]) continue;
-    const std::optional<double> noise = noise_of(training_of(bins, i, options), squares, options.noise);
+    const std::optional<double> noise = noise_around(training_of(bins, i, options), squares, options.noise);
     if (noise && bins[i] > scale * *noise && bins[i] >= *noise + least) return i;
   }
   return std::nullopt;

@@ -11,7 +11,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kWallNoiseRatio = 11.0, kEchoNoiseRatio = 12.0, kWallShare = 0.25;
+constexpr double kWallNoiseRatio = 11.0, kQuietNoiseRatio = 12.0, kWallShare = 0.25;
 /// Noise grows by no more from one part of a beam to the next: what is louder is a wall.
 constexpr double kGrowth = 1.5;
 constexpr double kLeastNoise = 0.5;  // of intensities without noise
@@ -81,7 +81,7 @@ NoiseFloor NoiseFloors::of(std::size_t beam) const {
     const auto walls = std::ranges::count_if(
         around, [&](const std::vector<BeamPart>* beam_around) { return has_wall_near(*beam_around, noises, p); });
     if (static_cast<double>(walls) >= kWallShare * static_cast<double>(around.size())) continue;
-    rises[p] = static_cast<int>(std::ceil(kEchoNoiseRatio * noises[p]));
+    rises[p] = static_cast<int>(std::ceil(kQuietNoiseRatio * noises[p]));
   }
   return {windows_[beam], std::move(rises)};
 }

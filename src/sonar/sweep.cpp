@@ -10,7 +10,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 /// Below a third of the finest step of known heads (1/16 gradian): rounding, not movement.
 constexpr double kSameBearing_rad = 3e-4;
 constexpr double kJump_rad = 45.0 * kDegree_rad;
@@ -20,7 +20,7 @@ constexpr double kJitter_steps = 0.25;
 /// The shorter way from one bearing to the other, in (-pi, pi].
 double shortest_turn(double from_rad, double to_rad) {
   const double ahead = wrap_bearing(to_rad - from_rad);
-  return ahead > std::numbers::pi ? ahead - kTurn_rad : ahead;
+  return ahead > std::numbers::pi ? ahead - kFullTurn_rad : ahead;
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ std::optional<Sweep::Extent> SweepAssembler::end_by(const Beam& beam, double del
   if (furthest - turned > std::max(kSameBearing_rad, kJitter_steps * larger)) return Sweep::Extent::kSector;
   // A step across a gap must not widen the tolerance.
   const double tolerance = kJitter_steps * std::min(std::abs(delta_rad), smaller_step_rad());
-  if (turned >= kTurn_rad - std::max(kSameBearing_rad, tolerance)) return Sweep::Extent::kTurn;
+  if (turned >= kFullTurn_rad - std::max(kSameBearing_rad, tolerance)) return Sweep::Extent::kTurn;
   return std::nullopt;
 }
 
@@ -90,7 +90,7 @@ std::optional<Sweep> SweepAssembler::add(Beam beam) {
 std::optional<Sweep> SweepAssembler::finish() {
   const double step = smaller_step_rad();
   const double tolerance = std::max(kSameBearing_rad, kJitter_steps * step);
-  const bool around = furthest_rad_ != 0.0 && std::abs(furthest_rad_) + step >= kTurn_rad - tolerance;
+  const bool around = furthest_rad_ != 0.0 && std::abs(furthest_rad_) + step >= kFullTurn_rad - tolerance;
   steps_rad_ = {};
   return close(around ? Sweep::Extent::kTurn : Sweep::Extent::kCut);
 }

@@ -35,6 +35,8 @@ std::vector<Tick> ticks_of(const AxisScale& scale, std::size_t most);
 inline constexpr std::ptrdiff_t kTextScale = 2, kTick = 8, kGap = 6;
 /// Height of a bottom axis: ticks, labels (at most two rows), a title.
 inline constexpr std::ptrdiff_t kBottomAxis = 68;
+/// Around a picture, and of a line of its legend.
+inline constexpr std::ptrdiff_t kMargin = 24, kFooterRow = 28;
 
 /// Width of a left axis.
 std::ptrdiff_t left_axis_width(const std::vector<Tick>& ticks);

@@ -20,7 +20,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::ptrdiff_t kMargin = 24, kFooterRow = 28, kRim = 44, kMinWidth = 400;
+constexpr std::ptrdiff_t kRim = 44, kMinWidth = 400;
 constexpr Rgb kRing{110, 170, 220};
 
 /// Position of the head and the largest range in the picture.

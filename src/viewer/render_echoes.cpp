@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::ptrdiff_t kLeft = 110, kRight = 182, kTop = 44, kBottom = 96;
 constexpr std::size_t kMaxRows = 2000, kMinHeight = 800;
-constexpr std::size_t kMinWidth = static_cast<std::size_t>(kEchoLegendWidth);
+constexpr std::size_t kMinEchoWidth = static_cast<std::size_t>(kEchoLegendWidth);
 constexpr std::ptrdiff_t kMarkWidth = 3;
 
 /// Mapping of beams and ranges to pixels.
@@ -181,7 +181,7 @@ Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional
   }
   const std::array<Rgb, 256> greys = greys_of(options);
   const std::size_t height = scale.rows * scale.row_px;
-  Picture picture(std::max(kLeft + scale.columns + kRight, kMinWidth), kTop + height + kBottom, kPaper);
+  Picture picture(std::max(kLeft + scale.columns + kRight, kMinEchoWidth), kTop + height + kBottom, kPaper);
   const auto row_px = static_cast<std::ptrdiff_t>(scale.row_px);
   const std::vector<int> pixels = loudest(beams, scale);
   for (std::size_t row = 0; row < scale.rows; ++row) {

@@ -20,10 +20,10 @@
 namespace pingvox {
 namespace {
 
-constexpr float kNothing = -std::numeric_limits<float>::infinity();
+constexpr float kNoCell = -std::numeric_limits<float>::infinity();
 
-constexpr std::ptrdiff_t kMargin = 24, kNote = 26, kFooterRow = 28, kBorder = 2;
-constexpr std::ptrdiff_t kMinWidth = 480;  ///< room for scale bar and legend
+constexpr std::ptrdiff_t kNote = 26, kBorder = 2;
+constexpr std::ptrdiff_t kMinMapWidth = 480;  ///< room for scale bar and legend
 constexpr Rgb kCross{230, 120, 0};
 
 struct PathStyle {
@@ -66,7 +66,7 @@ WideWord word_along(const WideKey& key, std::size_t axis) {
   return axis == 0 ? key.x : (axis == 1 ? key.y : key.z);
 }
 
-/// Maximum log-odds of each column of cells along the view. (0, 0) is the lowest cell; kNothing is unknown.
+/// Maximum log-odds of each column of cells along the view. (0, 0) is the lowest cell; kNoCell is unknown.
 struct Columns {
   std::size_t across = 0, up = 0;  ///< how many
   double cell_m = 0.0;
@@ -183,7 +183,7 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
     const WideWord least_across = shift_right(low_across, bits), least_up = shift_right(low_up, bits);
     const auto across = static_cast<std::size_t>(shift_right(high_across, bits) - least_across) + 1;
     const auto up = static_cast<std::size_t>(shift_right(high_up, bits) - least_up) + 1;
-    grids.push_back({least_across, least_up, across, up, std::vector<float>(across * up, kNothing)});
+    grids.push_back({least_across, least_up, across, up, std::vector<float>(across * up, kNoCell)});
   }
   for_each_shown(map, options, [&](const Leaf& leaf) {
     const int bits = std::max(levels - leaf.depth, shift);
@@ -222,7 +222,7 @@ double share_of(LogOdds belief, LogOdds from, LogOdds to) {
 }
 
 Rgb colour_of(float belief, const MapOptions& map, const MapColours& colours) {
-  if (belief == kNothing) return colours.unknown;
+  if (belief == kNoCell) return colours.unknown;
   switch (classify(LogOdds(belief), map.thresholds)) {
     case Occupancy::kOccupied:
       return mix(colours.barely_occupied, colours.surely_occupied,
@@ -373,7 +373,7 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   const auto across = static_cast<std::ptrdiff_t>(columns.across), up = static_cast<std::ptrdiff_t>(columns.up);
   // A margin of unknown around the known part shows its outline.
   const std::ptrdiff_t halo = std::max<std::ptrdiff_t>(zoom, 8);
-  const std::ptrdiff_t width = std::max(across * zoom + 2 * halo, kMinWidth), height = up * zoom + 2 * halo;
+  const std::ptrdiff_t width = std::max(across * zoom + 2 * halo, kMinMapWidth), height = up * zoom + 2 * halo;
 
   // Relative to the corner of the area, in pixels.
   const std::ptrdiff_t known_left = (width - across * zoom) / 2;

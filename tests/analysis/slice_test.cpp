@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr LogOdds kWall{2.0F}, kWater{-2.0F};
+constexpr LogOdds kOccupied{2.0F}, kWater{-2.0F};
 
 /// Cells of 0.5 m in the column over x = 0.25, y = 0.25, from z = 0 upwards: '#' occupied, '.' free, ' ' unknown.
 OccupancyMap column(std::string_view cells) {
@@ -21,7 +21,7 @@ OccupancyMap column(std::string_view cells) {
   double z = 0.25;
   for (const char cell : cells) {
     const Key key = *map.lattice().key_of(Eigen::Vector3d(0.25, 0.25, z));
-    if (cell != ' ') editor.set(key, 16, cell == '#' ? kWall : kWater);
+    if (cell != ' ') editor.set(key, 16, cell == '#' ? kOccupied : kWater);
     z += 0.5;
   }
   editor.synchronize();
@@ -64,7 +64,7 @@ TEST(Slice, AHeightOnAFaceIsInTheCellAbove) {
       Editor editor = map.edit();
       for (const int layer : layers) {
         const auto key = map.lattice().key_of(Eigen::Vector3d(0.5 * cell_m, 0.5 * cell_m, (layer + 0.5) * cell_m));
-        editor.set(*key, 16, layer % 2 == 0 ? kWall : kWater);
+        editor.set(*key, 16, layer % 2 == 0 ? kOccupied : kWater);
       }
     }
     for (const int layer : layers) {
@@ -85,7 +85,7 @@ TEST(Slice, OfAWideMapWithFewCellsIsAMap) {
   {
     Editor editor = map.edit();
     for (const Eigen::Vector3d& place : {Eigen::Vector3d(-200, -200, 0.01), Eigen::Vector3d(200, 200, 0.01)}) {
-      editor.set(*map.lattice().key_of(place), 16, kWall);
+      editor.set(*map.lattice().key_of(place), 16, kOccupied);
     }
   }
   const auto raster = slice_of(map, {0.0, 0.0});
@@ -102,7 +102,7 @@ TEST(Slice, KeepsUnknownApartFromFree) {
   {
     Editor editor = map.edit();
     editor.set(*map.lattice().key_of(Eigen::Vector3d(-0.5, 4.5, 0.5)), 16, kWater);
-    editor.set(*map.lattice().key_of(Eigen::Vector3d(1.5, 5.5, 0.5)), 16, kWall);
+    editor.set(*map.lattice().key_of(Eigen::Vector3d(1.5, 5.5, 0.5)), 16, kOccupied);
   }
   const auto slice = slice_of(map, {});
   ASSERT_TRUE(slice);
@@ -135,7 +135,7 @@ TEST(Slice, AgreesWithEachCellLookedUp) {
         Editor editor = map.edit();
         for (int i = 0; i < 40; ++i) {
           const auto key = *map.lattice().key_of<WideWord>(Eigen::Vector3d(centre(), centre(), centre()));
-          editor.set(key, depth - static_cast<int>(random() % 2), random() % 3 == 0 ? kWall : kWater);
+          editor.set(key, depth - static_cast<int>(random() % 2), random() % 3 == 0 ? kOccupied : kWater);
         }
       }
       const double low = centre(), high = low + 0.1 * static_cast<double>(random() % 4);
@@ -180,7 +180,7 @@ TEST(Slice, OutOfProportionIsRefusedBeforeItTakesMemory) {
   EXPECT_EQ(slice.error().code, Error::Code::kLimit);
   EXPECT_THAT(slice.error().message, HasSubstr("32768 x 32768 cells"));
   OccupancyMap deepest({.resolution_m = 1e-20, .depth = 128});
-  deepest.edit().set(WideKey{}, 0, kWall);
+  deepest.edit().set(WideKey{}, 0, kOccupied);
   EXPECT_FALSE(slice_of(deepest, {}));
   EXPECT_FALSE(heights_of(deepest, {}, Surface::kHighest));
 }

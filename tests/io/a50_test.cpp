@@ -15,12 +15,12 @@
 namespace pingvox {
 namespace {
 
-FileBytes file_of(const std::string& text) {
+FileBytes a50_file(const std::string& text) {
   return {"dvl.log", {text.begin(), text.end()}};
 }
 
-NavFile read(const std::string& text) {
-  auto nav = read_nav(file_of(text));
+NavFile read_as_a50(const std::string& text) {
+  auto nav = read_nav(a50_file(text));
   EXPECT_TRUE(nav) << nav.error().message;
   return nav ? *std::move(nav) : NavFile{*NavLog::make({}, NavClock::kUnknown), 0, {}};
 }
@@ -51,8 +51,8 @@ TEST(A50, ReadsJsonInOurFramesAndAtTheTimeOfValidity) {
                           R"({"ts":5.2,"x":1,"y":2,"z":3,"std":0.1,"roll":10,"pitch":20,"yaw":30,"status":0,)"
                           R"("format":"json_v3","type":"position_local"})"
                           "\n";
-  EXPECT_EQ(format_of(file_of(log).view()), Format::kDvlA50);
-  const NavFile nav = read(log);
+  EXPECT_EQ(format_of(a50_file(log).view()), Format::kDvlA50);
+  const NavFile nav = read_as_a50(log);
   EXPECT_EQ(nav.records, 4U);
   EXPECT_TRUE(nav.damage.empty());
   EXPECT_EQ(nav.log.clock(), NavClock::kUnknown) << "the device's own";
@@ -70,7 +70,7 @@ TEST(A50, ReadsJsonInOurFramesAndAtTheTimeOfValidity) {
 }
 
 TEST(A50, OldReportsHaveTheSumOfTheirStepsAsTime) {
-  const NavFile nav = read(velocity("", "true") + velocity("", "true"));
+  const NavFile nav = read_as_a50(velocity("", "true") + velocity("", "true"));
   const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
   ASSERT_EQ(velocities.size(), 2U);
   EXPECT_NEAR(velocities[1].time_s - velocities[0].time_s, 0.1, 1e-12);
@@ -81,8 +81,8 @@ TEST(A50, ReadsTheSerialProtocolWithAnyLineEnd) {
       "wrz,0.120,-0.400,2.000,y,1.30,1.855,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,7,14,123.00,1*50\r"
       "wru,0,0.070,1.10,-40,-95*9c\n"
       "wrp,49056.809,0.41,0.15,1.23,0.4,53.9,13.0,19.3,0*de\r\n";
-  EXPECT_EQ(format_of(file_of(log).view()), Format::kDvlA50);
-  const NavFile nav = read(log);
+  EXPECT_EQ(format_of(a50_file(log).view()), Format::kDvlA50);
+  const NavFile nav = read_as_a50(log);
   EXPECT_EQ(nav.records, 3U);
   EXPECT_TRUE(nav.damage.empty());
   const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
@@ -97,9 +97,9 @@ TEST(A50, ReadsTheSerialProtocolWithAnyLineEnd) {
 
 TEST(A50, CountsDamageByKindAndPlace) {
   const std::string good = "wru,0,0.070,1.10,-40,-95*9c\n";
-  const NavFile nav =
-      read(good + "wru,1,0.070,1.10,-40,-95*9c\n" + velocity("", "true") + "{\"type\":\"velo\n" +
-           R"({"type":"velocity","vx":1,"vy":null,"vz":0,"velocity_valid":true})" + "\nnoise\n" + good + R"({"time":)");
+  const NavFile nav = read_as_a50(good + "wru,1,0.070,1.10,-40,-95*9c\n" + velocity("", "true") + "{\"type\":\"velo\n" +
+                                  R"({"type":"velocity","vx":1,"vy":null,"vz":0,"velocity_valid":true})" + "\nnoise\n" +
+                                  good + R"({"time":)");
   EXPECT_EQ(nav.records, 3U);
   ASSERT_EQ(nav.damage.size(), 4U);
   EXPECT_EQ(nav.damage[0].what, "wrong checksum");
@@ -108,10 +108,10 @@ TEST(A50, CountsDamageByKindAndPlace) {
   EXPECT_EQ(nav.damage[1].count, 2U);
   EXPECT_EQ(nav.damage[2].what, "report without its numbers");
   EXPECT_EQ(nav.damage[3].what, "cut off at the end");
-  EXPECT_FALSE(read_nav(file_of(good + "noise\n"), Damage::kFail));
+  EXPECT_FALSE(read_nav(a50_file(good + "noise\n"), Damage::kFail));
   // The vendor's example for water tracking has a wrong checksum.
   EXPECT_FALSE(
-      format_of(file_of("wrs,0.120,-0.400,2.000,y,1.855,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,7,14,123.00,1*50\n").view()));
+      format_of(a50_file("wrs,0.120,-0.400,2.000,y,1.855,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,7,14,123.00,1*50\n").view()));
 }
 
 TEST(A50, ReadsATableWithTheTimesOfTheHost) {
@@ -120,8 +120,8 @@ TEST(A50, ReadsATableWithTheTimesOfTheHost) {
       "1700000000.5,1,2,3,0.5,True,1000000,4000000\n"
       "1700000001.5,1,2,3,0.5,False,2000000,5000000\n"
       "1700000002,1,2,3\n";
-  EXPECT_EQ(format_of(file_of(log).view()), Format::kDvlA50);
-  const NavFile nav = read(log);
+  EXPECT_EQ(format_of(a50_file(log).view()), Format::kDvlA50);
+  const NavFile nav = read_as_a50(log);
   EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
   const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
   ASSERT_EQ(velocities.size(), 2U);

@@ -45,7 +45,7 @@ TEST(BtWords, OfABrickAreThoseOfItsOctants) {
       ASSERT_EQ(states_of(word).free, byte_of(free, octant));
       ASSERT_EQ(states_of(word).occupied, byte_of(occupied, octant));
       ASSERT_EQ(are_mixed[octant], is_uniform(word) ? 0 : 0xFFFF);
-      above |= (is_uniform(word) ? word & 3U : kInner) << (2 * octant);
+      above |= (is_uniform(word) ? word & 3U : bt::kInner) << (2 * octant);
       alike += is_uniform(word);
     }
     ASSERT_EQ(word_above(words, are_mixed), above);
@@ -66,7 +66,7 @@ TEST(BtWords, FillWholeOctants) {
 TEST(BtWords, NameTheirChildren) {
   for (unsigned word = 0; word <= 0xFFFF; ++word) {
     unsigned children = 0;
-    for (std::size_t octant = 0; octant < 8; ++octant) children += state_of(word, octant) != kUnknown;
+    for (std::size_t octant = 0; octant < 8; ++octant) children += state_of(word, octant) != bt::kUnknown;
     ASSERT_EQ(children_of(word), children);
   }
 }

@@ -33,7 +33,7 @@ PointScan cloud_in(const FileBytes& file, Damage damage = Damage::kFail) {
   return all.items.empty() ? PointScan{} : all.items[0];
 }
 
-std::string error_of(std::string_view text) {
+std::string cloud_error_of(std::string_view text) {
   return all_scans({"bad", bytes_of(text)}, Damage::kFail).error;
 }
 
@@ -60,8 +60,8 @@ TEST(PlyCloud, LeavesOutDamagedPointsAndNamesTheFirstWhenAsked) {
   EXPECT_EQ(all.skipped, 3U);
   ASSERT_EQ(all.items.size(), 1U);
   EXPECT_THAT(all.items[0].points_m, ElementsAre(Vector3d(1, 2, 3), Vector3d(4, 5, 6)));
-  EXPECT_EQ(error_of(head + body), "bad: line 9: is not a point of three finite numbers");
-  EXPECT_EQ(error_of(head + "1 2 3\n4 5 6\n"), "bad: end: holds 2 of 5 points");
+  EXPECT_EQ(cloud_error_of(head + body), "bad: line 9: is not a point of three finite numbers");
+  EXPECT_EQ(cloud_error_of(head + "1 2 3\n4 5 6\n"), "bad: end: holds 2 of 5 points");
   EXPECT_EQ(all_scans({"bad", bytes_of(head + "1 2 3\n4 5 6\n")}).items.at(0).points_m.size(), 2U);
 
   FileBytes file = sample("ply/little");
@@ -77,18 +77,20 @@ TEST(PlyCloud, RefusesWhatItsBytesDoNotHold) {
   EXPECT_THAT(all_scans(file).error, HasSubstr("3 vertices of 15 bytes do not fit into the 44 left"));
   const std::string binary = "ply\nformat binary_little_endian 1.0\n";
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
-  EXPECT_THAT(error_of(binary + "element vertex 18446744073709551615\n" + xyz + "end_header\n"), HasSubstr("fit"));
+  EXPECT_THAT(cloud_error_of(binary + "element vertex 18446744073709551615\n" + xyz + "end_header\n"),
+              HasSubstr("fit"));
+  EXPECT_THAT(cloud_error_of(binary + "element a 9223372036854775807\nproperty double b\nelement vertex 0\n" + xyz +
+                             "end_header\n"),
+              HasSubstr("ends before its vertices"));
   EXPECT_THAT(
-      error_of(binary + "element a 9223372036854775807\nproperty double b\nelement vertex 0\n" + xyz + "end_header\n"),
-      HasSubstr("ends before its vertices"));
-  EXPECT_THAT(error_of(binary + "element a 1\nproperty list uchar int b\nelement vertex 0\n" + xyz + "end_header\n"),
-              HasSubstr("lists before the vertices"));
-  EXPECT_THAT(error_of(binary + "element vertex 0\n" + xyz + "property list uchar int b\nend_header\n"),
+      cloud_error_of(binary + "element a 1\nproperty list uchar int b\nelement vertex 0\n" + xyz + "end_header\n"),
+      HasSubstr("lists before the vertices"));
+  EXPECT_THAT(cloud_error_of(binary + "element vertex 0\n" + xyz + "property list uchar int b\nend_header\n"),
               HasSubstr("vertices with lists"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n"),
+  EXPECT_THAT(cloud_error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n"),
               HasSubstr("no x, y and z"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nend_header\n"), HasSubstr("no vertices"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex x\n"), HasSubstr("line 3"));
+  EXPECT_THAT(cloud_error_of("ply\nformat ascii 1.0\nend_header\n"), HasSubstr("no vertices"));
+  EXPECT_THAT(cloud_error_of("ply\nformat ascii 1.0\nelement vertex x\n"), HasSubstr("line 3"));
 }
 
 TEST(XyzCloud, IsReadWithAnySeparatorAndAnythingBehind) {
@@ -104,7 +106,7 @@ TEST(XyzCloud, LeavesOutDamagedLinesAndNamesTheFirstWhenAsked) {
   const auto all = all_scans({"bad", bytes_of(text)});
   EXPECT_EQ(all.skipped, 4U);
   EXPECT_EQ(all.items.at(0).points_m.size(), 2U);
-  EXPECT_EQ(error_of(text), "bad: line 4: is not a point of three finite numbers");
+  EXPECT_EQ(cloud_error_of(text), "bad: line 4: is not a point of three finite numbers");
 }
 
 TEST(PcdCloud, IsReadAsText) {
@@ -152,7 +154,7 @@ TEST(PcdCloud, RefusesWhatItsBytesDoNotHold) {
   EXPECT_THAT(all_scans(file).error, HasSubstr("broken LZF data"));
 
   const std::string xyz = "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
-  const auto with = [&](std::string_view more) { return error_of(xyz + std::string(more)); };
+  const auto with = [&](std::string_view more) { return cloud_error_of(xyz + std::string(more)); };
   EXPECT_THAT(with("WIDTH 4294967296\nHEIGHT 4294967296\nDATA binary\n"), HasSubstr("no number of points"));
   EXPECT_THAT(with("POINTS 18446744073709551615\nDATA binary\n"), HasSubstr("do not fit into the 0 left"));
   EXPECT_THAT(with("POINTS 1000000\nDATA binary_compressed\n01234567890"), HasSubstr("do not fit"));
@@ -168,7 +170,7 @@ TEST(PcdCloud, RefusesWhatItsBytesDoNotHold) {
   EXPECT_THAT(with("SIZE 4 4 3\nPOINTS 0\nDATA ascii\n"), HasSubstr("the field z is of no type of number"));
   EXPECT_THAT(with("HIGHT 1\n"), HasSubstr("belongs in no header"));
   EXPECT_THAT(with(" , \n"), HasSubstr("belongs in no header"));
-  EXPECT_THAT(error_of("# .PCD\nFIELDS x y\nPOINTS 0\nDATA ascii\n"), HasSubstr("no x, y and z"));
+  EXPECT_THAT(cloud_error_of("# .PCD\nFIELDS x y\nPOINTS 0\nDATA ascii\n"), HasSubstr("no x, y and z"));
 }
 
 TEST(Cloud, IsSeenFromWhereTheCallerSays) {

@@ -14,6 +14,7 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
+#include "support/frames.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {
@@ -29,20 +30,14 @@ std::vector<std::uint8_t> layout() {
 }
 constexpr std::string_view kAttitude = "a39564 e1d8d60f00000000 f8ff f8ff c1ff c1ff 9153 9153 0000 0200 03";
 
-std::vector<std::uint8_t> joined(std::initializer_list<std::vector<std::uint8_t>> pieces) {
-  std::vector<std::uint8_t> bytes;
-  for (const auto& piece : pieces) bytes.insert(bytes.end(), piece.begin(), piece.end());
-  return bytes;
-}
-
-Result<NavFile> read(std::vector<std::uint8_t> bytes) {
+Result<NavFile> read_as_dataflash(std::vector<std::uint8_t> bytes) {
   return read_nav({"00000001.BIN", std::move(bytes)});
 }
 
 TEST(Dataflash, ReadsRecordsAsTheirLayoutSays) {
   const auto bytes = joined({layout(), from_hex(kAttitude)});
   EXPECT_EQ(format_of(bytes), Format::kDataflash);
-  const auto nav = read(bytes);
+  const auto nav = read_as_dataflash(bytes);
   ASSERT_TRUE(nav) << nav.error().message;
   EXPECT_EQ(nav->records, 2U);
   EXPECT_TRUE(nav->damage.empty());
@@ -57,7 +52,7 @@ TEST(Dataflash, ReadsRecordsAsTheirLayoutSays) {
 TEST(Dataflash, KeepsWhatIsWholeOfALogCutInARecord) {
   auto bytes = joined({layout(), from_hex(kAttitude), from_hex(kAttitude)});
   bytes.pop_back();
-  const auto nav = read(bytes);
+  const auto nav = read_as_dataflash(bytes);
   ASSERT_TRUE(nav);
   EXPECT_EQ(nav->records, 2U);
   ASSERT_EQ(nav->damage.size(), 1U);
@@ -68,7 +63,7 @@ TEST(Dataflash, KeepsWhatIsWholeOfALogCutInARecord) {
 TEST(Dataflash, StepsOverATypeWhoseLayoutDoesNotFit) {
   auto bytes = joined({layout(), from_hex(kAttitude), {0}, from_hex(kAttitude), {0}});
   bytes[4] = 0x1d;
-  const auto nav = read(bytes);
+  const auto nav = read_as_dataflash(bytes);
   ASSERT_TRUE(nav);
   EXPECT_EQ(nav->records, 3U);
   EXPECT_TRUE(nav->log.sources().empty());
@@ -78,7 +73,8 @@ TEST(Dataflash, StepsOverATypeWhoseLayoutDoesNotFit) {
 
 TEST(Dataflash, FindsTheNextRecordBehindStrayBytes) {
   // Among them what looks like the beginning of a record.
-  const auto nav = read(joined({layout(), from_hex("0102a3956403"), from_hex(kAttitude), from_hex(kAttitude)}));
+  const auto nav =
+      read_as_dataflash(joined({layout(), from_hex("0102a3956403"), from_hex(kAttitude), from_hex(kAttitude)}));
   ASSERT_TRUE(nav);
   EXPECT_EQ(nav->records, 3U);
   ASSERT_EQ(nav->damage.size(), 1U);

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
 /// Three columns, two rows: the lower one is free, unknown, occupied, the upper one unknown, free, free.
 Raster<Occupancy> slice() {
@@ -60,7 +60,7 @@ TEST(Grid, HasNoRoundingInItsLengthsAndNoExponent) {
 
 TEST(Heights, HaveTheirHighestRowFirstAndAValueForNone) {
   std::ostringstream out;
-  ASSERT_TRUE(write_heights_asc({2, 2, 0.5, {-1.0, 3.5}, {-1.5F, kNone, kNone, 0.25F}}, out));
+  ASSERT_TRUE(write_heights_asc({2, 2, 0.5, {-1.0, 3.5}, {-1.5F, kNoHeight, kNoHeight, 0.25F}}, out));
   EXPECT_EQ(
       out.str(),
       "ncols 2\nnrows 2\nxllcorner -1\nyllcorner 3.5\ncellsize 0.5\nNODATA_value -9999\n-9999 0.25\n-1.5 -9999\n");
@@ -68,7 +68,7 @@ TEST(Heights, HaveTheirHighestRowFirstAndAValueForNone) {
 
 TEST(Heights, BelowTheUsualValueForNoneAreNotTakenForIt) {
   std::ostringstream out;
-  ASSERT_TRUE(write_heights_asc({2, 1, 1.0, {0.0, 0.0}, {-9999.0F, kNone}}, out));
+  ASSERT_TRUE(write_heights_asc({2, 1, 1.0, {0.0, 0.0}, {-9999.0F, kNoHeight}}, out));
   EXPECT_THAT(out.str(), HasSubstr("NODATA_value -3.4e+38\n-9999 -3.4e+38\n"));
 }
 

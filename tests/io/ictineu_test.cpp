@@ -21,7 +21,7 @@
 namespace pingvox {
 namespace {
 
-FileBytes file_of(const std::string& text) {
+FileBytes ictineu_file(const std::string& text) {
   return {"nav.log", {text.begin(), text.end()}};
 }
 
@@ -40,12 +40,12 @@ constexpr const char* kDvl =
     "102 2007 3\n";
 
 TEST(Ictineu, TheDvlIsTurnedIntoTheVehicleAndSaysWhenItHasNoBottom) {
-  EXPECT_EQ(format_of(file_of(kDvl).view()), Format::kIctineu);
-  const auto nav = read_nav(file_of(kDvl));
+  EXPECT_EQ(format_of(ictineu_file(kDvl).view()), Format::kIctineu);
+  const auto nav = read_nav(ictineu_file(kDvl));
   ASSERT_TRUE(nav) << nav.error().message;
   EXPECT_EQ(nav->records, 2U);
   ASSERT_EQ(nav->damage.size(), 1U);
-  EXPECT_FALSE(read_nav(file_of(kDvl), Damage::kFail));
+  EXPECT_FALSE(read_nav(ictineu_file(kDvl), Damage::kFail));
   const NavSource& velocity = source_of(*nav, NavQuantity::kVelocity);
   ASSERT_EQ(velocity.samples.size(), 2U);
   // Half ahead, and to the right, which is negative.
@@ -60,7 +60,7 @@ TEST(Ictineu, TheMtiIsTurnedIntoTheVehicle) {
   // The instrument heads 86 degrees, to the right of a vehicle that heads north, and is rolled by 10 degrees: right
   // side down, so the vehicle's stern is. It turns right, and rolls.
   const auto nav =
-      read_nav(file_of("% time, [idSensor], positionX, velocityX, accelerationX\n1 10 0 86 0.1 0 0.2 0 0 -9.8\n"));
+      read_nav(ictineu_file("% time, [idSensor], positionX, velocityX, accelerationX\n1 10 0 86 0.1 0 0.2 0 0 -9.8\n"));
   ASSERT_TRUE(nav) << nav.error().message;
   const Eigen::Vector3d attitude = source_of(*nav, NavQuantity::kAttitude).samples[0].value;
   // Nearly 90 degrees apart: the instrument's roll is the vehicle's pitch but for 4 degrees. REP-103: bow up is
@@ -76,9 +76,9 @@ TEST(Ictineu, TheMtiIsTurnedIntoTheVehicle) {
 
 TEST(Ictineu, FixesAreDegreesAndMinutesInOneNumber) {
   const auto nav = read_nav(
-      file_of("% UTM:  36\n% time, [idSensor], latitude, longitude, status, altitude(m)\n"
-              "1 4212.225 -306.2832 1 -2.1 51.8 23.6 24 0.1 0.1\n2 4212.225 306.2832 0 -2.1 51.8 23.6 24 0.1 0.1\n"
-              "3 9912.225 306.2832 1 -2.1 51.8 23.6 24 0.1 0.1\n"));
+      ictineu_file("% UTM:  36\n% time, [idSensor], latitude, longitude, status, altitude(m)\n"
+                   "1 4212.225 -306.2832 1 -2.1 51.8 23.6 24 0.1 0.1\n2 4212.225 306.2832 0 -2.1 51.8 23.6 24 0.1 0.1\n"
+                   "3 9912.225 306.2832 1 -2.1 51.8 23.6 24 0.1 0.1\n"));
   ASSERT_TRUE(nav) << nav.error().message;
   const NavSource& fixes = source_of(*nav, NavQuantity::kFix);
   ASSERT_EQ(fixes.samples.size(), 2U);

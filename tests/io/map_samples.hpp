@@ -17,15 +17,12 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/occupancy_map.hpp"
+#include "support/logs.hpp"
 
 // Maps, and their bytes, for the tests of the readers and writers of maps.
 namespace pingvox::samples {
 
 using Bytes = std::vector<std::uint8_t>;
-
-inline Bytes bytes_of(std::string_view text) {
-  return {text.begin(), text.end()};
-}
 
 /// From hex digits; anything else between them is left out.
 inline Bytes bytes_of_hex(std::string_view hex) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "support/frames.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {
@@ -13,9 +14,9 @@ namespace {
 using Check = MavlinkFrame::Check;
 
 // Frames that a vehicle sent (BlueROV2, 2023) or, the third, an aeroplane by MAVLink 1.
-constexpr std::string_view kAttitude =
+constexpr std::string_view kAttitudeFrame =
     "fd1c0000ec01011e0000 53840a00 9c11c7bc 2b3eca3c a04516c0 1673bfbc 590e303c 070737ba 07ba";
-constexpr std::string_view kPressure = "fd0e0000d70101890000 17840a00 33f37d44 00000000 dd04 f85f";
+constexpr std::string_view kPressureFrame = "fd0e0000d70101890000 17840a00 33f37d44 00000000 dd04 f85f";
 constexpr std::string_view kAttitude1 =
     "fe1c3e01011e 76af0000 f029583c 00c0d3b8 c1a4bdbf 4c9fb4ba c83d093b 5bb21bbb 046a";
 constexpr std::string_view kCutDistance = "fd160000f501c2840000 2344030014008813c70f010119ffb81e053fb81e053f b32f";
@@ -33,14 +34,8 @@ std::vector<std::uint32_t> messages_in(std::span<const std::uint8_t> bytes) {
   return messages;
 }
 
-std::vector<std::uint8_t> joined(std::initializer_list<std::vector<std::uint8_t>> pieces) {
-  std::vector<std::uint8_t> bytes;
-  for (const auto& piece : pieces) bytes.insert(bytes.end(), piece.begin(), piece.end());
-  return bytes;
-}
-
 TEST(Mavlink, ReadsBothVersions) {
-  const MavlinkRead two = read_mavlink(from_hex(kAttitude));
+  const MavlinkRead two = read_mavlink(from_hex(kAttitudeFrame));
   ASSERT_TRUE(two.frame);
   EXPECT_EQ(two.frame->check, Check::kRight);
   EXPECT_EQ(two.length, 40U);
@@ -64,7 +59,7 @@ TEST(Mavlink, TakesAChecksumOfThePaddedPayload) {
 }
 
 TEST(Mavlink, DropsFramesWithFlagsThatItDoesNotKnow) {
-  auto bytes = from_hex(kAttitude);
+  auto bytes = from_hex(kAttitudeFrame);
   bytes[2] = 0x02;
   const MavlinkRead read = read_mavlink(bytes);
   EXPECT_FALSE(read.frame);
@@ -72,7 +67,7 @@ TEST(Mavlink, DropsFramesWithFlagsThatItDoesNotKnow) {
 }
 
 TEST(Mavlink, CountsTheSignatureToTheFrame) {
-  auto bytes = from_hex(kAttitude);
+  auto bytes = from_hex(kAttitudeFrame);
   bytes[2] = 0x01;
   EXPECT_TRUE(read_mavlink(bytes).is_cut);
   bytes.resize(bytes.size() + 13);
@@ -80,7 +75,7 @@ TEST(Mavlink, CountsTheSignatureToTheFrame) {
 }
 
 TEST(Mavlink, EachFlippedBitMakesAFrameWrong) {
-  for (const std::string_view hex : {kAttitude, kPressure, kAttitude1}) {
+  for (const std::string_view hex : {kAttitudeFrame, kPressureFrame, kAttitude1}) {
     const auto right = from_hex(hex);
     for (std::size_t bit = 0; bit < right.size() * 8; ++bit) {
       auto bytes = right;
@@ -95,7 +90,7 @@ TEST(Mavlink, EachFlippedBitMakesAFrameWrong) {
 }
 
 TEST(Mavlink, TellsABeginningOfAFrameFromAWholeOne) {
-  for (const std::string_view hex : {kAttitude, kPressure, kAttitude1, kCutDistance}) {
+  for (const std::string_view hex : {kAttitudeFrame, kPressureFrame, kAttitude1, kCutDistance}) {
     const auto whole = from_hex(hex);
     const std::span<const std::uint8_t> bytes(whole);
     for (std::size_t size = 1; size < bytes.size(); ++size) {
@@ -108,7 +103,7 @@ TEST(Mavlink, TellsABeginningOfAFrameFromAWholeOne) {
 }
 
 TEST(Mavlink, AFlippedBitCostsOneFrame) {
-  const auto before = from_hex(kPressure), damaged = from_hex(kAttitude), behind = from_hex(kAttitude1);
+  const auto before = from_hex(kPressureFrame), damaged = from_hex(kAttitudeFrame), behind = from_hex(kAttitude1);
   for (std::size_t bit = 0; bit < damaged.size() * 8; ++bit) {
     auto bytes = joined({from_hex("fe00fd"), before, damaged, behind});
     std::uint8_t& byte = bytes[3 + before.size() + bit / 8];

@@ -25,7 +25,7 @@ TriangleMesh sample(const std::string& name) {
   return mesh.value_or(TriangleMesh{});
 }
 
-std::string error_of(const std::string& text) {
+std::string mesh_error_of(const std::string& text) {
   const auto mesh = read_mesh({"bad", {text.begin(), text.end()}});
   return mesh ? "" : mesh.error().message;
 }
@@ -71,24 +71,26 @@ TEST(Mesh, ReadsPlyInAllThreeFormsAndStepsOverWhatItDoesNotKnow) {
 }
 
 TEST(Mesh, SaysWhereAFileIsBroken) {
-  EXPECT_THAT(error_of(""), HasSubstr("bad: is no mesh"));
-  EXPECT_THAT(error_of("time_s,bearing_rad\n"), HasSubstr("is no mesh"));
-  EXPECT_THAT(error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"), HasSubstr("vertex 2"));
-  EXPECT_THAT(error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), HasSubstr("corner 3 of 3 vertices"));
-  EXPECT_THAT(error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), HasSubstr("line 6: a face of 2 corners"));
-  EXPECT_THAT(error_of("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), HasSubstr("no triangle"));
-  EXPECT_THAT(error_of("OFF\n18446744073709551615 1 0\n0 0 0\n"), HasSubstr("vertex 1"));
-  EXPECT_THAT(error_of("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
+  EXPECT_THAT(mesh_error_of(""), HasSubstr("bad: is no mesh"));
+  EXPECT_THAT(mesh_error_of("time_s,bearing_rad\n"), HasSubstr("is no mesh"));
+  EXPECT_THAT(mesh_error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"), HasSubstr("vertex 2"));
+  EXPECT_THAT(mesh_error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), HasSubstr("corner 3 of 3 vertices"));
+  EXPECT_THAT(mesh_error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), HasSubstr("line 6: a face of 2 corners"));
+  EXPECT_THAT(mesh_error_of("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), HasSubstr("no triangle"));
+  EXPECT_THAT(mesh_error_of("OFF\n18446744073709551615 1 0\n0 0 0\n"), HasSubstr("vertex 1"));
+  EXPECT_THAT(mesh_error_of("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
               HasSubstr("line 6: a facet of 2 corners"));
-  EXPECT_THAT(error_of("solid\nvertex 0 0\n"), HasSubstr("a vertex is broken"));
-  EXPECT_THAT(error_of("solid\nhello\n"), HasSubstr("'hello'"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\n"), HasSubstr("header has no end"));
-  EXPECT_THAT(error_of("ply\nelement vertex 0\nend_header\n"), HasSubstr("format was not said"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n"), HasSubstr("line 4"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                       "4000000000 0\n"),
-              HasSubstr("face 0: the list ends early"));
-  EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 9999999999999\nend_header\n"), HasSubstr("no triangle"))
+  EXPECT_THAT(mesh_error_of("solid\nvertex 0 0\n"), HasSubstr("a vertex is broken"));
+  EXPECT_THAT(mesh_error_of("solid\nhello\n"), HasSubstr("'hello'"));
+  EXPECT_THAT(mesh_error_of("ply\nformat ascii 1.0\nelement vertex 1\n"), HasSubstr("header has no end"));
+  EXPECT_THAT(mesh_error_of("ply\nelement vertex 0\nend_header\n"), HasSubstr("format was not said"));
+  EXPECT_THAT(mesh_error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n"), HasSubstr("line 4"));
+  EXPECT_THAT(
+      mesh_error_of("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                    "4000000000 0\n"),
+      HasSubstr("face 0: the list ends early"));
+  EXPECT_THAT(mesh_error_of("ply\nformat ascii 1.0\nelement vertex 9999999999999\nend_header\n"),
+              HasSubstr("no triangle"))
       << "elements without properties take no time, however many";
 }
 

@@ -12,7 +12,7 @@
 namespace pingvox {
 namespace {
 
-Result<NavFile> read(std::string_view text, Damage damage = Damage::kSkip) {
+Result<NavFile> read_as_csv(std::string_view text, Damage damage = Damage::kSkip) {
   return read_nav({"nav.csv", bytes_of(text)}, damage);
 }
 
@@ -23,7 +23,7 @@ TEST(NavCsv, TakesColumnsByNameAndLeavesOutUnknownOnes) {
       "velocity,a,1.5,dvl,1,-2,0.5,0.1,,0.3,0\n"
       "depth,b,2,bar,3,,,,,,\n";
   EXPECT_EQ(format_of(bytes_of(text)), Format::kNavCsv);
-  const auto nav = read(text);
+  const auto nav = read_as_csv(text);
   ASSERT_TRUE(nav) << nav.error().message;
   EXPECT_EQ(nav->log.clock(), NavClock::kBoot);
   ASSERT_EQ(nav->log.sources().size(), 2U);
@@ -42,17 +42,17 @@ TEST(NavCsv, TheClockIsInAnyCommentAboveTheColumns) {
   constexpr std::string_view kSamples = "time_s,source,quantity,x,y,z\n1,dvl,velocity,1,2,3\n";
   for (const std::string_view comments :
        {"\xef\xbb\xbf# clock: unix\n", "# clock: unix,,,,,\r\n", "\n# a dive\n# clock: unix\n"}) {
-    const auto nav = read(fmt::format("{}{}", comments, kSamples));
+    const auto nav = read_as_csv(fmt::format("{}{}", comments, kSamples));
     ASSERT_TRUE(nav) << nav.error().message;
     EXPECT_EQ(nav->log.clock(), NavClock::kUnix) << comments;
   }
-  const auto nav = read(fmt::format("{}# clock: unix\n", kSamples));
+  const auto nav = read_as_csv(fmt::format("{}# clock: unix\n", kSamples));
   ASSERT_TRUE(nav);
   EXPECT_EQ(nav->log.clock(), NavClock::kUnknown) << "below the samples";
 }
 
 TEST(NavCsv, LeavesOutLinesThatAreNoSample) {
-  const auto nav = read(
+  const auto nav = read_as_csv(
       "time_s,source,quantity,x,y,z\n"
       "1,dvl,velocity,1,2\n"
       "nan,dvl,velocity,1,2,3\n"
@@ -85,7 +85,7 @@ TEST(NavCsv, ReadsBackWhatItWrote) {
   ASSERT_TRUE(log);
   std::stringstream text;
   ASSERT_EQ(write_nav_csv(*log, text).value_or(0), 200U);
-  const auto back = read(text.str());
+  const auto back = read_as_csv(text.str());
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->log.clock(), NavClock::kUnix);
   ASSERT_EQ(back->log.sources().size(), 2U);

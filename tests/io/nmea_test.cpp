@@ -16,12 +16,12 @@
 namespace pingvox {
 namespace {
 
-FileBytes file_of(const std::string& text) {
+FileBytes nmea_file(const std::string& text) {
   return {"topside.txt", {text.begin(), text.end()}};
 }
 
-NavFile read(const std::string& text) {
-  auto nav = read_nav(file_of(text));
+NavFile read_as_nmea(const std::string& text) {
+  auto nav = read_nav(nmea_file(text));
   EXPECT_TRUE(nav) << nav.error().message;
   return nav ? *std::move(nav) : NavFile{*NavLog::make({}, NavClock::kUnknown), 0, {}};
 }
@@ -44,8 +44,8 @@ TEST(Nmea, ReadsFixesBetweenOtherText) {
       "2023-09-01 15:56:44.5 | INFO | costs $5, says *hello*\n\n"
       "2023-09-01 15:56:44.6 | DEBUG | recv - $GPGGA,225645.000,4736.4517768,N,12220.4723713,W,1,19,0.9,8.378,M,-20.815"
       ",M,,*66\n";
-  EXPECT_EQ(format_of(file_of(log).view()), Format::kNmea);
-  const NavFile nav = read(log);
+  EXPECT_EQ(format_of(nmea_file(log).view()), Format::kNmea);
+  const NavFile nav = read_as_nmea(log);
   EXPECT_EQ(nav.records, 1U);
   EXPECT_TRUE(nav.damage.empty());
   EXPECT_EQ(nav.log.clock(), NavClock::kUnknown) << "a time of day alone";
@@ -58,9 +58,9 @@ TEST(Nmea, ReadsFixesBetweenOtherText) {
 }
 
 TEST(Nmea, TakesTheDayFromTheNearestDateAndRollsItAtMidnight) {
-  const NavFile nav = read(std::string("$GPHDT,90.0,T*0C\r\n") + kRmc +
-                           "$GPGGA,000000.50,4736.4517,N,12220.4723,W,1,19,0.9,8.378,M,-20.8,M,,*59\r\n"
-                           "$GPGGA,000000.50,4736.4517,S,12220.4723,E,0,00,,,M,,M,,*6B\r\n");
+  const NavFile nav = read_as_nmea(std::string("$GPHDT,90.0,T*0C\r\n") + kRmc +
+                                   "$GPGGA,000000.50,4736.4517,N,12220.4723,W,1,19,0.9,8.378,M,-20.8,M,,*59\r\n"
+                                   "$GPGGA,000000.50,4736.4517,S,12220.4723,E,0,00,,,M,,M,,*6B\r\n");
   EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
   EXPECT_DOUBLE_EQ(samples_of(nav, "GPRMC").at(0).time_s, kRmc_s);
   EXPECT_DOUBLE_EQ(samples_of(nav, "GPGGA").at(0).time_s, kRmc_s + 1.0);
@@ -74,36 +74,36 @@ TEST(Nmea, TakesTheDayFromTheNearestDateAndRollsItAtMidnight) {
 // Kills a log that begins decades before its dive, and one whose only dates are thrown away.
 TEST(Nmea, ADateWithoutAFixCountsWhereThereIsNoOther) {
   const std::string cold = "$GPRMC,000002.00,V,,,,,,,060180,,,N*70\r\n$GPHDT,90.0,T*0C\r\n";
-  const NavFile nav = read(cold + kRmc + "$GPHDT,90.0,T*0C\r\n");
+  const NavFile nav = read_as_nmea(cold + kRmc + "$GPHDT,90.0,T*0C\r\n");
   EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
   EXPECT_DOUBLE_EQ(samples_of(nav, "GPRMC").at(0).time_s, kRmc_s);
   EXPECT_NEAR(samples_of(nav, "GPHDT").at(0).time_s, kRmc_s, 43'200.0) << "a heading of a receiver that starts";
-  const NavFile under_water = read("$GPRMC,235957.50,V,,,,,,,311223,,,N*77\r\n$GPHDT,90.0,T*0C\r\n");
+  const NavFile under_water = read_as_nmea("$GPRMC,235957.50,V,,,,,,,311223,,,N*77\r\n$GPHDT,90.0,T*0C\r\n");
   EXPECT_EQ(under_water.log.clock(), NavClock::kUnix);
   EXPECT_DOUBLE_EQ(samples_of(under_water, "GPHDT").at(0).time_s, kRmc_s - 2.0);
 }
 
 // Kills headings that vanish without a word.
 TEST(Nmea, ALogWithoutAnyTimeIsTold) {
-  const NavFile nav = read("$GPHDT,90.0,T*0C\r\n");
+  const NavFile nav = read_as_nmea("$GPHDT,90.0,T*0C\r\n");
   EXPECT_TRUE(nav.log.sources().empty());
   ASSERT_EQ(nav.damage.size(), 1U);
   EXPECT_EQ(nav.damage[0].what, "sample of a log without any time");
   EXPECT_EQ(nav.damage[0].count, 1U);
-  EXPECT_TRUE(read("$GPGSA,A,1,,,,,,,,,,,,,,,*1E\r\n").damage.empty()) << "no navigation";
+  EXPECT_TRUE(read_as_nmea("$GPGSA,A,1,,,,,,,,,,,,,,,*1E\r\n").damage.empty()) << "no navigation";
 }
 
 TEST(Nmea, WhatIsEmptyIsNotZero) {
-  const NavFile nav = read(std::string(kRmc) + "$HEHDT,,T*01\r\n$GNRMC,000001.00,V,,,,,,,010124,,,N*64\r\n");
+  const NavFile nav = read_as_nmea(std::string(kRmc) + "$HEHDT,,T*01\r\n$GNRMC,000001.00,V,,,,,,,010124,,,N*64\r\n");
   EXPECT_EQ(nav.records, 3U);
   EXPECT_TRUE(nav.damage.empty());
   EXPECT_EQ(nav.log.sources().size(), 1U);
 }
 
 TEST(Nmea, ReadsCompassSounderAndLog) {
-  const NavFile nav = read(std::string(kRmc) +
-                           "$IIHDG,10.0,2.0,W,5.0,E*6D\r\n$SDDBT,30.0,f,9.1,M,5.0,F*38\r\n$SDDPT,3.5,0.2*53\r\n"
-                           "$VDVBW,,,V,2.0,1.0,A*45\r\n$YXMTW,12.5,C*14\r\n");
+  const NavFile nav = read_as_nmea(std::string(kRmc) +
+                                   "$IIHDG,10.0,2.0,W,5.0,E*6D\r\n$SDDBT,30.0,f,9.1,M,5.0,F*38\r\n$SDDPT,3.5,0.2*53\r\n"
+                                   "$VDVBW,,,V,2.0,1.0,A*45\r\n$YXMTW,12.5,C*14\r\n");
   EXPECT_NEAR(samples_of(nav, "IIHDG").at(0).value.x(), 77 * kDegree_rad, 1e-12) << "10 - 2 + 5 from north";
   EXPECT_EQ(samples_of(nav, "SDDBT").at(0).value.x(), 9.1) << "metres, not feet";
   EXPECT_EQ(samples_of(nav, "SDDPT").at(0).value.x(), 3.5);
@@ -117,7 +117,8 @@ TEST(Nmea, CountsDamageByKindAndPlace) {
   std::string wrong = kRmc;
   wrong[20] = '8';
   const std::string cut = "$GPGGA,000000.50,4736.45";
-  const NavFile nav = read(kRmc + wrong + cut + kRmc + "$GPGLL,9136.45,N,12220.47,W,000001.00,A*1B\r\n$GPHDT,9");
+  const NavFile nav =
+      read_as_nmea(kRmc + wrong + cut + kRmc + "$GPGLL,9136.45,N,12220.47,W,000001.00,A*1B\r\n$GPHDT,9");
   EXPECT_EQ(nav.records, 3U);
   EXPECT_EQ(samples_of(nav, "GPRMC").size(), 2U) << "one behind a sentence that was cut";
   EXPECT_TRUE(samples_of(nav, "GPGLL").empty()) << "no place on the earth";
@@ -129,7 +130,7 @@ TEST(Nmea, CountsDamageByKindAndPlace) {
   EXPECT_EQ(nav.damage[2].what, "cut off at the end");
 }
 
-struct Recording {
+struct NmeaRecording {
   const char* file;
   std::size_t sentences;
   NavClock clock;
@@ -137,7 +138,7 @@ struct Recording {
   double from_s;
 };
 
-class RealNmea : public testing::TestWithParam<Recording> {};
+class RealNmea : public testing::TestWithParam<NmeaRecording> {};
 
 TEST_P(RealNmea, HasAsManySentencesAsItsReadmeSays) {
   const auto path = std::filesystem::path(PINGVOX_SHARED_DATA) / "nmea-topside" / GetParam().file;
@@ -162,10 +163,11 @@ INSTANTIATE_TEST_SUITE_P(
     Recordings, RealNmea,
     // 2023-09-01 22:56:44 UTC; 2019-09-12 20:36:37 UTC; a USBL alone has no time.
     testing::Values(
-        Recording{"ugps_nmea_log_2023-09-01.txt", 274, NavClock::kUnix, {{"GPRMC", 129}, {"GPGGA", 16}}, 1693609004.0},
-        Recording{
+        NmeaRecording{
+            "ugps_nmea_log_2023-09-01.txt", 274, NavClock::kUnix, {{"GPRMC", 129}, {"GPGGA", 16}}, 1693609004.0},
+        NmeaRecording{
             "raw_gps_data.txt", 1724, NavClock::kUnix, {{"GNRMC", 154}, {"GNGGA", 154}, {"GNGLL", 154}}, 1568320597.0},
-        Recording{"raw_rth_data.txt", 90, NavClock::kUnknown, {}, 0.0}));
+        NmeaRecording{"raw_rth_data.txt", 90, NavClock::kUnknown, {}, 0.0}));
 
 }  // namespace
 }  // namespace pingvox

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// 4 samples at angle 150; its checksum is 1414.
-const std::string kPing =
+const std::string kPrintedPing =
     "\"<bound method PingMessage.unpack_msg_data of \r\n\r\n"
     "--------------------------------------------------\r\n"
     "ID: 2300 - device_data\r\n"
@@ -44,8 +44,8 @@ ReadResult<Beam> beams_of_text(const std::string& text, Damage damage = Damage::
 }
 
 TEST(PingText, IsReadAsTheFrameThatWasPrinted) {
-  EXPECT_EQ(format_of(bytes_of(kPing)), Format::kPingText);
-  const auto all = beams_of_text(kPing + kPing);
+  EXPECT_EQ(format_of(bytes_of(kPrintedPing)), Format::kPingText);
+  const auto all = beams_of_text(kPrintedPing + kPrintedPing);
   EXPECT_EQ(all.error, "");
   EXPECT_EQ(all.skipped, 0U);
   ASSERT_EQ(all.items.size(), 2U);
@@ -57,18 +57,18 @@ TEST(PingText, IsReadAsTheFrameThatWasPrinted) {
 
 // Times of a printed log are not times of the dive: kills navigation that is joined to them.
 TEST(PingText, HasNoClock) {
-  const auto source = open_beams({"print.txt", bytes_of(kPing)});
+  const auto source = open_beams({"print.txt", bytes_of(kPrintedPing)});
   ASSERT_TRUE(source);
   EXPECT_EQ((*source)->clock(), BeamClock::kNone);
 }
 
 TEST(PingText, WhatDoesNotFitItsChecksumIsSkipped) {
   for (const auto& [what, with] : {std::pair{"0x98", "0x99"}, {"angle: 150", "angle: 151"}, {"1414", "1415"}}) {
-    const auto all = beams_of_text(kPing + replaced(kPing, what, with) + kPing);
+    const auto all = beams_of_text(kPrintedPing + replaced(kPrintedPing, what, with) + kPrintedPing);
     EXPECT_EQ(all.items.size(), 2U) << with;
     EXPECT_EQ(all.skipped, 1U) << with;
   }
-  const std::string damaged = kPing + replaced(kPing, "0x98", "0x99");
+  const std::string damaged = kPrintedPing + replaced(kPrintedPing, "0x98", "0x99");
   EXPECT_EQ(beams_of_text(damaged, Damage::kFail).error,
             "print.txt: byte " + std::to_string(damaged.rfind("ID: 2300")) + ": wrong checksum");
 }
@@ -84,22 +84,22 @@ TEST(PingText, ALineThatCannotBeReadCostsItsPingAndIsTold) {
                                    {"  - mode: 0\r\n", ""},
                                    {"  - data_length: 4\r\n", ""},
                                    {"Checksum: 1414", "Checksum: ?"}}) {
-    const std::string damaged = replaced(kPing, what, with);
-    const auto source = open_beams({"print.txt", bytes_of(kPing + damaged + kPing)});
+    const std::string damaged = replaced(kPrintedPing, what, with);
+    const auto source = open_beams({"print.txt", bytes_of(kPrintedPing + damaged + kPrintedPing)});
     ASSERT_TRUE(source);
     EXPECT_EQ(read_all(**source)->size(), 2U) << with;
     ASSERT_EQ((*source)->damage().size(), 1U) << with;
     EXPECT_EQ((*source)->damage()[0].what, "line that cannot be read");
-    EXPECT_GT((*source)->damage()[0].first_byte, kPing.size());
+    EXPECT_GT((*source)->damage()[0].first_byte, kPrintedPing.size());
   }
 }
 
 TEST(PingText, APingThatBreaksOffCostsNoOther) {
-  for (std::size_t size = kPing.find("ID:") + 9; size < kPing.find("Checksum:"); size += 3) {
-    const auto all = beams_of_text(kPing + kPing.substr(0, size) + "\n" + kPing);
+  for (std::size_t size = kPrintedPing.find("ID:") + 9; size < kPrintedPing.find("Checksum:"); size += 3) {
+    const auto all = beams_of_text(kPrintedPing + kPrintedPing.substr(0, size) + "\n" + kPrintedPing);
     ASSERT_EQ(all.items.size(), 2U) << "broken off after " << size;
     ASSERT_GT(all.skipped, 0U) << size;
-    ASSERT_EQ(beams_of_text(kPing + kPing.substr(0, size)).items.size(), 1U);
+    ASSERT_EQ(beams_of_text(kPrintedPing + kPrintedPing.substr(0, size)).items.size(), 1U);
   }
 }
 
@@ -107,7 +107,7 @@ TEST(PingText, OtherMessagesAreNoBeams) {
   const std::string other =
       "ID: 4 - device_information\nHeader: start_1: 66 start_2: 82 payload_length: 6\nPayload:\n  - device_type: 2\n"
       "Checksum: 234 check: 234 pass: True\n";
-  const auto all = beams_of_text(kPing + "\n" + other + kPing);
+  const auto all = beams_of_text(kPrintedPing + "\n" + other + kPrintedPing);
   EXPECT_EQ(all.items.size(), 2U);
   EXPECT_EQ(all.skipped, 0U);
 }

@@ -17,18 +17,19 @@ namespace pingvox {
 namespace {
 
 // Records that a ground station wrote (BlueROV2, 2023-05-04).
-constexpr std::string_view kAttitude =
+constexpr std::string_view kTimedAttitude =
     "0005fae152744f08 fd1c0000ec01011e0000 53840a00 9c11c7bc 2b3eca3c a04516c0 1673bfbc 590e303c 070737ba 07ba";
 constexpr std::string_view kPosition =
     "0005fae1527452f0 fd1c0000160101210000 c1840a00 ad23d71c 40e2b6b5 14000000 1c000000 0e00 0500 0700 1358 fdfc";
-constexpr std::string_view kPressure = "0005fae15272fb30 fd0e0000d70101890000 17840a00 33f37d44 00000000 dd04 f85f";
+constexpr std::string_view kTimedPressure =
+    "0005fae15272fb30 fd0e0000d70101890000 17840a00 33f37d44 00000000 dd04 f85f";
 
-Result<NavFile> read(std::vector<std::uint8_t> bytes, Damage damage = Damage::kSkip) {
+Result<NavFile> read_as_tlog(std::vector<std::uint8_t> bytes, Damage damage = Damage::kSkip) {
   return read_nav({"dive.tlog", std::move(bytes)}, damage);
 }
 
-std::vector<std::uint8_t> golden() {
-  return from_hex(std::string(kPressure) + std::string(kAttitude) + std::string(kPosition));
+std::vector<std::uint8_t> golden_tlog() {
+  return from_hex(std::string(kTimedPressure) + std::string(kTimedAttitude) + std::string(kPosition));
 }
 
 const NavSource* source_of(const NavLog& log, std::string_view name, NavQuantity quantity) {
@@ -39,8 +40,8 @@ const NavSource* source_of(const NavLog& log, std::string_view name, NavQuantity
 }
 
 TEST(Tlog, TurnsWhatAVehicleSaidIntoOurFrames) {
-  EXPECT_EQ(format_of(golden()), Format::kTlog);
-  const auto nav = read(golden());
+  EXPECT_EQ(format_of(golden_tlog()), Format::kTlog);
+  const auto nav = read_as_tlog(golden_tlog());
   ASSERT_TRUE(nav) << nav.error().message;
   EXPECT_EQ(nav->records, 3U);
   EXPECT_TRUE(nav->damage.empty());
@@ -66,7 +67,7 @@ TEST(Tlog, TurnsWhatAVehicleSaidIntoOurFrames) {
 }
 
 TEST(Tlog, PutsSamplesWhereTheirSenderMadeThemNotWhereTheyArrived) {
-  const auto nav = read(golden());
+  const auto nav = read_as_tlog(golden_tlog());
   ASSERT_TRUE(nav);
   // All three carry the sender's own clock: their distances are those of that clock.
   const double pressure_s = source_of(nav->log, "SCALED_PRESSURE2", NavQuantity::kPressure)->samples[0].time_s;
@@ -78,46 +79,46 @@ TEST(Tlog, PutsSamplesWhereTheirSenderMadeThemNotWhereTheyArrived) {
 }
 
 TEST(Tlog, StepsOverDamageAndSaysWhere) {
-  auto flipped = golden();
-  const std::size_t first = from_hex(kPressure).size();
+  auto flipped = golden_tlog();
+  const std::size_t first = from_hex(kTimedPressure).size();
   flipped[first + 20] ^= 1;
-  const auto one_lost = read(flipped);
+  const auto one_lost = read_as_tlog(flipped);
   ASSERT_TRUE(one_lost);
   EXPECT_EQ(one_lost->records, 2U);
   ASSERT_EQ(one_lost->damage.size(), 1U);
   EXPECT_EQ(one_lost->damage[0].what, "wrong checksum");
   EXPECT_EQ(one_lost->damage[0].first_byte, first);
 
-  auto stray = golden();
+  auto stray = golden_tlog();
   stray.insert(stray.begin() + static_cast<std::ptrdiff_t>(first), {1, 2, 3, 4, 5});
-  const auto all = read(stray);
+  const auto all = read_as_tlog(stray);
   ASSERT_TRUE(all);
   EXPECT_EQ(all->records, 3U);
   ASSERT_EQ(all->damage.size(), 1U);
   EXPECT_EQ(all->damage[0].what, "bytes between records");
 
-  auto cut = golden();
+  auto cut = golden_tlog();
   cut.resize(cut.size() - 3);
-  const auto without_last = read(cut);
+  const auto without_last = read_as_tlog(cut);
   ASSERT_TRUE(without_last);
   EXPECT_EQ(without_last->records, 2U);
   ASSERT_EQ(without_last->damage.size(), 1U);
   EXPECT_EQ(without_last->damage[0].what, "cut off at the end");
   EXPECT_EQ(without_last->damage[0].first_byte, cut.size() - 45);
 
-  const auto strict = read(cut, Damage::kFail);
+  const auto strict = read_as_tlog(cut, Damage::kFail);
   ASSERT_FALSE(strict);
   EXPECT_THAT(strict.error().message, testing::StartsWith("dive.tlog: byte "));
 }
 
-struct Recording {
+struct TlogRecording {
   const char* file;
   std::size_t frames;  ///< right ones, and those of messages that we do not check
   std::size_t right_padded;
   std::map<std::uint32_t, std::size_t> messages;
 };
 
-class RealTlog : public testing::TestWithParam<Recording> {};
+class RealTlog : public testing::TestWithParam<TlogRecording> {};
 
 TEST_P(RealTlog, HasAsManyFramesAsItsReadmeSays) {
   const std::filesystem::path path = std::filesystem::path(PINGVOX_SHARED_DATA) / GetParam().file;
@@ -143,25 +144,25 @@ TEST_P(RealTlog, HasAsManyFramesAsItsReadmeSays) {
 // The four frames of camera messages whose checksum is wrong are of messages that we do not check.
 INSTANTIATE_TEST_SUITE_P(
     Recordings, RealTlog,
-    testing::Values(Recording{"bluerov2-tlog-bin/ugps_2023-05-04.tlog",
-                              35'916,
-                              0,
-                              {{30, 5245},
-                               {178, 5245},
-                               {251, 4224},
-                               {74, 3060},
-                               {232, 1011},
-                               {33, 792},
-                               {32, 792},
-                               {29, 528},
-                               {137, 635},
-                               {22, 888}}},
-                    Recording{"bluerov2-tlog-bin/badcrc_2023-04-18.tlog", 52'103, 1949, {{132, 919 + 1949}}},
-                    Recording{
+    testing::Values(TlogRecording{"bluerov2-tlog-bin/ugps_2023-05-04.tlog",
+                                  35'916,
+                                  0,
+                                  {{30, 5245},
+                                   {178, 5245},
+                                   {251, 4224},
+                                   {74, 3060},
+                                   {232, 1011},
+                                   {33, 792},
+                                   {32, 792},
+                                   {29, 528},
+                                   {137, 635},
+                                   {22, 888}}},
+                    TlogRecording{"bluerov2-tlog-bin/badcrc_2023-04-18.tlog", 52'103, 1949, {{132, 919 + 1949}}},
+                    TlogRecording{
                         "bluerov2-tlog-bin/dive5m_2023-07-14_09-02-35.tlog", 48'343, 73, {{132, 2767 + 73 + 899}}},
-                    Recording{"bluerov2-echosounder-nav/2024-04-05 09-19-03.tlog", 27'362, 0, {{132, 1463 + 465}}},
-                    Recording{"bluerov2-echosounder-nav/2024-04-05 09-25-32.tlog", 59'880, 0, {{132, 3930 + 1117}}},
-                    Recording{"generic-mavlink-dataflash/flight_v1_2015.tlog", 0, 0, {{30, 2829}}}));
+                    TlogRecording{"bluerov2-echosounder-nav/2024-04-05 09-19-03.tlog", 27'362, 0, {{132, 1463 + 465}}},
+                    TlogRecording{"bluerov2-echosounder-nav/2024-04-05 09-25-32.tlog", 59'880, 0, {{132, 3930 + 1117}}},
+                    TlogRecording{"generic-mavlink-dataflash/flight_v1_2015.tlog", 0, 0, {{30, 2829}}}));
 
 TEST(RealTlogs, TheDiveIsAsDeepAsItWas) {
   const std::string path = PINGVOX_SHARED_DATA "/bluerov2-tlog-bin/dive5m_2023-07-14_09-02-35.tlog";

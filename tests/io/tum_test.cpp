@@ -15,17 +15,17 @@ namespace {
 
 using testing::HasSubstr;
 
-Result<Trajectory> read(std::string_view text) {
+Result<Trajectory> read_as_tum(std::string_view text) {
   return read_tum({"poses.tum", bytes_of(text)});
 }
 
-std::string error_of(std::string_view text) {
-  const auto read_back = read(text);
+std::string tum_error_of(std::string_view text) {
+  const auto read_back = read_as_tum(text);
   return read_back ? "" : read_back.error().message;
 }
 
 TEST(Tum, TakesTheRealPartLast) {
-  const auto trajectory = read(
+  const auto trajectory = read_as_tum(
       "# timestamp tx ty tz qx qy qz qw\n"
       "1000.500000000 1 2 -0.5 0 0 0.7071067811865476 0.7071067811865476\n");
   ASSERT_TRUE(trajectory) << trajectory.error().message;
@@ -36,35 +36,35 @@ TEST(Tum, TakesTheRealPartLast) {
 }
 
 TEST(Tum, TakesTabsCommasCarriageReturnsAndBlankLines) {
-  const auto trajectory = read("\r\n1,0,0,0,0,0,0,1\r\n  2\t0 0\t0, 0 0 0 1\r\n # note\n3 0 0 0 0 0 0 -1");
+  const auto trajectory = read_as_tum("\r\n1,0,0,0,0,0,0,1\r\n  2\t0 0\t0, 0 0 0 1\r\n # note\n3 0 0 0 0 0 0 -1");
   ASSERT_TRUE(trajectory) << trajectory.error().message;
   EXPECT_EQ(trajectory->poses().size(), 3U);
 }
 
 TEST(Tum, NormalisesALittleAndRefusesMore) {
-  const auto trajectory = read("1 0 0 0 0 0 0 1.0009\n");
+  const auto trajectory = read_as_tum("1 0 0 0 0 0 0 1.0009\n");
   ASSERT_TRUE(trajectory);
   EXPECT_TRUE(trajectory->poses()[0].map_from_body.isApprox(Pose::Identity(), 1e-15));
-  EXPECT_THAT(error_of("1 0 0 0 0 0 0 1.0011\n"), HasSubstr("poses.tum: line 1: its quaternion has length 1.0011"));
-  EXPECT_THAT(error_of("1 0 0 0 0 0 0 0\n"), HasSubstr("length 0"));
-  EXPECT_NE(error_of("1 0 0 0 1e200 1e200 0 0\n"), "");
+  EXPECT_THAT(tum_error_of("1 0 0 0 0 0 0 1.0011\n"), HasSubstr("poses.tum: line 1: its quaternion has length 1.0011"));
+  EXPECT_THAT(tum_error_of("1 0 0 0 0 0 0 0\n"), HasSubstr("length 0"));
+  EXPECT_NE(tum_error_of("1 0 0 0 1e200 1e200 0 0\n"), "");
 }
 
 TEST(Tum, NamesTheLineThatIsWrong) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
-  EXPECT_EQ(error_of(good + "# note\n2 0 0 0 0 0 1\n"),
+  EXPECT_EQ(tum_error_of(good + "# note\n2 0 0 0 0 0 1\n"),
             "poses.tum: line 3: 7 numbers instead of 8: a pose is 't x y z qx qy qz qw'");
-  EXPECT_EQ(error_of(good + "2 0 0 0 0 0 0 1 9\n"),
+  EXPECT_EQ(tum_error_of(good + "2 0 0 0 0 0 0 1 9\n"),
             "poses.tum: line 2: more than 8 numbers: a pose is 't x y z qx qy qz qw'");
-  EXPECT_EQ(error_of(good + "2 0 zero 0 0 0 0 1\n"),
+  EXPECT_EQ(tum_error_of(good + "2 0 zero 0 0 0 0 1\n"),
             "poses.tum: line 2: \"zero\" is not a finite number: a pose is 't x y z qx qy qz qw'");
-  EXPECT_EQ(error_of(good + "2 nan 0 0 0 0 0 1\n"),
+  EXPECT_EQ(tum_error_of(good + "2 nan 0 0 0 0 0 1\n"),
             "poses.tum: line 2: \"nan\" is not a finite number: a pose is 't x y z qx qy qz qw'");
-  EXPECT_EQ(error_of(good + "0.5 0 0 0 0 0 0 1\n"),
+  EXPECT_EQ(tum_error_of(good + "0.5 0 0 0 0 0 0 1\n"),
             "poses.tum: line 2: time 0.5 s does not come after 1 s of the pose before it");
-  EXPECT_THAT(error_of(good + good), HasSubstr("line 2: time"));
-  EXPECT_EQ(error_of("# nothing\n\n"), "poses.tum: holds no poses");
-  EXPECT_EQ(error_of(""), "poses.tum: holds no poses");
+  EXPECT_THAT(tum_error_of(good + good), HasSubstr("line 2: time"));
+  EXPECT_EQ(tum_error_of("# nothing\n\n"), "poses.tum: holds no poses");
+  EXPECT_EQ(tum_error_of(""), "poses.tum: holds no poses");
 }
 
 TEST(Tum, ReadsBackWhatItWrote) {
@@ -84,7 +84,7 @@ TEST(Tum, ReadsBackWhatItWrote) {
     }
     std::stringstream text;
     ASSERT_TRUE(write_tum(*Trajectory::make(poses), text));
-    const auto trajectory = read(text.str());
+    const auto trajectory = read_as_tum(text.str());
     ASSERT_TRUE(trajectory) << trajectory.error().message;
     ASSERT_EQ(trajectory->poses().size(), poses.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -109,7 +109,7 @@ TEST(Tum, GapsStayGaps) {
   std::stringstream text;
   ASSERT_TRUE(write_tum(*Trajectory::make({{0.0, still}, {0.25, still}, {9.0, still}, {9.25, still}}, 0.5), text));
   EXPECT_THAT(text.str(), HasSubstr("\n# steps of more than 0.5 s are gaps\n"));
-  const auto trajectory = read(text.str());
+  const auto trajectory = read_as_tum(text.str());
   ASSERT_TRUE(trajectory) << trajectory.error().message;
   EXPECT_EQ(trajectory->gaps(), 1U);
   EXPECT_TRUE(trajectory->at(9.1));

@@ -78,7 +78,7 @@ Bytes ping_packet(const Ping& ping) {
   return packet(65, body);
 }
 
-Bytes file_of(const std::vector<Bytes>& packets) {
+Bytes xtf_file(const std::vector<Bytes>& packets) {
   Bytes file(1024);
   file[0] = 123;
   file[164] = 3;  // degrees
@@ -90,7 +90,7 @@ const Ping kDown = {.steps = {0}, .times = {1000}};
 
 /// The only point of the only scan, from where the head was.
 Eigen::Vector3d point_of(const Ping& ping) {
-  const auto all = all_scans({"line.xtf", file_of({ping_packet(ping)})});
+  const auto all = all_scans({"line.xtf", xtf_file({ping_packet(ping)})});
   EXPECT_EQ(all.error, "");
   if (all.items.size() != 1 || all.items[0].points_m.size() != 1) return Eigen::Vector3d::Constant(NAN);
   return all.items[0].points_m[0] - all.items[0].origin_m;
@@ -126,7 +126,7 @@ TEST(Xtf, PlacesAreMetresFromTheFirstPing) {
   next.latitude_deg += 0.001;
   next.longitude_deg += 0.001;
   next.heave_m = 0.25F;
-  const auto all = all_scans({"line.xtf", file_of({ping_packet(kDown), ping_packet(next)})});
+  const auto all = all_scans({"line.xtf", xtf_file({ping_packet(kDown), ping_packet(next)})});
   ASSERT_EQ(all.items.size(), 2U);
   EXPECT_EQ(all.items[0].origin_m, Eigen::Vector3d::Zero());
   EXPECT_NEAR(all.items[1].origin_m.x(), 78.85, 0.01) << "a thousandth of a degree at 45 degrees north";
@@ -139,7 +139,7 @@ TEST(Xtf, ABeamWithoutReturnIsNoPoint) {
   Ping ping = kDown;
   ping.steps = {0, 100, 100};
   ping.times = {1000, 0, 2000};
-  const auto all = all_scans({"line.xtf", file_of({ping_packet(ping)})});
+  const auto all = all_scans({"line.xtf", xtf_file({ping_packet(ping)})});
   ASSERT_EQ(all.items.size(), 1U);
   ASSERT_EQ(all.items[0].points_m.size(), 2U);
   expect_near(all.items[0].points_m[1], {20.0 * std::sin(0.2), 0.0, -20.0 * std::cos(0.2)});
@@ -148,7 +148,7 @@ TEST(Xtf, ABeamWithoutReturnIsNoPoint) {
 
 TEST(Xtf, DamageIsToldByItsPlaceAndCostsNoPingBehindIt) {
   const Bytes ping = ping_packet(kDown), attitude = packet(3, Bytes(50));
-  const Bytes whole = file_of({ping, attitude, ping, attitude, ping});
+  const Bytes whole = xtf_file({ping, attitude, ping, attitude, ping});
   EXPECT_EQ(format_of(whole), Format::kXtf);
   EXPECT_EQ(all_scans({"line.xtf", whole}).items.size(), 3U);
   const std::size_t second = 1024 + ping.size() + attitude.size();
@@ -179,7 +179,7 @@ TEST(Xtf, DamageIsToldByItsPlaceAndCostsNoPingBehindIt) {
 }
 
 TEST(Xtf, WithoutAMultibeamIsToldAsSuch) {
-  const auto opened = open_scans({"side.xtf", file_of({packet(0, Bytes(500)), packet(3, Bytes(50))})});
+  const auto opened = open_scans({"side.xtf", xtf_file({packet(0, Bytes(500)), packet(3, Bytes(50))})});
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, Error::Code::kUnsupported);
   EXPECT_THAT(opened.error().message, HasSubstr("side.xtf: is an XTF file without pings of an R2Sonic"));

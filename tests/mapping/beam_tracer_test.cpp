@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "pingvox/geometry/degree.hpp"
+#include "support/uniform.hpp"
 #include "tests/support/scan_cells.hpp"
 
 namespace pingvox {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * (static_cast<double>(random() % 1'000'001) / 1e6);
-}
+using test::uniform;
 
 using HitCells = std::map<WideKey, float>;
 

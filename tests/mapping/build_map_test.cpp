@@ -14,7 +14,7 @@ namespace pingvox {
 namespace {
 
 constexpr int kBeamsPerTurn = 200;
-constexpr double kBin_m = 0.0125;
+constexpr double kShortBin_m = 0.0125;
 
 /// Turns of a head that hears one clean echo where `range_of(time, bearing)` says; none for a range <= 0.
 class Echoes : public BeamSource {
@@ -27,11 +27,11 @@ class Echoes : public BeamSource {
     Beam beam;
     beam.time_s = 0.04 * n_;
     beam.bearing_rad = 2.0 * std::numbers::pi * (n_ % kBeamsPerTurn) / kBeamsPerTurn;
-    beam.bin_length_m = kBin_m;
+    beam.bin_length_m = kShortBin_m;
     beam.intensities.assign(400, 5);
     const double range_m = range_of_(beam.time_s, beam.bearing_rad);
     if (range_m > 0.0) {
-      const auto bin = static_cast<std::size_t>(range_m / kBin_m);
+      const auto bin = static_cast<std::size_t>(range_m / kShortBin_m);
       for (std::size_t i = bin; i < bin + 3 && i < beam.intensities.size(); ++i) beam.intensities[i] = 200;
     }
     ++n_;
@@ -55,7 +55,7 @@ class EchoesBeforeLouderOnes : public Echoes {
 
   Result<std::optional<Beam>> next() override {
     Result<std::optional<Beam>> beam = Echoes::next();
-    const auto bin = static_cast<std::size_t>(louder_m_ / kBin_m);
+    const auto bin = static_cast<std::size_t>(louder_m_ / kShortBin_m);
     if (beam && *beam) std::fill_n((*beam)->intensities.begin() + static_cast<std::ptrdiff_t>(bin), 3, 250);
     return beam;
   }

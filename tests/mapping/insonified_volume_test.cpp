@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "pingvox/geometry/degree.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * (static_cast<double>(random() % 1'000'001) / 1e6);
-}
+using test::uniform;
 
 std::set<WideKey> missed_cells(const ScanUpdate& scan) {
   std::set<WideKey> cells;

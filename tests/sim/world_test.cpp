@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFar_m = 1000.0;
 
 double share(std::mt19937_64& random) {
@@ -33,7 +32,7 @@ Vector3d point(std::mt19937_64& random, double reach) {
 }
 
 Pose some_pose(std::mt19937_64& random) {
-  const Vector3d turn = point(random, kPi);
+  const Vector3d turn = point(random, std::numbers::pi);
   return pose_from_rpy(point(random, 3.0), turn.x(), turn.y(), turn.z());
 }
 

@@ -28,7 +28,7 @@ void hear(Localizer& localizer, const Room& room, int from, int to, const Room::
 }
 
 /// Distance [m] of where it thinks it is, and angle [rad] into `turn`.
-double error_m(const Localizer& localizer, const Room::State& truth, double& turn) {
+double located_error_m(const Localizer& localizer, const Room::State& truth, double& turn) {
   const auto pose = localizer.pose();
   if (!pose) return 1e9;
   const Eigen::Vector3d at = pose->map_from_body.translation();
@@ -44,7 +44,7 @@ TEST(Localizer, FindsItselfAnywhereAfterATurn) {
   EXPECT_FALSE(localizer.pose());
   hear(localizer, room, 90, 300, kPlace);
   double turn = 0.0;
-  EXPECT_LT(error_m(localizer, kPlace, turn), 0.12);
+  EXPECT_LT(located_error_m(localizer, kPlace, turn), 0.12);
   EXPECT_NEAR(turn, 0.0, 2.5 * kDegree_rad);
   EXPECT_TRUE(localizer.is_sure());
   EXPECT_EQ(localizer.hypotheses().size(), 1U);
@@ -80,7 +80,7 @@ TEST(Localizer, FollowsOdometryThatDrifts) {
                                                      0.0, 0.0, truth.yaw + 1.0 + 0.1 * share)});
     ASSERT_TRUE(localizer.add(room.beam(i, truth)));
   }
-  EXPECT_LT(error_m(localizer, truth, turn), 0.15);
+  EXPECT_LT(located_error_m(localizer, truth, turn), 0.15);
   EXPECT_NEAR(turn, 0.0, 0.06);
   EXPECT_EQ(localizer.pose()->map_from_body.translation().z(), -2.0);
 }
@@ -94,7 +94,7 @@ TEST(Localizer, RecoversWithinThreeTurnsWhenItIsCarriedAway) {
   const Room::State elsewhere{1.5, -1.2, -2.0};
   hear(localizer, room, 300, 600, elsewhere);
   double turn = 0.0;
-  EXPECT_LT(error_m(localizer, elsewhere, turn), 0.15);
+  EXPECT_LT(located_error_m(localizer, elsewhere, turn), 0.15);
   EXPECT_NEAR(turn, 0.0, 0.05);
 }
 
@@ -124,10 +124,10 @@ TEST(Localizer, IsSureOfNoWrongPlaceAfterItWasCarriedAwayTwice) {
       ASSERT_TRUE(localizer.add(room.beam(i, places[n])));
       double turn = 0.0;
       if (i - first < 110 || !localizer.is_sure()) continue;
-      EXPECT_LT(error_m(localizer, places[n], turn), 0.2) << i;
+      EXPECT_LT(located_error_m(localizer, places[n], turn), 0.2) << i;
     }
     double turn = 0.0;
-    EXPECT_LT(error_m(localizer, places[n], turn), 0.2) << n;
+    EXPECT_LT(located_error_m(localizer, places[n], turn), 0.2) << n;
   }
 }
 
@@ -139,7 +139,7 @@ TEST(Localizer, LeavesAWrongStart) {
   EXPECT_FALSE(localizer.is_sure());
   hear(localizer, room, 50, 400, kPlace);
   double turn = 0.0;
-  EXPECT_LT(error_m(localizer, kPlace, turn), 0.15);
+  EXPECT_LT(located_error_m(localizer, kPlace, turn), 0.15);
 }
 
 TEST(Localizer, GivesTheSameBytesForTheSameSeed) {

@@ -15,7 +15,7 @@
 namespace pingvox::test {
 namespace {
 
-constexpr Room::State kPlace = {-1.0, 0.5, 0.7};
+constexpr Room::State kStart = {-1.0, 0.5, 0.7};
 
 DistanceField field_of(const Room& room) {
   return *DistanceField::make(room.map(), {});
@@ -30,7 +30,7 @@ std::vector<Beam> beams_at(const Room& room, const Room::State& place, int count
 LocatedRecording located(const Room& room, Estimation estimation) {
   LocateOptions options;
   options.estimation = estimation;
-  const auto found = locate_recording(beams_at(room, kPlace, 300), {}, field_of(room), options);
+  const auto found = locate_recording(beams_at(room, kStart, 300), {}, field_of(room), options);
   EXPECT_TRUE(found) << found.error().message;
   return *found;
 }
@@ -62,12 +62,12 @@ TEST(LocateRecording, APoseBeforeAJumpIsNotKnownByOneBehindIt) {
   const Room room;
   constexpr int kJump = 150;  // found after one turn of the head, sure after two
   const double ahead_m = 0.9;
-  const Room::State there = {kPlace.x + ahead_m * std::cos(kPlace.yaw), kPlace.y + ahead_m * std::sin(kPlace.yaw),
-                             kPlace.yaw};
+  const Room::State there = {kStart.x + ahead_m * std::cos(kStart.yaw), kStart.y + ahead_m * std::sin(kStart.yaw),
+                             kStart.yaw};
   std::vector<Beam> beams;
   std::vector<StampedPose> odometry;
   for (int i = 0; i < 500; ++i) {
-    beams.push_back(room.beam(i, i < kJump ? kPlace : there));
+    beams.push_back(room.beam(i, i < kJump ? kStart : there));
     odometry.push_back({0.1 * i, Pose(Eigen::Translation3d(i < kJump ? 0.0 : ahead_m, 0.0, 0.0))});
   }
   RecordedMotion motion;
@@ -84,11 +84,11 @@ TEST(LocateRecording, APoseBeforeAJumpIsNotKnownByOneBehindIt) {
 TEST(LocateRecording, APoseBeforeATurnAtOnceIsNotKnownByOneBehindIt) {
   const Room room;
   constexpr int kTurn = 150;  // found after one turn of the head, sure after two
-  const Room::State there = {kPlace.x, kPlace.y, kPlace.yaw + 2.0};
+  const Room::State there = {kStart.x, kStart.y, kStart.yaw + 2.0};
   std::vector<Beam> beams;
   std::vector<StampedPose> odometry;
   for (int i = 0; i < 500; ++i) {
-    beams.push_back(room.beam(i, i < kTurn ? kPlace : there));
+    beams.push_back(room.beam(i, i < kTurn ? kStart : there));
     odometry.push_back({0.1 * i, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, i < kTurn ? 0.0 : 2.0)});
   }
   RecordedMotion motion;
@@ -106,14 +106,14 @@ TEST(LocateRecording, NoPoseIsKnownWhereATurnInPlaceIsNotNoticedYet) {
   constexpr int kTurn = 400;
   std::vector<Beam> beams;
   for (int i = 0; i < 900; ++i) {
-    beams.push_back(room.beam(i, {kPlace.x, kPlace.y, i < kTurn ? kPlace.yaw : kPlace.yaw + 2.0}));
+    beams.push_back(room.beam(i, {kStart.x, kStart.y, i < kTurn ? kStart.yaw : kStart.yaw + 2.0}));
   }
   const auto found = locate_recording(std::move(beams), {}, field_of(room), {});
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_TRUE(found->poses.front().is_known);
   EXPECT_TRUE(found->poses.back().is_known);
   for (const LocatedPose& pose : found->poses) {
-    const double yaw_rad = pose.time_s < 0.1 * kTurn ? kPlace.yaw : kPlace.yaw + 2.0;
+    const double yaw_rad = pose.time_s < 0.1 * kTurn ? kStart.yaw : kStart.yaw + 2.0;
     const double off_rad = std::remainder(rpy_of(pose.map_from_body.rotation()).z() - yaw_rad, 2.0 * std::numbers::pi);
     EXPECT_FALSE(pose.is_known && std::abs(off_rad) > 0.2) << pose.time_s;
   }
@@ -125,7 +125,7 @@ Room::State state_at(double time_s) {
   return {-0.3 + std::cos(angle), -0.3 + std::sin(angle), angle + std::numbers::pi / 2.0};
 }
 
-double error_m(const LocatedRecording& found) {
+double located_error_m(const LocatedRecording& found) {
   double squares = 0.0;
   for (const LocatedPose& pose : found.poses) {
     const Room::State truth = state_at(pose.time_s);
@@ -161,8 +161,8 @@ TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
   EXPECT_GT(done, 0.99);
   EXPECT_TRUE(std::ranges::all_of(smoothed->poses, &LocatedPose::is_smoothed));
   EXPECT_TRUE(std::ranges::none_of(causal->poses, &LocatedPose::is_smoothed));
-  EXPECT_LT(error_m(*smoothed), 0.05);
-  EXPECT_LT(error_m(*smoothed), 0.7 * error_m(*causal));
+  EXPECT_LT(located_error_m(*smoothed), 0.05);
+  EXPECT_LT(located_error_m(*smoothed), 0.7 * located_error_m(*causal));
 }
 
 // Kills an odometry on another clock that is followed without a word, and an offset of the wrong sign.
@@ -173,7 +173,7 @@ TEST(LocateRecording, ChecksTheClockOfTheOdometry) {
     std::vector<StampedPose> odometry;
     for (int i = 0; i < 900; ++i) {
       const double yaw_rad = wander(0.1 * i);
-      beams.push_back(room.beam(i, {kPlace.x, kPlace.y, yaw_rad}));
+      beams.push_back(room.beam(i, {kStart.x, kStart.y, yaw_rad}));
       odometry.push_back({0.1 * i + late_s, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, yaw_rad)});
     }
     RecordedMotion motion;
@@ -188,7 +188,7 @@ TEST(LocateRecording, ChecksTheClockOfTheOdometry) {
 
 TEST(LocateRecording, RefusesTimesThatRunBackwards) {
   const Room room;
-  std::vector<Beam> beams = beams_at(room, kPlace, 3);
+  std::vector<Beam> beams = beams_at(room, kStart, 3);
   std::swap(beams[0], beams[2]);
   const auto found = locate_recording(std::move(beams), {}, field_of(room), {});
   ASSERT_FALSE(found);

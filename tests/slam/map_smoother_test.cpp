@@ -17,7 +17,7 @@ namespace pingvox::test {
 namespace {
 
 /// Round the middle of the room in 80 seconds, heading along the way.
-Room::State state_at(double time_s) {
+Room::State circling_at(double time_s) {
   const double angle = 2.0 * std::numbers::pi * time_s / 80.0;
   return {-0.3 + std::cos(angle), -0.3 + std::sin(angle), angle + std::numbers::pi / 2.0};
 }
@@ -29,7 +29,7 @@ constexpr double kVelocityYaw_rad = 6.0 * kDegree_rad;
 SlamSmoother recorded(const Room& room) {
   Random random(1);
   SlamSmoother smoother({});
-  for (int i = 0; i < kBeams; ++i) smoother.add(room.beam(i, state_at(0.1 * i)));
+  for (int i = 0; i < kBeams; ++i) smoother.add(room.beam(i, circling_at(0.1 * i)));
   const double speed_m_s = 2.0 * std::numbers::pi / 80.0;
   for (double time_s = -0.5; time_s < 81.0; time_s += 0.25) {
     NavSample sample;
@@ -37,7 +37,7 @@ SlamSmoother recorded(const Room& room) {
     sample.value = {speed_m_s * std::cos(kVelocityYaw_rad) + 0.02 * random.normal(),
                     -speed_m_s * std::sin(kVelocityYaw_rad) + 0.02 * random.normal(), 0.0};
     EXPECT_TRUE(smoother.add("dvl", NavQuantity::kVelocity, sample));
-    const double yaw_rad = state_at(time_s).yaw;
+    const double yaw_rad = circling_at(time_s).yaw;
     sample.value = {0.0, 0.0, std::remainder(yaw_rad + 1.2 + 0.08 * std::sin(yaw_rad), 2.0 * std::numbers::pi)};
     EXPECT_TRUE(smoother.add("imu", NavQuantity::kAttitude, sample));
   }
@@ -48,7 +48,7 @@ SlamSmoother recorded(const Room& room) {
 Trajectory near_truth(double x_m, double y_m, double yaw_rad) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < kBeams; ++i) {
-    const Room::State at = state_at(0.1 * i);
+    const Room::State at = circling_at(0.1 * i);
     poses.push_back({0.1 * i, pose_from_rpy({at.x + x_m, at.y + y_m, 0.0}, 0.0, 0.0, at.yaw + yaw_rad)});
   }
   return *Trajectory::make(std::move(poses));
@@ -62,7 +62,7 @@ TEST(MapSmoother, FindsTheTrajectoryInTheMapAndHowTheVelocityIsTurned) {
   ASSERT_TRUE(solution) << solution.error().message;
   double squares = 0.0;
   for (const StampedPose& pose : solution->trajectory.poses()) {
-    const Room::State truth = state_at(pose.time_s);
+    const Room::State truth = circling_at(pose.time_s);
     const Eigen::Vector3d at = pose.map_from_body.translation(), ahead = pose.map_from_body.rotation().col(0);
     squares += std::pow(at.x() - truth.x, 2) + std::pow(at.y() - truth.y, 2);
     EXPECT_NEAR(std::remainder(std::atan2(ahead.y(), ahead.x()) - truth.yaw, 2.0 * std::numbers::pi), 0.0,

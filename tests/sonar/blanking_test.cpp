@@ -13,13 +13,13 @@
 namespace pingvox {
 namespace {
 
-constexpr double kBin_m = 0.05;
+constexpr double kFineBin_m = 0.05;
 
 /// A turn of a head that rings over its first `ringing` bins, with a wall somewhere behind it in each beam.
 Sweep ringing_turn(std::mt19937_64& random, std::size_t ringing, int loudness, std::size_t beams = 60) {
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(beams)};
   for (Beam& beam : sweep.beams) {
-    beam.bin_length_m = kBin_m;
+    beam.bin_length_m = kFineBin_m;
     beam.intensities.resize(200);
     const std::size_t wall = 40 + random() % 150;
     for (std::size_t i = 0; i < 200; ++i) {
@@ -37,7 +37,7 @@ TEST(BlankingRange, IsFoundAtTheEndOfWhatIsInEveryBeam) {
     const std::size_t ringing = 3 + random() % 30;
     const Sweep sweep = ringing_turn(random, ringing, static_cast<int>(40 + random() % 100));
     const double found_m = blanking_range_m(PolarImage(sweep), sweep);
-    const double end_m = static_cast<double>(ringing) * kBin_m;
+    const double end_m = static_cast<double>(ringing) * kFineBin_m;
     EXPECT_GE(found_m, end_m - 1e-9);
     EXPECT_LE(found_m, end_m + 0.25) << "a few bins of noise may go on falling";
   }
@@ -60,7 +60,7 @@ TEST(BlankingRange, EndsWhereTheRingingHasFaded) {
   std::mt19937_64 random(7);
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(60)};
   for (Beam& beam : sweep.beams) {
-    beam.bin_length_m = kBin_m;
+    beam.bin_length_m = kFineBin_m;
     for (std::size_t i = 0; i < 200; ++i) {
       const double ringing = 100.0 * std::exp(-std::max(0.0, static_cast<double>(i) - 20.0) / 6.0);
       beam.intensities.push_back(static_cast<std::uint8_t>(ringing + static_cast<double>(random() % 4)));
@@ -68,8 +68,8 @@ TEST(BlankingRange, EndsWhereTheRingingHasFaded) {
   }
   // 28 bins on it is a quarter of what it was, 35 bins on a twelfth.
   const double found_m = blanking_range_m(PolarImage(sweep), sweep);
-  EXPECT_GE(found_m, 35.0 * kBin_m);
-  EXPECT_LE(found_m, 50.0 * kBin_m);
+  EXPECT_GE(found_m, 35.0 * kFineBin_m);
+  EXPECT_LE(found_m, 50.0 * kFineBin_m);
 }
 
 TEST(BlankingRange, IsNoneWithoutRingingAndUsualInAFewBeams) {
@@ -85,7 +85,7 @@ TEST(BlankingRange, IsNoneWithoutRingingAndUsualInAFewBeams) {
 TEST(BlankingRange, IsAtMostHalfOfTheRange) {
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(40)};
   for (Beam& beam : sweep.beams) {
-    beam.bin_length_m = kBin_m;
+    beam.bin_length_m = kFineBin_m;
     beam.intensities.assign(100, 200);
     for (std::size_t i = 60; i < 100; ++i) beam.intensities[i] = 0;
   }

@@ -13,12 +13,12 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr double kBin_m = 0.1;
+constexpr double kWideBin_m = 0.1;
 constexpr int kThreshold = 70;
 
 std::optional<Echo> echo_of(std::vector<std::uint8_t> bins,
                             EchoOptions options = {.min_range_m = 0.0, .threshold = kThreshold},
-                            double bin_length_m = kBin_m) {
+                            double bin_length_m = kWideBin_m) {
   Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(1)};
   sweep.beams[0].bin_length_m = bin_length_m;
   sweep.beams[0].intensities = std::move(bins);
@@ -76,7 +76,7 @@ TEST(Rise, StaysTogetherAcrossADipOfHalfTheThresholdAndNoMore) {
 // given to another.
 TEST(AllEchoes, OfABeamAreThoseBehindTheEndOfTheOneBefore) {
   Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(3)};
-  for (Beam& beam : sweep.beams) beam.bin_length_m = kBin_m;
+  for (Beam& beam : sweep.beams) beam.bin_length_m = kWideBin_m;
   sweep.beams[0].intensities = {0, 90, 55, 120, 84, 200, 200, 0, 0, 0, 0, 70, 0};
   sweep.beams[1].intensities = std::vector<std::uint8_t>(13, 30);
   sweep.beams[2].intensities = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 100, 100};
@@ -107,7 +107,7 @@ TEST(AllEchoes, EndWithEachDetector) {
       std::mt19937_64 random(seed);
       Sweep sweep{.extent = Sweep::Extent::kCut, .beams = std::vector<Beam>(5)};
       for (Beam& beam : sweep.beams) {
-        beam.bin_length_m = kBin_m;
+        beam.bin_length_m = kWideBin_m;
         for (int i = 0; i < 200; ++i) {
           beam.intensities.push_back(static_cast<std::uint8_t>(random() % 20 + (i % 50 < 6 && i > 6 ? 150 : 0)));
         }
@@ -204,7 +204,7 @@ TEST(Detection, IgnoresWhatFillsUpAShortBeam) {
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(3)};
   sweep.beams[0].intensities = {0, 0, 0, 0, 100, 0};
   sweep.beams[1].intensities = {0, 0};
-  for (Beam& beam : sweep.beams) beam.bin_length_m = kBin_m;
+  for (Beam& beam : sweep.beams) beam.bin_length_m = kWideBin_m;
   PolarImage image(sweep);
   image.row(1)[4] = 255;
   image.row(2)[4] = 255;
@@ -234,9 +234,9 @@ TEST(Detection, KeepsItsPromisesOnAnyBeam) {
     ASSERT_LT(echo->last, bins.size());
     EXPECT_EQ(echo->intensity, bins[echo->peak]);
     EXPECT_GE(echo->intensity, *options.threshold);
-    EXPECT_GE(kBin_m * static_cast<double>(echo->first), *options.min_range_m - 1e-9);
-    EXPECT_GT(echo->range_m, kBin_m * static_cast<double>(echo->first));
-    EXPECT_LT(echo->range_m, kBin_m * static_cast<double>(echo->last + 1));
+    EXPECT_GE(kWideBin_m * static_cast<double>(echo->first), *options.min_range_m - 1e-9);
+    EXPECT_GT(echo->range_m, kWideBin_m * static_cast<double>(echo->first));
+    EXPECT_LT(echo->range_m, kWideBin_m * static_cast<double>(echo->last + 1));
     EXPECT_LE(echo->range_m, options.max_range_m);
   }
   EXPECT_GT(found, 900U);

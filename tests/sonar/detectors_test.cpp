@@ -17,17 +17,17 @@
 namespace pingvox {
 namespace {
 
-constexpr double kBin_m = 0.1;
+constexpr double kBinLength_m = 0.1;
 constexpr std::array kDetectors = {Detector::kRise, Detector::kLevel, Detector::kMax, Detector::kCanny,
                                    Detector::kCfar};
 
 using Bins = std::vector<std::uint8_t>;
 
 /// A turn of beams that all heard the same.
-Sweep turn_of(const Bins& bins, std::size_t beams = 40) {
+Sweep even_turn_of(const Bins& bins, std::size_t beams = 40) {
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = std::vector<Beam>(beams)};
   for (Beam& beam : sweep.beams) {
-    beam.bin_length_m = kBin_m;
+    beam.bin_length_m = kBinLength_m;
     beam.intensities = bins;
   }
   return sweep;
@@ -41,8 +41,8 @@ std::vector<std::optional<Echo>> echoes_of(const Sweep& sweep, const EchoOptions
   return detect_echoes(PolarImage(sweep), sweep, options);
 }
 
-std::optional<Echo> echo_of(const Bins& bins, const EchoOptions& options) {
-  const auto echoes = echoes_of(turn_of(bins), options);
+std::optional<Echo> echo_in(const Bins& bins, const EchoOptions& options) {
+  const auto echoes = echoes_of(even_turn_of(bins), options);
   for (const auto& echo : echoes) EXPECT_EQ(echo.has_value(), echoes[0].has_value());
   return echoes[0];
 }
@@ -58,17 +58,17 @@ Bins noisy_wall(std::mt19937_64& random, std::size_t bins, double wall, double h
 }
 
 TEST(Level, IsTheFirstBinThatReachesItAlsoOnAFallingEdge) {
-  const auto echo = echo_of({0, 0, 30, 59, 60, 90, 0, 200, 0}, options_of(Detector::kLevel, 60));
+  const auto echo = echo_in({0, 0, 30, 59, 60, 90, 0, 200, 0}, options_of(Detector::kLevel, 60));
   ASSERT_TRUE(echo);
   EXPECT_EQ(echo->first, 4U);
   EXPECT_EQ(echo->peak, 5U);
   EXPECT_EQ(echo->last, 5U);
-  EXPECT_EQ(echo_of({60, 0, 200}, options_of(Detector::kLevel, 60))->first, 0U);
-  EXPECT_FALSE(echo_of({59, 0, 59}, options_of(Detector::kLevel, 60)));
+  EXPECT_EQ(echo_in({60, 0, 200}, options_of(Detector::kLevel, 60))->first, 0U);
+  EXPECT_FALSE(echo_in({59, 0, 59}, options_of(Detector::kLevel, 60)));
 }
 
 TEST(Max, IsTheStrongestBinWithTheRunAroundItEvenBehindAnother) {
-  const auto echo = echo_of({0, 150, 0, 0, 190, 200, 195, 0, 0}, options_of(Detector::kMax, 60));
+  const auto echo = echo_in({0, 150, 0, 0, 190, 200, 195, 0, 0}, options_of(Detector::kMax, 60));
   ASSERT_TRUE(echo);
   EXPECT_EQ(echo->first, 4U);
   EXPECT_EQ(echo->peak, 5U);
@@ -78,24 +78,24 @@ TEST(Max, IsTheStrongestBinWithTheRunAroundItEvenBehindAnother) {
   const double crest =
       (weights[0] * 4.5 + weights[1] * 5.5 + weights[2] * 6.5) / (weights[0] + weights[1] + weights[2]);
   EXPECT_NEAR(echo->range_m, 0.1 * (crest - 1.0), 1e-12);
-  EXPECT_EQ(echo_of({0, 200, 0, 200, 0}, options_of(Detector::kMax, 60))->peak, 1U) << "the nearest of two equal ones";
-  EXPECT_FALSE(echo_of({0, 59, 0}, options_of(Detector::kMax, 60)));
+  EXPECT_EQ(echo_in({0, 200, 0, 200, 0}, options_of(Detector::kMax, 60))->peak, 1U) << "the nearest of two equal ones";
+  EXPECT_FALSE(echo_in({0, 59, 0}, options_of(Detector::kMax, 60)));
 }
 
 TEST(Canny, IsTheFirstRisingEdge) {
   // 40 a bin: the gradient is 4 * 2 * 40 on the ramp.
   const Bins ramp{0, 0, 0, 40, 80, 120, 120, 120, 120, 0, 0, 0};
-  const auto echo = echo_of(ramp, options_of(Detector::kCanny, 300));
+  const auto echo = echo_in(ramp, options_of(Detector::kCanny, 300));
   ASSERT_TRUE(echo);
   EXPECT_GE(echo->first, 3U);
   EXPECT_LE(echo->first, 5U);
   EXPECT_EQ(echo->intensity, 120);
-  EXPECT_FALSE(echo_of(ramp, options_of(Detector::kCanny, 320))) << "not more than the threshold";
-  EXPECT_FALSE(echo_of({200, 200, 200, 0, 0, 0, 0}, options_of(Detector::kCanny, 100))) << "a falling edge";
+  EXPECT_FALSE(echo_in(ramp, options_of(Detector::kCanny, 320))) << "not more than the threshold";
+  EXPECT_FALSE(echo_in({200, 200, 200, 0, 0, 0, 0}, options_of(Detector::kCanny, 100))) << "a falling edge";
 }
 
 TEST(Canny, LinksWeakEdgesToStrongOnesAcrossTheSeamAndNoFartherThanTheLink) {
-  Sweep sweep = turn_of(Bins(20, 0));
+  Sweep sweep = even_turn_of(Bins(20, 0));
   // A wall in all beams, strong only in the last three.
   for (std::size_t n = 0; n < 40; ++n) {
     std::fill(sweep.beams[n].intensities.begin() + 10, sweep.beams[n].intensities.end(), n >= 37 ? 100 : 60);
@@ -120,7 +120,7 @@ TEST(Canny, FindsNoFartherEdgeWithALongerLink) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
-    Sweep sweep = turn_of(Bins(30, 0), 24);
+    Sweep sweep = even_turn_of(Bins(30, 0), 24);
     for (Beam& beam : sweep.beams)
       beam.intensities = noisy_wall(random, 30, 12.0 + static_cast<double>(random() % 6), 120.0);
     const PolarImage image(sweep);
@@ -195,7 +195,7 @@ TEST(Cfar, SeesAWallBesideAnotherOnlyWithTheSmallerNoise) {
   const auto first_with = [&bins](CfarOptions::Noise noise) {
     EchoOptions options = options_of(Detector::kCfar, 20);
     options.cfar = {.noise = noise, .guard = 6, .training = 20};
-    const auto echo = echo_of(bins, options);
+    const auto echo = echo_in(bins, options);
     return echo ? echo->first : 0;
   };
   EXPECT_EQ(first_with(CfarOptions::Noise::kSmallestOf), 40U);
@@ -212,7 +212,7 @@ TEST(Detectors, KeepTheirPromisesOnAnySweepWithAnyOptions) {
                 .beams = std::vector<Beam>(random() % 40)};
     const std::uint64_t levels = 1 + random() % 256;
     for (Beam& beam : sweep.beams) {
-      beam.bin_length_m = kBin_m;
+      beam.bin_length_m = kBinLength_m;
       beam.intensities.resize(random() % 50);
       for (std::uint8_t& bin : beam.intensities) bin = static_cast<std::uint8_t>(random() % levels);
     }
@@ -237,10 +237,10 @@ TEST(Detectors, KeepTheirPromisesOnAnySweepWithAnyOptions) {
       EXPECT_LE(echo.first, echo.peak);
       EXPECT_LE(echo.peak, echo.last);
       EXPECT_GE(echo.first, options.min_bin);
-      EXPECT_GE(kBin_m * static_cast<double>(echo.first), options.min_range_m.value_or(0.0) - 1e-9);
+      EXPECT_GE(kBinLength_m * static_cast<double>(echo.first), options.min_range_m.value_or(0.0) - 1e-9);
       EXPECT_EQ(echo.intensity, sweep.beams[n].intensities[echo.peak]);
-      EXPECT_GT(echo.range_m, kBin_m * static_cast<double>(echo.first));
-      EXPECT_LT(echo.range_m, kBin_m * static_cast<double>(echo.last + 1));
+      EXPECT_GT(echo.range_m, kBinLength_m * static_cast<double>(echo.first));
+      EXPECT_LT(echo.range_m, kBinLength_m * static_cast<double>(echo.last + 1));
       EXPECT_LE(echo.range_m, options.max_range_m);
     }
   }
@@ -252,7 +252,7 @@ TEST(Detectors, KnowTheGainFromWhatIsTooFarAway) {
   for (const Detector detector : {Detector::kRise, Detector::kLevel, Detector::kMax, Detector::kCfar}) {
     SCOPED_TRACE(static_cast<int>(detector));
     std::mt19937_64 random(1);
-    Sweep sweep = turn_of(Bins());
+    Sweep sweep = even_turn_of(Bins());
     for (Beam& beam : sweep.beams) {
       beam.intensities = noisy_wall(random, 80, 60.0, 150.0);
       const auto faint = beam.intensities.begin() + 25 + static_cast<std::ptrdiff_t>(random() % 20);
@@ -278,14 +278,14 @@ TEST(Detectors, KnowTheGainFromWhatIsTooFarAway) {
 TEST(Detectors, KnowTheLevelFromWhatIsTooFarAway) {
   for (const Detector detector : {Detector::kLevel, Detector::kMax}) {
     SCOPED_TRACE(static_cast<int>(detector));
-    Sweep sweep = turn_of(Bins());
+    Sweep sweep = even_turn_of(Bins());
     for (Beam& beam : sweep.beams) {
       beam.intensities.assign(80, 20);
       std::fill_n(beam.intensities.begin() + 22, 20, std::uint8_t{180});
     }
     EchoOptions options = options_of(detector);
     options.min_bin = 20;
-    options.max_range_m = kBin_m * 40.0;
+    options.max_range_m = kBinLength_m * 40.0;
     std::size_t found = 0;
     for (const auto& echo : echoes_of(sweep, options)) found += echo ? 1 : 0;
     EXPECT_EQ(found, sweep.beams.size());
@@ -298,7 +298,7 @@ TEST(Detectors, DoNotSeeWhatStandsBeforeTheRangeThatCounts) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(testing::Message() << static_cast<int>(detector) << ", seed " << seed);
       std::mt19937_64 random(seed);
-      Sweep sweep = turn_of(Bins());
+      Sweep sweep = even_turn_of(Bins());
       for (Beam& beam : sweep.beams) beam.intensities = noisy_wall(random, 80, 45.0, 150.0);
       EchoOptions options = options_of(detector);
       options.min_bin = 20;
@@ -325,7 +325,7 @@ TEST(ContrastsByGain, FollowsTheGainAndSeesNoEchoInNoise) {
     for (const double height : {35.0, 80.0, 230.0}) {
       SCOPED_TRACE(testing::Message() << static_cast<int>(detector) << ", " << height);
       std::mt19937_64 random(11);
-      Sweep wall = turn_of(Bins());
+      Sweep wall = even_turn_of(Bins());
       Sweep noise = wall;
       for (Beam& beam : wall.beams) beam.intensities = noisy_wall(random, 200, 120.0, height);
       for (Beam& beam : noise.beams) beam.intensities = noisy_wall(random, 200, 120.0, 0.0);

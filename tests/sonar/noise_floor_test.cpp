@@ -17,7 +17,7 @@ namespace {
 using Bins = std::vector<std::uint8_t>;
 
 constexpr std::size_t kBins = 400;
-constexpr double kBin_m = 0.125;
+constexpr double kMicronBin_m = 0.125;
 
 /// Rayleigh noise, the amplitude of many small echoes, on a background; both grow with the range.
 Bins noise_by_range(std::mt19937_64& random) {
@@ -35,9 +35,9 @@ void add_wall(Bins& bins, std::size_t bin, int height) {
   for (std::size_t i = bin; i < bin + 8; ++i) bins[i] = static_cast<std::uint8_t>(std::min(bins[i] + height, 255));
 }
 
-Sweep turn_of(std::vector<Bins> beams) {
+Sweep turn_with(std::vector<Bins> beams) {
   Sweep sweep{.extent = Sweep::Extent::kTurn, .beams = {}};
-  for (Bins& bins : beams) sweep.beams.push_back({.bin_length_m = kBin_m, .intensities = std::move(bins)});
+  for (Bins& bins : beams) sweep.beams.push_back({.bin_length_m = kMicronBin_m, .intensities = std::move(bins)});
   return sweep;
 }
 
@@ -65,7 +65,7 @@ TEST(NoiseFloor, KeepsFarNoiseFromBeingEchoesBesideANearWall) {
       beams.push_back(noise_by_range(random));
       if (n % 40 < 20) add_wall(beams.back(), 120, 60);
     }
-    const auto echoes = echoes_in(turn_of(std::move(beams)));
+    const auto echoes = echoes_in(turn_with(std::move(beams)));
     for (std::size_t n = 0; n < echoes.size(); ++n) {
       if (!echoes[n]) continue;
       const bool is_wall = std::abs(static_cast<double>(echoes[n]->peak) - 124.0) < 8.0;
@@ -84,7 +84,7 @@ TEST(NoiseFloor, IsNoneWhereTheBeamsAroundHearAWall) {
     beams.push_back(noise_by_range(random));
     if (n % 33 < 9) add_wall(beams.back(), 225, 200);
   }
-  for (const NoiseFloor& floor : floors_in(turn_of(std::move(beams)))) {
+  for (const NoiseFloor& floor : floors_in(turn_with(std::move(beams)))) {
     EXPECT_EQ(floor.at(225), 0);
     EXPECT_GT(floor.at(399), 0);
   }
@@ -103,8 +103,8 @@ TEST(NoiseFloor, DoesNotTakeALoudWallForNoise) {
         beams.back()[i] = static_cast<std::uint8_t>(60 + 20 * (random() % 8));
       }
     }
-    const NoiseFloor before = floors_in(turn_of(std::move(quiet)))[50],
-                     after = floors_in(turn_of(std::move(beams)))[50];
+    const NoiseFloor before = floors_in(turn_with(std::move(quiet)))[50],
+                     after = floors_in(turn_with(std::move(beams)))[50];
     EXPECT_EQ(after.at(wall + 20), 0);
     EXPECT_LE(after.at(120), before.at(120));
   }
@@ -124,7 +124,7 @@ TEST(NoiseFloor, FollowsEachBeamsOwnRange) {
     for (std::size_t i = 0; i < kBins; i += 2) half.push_back(all[i]);
     beams.push_back(std::move(half));
   }
-  const std::vector<NoiseFloor> floors = floors_in(turn_of(std::move(beams)));
+  const std::vector<NoiseFloor> floors = floors_in(turn_with(std::move(beams)));
   EXPECT_NEAR(floors[20].at(199), floors[21].at(399), 0.4 * floors[21].at(399));
   EXPECT_GT(floors[20].at(199), 2 * floors[20].at(0));
 }
@@ -137,9 +137,9 @@ TEST(NoiseFloor, TurnsWithTheBeamsOfATurn) {
     beams.push_back(noise_by_range(random));
     if (n < 30) add_wall(beams.back(), 200, 150);
   }
-  const std::vector<NoiseFloor> before = floors_in(turn_of(beams));
+  const std::vector<NoiseFloor> before = floors_in(turn_with(beams));
   std::rotate(beams.begin(), beams.begin() + 37, beams.end());
-  const std::vector<NoiseFloor> after = floors_in(turn_of(beams));
+  const std::vector<NoiseFloor> after = floors_in(turn_with(beams));
   for (std::size_t n = 0; n < before.size(); ++n) {
     for (std::size_t bin = 0; bin < kBins; bin += 25) {
       ASSERT_EQ(after[n].at(bin), before[(n + 37) % before.size()].at(bin)) << n << ", " << bin;

@@ -13,7 +13,7 @@ using namespace pingvox;
 
 namespace {
 
-constexpr std::size_t kLeft = 110, kTop = 44;
+constexpr std::size_t kLeftAxis = 110, kTitle = 44;
 
 Beam beam_of(std::vector<std::uint8_t> intensities, double bin_length_m = 0.5) {
   return {.time_s = 0.0, .bearing_rad = 0.0, .bin_length_m = bin_length_m, .intensities = std::move(intensities)};
@@ -36,9 +36,9 @@ TEST(RenderEchoes, RowsAreBeamsAndColumnsAreRange) {
   const std::vector<Beam> beams = {beam_of({0, 0, 255, 0}), beam_of({255, 0, 0, 0}), beam_of({64, 255}),
                                    beam_of({0, 255}, 1.0)};
   const Picture picture = render_echoes(beams, {}, {.target_px = 16});
-  EXPECT_EQ(as_text(picture, kLeft, kTop, 16, 1, 1, kLetters), "........####....\n");
+  EXPECT_EQ(as_text(picture, kLeftAxis, kTitle, 16, 1, 1, kLetters), "........####....\n");
   std::string rows;
-  for (std::size_t row = 0; row < 4; ++row) rows += as_text(picture, kLeft, kTop + row * 16, 4, 1, 4, kLetters);
+  for (std::size_t row = 0; row < 4; ++row) rows += as_text(picture, kLeftAxis, kTitle + row * 16, 4, 1, 4, kLetters);
   EXPECT_EQ(rows,
             "..#.\n"
             "#...\n"
@@ -51,7 +51,7 @@ TEST(RenderEchoes, MarksEachEchoWhereItIs) {
   const std::vector<std::optional<Echo>> echoes = {echo_at(1.0), std::nullopt, echo_at(1.75)};
   const Picture picture = render_echoes(beams, echoes, {.target_px = 16});
   std::string rows;
-  for (std::size_t row = 0; row < 3; ++row) rows += as_text(picture, kLeft, kTop + row * 16, 16, 1, 1, kLetters);
+  for (std::size_t row = 0; row < 3; ++row) rows += as_text(picture, kLeftAxis, kTitle + row * 16, 16, 1, 1, kLetters);
   EXPECT_EQ(rows,
             ".......|||......\n"
             "................\n"
@@ -71,8 +71,8 @@ TEST(RenderEchoes, ManyBeamsShareRowsAndNoEchoIsLost) {
   EXPECT_LE(picture.width(), 1200U);
   constexpr std::size_t kRows = 1868;  // of three beams each
   std::size_t bright = 0, marked = 0;
-  for (std::size_t y = kTop; y < kTop + kRows; ++y) {
-    for (std::size_t x = kLeft; x < kLeft + 798; ++x) {
+  for (std::size_t y = kTitle; y < kTitle + kRows; ++y) {
+    for (std::size_t x = kLeftAxis; x < kLeftAxis + 798; ++x) {
       bright += picture.at(x, y) == Rgb{255, 255, 255} ? 1 : 0;
       marked += picture.at(x, y) == EchoPictureOptions{}.echo ? 1 : 0;
     }
@@ -84,10 +84,10 @@ TEST(RenderEchoes, ManyBeamsShareRowsAndNoEchoIsLost) {
 /// Rows with a tick at the right of the image.
 std::vector<std::size_t> bearing_ticks(const Picture& picture, std::size_t columns, std::size_t row_px) {
   std::vector<std::size_t> rows;
-  const std::size_t x = kLeft + columns + 2 + 4;
-  for (std::size_t y = kTop; y < picture.height() - 96; ++y) {
+  const std::size_t x = kLeftAxis + columns + 2 + 4;
+  for (std::size_t y = kTitle; y < picture.height() - 96; ++y) {
     const bool is_first = picture.at(x, y) != Rgb{255, 255, 255} && picture.at(x, y - 1) == Rgb{255, 255, 255};
-    if (is_first) rows.push_back((y - kTop) / row_px);
+    if (is_first) rows.push_back((y - kTitle) / row_px);
   }
   return rows;
 }

@@ -68,7 +68,7 @@ Key cell(int x, int y, int z) {
   return {word(x), word(y), word(z)};
 }
 
-const std::vector<std::pair<Rgb, char>> kLetters = {
+const std::vector<std::pair<Rgb, char>> kMapLetters = {
     {kColours.unknown, ' '}, {kColours.surely_free, '.'}, {kColours.surely_occupied, '#'}};
 
 TEST(RenderMap, PutsXUpAndYLeft) {
@@ -85,7 +85,7 @@ TEST(RenderMap, PutsXUpAndYLeft) {
   }
   const Picture picture = render_map(map, {.target_px = 80});
   const auto [left, top] = corner_of_known(picture);
-  EXPECT_EQ(as_text(picture, left, top, 5, 4, edge_px(80, 5), kLetters),
+  EXPECT_EQ(as_text(picture, left, top, 5, 4, edge_px(80, 5), kMapLetters),
             "#####\n"
             "#  . \n"
             "# #. \n"
@@ -106,7 +106,7 @@ TEST(RenderMap, PutsZUpFromEachSide) {
     const Picture picture = render_map(map, {.view = view, .target_px = 64});
     const auto [left, top] = corner_of_known(picture);
     const std::size_t cell_px = edge_px(64, std::max<std::size_t>(across, 3));
-    return as_text(picture, left, top, across, 3, cell_px, kLetters);
+    return as_text(picture, left, top, across, 3, cell_px, kMapLetters);
   };
   EXPECT_EQ(seen(MapView::kRight, 4),
             "   #\n"
@@ -277,7 +277,7 @@ TEST(RenderMap, AgreesWithEachColumnsHighestCell) {
       }
       expected += '\n';
     }
-    EXPECT_EQ(as_text(picture, left, top, ny, nx, edge_px(256, std::max(nx, ny)), kLetters), expected);
+    EXPECT_EQ(as_text(picture, left, top, ny, nx, edge_px(256, std::max(nx, ny)), kMapLetters), expected);
   }
   EXPECT_GT(checked, 30'000U);
 }

@@ -6,7 +6,7 @@ using namespace pingvox;
 
 namespace {
 
-constexpr Rgb kRed{200, 0, 0}, kBlue{0, 0, 200}, kWhite{255, 255, 255};
+constexpr Rgb kRed{200, 0, 0}, kBlue{0, 0, 200}, kPaper{255, 255, 255};
 
 TEST(SideBySide, PutsPicturesIntoARow) {
   const std::vector<Panel> panels = {{Picture(100, 50, kRed), "a"}, {Picture(60, 80, kBlue), ""}};
@@ -15,13 +15,13 @@ TEST(SideBySide, PutsPicturesIntoARow) {
   EXPECT_EQ(both->width(), 176U);
   EXPECT_GT(both->height(), 80U + 18U);
   EXPECT_EQ(both->at(99, 49), kRed);
-  EXPECT_EQ(both->at(100, 49), kWhite);
+  EXPECT_EQ(both->at(100, 49), kPaper);
   EXPECT_EQ(both->at(116, 0), kBlue);
   EXPECT_EQ(both->at(175, 79), kBlue);
   // The caption, below the higher of the two.
   std::size_t inked = 0;
   for (std::size_t y = 80; y < both->height(); ++y) {
-    for (std::size_t x = 0; x < both->width(); ++x) inked += both->at(x, y) == kWhite ? 0 : 1;
+    for (std::size_t x = 0; x < both->width(); ++x) inked += both->at(x, y) == kPaper ? 0 : 1;
   }
   EXPECT_GT(inked, 20U);
 }
