@@ -157,5 +157,32 @@ TEST(ClockOffset, OfTheMarinasSonarAndCompass) {
   EXPECT_LT(offset->deviation_s, 0.5);
 }
 
+// Kills the border of the search, where the best offset of a slow turning is if it lies beyond, as the one that is
+// told.
+TEST(ClockError, AnOffsetBeyondTheWidestSearchIsNotTold) {
+  const auto yaw = [](double time_s) {
+    double sum = 0.0;
+    for (double i = 0.0; i < 12.0; i += 1.0)
+      sum += std::sin(2.0 * std::numbers::pi * time_s / (60.0 + 11.7 * i) + i * i);
+    return 0.5 * sum;
+  };
+  std::vector<YawChange> changes;
+  for (double time_s = 0.0; time_s < 1500.0; time_s += 2.0) {
+    changes.push_back({time_s, time_s + 2.0, yaw(time_s + 2.0) - yaw(time_s), 0.5});
+  }
+  const auto late_by = [&](double late_s) {
+    std::vector<StampedPose> poses;
+    for (double time_s = -1000.0; time_s < 2500.0; time_s += 0.5) {
+      poses.push_back({time_s + late_s, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, yaw(time_s))});
+    }
+    return *Trajectory::make(poses);
+  };
+  const auto within = clock_error(changes, late_by(590.0));
+  ASSERT_TRUE(within);
+  EXPECT_NEAR(within->offset_s, -590.0, 0.1);
+  const auto beyond = clock_error(changes, late_by(606.0));
+  EXPECT_FALSE(beyond) << beyond->offset_s;
+}
+
 }  // namespace
 }  // namespace pingvox
