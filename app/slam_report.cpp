@@ -117,8 +117,11 @@ std::string velocity_text(const SlamReport& report) {
   const std::string check =
       report.velocity_check ? fmt::format("{:.2f} m/s from what the sonar sees", report.velocity_check->difference_m_s)
                             : std::string("not checked by the sonar");
-  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s; {}", on_one_line(report.velocity),
-                     report.velocities, report.velocities_clipped, report.longest_gap_s, check);
+  const std::string by_sonar = report.gaps_by_sonar_s > 0.0
+                                   ? fmt::format(" ({:.0f} s of gaps by the sonar)", report.gaps_by_sonar_s)
+                                   : std::string();
+  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s{}; {}", on_one_line(report.velocity),
+                     report.velocities, report.velocities_clipped, report.longest_gap_s, by_sonar, check);
 }
 
 std::string sensors_text(const SlamSolution& solution) {
@@ -144,7 +147,8 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
   velocity.add("source", report.velocity)
       .add("samples", report.velocities)
       .add("clipped", report.velocities_clipped)
-      .add("longest_gap_s", report.longest_gap_s);
+      .add("longest_gap_s", report.longest_gap_s)
+      .add("gaps_by_sonar_s", report.gaps_by_sonar_s);
   if (report.by_sonar) {
     JsonObject by_sonar;
     by_sonar.add("matched", report.by_sonar->matched)

@@ -97,7 +97,8 @@ TimeSeries::TimeSeries(std::vector<double> times_s, std::vector<double> values)
   if (times_s_.size() < 2) return;
   std::vector<double> steps_s(times_s_.size() - 1);
   for (std::size_t i = 0; i < steps_s.size(); ++i) steps_s[i] = times_s_[i + 1] - times_s_[i];
-  usual_limit_s_ = std::max(5.0 * median(std::move(steps_s)), 0.5);
+  usual_step_s_ = median(std::move(steps_s));
+  usual_limit_s_ = std::max(5.0 * usual_step_s_, 0.5);
 }
 
 double TimeSeries::at(double time_s) const {

@@ -42,10 +42,11 @@ class TimeSeries {
   /// How long that is in the stretch, all in all.
   double gap_s(double from_s, double to_s) const;
   double longest_step_s() const;
+  double usual_step_s() const { return usual_step_s_; }  ///< median; 0 of one sample
 
  private:
   std::vector<double> times_s_, values_;
-  double usual_limit_s_ = 0.0;
+  double usual_step_s_ = 0.0, usual_limit_s_ = 0.0;
 };
 
 /// Yaw of the body [rad] by one source, without jumps at the half turn.

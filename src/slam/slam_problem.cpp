@@ -109,7 +109,7 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
   }
   steady_m2_.assign(nodes_.size(), 0.0);
   for (const TimeSeries::Gap& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
-    const double variance_m2 = std::pow(kSteadyInGap_m_s * farthest_way_s(gap), 2);
+    const double variance_m2 = steady_variance_m2(gap);
     const auto after = std::ranges::upper_bound(knot_times_s_, gap.from_s);
     auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - knot_times_s_.begin() - 1, 0));
     for (; k < nodes_.size() && knot_times_s_[k] < gap.to_s; ++k) {
@@ -119,7 +119,7 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
   }
 }
 
-double SlamProblem::farthest_way_s(const TimeSeries::Gap& gap) const {
+double SlamProblem::steady_variance_m2(const TimeSeries::Gap& gap) const {
   constexpr double kSteps = 1000.0;
   const double step_s = (gap.to_s - gap.from_s) / kSteps;
   Eigen::Vector2d way_s = Eigen::Vector2d::Zero();
@@ -129,7 +129,7 @@ double SlamProblem::farthest_way_s(const TimeSeries::Gap& gap) const {
     way_s += step_s * Eigen::Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
     farthest_s = std::max(farthest_s, way_s.norm());
   }
-  return farthest_s;
+  return std::pow(kSteadyInGap_m_s * farthest_s, 2);
 }
 
 std::optional<std::pair<std::size_t, double>> SlamProblem::between_knots(double time_s) const {
@@ -214,6 +214,14 @@ std::vector<SlamProblem::Way> SlamProblem::ways(const Unknowns& unknowns) const 
     way.with_steady_m = std::sqrt(noise_m2 + std::max(gap_m * gap_m, steady_m2_[k]));
   }
   return ways;
+}
+
+double SlamProblem::gap_deviation_m(double longer_than_s) const {
+  double variance_m2 = 0.0;
+  for (const TimeSeries::Gap& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
+    if (gap.to_s - gap.from_s > longer_than_s) variance_m2 += steady_variance_m2(gap);
+  }
+  return std::sqrt(variance_m2);
 }
 
 Eigen::Vector2d SlamProblem::bulge(const Unknowns& unknowns, const Way& way, std::size_t knot, double time_s) const {

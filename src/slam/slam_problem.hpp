@@ -104,6 +104,8 @@ class SlamProblem {
     double with_steady_m = 0.0;
   };
   std::vector<Way> ways(const Unknowns& unknowns) const;
+  /// Standard deviation of the way in all gaps of the velocity that are longer than this.
+  double gap_deviation_m(double longer_than_s) const;
   /// How far the integrated velocity, at a time within an interval, is off the straight line between its ends.
   Eigen::Vector2d bulge(const Unknowns& unknowns, const Way& way, std::size_t knot, double time_s) const;
 
@@ -125,8 +127,9 @@ class SlamProblem {
     double time_s, share, main_yaw_rad;
     Eigen::Vector2d velocity;
   };
-  /// How far from where a gap begins a vehicle gets in it that goes ahead at 1 m/s.
-  double farthest_way_s(const TimeSeries::Gap& gap) const;
+  /// Variance of a motion that is the same for all of a gap: grows with the square of how far a vehicle gets in it that
+  /// goes ahead.
+  double steady_variance_m2(const TimeSeries::Gap& gap) const;
   Row row(std::size_t knot, double residual) const;
   double deviation_rad(const Unknowns& unknowns, std::size_t source, double yaw_rad) const;
   /// Residual of a heading at a knot [rad], with derivatives by the error of the knot and the globals of the source.

@@ -20,6 +20,7 @@
 #include "slam/sonar_checks.hpp"
 #include "slam/sonar_odometry.hpp"
 #include "slam/sweep_loops.hpp"
+#include "slam/velocity_gaps.hpp"
 
 namespace pingvox {
 namespace {
@@ -153,7 +154,13 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
   const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
   if (!checked) return tl::unexpected(checked.error());
   VelocitySource& velocity = recording.navigation.velocity;
+  const VelocitySource measured = velocity;
   const bool contradicts = checks.contradict_velocity();
+  double filled_s = 0.0;
+  if (options.matching == Matching::kPairs && !contradicts && !velocity.by_sonar) {
+    filled_s = fill_velocity_gaps(recording.sweeps, velocity_from_sonar(velocity, options),
+                                  recording.navigation.headings.front(), velocity);
+  }
   if (contradicts) allow_noise(checks.velocity->difference_m_s * std::sqrt(checks.velocity->over_s), velocity);
   SlamProblem problem(*std::move(times_s), velocity, recording.navigation.headings, options.calibration);
   Unknowns start = problem.dead_reckoning();
@@ -166,8 +173,8 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
     if (determined) loops = close_sweep_loops(solver);
     determined = determined && loops;
-    const bool leads_near = is_believed && velocity.ahead.longest_step_s() <= sweep_duration_s(recording.sweeps);
-    const double widest_m = leads_near ? kGateOfReach * solver.reach_m() : kInfinity;
+    const double in_gaps_m = solver.problem().gap_deviation_m(sweep_duration_s(recording.sweeps));
+    const double widest_m = is_believed ? kGateOfReach * solver.reach_m() + in_gaps_m : kInfinity;
     for (const double gate_m : kGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
   }
   std::optional<std::vector<Eigen::Matrix3d>> of_knots;
@@ -185,6 +192,10 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
       std::ranges::count_if(recording.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
   solution->covariances = covariances_of(solver, *of_knots, options);
   report_checks(checks, solution->report);
+  if (filled_s > 0.0) {
+    report_velocity(measured, solution->report);
+    solution->report.gaps_by_sonar_s = filled_s;
+  }
   if (loops) {
     solution->report.submap_loops_found = loops->found;
     solution->report.submap_loops_kept = loops->kept;

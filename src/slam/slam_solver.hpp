@@ -27,7 +27,8 @@ struct HeardSweep {
 };
 
 /// The widest gate of pairs where the velocity leads from sweep to sweep, as a share of the sonar's reach: echoes that
-/// are farther apart are of two things, as of two boulders.
+/// are farther apart are of two things, as of two boulders. Gaps of the velocity widen it by how far they may lead
+/// astray.
 inline constexpr double kGateOfReach = 0.2;
 
 /// The range that nine of ten echoes are within; 0 without echoes.

@@ -147,7 +147,9 @@ TEST(SlamSmoother, BridgesALostBottomLock) {
   for (const Beam& beam : basin.beams()) smoother.add(beam);
   const auto solved = smoother.solve();
   ASSERT_TRUE(solved) << solved.error().message;
-  EXPECT_NEAR(solved->report.longest_gap_s, 20.5, 1.0);
+  EXPECT_NEAR(solved->report.longest_gap_s, 20.5, 1.0) << "as measured";
+  EXPECT_EQ(solved->report.velocities, 1562U) << "as measured";
+  EXPECT_NEAR(solved->report.gaps_by_sonar_s, 20.5, 1.0);
   EXPECT_LT(error_m(solved->trajectory), 0.5);
 }
 

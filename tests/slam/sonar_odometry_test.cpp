@@ -6,45 +6,13 @@
 
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "pingvox/geometry/pose2.hpp"
-#include "slam/basin.hpp"
+#include "slam/heard_basin.hpp"
 
 namespace pingvox::test {
 namespace {
-
-std::vector<HeardSweep> sweeps_of(const Basin& basin) {
-  std::vector<HeardSweep> sweeps;
-  SweepAssembler assembler;
-  const auto add = [&](const Sweep& sweep) {
-    sweeps.push_back(
-        {sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s, echo_runs(sweep, {}, EchoOptions())});
-  };
-  for (Beam& beam : basin.beams()) {
-    if (const auto sweep = assembler.add(std::move(beam))) add(*sweep);
-  }
-  if (const auto sweep = assembler.finish()) add(*sweep);
-  return sweeps;
-}
-
-HeadingSource heading_of(const Basin& basin) {
-  std::optional<HeadingSource> heading = heading_source(basin.sources()[1], Pose::Identity());
-  return *std::move(heading);
-}
-
-SonarMount mount_of(const Basin& basin) {
-  return {Eigen::Vector2d::Zero(), basin.sonar_yaw_rad};
-}
-
-/// Velocity of the vehicle along its yaw and to port.
-Eigen::Vector2d body_velocity_at(double time_s) {
-  const double yaw_rad = Basin::at(time_s).yaw_rad;
-  return rotation2(-yaw_rad) * Basin::velocity_at(time_s);
-}
 
 TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
   const Basin basin{.duration_s = 300.0, .compass_cos = 0.0};
