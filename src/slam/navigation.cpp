@@ -91,14 +91,14 @@ Pose mount_of(const std::map<std::string, Pose>& body_from_source, const std::st
   return mount == body_from_source.end() ? Pose::Identity() : mount->second;
 }
 
-TimeSeries::TimeSeries(std::vector<double> times_s, std::vector<double> values)
+TimeSeries::TimeSeries(std::vector<double> times_s, std::vector<double> values, double gap_steps)
     : times_s_(std::move(times_s)), values_(std::move(values)) {
   assert(!times_s_.empty() && times_s_.size() == values_.size());
   if (times_s_.size() < 2) return;
   std::vector<double> steps_s(times_s_.size() - 1);
   for (std::size_t i = 0; i < steps_s.size(); ++i) steps_s[i] = times_s_[i + 1] - times_s_[i];
   usual_step_s_ = median(std::move(steps_s));
-  usual_limit_s_ = std::max(5.0 * usual_step_s_, 0.5);
+  usual_limit_s_ = std::max(gap_steps * usual_step_s_, 0.5);
 }
 
 double TimeSeries::at(double time_s) const {

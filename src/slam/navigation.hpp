@@ -20,7 +20,8 @@ Pose mount_of(const std::map<std::string, Pose>& body_from_source, const std::st
 class TimeSeries {
  public:
   /// REQUIRES at least one sample, and times that rise strictly.
-  TimeSeries(std::vector<double> times_s, std::vector<double> values);
+  /// @param gap_steps  a step of more than so many median ones, and of more than half a second, is a gap
+  TimeSeries(std::vector<double> times_s, std::vector<double> values, double gap_steps = 5.0);
 
   double from_s() const { return times_s_.front(); }
   double to_s() const { return times_s_.back(); }
@@ -36,8 +37,7 @@ class TimeSeries {
       return std::max(0.0, std::min(to_s, end_s) - std::max(from_s, begin_s));
     }
   };
-  /// Where a stretch of time lies between samples farther apart than five times their median step, and than half a
-  /// second, or outside of the samples.
+  /// Where a stretch of time lies in gaps between samples, or outside of them.
   std::vector<Gap> gaps(double from_s, double to_s) const;
   /// How long that is in the stretch, all in all.
   double gap_s(double from_s, double to_s) const;

@@ -230,9 +230,12 @@ VelocitySource sonar_velocity(const NavSource& source) {
     left.push_back(sample.value.y());
   }
   TimeSeries density({times_s.front()}, {kDensity});
-  return {
-      source.name, TimeSeries(times_s, std::move(ahead)), TimeSeries(times_s, std::move(left)), std::move(density), 0,
-      true};
+  return {source.name,
+          TimeSeries(times_s, std::move(ahead), kMaxStep_sweeps),
+          TimeSeries(times_s, std::move(left), kMaxStep_sweeps),
+          std::move(density),
+          0,
+          true};
 }
 
 SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,

@@ -19,6 +19,10 @@ namespace pingvox {
 /// that comes after it: in a square tank two sweeps in a row fit after a wrong one, but not many.
 inline constexpr std::size_t kMatchesAlone = 5;
 
+/// Two matches are of sweeps that follow each other if they are so many sweeps apart at most. Over a sweep that does
+/// not match the vehicle may have stopped or turned.
+inline constexpr double kMaxStep_sweeps = 1.6;
+
 /// The name of the sources that are made here.
 inline constexpr std::string_view kSonarSource = "sonar odometry";
 

@@ -14,9 +14,6 @@ namespace {
 
 /// Sweeps before and after a gap that are matched, too: their neighbours lead to what is expected in it.
 constexpr std::ptrdiff_t kSweepsAround = 6;
-/// Two matches are of sweeps that follow each other if they are so many sweeps apart at most. Over a sweep that does
-/// not match the vehicle may have stopped or turned.
-constexpr double kMaxStep_sweeps = 1.6;
 /// Least time between samples that are put into a gap.
 constexpr double kMinStep_s = 0.25;
 
