@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/median.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -70,6 +72,37 @@ double bearing_of(Column column, double number) {
   if (column == Column::kBearingClockwiseDeg) number *= -kDegree_rad;
   // Valid bearings are kept as they are, so that written files are read back exactly.
   return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrap_bearing(number);
+}
+
+/// The numbers in the column bearing_rad of the first beams; none in a file without that column.
+std::vector<double> first_bearings_rad(Lines lines, const std::vector<Column>& columns, char separator) {
+  constexpr std::size_t kLines = 64;
+  const auto column = std::ranges::find(columns, Column::kBearingRad);
+  std::vector<double> bearings_rad;
+  if (column == columns.end()) return bearings_rad;
+  for (std::size_t n = 0; n < kLines; ++n) {
+    std::optional<std::string_view> line = lines.next_with_content();
+    if (!line) break;
+    for (auto c = columns.begin(); c != column; ++c) cut_field(*line, separator);
+    const auto field = cut_field(*line, separator);
+    const std::optional<double> number = field ? number_in(*field) : std::nullopt;
+    if (number) bearings_rad.push_back(*number);
+  }
+  return bearings_rad;
+}
+
+/// Whether bearings in radians are in fact degrees: beyond a turn, and farther apart than heads step.
+bool are_degrees(const std::vector<double>& bearings_rad) {
+  constexpr std::size_t kFewest = 8;
+  constexpr double kMaxStep_rad = 15.0 * kDegree_rad;  // a Micron's largest step is 14.3 degrees
+  if (bearings_rad.size() < kFewest) return false;
+  double farthest_rad = 0.0;
+  std::vector<double> steps_rad;
+  for (std::size_t i = 0; i < bearings_rad.size(); ++i) {
+    farthest_rad = std::max(farthest_rad, std::abs(bearings_rad[i]));
+    if (i > 0) steps_rad.push_back(std::abs(bearings_rad[i] - bearings_rad[i - 1]));
+  }
+  return farthest_rad > 2.1 * std::numbers::pi && median(std::move(steps_rad)) > kMaxStep_rad;
 }
 
 std::optional<std::uint8_t> intensity_in(std::string_view field) {
@@ -163,7 +196,15 @@ Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage) {
   if (const std::string_view problem = problem_of(columns); !problem.empty()) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), problem));
   }
-  return std::make_unique<CsvSource>(std::move(file), damage, lines, std::move(columns), separator_of(*header));
+  const char separator = separator_of(*header);
+  if (are_degrees(first_bearings_rad(lines, columns, separator))) {
+    return fail(
+        Error::Code::kCorrupt,
+        fmt::format("{}: the column bearing_rad holds degrees, it seems: name it bearing_deg, or bearing_cw_deg "
+                    "if they count clockwise",
+                    file.name));
+  }
+  return std::make_unique<CsvSource>(std::move(file), damage, lines, std::move(columns), separator);
 }
 
 Result<std::size_t> write_csv(BeamSource& beams, std::ostream& out) {

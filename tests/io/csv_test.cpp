@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,6 +61,20 @@ TEST(Csv, ReadsBearingsOfEachSenseAndUnit) {
   EXPECT_NEAR(bearing("bearing_cw_deg", "90"), 1.5 * std::numbers::pi, 1e-15);
   EXPECT_EQ(bearing("bearing_cw_deg", "0"), 0.0);
   EXPECT_EQ(bearing("bearing_deg", "360"), 0.0);
+}
+
+// Kills a map of a head that jumps by 103 degrees from beam to beam, of which each sweep is one beam.
+TEST(Csv, RefusesDegreesInTheColumnOfRadians) {
+  const auto read = [](std::string_view column, double step, double turn) {
+    std::string text = "time_s," + std::string(column) + ",bin_length_m,intensities\n";
+    for (int i = 0; i < 300; ++i) text += fmt::format("{},{},0.1,1,2\n", i, std::fmod(step * i, turn));
+    return read_csv(text);
+  };
+  EXPECT_THAT(read("bearing_rad", 1.8, 360.0).error, HasSubstr("bearing_rad holds degrees, it seems"));
+  EXPECT_THAT(read("bearing_rad", -0.9, 360.0).error, HasSubstr("bearing_deg"));
+  EXPECT_EQ(read("bearing_deg", 1.8, 360.0).items.size(), 300U);
+  EXPECT_EQ(read("bearing_rad", 0.25, 1e9).items.size(), 300U) << "radians that go on from turn to turn";
+  EXPECT_EQ(read("bearing_rad", 0.5 * std::numbers::pi, 2.0 * std::numbers::pi).items.size(), 300U) << "four sides";
 }
 
 TEST(Csv, TakesLineEndsMarksAndNumbersAsOtherProgramsWriteThem) {
