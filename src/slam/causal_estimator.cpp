@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "slam/solution.hpp"
+#include "slam/velocity_gaps.hpp"
 
 namespace pingvox {
 namespace {
@@ -106,8 +107,11 @@ std::vector<NavSource> CausalEstimator::sources_of_window(double nav_until_s) {
 
 Result<void> CausalEstimator::solve_until(double nav_until_s) {
   const auto end = std::ranges::upper_bound(beam_times_s_, sweeps_.back().to_s) - beam_times_s_.begin();
-  const Result<Recording> recording = recording_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)),
-                                                   sweeps_, sources_of_window(nav_until_s), options_);
+  Result<Navigation> navigation = navigation_of(sources_of_window(nav_until_s), options_);
+  if (navigation) fill_gaps(*navigation);
+  const Result<Recording> recording = std::move(navigation).and_then([&](Navigation part) {
+    return recording_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)), sweeps_, std::move(part));
+  });
   const bool goes_on = recording && (window_.times_s.empty() || recording->span.to_s > window_.times_s.back());
   Result<std::vector<double>> times_s =
       recording.and_then([&](const Recording& part) { return window_knot_times(window_, part); });
@@ -147,6 +151,17 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   solver_.emplace(std::move(solver));
   forget();
   return {};
+}
+
+void CausalEstimator::fill_gaps(Navigation& navigation) {
+  VelocitySource& velocity = navigation.velocity;
+  if (options_.matching == Matching::kNone || velocity.by_sonar) return;
+  const Span span{velocity.ahead.from_s(), solver_ ? sweeps_.back().to_s : velocity.ahead.to_s()};
+  for (const TimeSeries::Gap& gap : fill_velocity_gaps(sweeps_, span, velocity_from_sonar(velocity, options_),
+                                                       navigation.headings.front(), velocity)) {
+    filled_s_ += std::max(0.0, gap.to_s - std::max(gap.from_s, filled_until_s_));
+    filled_until_s_ = std::max(filled_until_s_, gap.to_s);
+  }
 }
 
 void CausalEstimator::add_poses(const SlamSolver& solver, const Recording& recording) {
@@ -192,8 +207,10 @@ std::optional<StampedPose> CausalEstimator::pose() const {
   const auto main = std::ranges::find(headings, window_.headings.front(), &HeadingSource::name);
   if (main == headings.end()) return std::nullopt;
   std::rotate(headings.begin(), main, main + 1);
-  // By the sonar the velocity is known at the end of a sweep, and goes on.
-  const double known_s = navigation->velocity.by_sonar ? kInfinity : navigation->velocity.ahead.to_s();
+  // By the sonar the velocity is known at the end of a sweep, or was in a gap, and goes on.
+  const bool is_in_gap = navigation->velocity.ahead.to_s() < from_s;
+  if (is_in_gap) navigation->velocity = solver_->problem().velocity();
+  const double known_s = is_in_gap || navigation->velocity.by_sonar ? kInfinity : navigation->velocity.ahead.to_s();
   const double to_s = std::min(known_s, headings.front().yaw_rad.to_s());
   StampedPose pose = poses_.back();
   if (to_s > from_s) {
@@ -237,6 +254,7 @@ Result<SlamSolution> CausalEstimator::finish() {
   solution->report.knots = window_.left_knots + window_.times_s.size();
   solution->report.echoes = window_.left_echoes + window_.echoes;
   solution->report.largest = window_.largest;
+  solution->report.gaps_by_sonar_s = filled_s_;
   solution->report.submap_loops_found = loops_.found;
   solution->report.submap_loops_kept = loops_.kept;
   if (solution->report.by_sonar) {

@@ -46,6 +46,8 @@ class CausalEstimator {
   /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
   /// moved.
   std::vector<NavSource> sources_of_window(double nav_until_s);
+  /// Puts what the sonar tells where the velocity is missing, once there is a trajectory until its end as well.
+  void fill_gaps(Navigation& navigation);
   void add_poses(const SlamSolver& solver, const Recording& recording);
   void forget();
   /// Whether enough of all sweeps match, where the vehicle moves by its sonar.
@@ -62,9 +64,10 @@ class CausalEstimator {
   GrowingOdometry odometry_;
 
   CausalWindow window_;
-  SweepLoops loops_;                  ///< that moved the poses, of all solutions
-  std::optional<SlamSolver> solver_;  ///< of the last solution
-  std::optional<Error> missing_;      ///< why there is no later one
+  SweepLoops loops_;                                     ///< that moved the poses, of all solutions
+  std::optional<SlamSolver> solver_;                     ///< of the last solution
+  std::optional<Error> missing_;                         ///< why there is no later one
+  double filled_s_ = 0.0, filled_until_s_ = -kInfinity;  ///< where the velocity was missing and the sonar told it
   std::vector<StampedPose> poses_;
   /// Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
   /// those before, or their map would bend. What left the window keeps its frame.

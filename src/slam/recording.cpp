@@ -169,12 +169,17 @@ tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, co
 }
 
 Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                               Navigation navigation) {
+  const Result<Span> span = common_span(beam_times_s, navigation);
+  if (!span) return tl::unexpected(span.error());
+  return Recording{beam_times_s, sweeps, std::move(navigation), *span};
+}
+
+Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
                                std::vector<NavSource> sources, const SlamOptions& options) {
   Result<Navigation> navigation = navigation_of(std::move(sources), options);
   if (!navigation) return tl::unexpected(navigation.error());
-  const Result<Span> span = common_span(beam_times_s, *navigation);
-  if (!span) return tl::unexpected(span.error());
-  return Recording{beam_times_s, sweeps, *std::move(navigation), *span};
+  return recording_of(beam_times_s, sweeps, *std::move(navigation));
 }
 
 Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSweep> sweeps, std::size_t beams) {

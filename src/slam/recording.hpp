@@ -70,7 +70,10 @@ struct Recording {
   Span span;  ///< common to all that is needed
 };
 
-/// @return kUnsupported when something is missing, or the times do not overlap; see navigation_of
+/// @return kUnsupported when the times do not overlap
+Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                               Navigation navigation);
+/// @return as navigation_of, too
 Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
                                std::vector<NavSource> sources, const SlamOptions& options);
 

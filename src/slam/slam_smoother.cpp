@@ -148,19 +148,36 @@ void allow_noise(double density, VelocitySource& velocity) {
   velocity.density = TimeSeries(velocity.density.times_s(), std::move(densities));
 }
 
+/// @return for how long [s] the sonar tells the motion where the velocity is missing
+Result<double> fill_gaps(Recording& recording, const SlamOptions& options) {
+  const std::span<const double> times_s = recording.beam_times_s;
+  VelocitySource& velocity = recording.navigation.velocity;
+  double filled_s = 0.0;
+  for (const TimeSeries::Gap& gap :
+       fill_velocity_gaps(recording.sweeps, {times_s.front(), times_s.back()}, velocity_from_sonar(velocity, options),
+                          recording.navigation.headings.front(), velocity)) {
+    filled_s += gap.to_s - gap.from_s;
+  }
+  Result<Recording> longer = recording_of(times_s, recording.sweeps, std::move(recording.navigation));
+  if (!longer) return tl::unexpected(longer.error());
+  recording = *std::move(longer);
+  return filled_s;
+}
+
 Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks, const SlamOptions& options) {
-  Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
-  if (!times_s) return tl::unexpected(times_s.error());
-  const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
-  if (!checked) return tl::unexpected(checked.error());
   VelocitySource& velocity = recording.navigation.velocity;
   const VelocitySource measured = velocity;
   const bool contradicts = checks.contradict_velocity();
   double filled_s = 0.0;
   if (options.matching == Matching::kPairs && !contradicts && !velocity.by_sonar) {
-    filled_s = fill_velocity_gaps(recording.sweeps, velocity_from_sonar(velocity, options),
-                                  recording.navigation.headings.front(), velocity);
+    const Result<double> filled = fill_gaps(recording, options);
+    if (!filled) return tl::unexpected(filled.error());
+    filled_s = *filled;
   }
+  Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
+  if (!times_s) return tl::unexpected(times_s.error());
+  const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
+  if (!checked) return tl::unexpected(checked.error());
   if (contradicts) allow_noise(checks.velocity->difference_m_s * std::sqrt(checks.velocity->over_s), velocity);
   SlamProblem problem(*std::move(times_s), velocity, recording.navigation.headings, options.calibration);
   Unknowns start = problem.dead_reckoning();
@@ -193,7 +210,7 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
   solution->covariances = covariances_of(solver, *of_knots, options);
   report_checks(checks, solution->report);
   if (filled_s > 0.0) {
-    report_velocity(measured, solution->report);
+    report_velocity(measured, recording.span, solution->report);
     solution->report.gaps_by_sonar_s = filled_s;
   }
   if (loops) {
@@ -273,7 +290,8 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
   Result<SlamSolution> solution = estimator.finish();
   // Of all, not of the window.
   if (!solution || solution->report.by_sonar || !velocity) return solution;
-  report_velocity(*velocity, solution->report);
+  const std::vector<StampedPose>& poses = solution->trajectory.poses();
+  report_velocity(*velocity, {poses.front().time_s, poses.back().time_s}, solution->report);
   report_checks(checks_of(*velocity, headings.front(), sweeps, turns, options), solution->report);
   return solution;
 }

@@ -86,7 +86,8 @@ SlamReport report_of(const SlamSolver& solver) {
   if (!distances_m.empty()) report.pair_median_m = median(std::move(distances_m));
   report.loops_found = solver.pairs().loops_found;
   report.loops_kept = solver.pairs().loops_kept;
-  report_velocity(velocity, report);
+  const std::vector<double>& knots_s = solver.problem().knot_times_s();
+  report_velocity(velocity, {knots_s.front(), knots_s.back()}, report);
   report.heading = solver.problem().headings().front().name;
   if (velocity.by_sonar) {
     double variance_m2 = 0.0;
@@ -101,10 +102,11 @@ SlamReport report_of(const SlamSolver& solver) {
 
 }  // namespace
 
-void report_velocity(const VelocitySource& velocity, SlamReport& report) {
+void report_velocity(const VelocitySource& velocity, const Span& span, SlamReport& report) {
   report.velocities = velocity.ahead.size();
   report.velocities_clipped = velocity.clipped;
-  report.longest_gap_s = velocity.ahead.longest_step_s();
+  report.longest_gap_s = std::max(
+      {velocity.ahead.longest_step_s(), velocity.ahead.from_s() - span.from_s, span.to_s - velocity.ahead.to_s()});
   report.velocity = velocity.name;
 }
 

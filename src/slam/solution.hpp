@@ -9,6 +9,7 @@
 #include "pingvox/result.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "slam/navigation.hpp"
+#include "slam/recording.hpp"
 #include "slam/slam_problem.hpp"
 #include "slam/slam_solver.hpp"
 
@@ -31,7 +32,7 @@ void begin_at_origin(std::vector<StampedPose>& poses);
 /// @return kUnsupported without poses
 Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses);
 
-/// What the report says of the velocity.
-void report_velocity(const VelocitySource& velocity, SlamReport& report);
+/// What the report says of the velocity. @param span  of the trajectory
+void report_velocity(const VelocitySource& velocity, const Span& span, SlamReport& report);
 
 }  // namespace pingvox

@@ -147,6 +147,54 @@ TEST(CausalSlam, WaitsForAVelocity) {
   EXPECT_EQ(finished->trajectory.poses().front().time_s, 45.0);
 }
 
+// Kills poses that stop while the DVL has lost the bottom, and those that go on evenly then.
+TEST(CausalSlam, GoesOnByTheSonarWhereTheVelocityIsMissing) {
+  constexpr double kFrom_s = 100.0, kTo_s = 160.0;
+  const Basin basin{.duration_s = 200.0, .velocity_yaw_rad = 0.0};
+  const std::vector<NavSource> sources = basin.sources();
+  CausalSlam slam(options_of(basin));
+  std::vector<std::size_t> added(sources.size(), 0);
+  double greatest_m = 0.0;
+  for (const Beam& beam : basin.beams()) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const auto& samples = sources[s].samples;
+      for (; added[s] < samples.size() && samples[added[s]].time_s <= beam.time_s; ++added[s]) {
+        const NavSample& sample = samples[added[s]];
+        if (s == 0 && sample.time_s > kFrom_s && sample.time_s < kTo_s) continue;
+        ASSERT_TRUE(slam.add(sources[s].name, sources[s].quantity, sample));
+      }
+    }
+    ASSERT_TRUE(slam.add(beam));
+    const auto pose = slam.pose();
+    if (!pose || beam.time_s < kFrom_s) continue;
+    if (beam.time_s > kFrom_s + 20.0) {
+      ASSERT_GT(pose->time_s, beam.time_s - 0.7);
+    }
+    const Eigen::Vector2d moved = Basin::at(pose->time_s).place - Basin::at(0.0).place;
+    greatest_m = std::max(greatest_m, (pose->map_from_body.translation().head<2>() - moved).norm());
+  }
+  EXPECT_LT(greatest_m, 3.5);
+  const auto finished = slam.finish();
+  ASSERT_TRUE(finished) << finished.error().message;
+  EXPECT_NEAR(finished->report.gaps_by_sonar_s, kTo_s - kFrom_s, 2.0);
+}
+
+// Kills a trajectory by the sonar alone that says to be by the velocity of another dive.
+TEST(CausalSlam, NeedsAVelocityOfItsTimeToBegin) {
+  const Basin basin{.duration_s = 60.0};
+  CausalSlam slam(options_of(basin));
+  for (const NavSource& source : basin.sources()) {
+    for (NavSample sample : source.samples) {
+      if (source.name == "dvl") sample.time_s -= 1000.0;
+      ASSERT_TRUE(slam.add(source.name, source.quantity, sample));
+    }
+  }
+  for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
+  const auto finished = slam.finish();
+  ASSERT_FALSE(finished);
+  EXPECT_THAT(finished.error().message, HasSubstr("do not overlap in time"));
+}
+
 TEST(CausalSlam, RefusesBeamsThatGoBackInTime) {
   const Basin basin{.duration_s = 1.0};
   const std::vector<Beam> beams = basin.beams();

@@ -153,6 +153,22 @@ TEST(SlamSmoother, BridgesALostBottomLock) {
   EXPECT_LT(error_m(solved->trajectory), 0.5);
 }
 
+// Kills a trajectory that ends with its DVL while the sonar hears on.
+TEST(SlamSmoother, GoesOnByTheSonarAfterTheLastVelocity) {
+  const Basin basin{.duration_s = 200.0};
+  std::vector<NavSource> sources = basin.sources();
+  std::erase_if(sources[0].samples, [](const NavSample& sample) { return sample.time_s > 120.0; });
+  SlamSmoother smoother = smoother_of(basin, {});
+  add(smoother, sources);
+  for (const Beam& beam : basin.beams()) smoother.add(beam);
+  const auto solved = smoother.solve();
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_GT(solved->trajectory.poses().back().time_s, 185.0);
+  EXPECT_GT(solved->report.longest_gap_s, 65.0);
+  EXPECT_GT(solved->report.gaps_by_sonar_s, 65.0);
+  EXPECT_LT(error_m(solved->trajectory), 1.0);
+}
+
 TEST(SlamSmoother, NavigationOnALateClockIsMovedByTheOffset) {
   const Basin basin{.duration_s = 400.0};
   std::vector<NavSource> sources = basin.sources();

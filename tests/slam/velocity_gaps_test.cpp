@@ -23,8 +23,13 @@ class VelocityGaps : public testing::Test {
     return *velocity_source(source, Pose::Identity());
   }
 
-  double fill(VelocitySource& velocity) const {
-    return fill_velocity_gaps(sweeps_, mount_of(basin_), heading_, velocity);
+  /// @return for how long the sonar tells it [s]
+  double fill(VelocitySource& velocity, const Span& span = {50.0, 50.0}) const {
+    double sum_s = 0.0;
+    for (const TimeSeries::Gap& gap : fill_velocity_gaps(sweeps_, span, mount_of(basin_), heading_, velocity)) {
+      sum_s += gap.to_s - gap.from_s;
+    }
+    return sum_s;
   }
 
   Basin basin_{.duration_s = 200.0, .compass_cos = 0.0};
@@ -74,6 +79,24 @@ TEST_F(VelocityGaps, StayWhereTheSonarTellsNothing) {
   EXPECT_EQ(fill(shorter), 0.0) << "shorter than a sweep, in which the sonar tells nothing";
 }
 
+// Kills a velocity that ends where the sensor fails, and one that is made up where nobody knows how the vehicle turned.
+TEST_F(VelocityGaps, AreFilledBeforeAndAfterTheMeasuredVelocity) {
+  VelocitySource velocity = velocity_without(120.0, 201.0);
+  EXPECT_EQ(fill(velocity, {0.0, 120.0}), 0.0);
+  EXPECT_NEAR(fill(velocity, {0.0, 200.0}), 70.0, 1.0) << "until the middle between the last two sweeps";
+  EXPECT_NEAR(velocity.ahead.to_s(), 190.0, 1.0);
+  EXPECT_EQ(velocity.ahead.gap_s(0.0, 189.0), 0.0);
+
+  VelocitySource late = velocity_without(-1.0, 60.0);
+  EXPECT_NEAR(fill(late, {0.0, 200.0}), 50.0, 1.0);
+  EXPECT_NEAR(late.ahead.from_s(), 10.0, 1.0);
+
+  heading_.yaw_rad = TimeSeries({0.0, 150.0}, {Basin::at(0.0).yaw_rad, Basin::at(0.0).yaw_rad});
+  VelocitySource until_heading = velocity_without(120.0, 201.0);
+  fill(until_heading, {0.0, 200.0});
+  EXPECT_LT(until_heading.ahead.to_s(), 150.0);
+}
+
 // Kills samples without end: a clock whose steps are of no length.
 TEST_F(VelocityGaps, TakeFewSamples) {
   std::vector<double> times_s, values;
@@ -83,6 +106,20 @@ TEST_F(VelocityGaps, TakeFewSamples) {
   velocity_.ahead = velocity_.left = velocity_.density = TimeSeries(times_s, values);
   EXPECT_GT(fill(velocity_), 100.0);
   EXPECT_LT(velocity_.ahead.size(), 1000U);
+}
+
+// Kills four samples a second of a sonar whose times are in other units.
+TEST_F(VelocityGaps, TakeFewSamplesOfSlowSweeps) {
+  constexpr double kSlower = 1e6;
+  for (HeardSweep& sweep : sweeps_) {
+    sweep.from_s *= kSlower;
+    sweep.to_s *= kSlower;
+    for (EchoRun& run : sweep.runs) run.time_s *= kSlower;
+  }
+  velocity_.ahead = velocity_.left = velocity_.density = TimeSeries({20e6, 20e6 + 1.0, 180e6}, {0.0, 0.0, 0.0});
+  heading_.yaw_rad = TimeSeries({0.0, 200e6}, {0.0, 0.0});
+  fill(velocity_);
+  EXPECT_LT(velocity_.ahead.size(), 4000U);
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ struct SlamReport {
   std::size_t submap_loops_found = 0, submap_loops_kept = 0;
   std::size_t velocities = 0;  ///< valid samples
   std::size_t velocities_clipped = 0;
-  double longest_gap_s = 0.0;    ///< between valid velocities
+  double longest_gap_s = 0.0;    ///< without a valid velocity
   double gaps_by_sonar_s = 0.0;  ///< how long, in gaps of more than a sweep, the sonar told how the vehicle moved
   /// nullopt: too few sweeps match to tell, or none was asked to.
   std::optional<SonarCheck> velocity_check;
