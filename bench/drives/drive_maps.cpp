@@ -42,15 +42,16 @@ std::string_view name_of(BeamShape shape) {
 
 }  // namespace
 
-Result<DriveMaps> DriveMaps::make(std::string_view world, const Scene& scene, const Drive& drive, std::uint64_t seed) {
+Result<DriveMaps> DriveMaps::make(std::string_view world, const Scene& scene, const Drive& drive, std::uint64_t seed,
+                                  double cell_m) {
   std::vector<Pose> map_from_sonar;
   for (const Beam& beam : drive.beams) {
     if (const auto pose = drive.reference.at(beam.time_s)) map_from_sonar.push_back(*pose * drive.body_from_sonar);
   }
   const ViewOptions view{.min_range_m = EchoOptions::kDefaultBlanking_m, .max_range_m = scene.sonar_range_m};
-  Result<GroundTruth> truth = GroundTruth::make(scene, map_from_sonar, view, Extent::kPlane, scene.cell_m);
+  Result<GroundTruth> truth = GroundTruth::make(scene, map_from_sonar, view, Extent::kPlane, cell_m);
   if (!truth) return tl::unexpected(truth.error());
-  return DriveMaps(world, drive, seed, scene.cell_m, *std::move(truth));
+  return DriveMaps(world, drive, seed, cell_m, *std::move(truth));
 }
 
 Result<std::vector<Row>> DriveMaps::judge(std::string_view method, const Trajectory& trajectory,

@@ -16,7 +16,8 @@ namespace pingvox::bench {
 class DriveMaps {
  public:
   /// @param drive  of `scene`; has to outlive this
-  static Result<DriveMaps> make(std::string_view world, const Scene& scene, const Drive& drive, std::uint64_t seed);
+  static Result<DriveMaps> make(std::string_view world, const Scene& scene, const Drive& drive, std::uint64_t seed,
+                                double cell_m);
 
   /// A row for the map of each beam shape along a trajectory, which is turned and shifted onto the true one first: a
   /// trajectory's frame is its own. @param body_from_sonar  that goes with the trajectory

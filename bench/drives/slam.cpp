@@ -4,9 +4,11 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "drives/draw_drive.hpp"
 #include "drives/drive.hpp"
@@ -89,20 +91,20 @@ class Measurement {
   Measurement(const BenchOptions& options, std::vector<Row>& rows) : options_(options), rows_(rows) {}
 
   Result<void> measure(std::string_view name, const Drive& drive, const Method& method, std::uint64_t seed,
-                       const DriveMaps* maps = nullptr) {
+                       std::span<const DriveMaps> maps = {}) {
     if (options_.say != nullptr) options_.say(fmt::format("  {}: {}, seed {}", name, method.name, seed));
     const Result<Solved> solved = solve(drive, method, seed);
     if (!solved) return tl::unexpected(solved.error());
     Result<Row> row = row_of(name, method, seed, *solved, drive.reference);
     if (!row) return tl::unexpected(row.error());
     rows_.push_back(*std::move(row));
-    if (maps != nullptr) {
+    if (!maps.empty()) {
       Pose body_from_sonar = drive.body_from_sonar;
       if (method.matching == Matching::kPairs) {
         const SlamCalibration& found = solved->solution.calibration;
         body_from_sonar.pretranslate(Eigen::Vector3d(found.sonar_x_m.value, found.sonar_y_m.value, 0.0));
       }
-      if (auto judged = judge(*maps, method.name, solved->solution.trajectory, body_from_sonar); !judged) return judged;
+      if (auto judged = judge(maps, method.name, solved->solution.trajectory, body_from_sonar); !judged) return judged;
     }
     if (!options_.pictures || drawn_.size() == 2) return {};
     drawn_.push_back({std::string(method.name), solved->solution.trajectory});
@@ -111,11 +113,13 @@ class Measurement {
   }
   void next_drive() { drawn_.clear(); }
 
-  Result<void> judge(const DriveMaps& maps, std::string_view method, const Trajectory& trajectory,
+  Result<void> judge(std::span<const DriveMaps> maps, std::string_view method, const Trajectory& trajectory,
                      const Pose& body_from_sonar) {
-    Result<std::vector<Row>> judged = maps.judge(method, trajectory, body_from_sonar);
-    if (!judged) return tl::unexpected(judged.error());
-    map_rows_.insert(map_rows_.end(), judged->begin(), judged->end());
+    for (const DriveMaps& of_cells : maps) {
+      Result<std::vector<Row>> judged = of_cells.judge(method, trajectory, body_from_sonar);
+      if (!judged) return tl::unexpected(judged.error());
+      map_rows_.insert(map_rows_.end(), judged->begin(), judged->end());
+    }
     return {};
   }
   const std::vector<Row>& map_rows() const { return map_rows_; }
@@ -127,15 +131,19 @@ class Measurement {
   std::vector<MapPath> drawn_;
 };
 
-/// Dead reckoning and SLAM of a simulated drive, and the maps along both and along the true way.
+/// Dead reckoning and SLAM of a simulated drive, and the maps along both and along the true way, in cells of each size.
 Result<void> measure_simulated(std::string_view name, const Scene& scene, const Drive& drive, std::uint64_t seed,
-                               Measurement& measurement) {
-  const Result<DriveMaps> maps = DriveMaps::make(name, scene, drive, seed);
-  if (!maps) return tl::unexpected(maps.error());
-  for (const Method& method : {kReckoning, kBatch}) {
-    if (auto done = measurement.measure(name, drive, method, seed, &*maps); !done) return done;
+                               std::span<const double> cells_m, Measurement& measurement) {
+  std::vector<DriveMaps> maps;
+  for (const double cell_m : cells_m) {
+    Result<DriveMaps> of_cells = DriveMaps::make(name, scene, drive, seed, cell_m);
+    if (!of_cells) return tl::unexpected(of_cells.error());
+    maps.push_back(*std::move(of_cells));
   }
-  return measurement.judge(*maps, "true", drive.reference, drive.body_from_sonar);
+  for (const Method& method : {kReckoning, kBatch}) {
+    if (auto done = measurement.measure(name, drive, method, seed, maps); !done) return done;
+  }
+  return measurement.judge(maps, "true", drive.reference, drive.body_from_sonar);
 }
 
 }  // namespace
@@ -157,14 +165,17 @@ Result<std::vector<Row>> slam(const BenchOptions& options) {
     if (const auto done = measure(kCausal, 1); !done) return tl::unexpected(done.error());
   }
   constexpr std::size_t kHarbourTurns = 50;  // two laps
+  // In the marina also of a quarter of the width of a beam at the end of its range.
+  constexpr std::array kMarinaCells_m = {0.2, 0.6};
+  constexpr std::array kHarbourCells_m = {0.05};
   const Scene marina = marina_scene({}), harbour = harbour_scene({});
-  const auto each_seed = [&](std::string_view name, const Scene& scene, Motion motion,
-                             std::optional<std::size_t> turns) -> Result<void> {
+  const auto each_seed = [&](std::string_view name, const Scene& scene, Motion motion, std::optional<std::size_t> turns,
+                             std::span<const double> cells_m) -> Result<void> {
     for (std::uint64_t seed = 1; seed <= kSimulatedSeeds; ++seed) {
       if (seed == 1) measurement.next_drive();
       const Result<Drive> drive = simulate_drive(scene, motion, turns, seed);
       if (!drive) return tl::unexpected(drive.error());
-      if (auto done = measure_simulated(name, scene, *drive, seed, measurement); !done) return done;
+      if (auto done = measure_simulated(name, scene, *drive, seed, cells_m, measurement); !done) return done;
       if (seed > 1 || motion != Motion::kByHand) continue;
       for (const auto& [shape, cell_m] : {std::pair{BeamShape::kRay, 0.1}, {BeamShape::kCone, 0.2}}) {
         Result<Row> row = rebuild_map(name, *drive, shape, cell_m);
@@ -174,10 +185,10 @@ Result<std::vector<Row>> slam(const BenchOptions& options) {
     }
     return {};
   };
-  if (const auto done = each_seed("simulated", marina, Motion::kByHand, std::nullopt); !done) {
+  if (const auto done = each_seed("simulated", marina, Motion::kByHand, std::nullopt, kMarinaCells_m); !done) {
     return tl::unexpected(done.error());
   }
-  if (const auto done = each_seed("harbour", harbour, Motion::kLoop, kHarbourTurns); !done) {
+  if (const auto done = each_seed("harbour", harbour, Motion::kLoop, kHarbourTurns, kHarbourCells_m); !done) {
     return tl::unexpected(done.error());
   }
   rows.insert(rows.end(), measurement.map_rows().begin(), measurement.map_rows().end());
