@@ -149,13 +149,24 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
 
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check) {
   const std::string deviation = offset.deviation_s ? fmt::format(" (sd {:.3f} s)", *offset.deviation_s) : "";
-  return fmt::format("{:+.3f} s{}: {}; ", offset.offset_s, deviation, offset.from) +
-         (check ? fmt::format("{:+.1f} +- {:.1f} s{} from how the sonar's picture turns", check->offset_s,
-                              check->deviation_s, check->is_one_of_several ? ", or another," : "")
-                : "not checked by the sonar");
+  std::string checked = "not checked by the sonar";
+  if (check) {
+    checked =
+        fmt::format("{:+.1f} +- {:.1f} s{} from how the sonar's picture turns", check->offset_s, check->deviation_s,
+                    check->from_s              ? fmt::format(" since {:.1f} s", *check->from_s)
+                    : check->is_one_of_several ? ", or another,"
+                                               : "");
+  }
+  return fmt::format("{:+.3f} s{}: {}; {}", offset.offset_s, deviation, offset.from, checked);
 }
 
 std::string wrong_clock_text(const ClockOffset& check, std::string_view option) {
+  if (check.from_s) {
+    return fmt::format(
+        "by the turning of the sonar's picture the clock of the {} jumped ahead by {:.1f} +- {:.1f} s, "
+        "at {:.1f} s: what comes later is at wrong places",
+        check.offset_s < 0.0 ? "poses" : "log", std::abs(check.offset_s), check.deviation_s, *check.from_s);
+  }
   return fmt::format(
       "by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of the "
       "poses: is {} right?",
@@ -164,10 +175,11 @@ std::string wrong_clock_text(const ClockOffset& check, std::string_view option) 
 
 JsonObject json_of(const ClockOffset& check) {
   JsonObject json;
-  return json.add("offset_s", check.offset_s)
+  json.add("offset_s", check.offset_s)
       .add("sd_s", check.deviation_s)
       .add("changes", check.changes)
       .add_truth("several", check.is_one_of_several);
+  return check.from_s ? json.add("from_s", *check.from_s) : json.add_null("from_s");
 }
 
 JsonObject json_of(const NavOffset& offset) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
@@ -25,7 +26,8 @@ class WatchedBeams final : public BeamSourceDecorator {
 
   /// By how much the times of the poses are off, by the beams read so far. nullopt: it cannot be told.
   std::optional<ClockOffset> clock_error_of(const Trajectory& trajectory) {
-    return clock_error(turns_.finish(), trajectory);
+    const std::vector<YawChange> changes = turns_.finish();
+    return clock_error(changes, turns_.pauses(), trajectory);
   }
 
  private:

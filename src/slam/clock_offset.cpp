@@ -13,125 +13,25 @@
 #include "base/median.hpp"
 #include "slam/navigation.hpp"
 #include "slam/yaw_clock.hpp"
+#include "slam/yaw_comparison.hpp"
 
 namespace pingvox {
 namespace {
 
-constexpr double kGrid_s = 0.05;    ///< of the yaw
 constexpr double kCoarse_s = 0.25;  ///< of the offsets that are tried
-constexpr std::size_t kMaxChanges = 2'000, kMinChanges = 8;
-constexpr double kMaxLength_s = 2.0 * 86'400.0;
+constexpr std::size_t kMaxChanges = 2'000;
 constexpr double kAny_s = std::numeric_limits<double>::infinity();
 
 tl::unexpected<Error> cannot_tell(std::string why) {
   return fail(Error::Code::kUnsupported, std::move(why));
 }
 
-/// A yaw on an even grid of times, NaN within gaps.
-class EvenYaw {
- public:
-  explicit EvenYaw(const TimeSeries& yaw) : from_s_(yaw.from_s()) {
-    const auto count = static_cast<std::size_t>((yaw.to_s() - yaw.from_s()) / kGrid_s) + 1;
-    values_.reserve(count);
-    std::size_t next = 0;
-    const auto& times_s = yaw.times_s();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double time_s = from_s_ + static_cast<double>(i) * kGrid_s;
-      while (next + 1 < times_s.size() && times_s[next + 1] <= time_s) ++next;
-      const bool is_known = next + 1 == times_s.size() || yaw.gap_s(times_s[next], times_s[next + 1]) == 0.0;
-      values_.push_back(is_known ? yaw.at(time_s) : std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-
-  double from_s() const { return from_s_; }
-  double to_s() const { return from_s_ + static_cast<double>(values_.size() - 1) * kGrid_s; }
-  /// NaN where it is not known.
-  double at(double time_s) const {
-    const double place = (time_s - from_s_) / kGrid_s;
-    if (!(place >= 0.0 && place < static_cast<double>(values_.size() - 1))) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-    const auto i = static_cast<std::size_t>(place);
-    return values_[i] + (place - static_cast<double>(i)) * (values_[i + 1] - values_[i]);
-  }
-
- private:
-  double from_s_;
-  std::vector<double> values_;
-};
-
-/// How well a yaw explains changes of yaw, by the offset between their clocks.
-class Comparison {
- public:
-  Comparison(const std::vector<YawChange>& changes, const EvenYaw& yaw) : changes_(changes), yaw_(yaw) {}
-
-  /// What the yaw leaves of a change; NaN where it is not known.
-  double rest_rad(const YawChange& change, double offset_s) const {
-    return change.by_rad - yaw_.at(change.to_s - offset_s) + yaw_.at(change.from_s - offset_s);
-  }
-
-  /// By how much the yaw makes the sum of squares smaller than a vehicle that does not turn would, each square at most
-  /// that of three deviations; in squares of the deviation. -infinity where the yaw is known for too few changes.
-  double gain(double offset_s, double deviation_rad) const {
-    const double most = 9.0 * deviation_rad * deviation_rad;
-    double gain = 0.0;
-    std::size_t known = 0;
-    for (const YawChange& change : changes_) {
-      const double rest = rest_rad(change, offset_s);
-      if (std::isnan(rest)) continue;
-      ++known;
-      gain += std::min(change.by_rad * change.by_rad, most) - std::min(rest * rest, most);
-    }
-    return known < kMinChanges ? -kAny_s : gain / (deviation_rad * deviation_rad);
-  }
-
-  std::vector<double> rests_rad(double offset_s) const {
-    std::vector<double> rests;
-    for (const YawChange& change : changes_) {
-      if (const double rest = rest_rad(change, offset_s); !std::isnan(rest)) rests.push_back(std::abs(rest));
-    }
-    return rests;
-  }
-
-  /// A step of least squares over the changes that the yaw explains.
-  struct Step {
-    double step_s = 0.0;
-    double deviation_s = std::numeric_limits<double>::infinity();
-  };
-  Step step(double offset_s, double deviation_rad) const {
-    constexpr double kHalf_s = 0.1;
-    // What disturbs one part of a sweep, as the way of the vehicle does, disturbs the next ones too: twenty stretches
-    // of time count as independent, not their parts.
-    constexpr std::size_t kStretches = 20;
-    std::array<double, kStretches> sums{};
-    double information = 0.0, alone = 0.0;
-    for (std::size_t i = 0; i < changes_.size(); ++i) {
-      const double before = rest_rad(changes_[i], offset_s - kHalf_s),
-                   after = rest_rad(changes_[i], offset_s + kHalf_s);
-      if (std::isnan(before) || std::isnan(after) || std::abs(before + after) > 6.0 * deviation_rad) continue;
-      const double slope = (after - before) / (2.0 * kHalf_s), rest = 0.5 * (before + after);
-      information += slope * slope;
-      alone += slope * slope * rest * rest;
-      sums[i * kStretches / changes_.size()] += slope * rest;
-    }
-    if (!(information > 0.0)) return {};
-    double sum = 0.0, together = 0.0;
-    for (const double s : sums) sum += s;
-    for (const double s : sums) together += std::pow(s - sum / kStretches, 2);
-    return {-sum / information, std::sqrt(std::max(alone, together)) / information};
-  }
-
- private:
-  const std::vector<YawChange>& changes_;
-  const EvenYaw& yaw_;
-};
-
 /// Gains of evenly spaced offsets.
 struct Scan {
   double from_s, step_s;
   std::vector<double> gains;
 
-  Scan(const Comparison& comparison, double from, double to, double step, double deviation_rad)
+  Scan(const YawComparison& comparison, double from, double to, double step, double deviation_rad)
       : from_s(from), step_s(step) {
     const auto count = static_cast<std::size_t>(std::max(0.0, (to - from) / step)) + 1;
     for (std::size_t i = 0; i < count; ++i) gains.push_back(comparison.gain(offset_s(i), deviation_rad));
@@ -168,15 +68,15 @@ std::vector<YawChange> thin(const std::vector<YawChange>& changes) {
 
 /// @param most_s  offsets from -most_s to most_s are tried, as far as the two overlap then
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const TimeSeries& yaw_rad, double most_s) {
-  if (all.size() < kMinChanges) return cannot_tell("too few sweeps show the same surroundings clearly");
+  if (all.size() < YawComparison::kMinChanges) return cannot_tell("too few sweeps show the same surroundings clearly");
   const std::vector<YawChange> changes = thin(all);
   const auto [first, last] = std::ranges::minmax(changes, {}, &YawChange::from_s);
   const double from_s = first.from_s, to_s = last.to_s;
-  if (yaw_rad.to_s() - yaw_rad.from_s() > kMaxLength_s || to_s - from_s > kMaxLength_s) {
+  if (yaw_rad.to_s() - yaw_rad.from_s() > EvenYaw::kMaxLength_s || to_s - from_s > EvenYaw::kMaxLength_s) {
     return cannot_tell("a recording lasts longer than two days");
   }
   const EvenYaw yaw(yaw_rad);
-  const Comparison comparison(changes, yaw);
+  const YawComparison comparison(changes, yaw);
 
   // The scale of what is ordinary: first that of all changes, then that of what the best offset leaves of them.
   std::vector<double> sizes;
@@ -234,7 +134,7 @@ Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
   if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
   std::vector<YawChange> changes;
   const std::optional<HeadingSource> heading = best_heading(log, {});
-  if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > kMaxLength_s) return changes;
+  if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > EvenYaw::kMaxLength_s) return changes;
   const TimeSeries& yaw = heading->yaw_rad;
   // Counted: adding a step to a time that is damaged may leave it as it was.
   const auto steps = static_cast<int>((yaw.to_s() - yaw.from_s()) / kStep_s);
@@ -253,7 +153,9 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
   return clock_offset(all, heading->yaw_rad, kAny_s);
 }
 
-std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const TimeSeries& yaw_rad) {
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+                                       const TimeSeries& yaw_rad) {
+  if (const auto jump = clock_jump(thin(changes), pauses, yaw_rad)) return jump;
   // A search over all of a long recording would take longer than to map it.
   constexpr std::array<double, 3> kMost_s = {20.0, 40.0, 600.0};
   std::optional<ClockOffset> found;
@@ -268,13 +170,14 @@ std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, co
   return found;
 }
 
-std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory) {
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+                                       const Trajectory& trajectory) {
   std::vector<double> times_s, yaws_rad;
   for (const StampedPose& pose : trajectory.poses()) {
     times_s.push_back(pose.time_s);
     add_yaw(rpy_of(pose.map_from_body.rotation()).z(), yaws_rad);
   }
-  return clock_error(changes, TimeSeries(std::move(times_s), std::move(yaws_rad)));
+  return clock_error(changes, pauses, TimeSeries(std::move(times_s), std::move(yaws_rad)));
 }
 
 }  // namespace pingvox

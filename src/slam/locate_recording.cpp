@@ -181,7 +181,10 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     note(localizer, end_s, found.poses);
     if (found.poses.empty()) return fail(Error::Code::kUnsupported, "no echo fits anywhere in the map");
     found.hypotheses = localizer.hypotheses();
-    if (motion.odometry_from_body) found.clock_check = clock_error(turns.finish(), *motion.odometry_from_body);
+    if (motion.odometry_from_body) {
+      const std::vector<YawChange> changes = turns.finish();
+      found.clock_check = clock_error(changes, turns.pauses(), *motion.odometry_from_body);
+    }
     if (options.estimation == Estimation::kCausal) {
       for (LocatedPose& pose : found.poses) pose.is_known = pose.was_sure;
       return found;

@@ -10,6 +10,7 @@
 
 #include "pingvox/slam/clock_offset.hpp"
 #include "slam/level_head.hpp"
+#include "slam/yaw_clock.hpp"
 
 namespace pingvox {
 namespace {
@@ -168,6 +169,8 @@ PictureTurns::PictureTurns(const Pose& body_from_sonar)
 
 void PictureTurns::add(Beam beam) {
   if (sense_ == 0.0) return;
+  if (last_s_ && beam.time_s - *last_s_ >= kLeastPause_s) pauses_.push_back({*last_s_, beam.time_s});
+  last_s_ = beam.time_s;
   if (auto sweep = assembler_.add(std::move(beam))) compare(*std::move(sweep));
 }
 

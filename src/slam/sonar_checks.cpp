@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "slam/recording.hpp"
@@ -26,7 +27,9 @@ SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& headi
                       PictureTurns turns, const SlamOptions& options) {
   if (options.matching == Matching::kNone) return {};
   SonarChecks checks{velocity_check(velocity, heading, sweeps, options), std::nullopt};
-  if (heading.name != kSonarSource) checks.clock = clock_error(turns.finish(), heading.yaw_rad);
+  if (heading.name == kSonarSource) return checks;
+  const std::vector<YawChange> changes = turns.finish();
+  checks.clock = clock_error(changes, turns.pauses(), heading.yaw_rad);
   return checks;
 }
 
@@ -38,7 +41,12 @@ void report_checks(const SonarChecks& checks, SlamReport& report) {
     report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
                                              report.velocity, velocity->difference_m_s, velocity->matched));
   }
-  if (clock && clock->is_apart()) {
+  if (clock && clock->from_s) {
+    report.implausible.push_back(
+        fmt::format("clock of {} (jumps ahead by {:.1f} +- {:.1f} s at {:.1f} s, from how the sonar's picture turns)",
+                    clock->offset_s < 0.0 ? report.heading : "the sonar", std::abs(clock->offset_s), clock->deviation_s,
+                    *clock->from_s));
+  } else if (clock && clock->is_apart()) {
     report.implausible.push_back(fmt::format("clock of {} ({:+.1f} +- {:.1f} s{} from how the sonar's picture turns)",
                                              report.heading, clock->offset_s, clock->deviation_s,
                                              clock->is_one_of_several ? ", or another," : ""));

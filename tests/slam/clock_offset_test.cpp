@@ -177,11 +177,70 @@ TEST(ClockError, AnOffsetBeyondTheWidestSearchIsNotTold) {
     }
     return *Trajectory::make(poses);
   };
-  const auto within = clock_error(changes, late_by(590.0));
+  const auto within = clock_error(changes, {}, late_by(590.0));
   ASSERT_TRUE(within);
   EXPECT_NEAR(within->offset_s, -590.0, 0.1);
-  const auto beyond = clock_error(changes, late_by(606.0));
+  const auto beyond = clock_error(changes, {}, late_by(606.0));
   EXPECT_FALSE(beyond) << beyond->offset_s;
+}
+
+/// Of a yaw that changes by itself, and of a clock, in steps of two seconds.
+class ClockJump : public testing::Test {
+ protected:
+  static constexpr double kJump_s = 200.0, kEnd_s = 400.0;
+
+  /// What the sonar sees. @param ahead_s  by which its clock jumps, @param pause_s  for which the head stops
+  static std::vector<YawChange> changes(double ahead_s, double pause_s) {
+    std::vector<YawChange> all;
+    const auto clock = [&](double time_s) { return time_s + (time_s > kJump_s ? ahead_s : 0.0); };
+    for (double time_s = 0.0; time_s < kEnd_s; time_s += 2.0) {
+      if (time_s > kJump_s && time_s < kJump_s + pause_s) continue;
+      const double next_s = time_s == kJump_s && pause_s > 0.0 ? kJump_s + pause_s + 1.0 : time_s + 2.0;
+      all.push_back({clock(time_s), clock(next_s), wander(next_s) - wander(time_s), 0.5});
+    }
+    return all;
+  }
+  static std::vector<Pause> pause_of(double length_s) { return {{kJump_s, kJump_s + length_s}}; }
+  static Trajectory poses(double ahead_s, double pause_s) {
+    std::vector<StampedPose> all;
+    for (double time_s = 0.0; time_s < kEnd_s + 100.0; time_s += 0.5) {
+      if (time_s > kJump_s && time_s < kJump_s + pause_s) continue;
+      const double clock_s = time_s + (time_s > kJump_s ? ahead_s : 0.0);
+      all.push_back({clock_s, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, wander(time_s))});
+    }
+    return *Trajectory::make(all);
+  }
+};
+
+// Kills a check that takes all of a log together: the part before a jump and the part after it tell two offsets.
+TEST_F(ClockJump, OfThePosesIsTold) {
+  for (const double ahead_s : {3.0, 10.0, 25.0}) {
+    const auto error = clock_error(changes(0.0, 0.0), {}, poses(ahead_s, 0.0));
+    ASSERT_TRUE(error && error->from_s) << ahead_s;
+    EXPECT_NEAR(error->offset_s, -ahead_s, 0.2);
+    EXPECT_NEAR(*error->from_s, kJump_s + ahead_s, 1.0);
+    EXPECT_TRUE(error->is_apart());
+  }
+}
+
+TEST_F(ClockJump, OfTheSonarIsTold) {
+  for (const double ahead_s : {10.0, 90.0}) {
+    const auto error = clock_error(changes(ahead_s, 0.0), pause_of(ahead_s), poses(0.0, 0.0));
+    ASSERT_TRUE(error && error->from_s) << ahead_s;
+    EXPECT_NEAR(error->offset_s, ahead_s, 0.2);
+    EXPECT_NEAR(*error->from_s, kJump_s + ahead_s, 1.0);
+  }
+}
+
+// Kills a pause that is taken for a jump.
+TEST_F(ClockJump, IsNoPause) {
+  for (const auto& error : {clock_error(changes(0.0, 0.0), {}, poses(0.0, 25.0)),
+                            clock_error(changes(0.0, 25.0), pause_of(25.0), poses(0.0, 0.0)),
+                            clock_error(changes(0.0, 25.0), pause_of(25.0), poses(0.0, 20.0))}) {
+    ASSERT_TRUE(error);
+    EXPECT_FALSE(error->from_s) << error->offset_s;
+    EXPECT_FALSE(error->is_apart()) << error->offset_s;
+  }
 }
 
 }  // namespace

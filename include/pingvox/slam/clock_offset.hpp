@@ -20,6 +20,11 @@ struct YawChange {
   double spread_s = 0.0;  ///< duration of what it was measured from; the times are its middle
 };
 
+/// A stretch of time in which nothing came.
+struct Pause {
+  double from_s, to_s;
+};
+
 /// How the vehicle turned, by the picture of its sonar: when the vehicle turns left, the picture turns right. Parts of
 /// 30 degrees are looked for in the next sweep, up to 60 degrees away; those that are not found clearly give nothing.
 class PictureTurns {
@@ -32,6 +37,8 @@ class PictureTurns {
   void add(Beam beam);
   /// The changes of yaw found so far; the beams since the last whole sweep count as one.
   std::vector<YawChange> finish();
+  /// Of two seconds and more between one beam and the next.
+  const std::vector<Pause>& pauses() const { return pauses_; }
 
  private:
   void compare(Sweep sweep);
@@ -40,6 +47,8 @@ class PictureTurns {
   SweepAssembler assembler_;
   Sweep before_;
   std::vector<YawChange> changes_;
+  std::optional<double> last_s_;
+  std::vector<Pause> pauses_;
 };
 
 /// How the vehicle turned, by its heading or attitude with most samples: a change for each second.
@@ -53,6 +62,8 @@ struct ClockOffset {
 
   /// Some seconds more or less would explain them as well: the vehicle turns alike each time it goes round.
   bool is_one_of_several = false;
+  /// Since when: one of the clocks jumped ahead then, and was right before. nullopt: all the time.
+  std::optional<double> from_s = std::nullopt;
 
   /// Whether clocks that were said to agree do not: by more than five standard deviations and half a second.
   bool is_apart() const;
@@ -67,7 +78,10 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const Na
 
 /// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
 /// As clock_offset, but of offsets up to ten minutes. Where a vehicle goes round and turns alike each time, the
-/// smallest one that explains them, up to 40 s. nullopt: it cannot be told.
-std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const Trajectory& trajectory);
+/// smallest one that explains them, up to 40 s. One since a time (ClockOffset::from_s), where either clock paused and
+/// the picture turned on as if it had jumped. nullopt: it cannot be told.
+/// @param pauses  of the changes, see PictureTurns
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+                                       const Trajectory& trajectory);
 
 }  // namespace pingvox
