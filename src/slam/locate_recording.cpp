@@ -13,17 +13,18 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/level_head.hpp"
+#include "slam/trajectory_gaps.hpp"
 
 namespace pingvox {
 namespace {
 
 using Poses = std::span<LocatedPose>;
 
-Result<Trajectory> trajectory_of(std::span<const LocatedPose> poses) {
-  std::vector<StampedPose> stamped;
-  stamped.reserve(poses.size());
-  for (const LocatedPose& pose : poses) stamped.push_back({pose.time_s, pose.map_from_body});
-  return Trajectory::make(std::move(stamped));
+std::vector<StampedPose> stamped(std::span<const LocatedPose> poses) {
+  std::vector<StampedPose> all;
+  all.reserve(poses.size());
+  for (const LocatedPose& pose : poses) all.push_back({pose.time_s, pose.map_from_body});
+  return all;
 }
 
 SlamOptions smoother_options(const OdometryOptions& nav, const LocalizerOptions& localizer) {
@@ -71,7 +72,7 @@ std::vector<Poses> segments_of(Poses poses) {
 
 /// Replaces poses by those of all of the recording where the map fits. False: it does not.
 Result<bool> smooth(const SlamSmoother& smoother, const DistanceField& map, Poses poses) {
-  const Result<Trajectory> near = trajectory_of(poses);
+  const Result<Trajectory> near = Trajectory::make(stamped(poses));
   if (!near) return false;
   const Result<SlamSolution> solution = smoother.solve_in(map, *near);
   if (!solution && solution.error().code == Error::Code::kUnsupported) return false;
@@ -131,19 +132,16 @@ void note(const Localizer& localizer, double time_s, std::vector<LocatedPose>& p
 }  // namespace
 
 Result<Trajectory> LocatedRecording::trajectory() const {
-  return trajectory_of(poses);
+  return trajectory_with_gaps(stamped(poses));
 }
 
 std::optional<Trajectory> LocatedRecording::known_trajectory() const {
   std::vector<StampedPose> known;
-  NavSource times;
   for (const LocatedPose& pose : poses) {
-    if (!pose.is_known) continue;
-    known.push_back({pose.time_s, pose.map_from_body});
-    times.samples.push_back({.time_s = pose.time_s});
+    if (pose.is_known) known.push_back({pose.time_s, pose.map_from_body});
   }
   if (known.empty()) return std::nullopt;
-  Result<Trajectory> trajectory = Trajectory::make(std::move(known), summary_of(times).longest_step_s);
+  Result<Trajectory> trajectory = trajectory_with_gaps(std::move(known));
   return trajectory ? std::optional(*std::move(trajectory)) : std::nullopt;
 }
 

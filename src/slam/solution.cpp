@@ -10,6 +10,7 @@
 #include "base/median.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/recording.hpp"
+#include "slam/trajectory_gaps.hpp"
 
 namespace pingvox {
 namespace {
@@ -156,7 +157,7 @@ void begin_at_origin(std::vector<StampedPose>& poses) {
 
 Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses) {
   if (poses.empty()) return fail(Error::Code::kUnsupported, "no beam is within the time of the navigation");
-  Result<Trajectory> trajectory = Trajectory::make(std::move(poses));
+  Result<Trajectory> trajectory = trajectory_with_gaps(std::move(poses));
   if (!trajectory) return tl::unexpected(trajectory.error());
   SlamSolution solution{*std::move(trajectory), {}, {}, report_of(solver)};
   if (options.matching == Matching::kPairs) {

@@ -153,6 +153,21 @@ TEST(SlamSmoother, BridgesALostBottomLock) {
   EXPECT_LT(error_m(solved->trajectory), 0.5);
 }
 
+// Kills a straight line through the time in which the head stopped: later beams would be mapped along it.
+TEST(SlamSmoother, HasAGapWhereThereWereNoBeams) {
+  const Basin basin{.duration_s = 200.0};
+  SlamSmoother smoother = smoother_of(basin, {});
+  add(smoother, basin.sources());
+  for (const Beam& beam : basin.beams()) {
+    if (beam.time_s < 100.0 || beam.time_s > 130.0) smoother.add(beam);
+  }
+  const auto solved = smoother.solve();
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_EQ(solved->trajectory.gaps(), 1U);
+  EXPECT_TRUE(solved->trajectory.at(90.0));
+  EXPECT_FALSE(solved->trajectory.at(115.0));
+}
+
 // Kills a trajectory that ends with its DVL while the sonar hears on.
 TEST(SlamSmoother, GoesOnByTheSonarAfterTheLastVelocity) {
   const Basin basin{.duration_s = 200.0};
