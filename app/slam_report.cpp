@@ -210,12 +210,17 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
                       const SlamSeconds& seconds) {
   const SlamReport& report = solution.report;
   std::string text = title_of(command);
-  text += report_line("read", beams_text(report.beams, report.sweeps, report.echoes));
+  std::string read = beams_text(report.beams, report.sweeps, report.echoes);
+  if (inputs.skipped > 0) read += fmt::format("; skipped {}", counted(inputs.skipped, "damaged record"));
+  text += report_line("read", read);
   text += report_line("nav clock", text_of(inputs.nav_offset, report.clock_check));
   if (inputs.nav_water) text += report_line("water", water_text(*inputs.nav_water));
   text += report_line("velocity", velocity_text(report));
-  text += report_line("trajectory", fmt::format("{} over {:.1f} s", counted(solution.trajectory.poses().size(), "pose"),
-                                                recorded_s(solution)));
+  const std::size_t poses = solution.trajectory.poses().size();
+  std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));
+  if (poses < report.beams) trajectory += fmt::format("; {} without one", counted(report.beams - poses, "beam"));
+  if (const std::size_t gaps = solution.trajectory.gaps(); gaps > 0) trajectory += ", " + counted(gaps, "gap");
+  text += report_line("trajectory", trajectory);
   text += report_line("frame", frame_text(report.heading));
   if (command.slam.matching == Matching::kPairs) {
     text += report_line("pairs", report.pairs == 0
