@@ -290,6 +290,16 @@ PairRow pair_row(const PlacedEcho& a, const EchoOnGround& ground_a, const Placed
   PairRow row;
   row.distance_m = pair.normal.dot(ground_a.at - ground_b.at);
   row.by << of_a.by_knots, -of_b.by_knots, of_a.by_globals - of_b.by_globals;
+  // The normal is the mean of both, and each turns with its sweep: a turn of all of them tells nothing.
+  const double by_turn = 0.5 * quarter_turn(pair.normal).dot(ground_a.at - ground_b.at);
+  if (!a.held) {
+    row.by(2) += (1.0 - a.share) * by_turn;
+    row.by(5) += a.share * by_turn;
+  }
+  if (!b.held) {
+    row.by(8) += (1.0 - b.share) * by_turn;
+    row.by(11) += b.share * by_turn;
+  }
   return row;
 }
 

@@ -102,7 +102,7 @@ EchoRow echo_row(const PlacedEcho& echo, const EchoOnGround& ground, const Unkno
                  const Eigen::Vector2d& normal);
 
 /// Distance of a pair along its normal, and its derivatives by the knots around both echoes and by the globals from
-/// kWall to kSonarY. The bulges and the normal are held, and the knots of echoes that are.
+/// kWall to kSonarY. The normal turns with the yaw; the bulges are held, and the knots of echoes that are.
 struct PairRow {
   double distance_m = 0.0;
   Eigen::Matrix<double, 15, 1> by = Eigen::Matrix<double, 15, 1>::Zero();  ///< a, after a, b, after b, globals

@@ -102,7 +102,11 @@ TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
       EchoOnGround u_a = place_echo(problem, mount, u, u_ways, a), u_b = place_echo(problem, mount, u, u_ways, b);
       u_a.at += ground_a.bulge - u_a.bulge;
       u_b.at += ground_b.bulge - u_b.bulge;
-      return pair_row(a, u_a, b, u_b, u, pair).distance_m;
+      // The normal is the mean of that of both, which turn with their sweeps.
+      const double turned_rad = 0.5 * (yaw_of(a, u) - yaw_of(a, at) + yaw_of(b, u) - yaw_of(b, at));
+      EchoPair u_pair = pair;
+      u_pair.normal = Eigen::Rotation2Dd(turned_rad) * pair.normal;
+      return pair_row(a, u_a, b, u_b, u, u_pair).distance_m;
     };
     std::vector<double> by(3 * problem.knots() + problem.globals(), 0.0);
     for (std::size_t i = 0; i < 6; ++i) {
@@ -120,6 +124,13 @@ TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
       EXPECT_NEAR(by[i], (distance_m(more) - distance_m(less)) / (2.0 * kStep), 1e-6)
           << "unknown " << i << ", second echo at " << second_s;
     }
+    // Kills pairs that tell where north is: a turn of everything moves nothing against anything. (Bulges are held.)
+    double by_turn = 0.0;
+    for (std::size_t k = 0; k < problem.knots(); ++k) {
+      by_turn += -by[3 * k] * at.knots[k].y() + by[3 * k + 1] * at.knots[k].x() + by[3 * k + 2];
+    }
+    const Eigen::Vector2d held = ground_a.bulge - ground_b.bulge;
+    EXPECT_NEAR(by_turn, -pair.normal.dot(Eigen::Vector2d(-held.y(), held.x())), 1e-9) << second_s;
   }
 }
 

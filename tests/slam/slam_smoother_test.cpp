@@ -374,7 +374,7 @@ TEST(SlamSmoother, EllipseOfAPlaceLiesAlongWhatIsKnownLeast) {
 }
 
 TEST(SlamSmoother, SaysWhatTheRecordingDoesNotTell) {
-  const auto solved = solve({.duration_s = 200.0}, {});
+  const auto solved = solve({.duration_s = 400.0}, {});
   ASSERT_TRUE(solved);
   const auto& unknown = solved->report.not_observable;
   EXPECT_THAT(unknown, testing::Contains("constant of heading compass")) << "no fix says where north is";

@@ -64,8 +64,8 @@ class SlamSolverCeres : public testing::Test {
     return unknowns;
   }
 
-  /// Weighted residuals of motion, headings and what is believed, then those of pairs, whose normals, weights and
-  /// bulges are held.
+  /// Weighted residuals of motion, headings and what is believed, then those of pairs, whose weights and bulges are
+  /// held, and whose normals turn with the yaw from what it is with `bulges` on.
   std::vector<double> residuals(const Unknowns& unknowns, std::span<const EchoPair> pairs,
                                 const Unknowns& bulges) const {
     const SonarMount mount = sonar_mount(options_.body_from_sonar);
@@ -78,7 +78,9 @@ class SlamSolverCeres : public testing::Test {
     };
     for (const EchoPair& pair : pairs) {
       const Eigen::Vector2d apart_m = place_m(echoes_[pair.a]) - place_m(echoes_[pair.b]);
-      all.push_back(std::sqrt(pair.weight) * pair.normal.dot(apart_m));
+      const auto turned_rad = [&](const PlacedEcho& echo) { return yaw_of(echo, unknowns) - yaw_of(echo, bulges); };
+      const Eigen::Rotation2Dd turn(0.5 * (turned_rad(echoes_[pair.a]) + turned_rad(echoes_[pair.b])));
+      all.push_back(std::sqrt(pair.weight) * (turn * pair.normal).dot(apart_m));
     }
     return all;
   }

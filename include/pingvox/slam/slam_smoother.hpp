@@ -129,7 +129,7 @@ struct SlamReport {
   double least_on_walls = 0.0;    ///< in a map: of all sweeps the least share of echoes that are on walls of it
   std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
-  /// believed beforehand is left. Without fixes this is always true of the constant of a single heading.
+  /// believed beforehand is left.
   std::vector<std::string> not_observable;
   /// What of the calibration ended more than four standard deviations from what was believed beforehand: a mount, the
   /// navigation of another vehicle, or the clock may be wrong. Also a velocity or a clock that the sonar contradicts.
