@@ -60,7 +60,11 @@ void LivePoses::decide() {
   if (!has(NavQuantity::kAttitude) || !has(NavQuantity::kPosition)) return;
   std::vector<NavSource> sources;
   for (const auto& of : samples_) {
-    if (is_long(of)) sources.push_back({of.first.first, of.first.second, of.second});
+    const auto& [name, quantity] = of.first;
+    // The attitude of a position's own source counts however short it is: of one report the position may come first.
+    const auto own = samples_.find({name, NavQuantity::kPosition});
+    const bool has_position = own != samples_.end() && is_long(*own);
+    if (is_long(of) || has_position) sources.push_back({name, quantity, of.second});
   }
   const Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnknown);
   if (!log) return;

@@ -111,6 +111,23 @@ TEST(LivePoses, KeepTheSourcesThatTheyBeganWith) {
   EXPECT_LT(pose->translation().x(), 10.0);
 }
 
+// Kills an attitude of the autopilot for the position of a DVL that has its own: of each report the position comes
+// first, so one second of it is there before one second of the attitude.
+TEST(LivePoses, TakeTheAttitudeOfThePositionsOwnSource) {
+  for (const bool position_first : {true, false}) {
+    LivePoses poses;
+    for (int i = 0; i < 30; ++i) {
+      const double time_s = 0.1 * i;
+      poses.add("ATTITUDE", NavQuantity::kAttitude, at(time_s - 0.01, {0.0, 0.0, 1.0}));
+      if (position_first) poses.add("A50", NavQuantity::kPosition, at(time_s, {time_s, 0.0, 0.0}));
+      poses.add("A50", NavQuantity::kAttitude, at(time_s, {0.0, 0.0, 2.0}));
+      if (!position_first) poses.add("A50", NavQuantity::kPosition, at(time_s, {time_s, 0.0, 0.0}));
+    }
+    EXPECT_EQ(poses.position(), "A50");
+    EXPECT_EQ(poses.attitude(), "A50") << position_first;
+  }
+}
+
 TEST(LivePoses, LeaveOutWhatSaysNothing) {
   LivePoses poses;
   const std::vector<NavSource> sources = turning_vehicle(10.0);
