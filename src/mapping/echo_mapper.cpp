@@ -10,6 +10,15 @@
 #include "pingvox/map/cast_ray.hpp"
 
 namespace pingvox::detail {
+namespace {
+
+/// Distance from a point to the farthest corner of a cell.
+double farthest_corner_m(const Lattice& lattice, const WideKey& key, const Eigen::Vector3d& from_m) {
+  const double half_m = 0.5 * lattice.resolution_m();
+  return ((lattice.centre_of(key) - from_m).cwiseAbs().array() + half_m).matrix().norm();
+}
+
+}  // namespace
 
 EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
                      std::size_t complete_sweeps) {
@@ -96,13 +105,16 @@ Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<c
 }
 
 /// Whether the map has an obstacle on the beam's axis within the blanking range. Its own echo is not heard; what is
-/// heard are its second echo, or sound that went round it.
+/// heard are its second echo, or sound that went round it. The surface is anywhere in its cell, so all of the cell has
+/// to be that near: otherwise coarse cells block beams that hear the surface itself.
 bool EchoMapper::is_blocked(const PlacedBeam& beam) const {
   const double blanking_m = options_.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
   if (map_->empty() || !(blanking_m > 0.0)) return false;
   const Eigen::Vector3d axis{std::cos(beam.bearing_rad), std::sin(beam.bearing_rad), 0.0};
-  const Pose& pose = beam.map_from_sensor;
-  return cast_ray(*map_, pose.translation(), pose.linear() * axis, blanking_m).what == Occupancy::kOccupied;
+  const Eigen::Vector3d origin_m = beam.map_from_sensor.translation();
+  const Eigen::Vector3d direction = beam.map_from_sensor.linear() * axis;
+  const RayEnd end = cast_ray(*map_, origin_m, direction, blanking_m);
+  return end.what == Occupancy::kOccupied && farthest_corner_m(map_->lattice(), end.key, origin_m) <= blanking_m;
 }
 
 /// Refuses cells so small that a single beam would take all memory.

@@ -157,6 +157,19 @@ TEST(BuildMap, WhatIsHeardPastAnObstacleWithinTheBlankingRangeIsLeftOut) {
   EXPECT_EQ(report->skipped, report->blocked.count);
 }
 
+// Kills beams that are left out because the cell of their own wall, or of one behind the head, begins within the
+// blanking range.
+TEST(BuildMap, WallBeyondTheBlankingRangeDoesNotBlockInCoarseCells) {
+  for (const double resolution_m : {0.1, 0.5, 1.0}) {
+    Echoes source(2 * kBeamsPerTurn, [](double, double) { return 0.9; });
+    OccupancyMap map({.resolution_m = resolution_m});
+    const auto report = build_map(source, Trajectory::still(Pose::Identity()), clean_options(), map);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->blocked.count, 0U) << resolution_m;
+    EXPECT_EQ(report->beams, 2U * kBeamsPerTurn);
+  }
+}
+
 TEST(BuildMap, BeamsOutsideOfTheTrajectoryAreLeftOutAndCounted) {
   Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
   const auto known = Trajectory::make({{2.0, Pose::Identity()}, {4.0, Pose::Identity()}});
