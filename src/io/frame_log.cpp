@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <deque>
 #include <utility>
 
@@ -28,6 +29,23 @@ unsigned only_head(std::span<const std::uint8_t>) {
 
 unsigned seanet_head_of(std::span<const std::uint8_t> frame) {
   return static_cast<unsigned>(seanet_sender(frame));
+}
+
+/// Kinds in the order of their first occurrences, each once. An end that cuts off a record and the frame in it counts
+/// once.
+std::vector<DamageKind> merge_damage(const std::vector<DamageKind>& kinds) {
+  std::vector<DamageKind> merged;
+  for (const DamageKind& kind : kinds) {
+    const auto same = std::ranges::find(merged, kind.what, &DamageKind::what);
+    if (same == merged.end()) {
+      merged.push_back(kind);
+      continue;
+    }
+    if (kind.what != FrameFinder::kCutOff) same->count += kind.count;
+    same->first_byte = std::min(same->first_byte, kind.first_byte);
+  }
+  std::ranges::stable_sort(merged, {}, &DamageKind::first_byte);
+  return merged;
 }
 
 /// Maps positions of the byte stream to positions in the file and times.
@@ -107,7 +125,7 @@ class FrameLog final : public DeviceLog {
       kinds.push_back(kind);
     }
     kinds.insert(kinds.end(), unusable_.begin(), unusable_.end());
-    return kinds;
+    return merge_damage(kinds);
   }
 
   std::optional<double> share_read() const override { return container_->share_read(); }
@@ -162,10 +180,8 @@ class FrameLog final : public DeviceLog {
   }
 
   Result<void> check_damage() const {
-    if (damage_ == Damage::kSkip) return {};
-    if (!container_->damage().empty()) return damage_error(container_->damage().front());
-    if (!first_bytes_.empty()) return damage_error({finder_.damage().front().what, 1, first_bytes_.front()});
-    return {};
+    if (damage_ == Damage::kSkip || (container_->damage().empty() && first_bytes_.empty())) return {};
+    return damage_error(damage().front());
   }
 
   tl::unexpected<Error> damage_error(const DamageKind& kind) const {

@@ -143,9 +143,10 @@ Result<std::unique_ptr<BeamSource>> open_seanet_capture(ByteStream stream, Damag
 }
 
 bool looks_like_udp_capture(Bytes beginning) {
+  // If the capture begins within a line, the next one is whole.
   Lines lines(text_of(beginning));
-  const auto first = lines.next();
-  return first && packet_in(*first);
+  const auto first = lines.next(), second = lines.next();
+  return (first && packet_in(*first)) || (second && packet_in(*second));
 }
 
 Result<std::unique_ptr<BeamSource>> open_udp_capture(ByteStream stream, Damage damage) {

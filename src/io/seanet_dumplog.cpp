@@ -129,7 +129,10 @@ bool looks_like_dumplog(std::span<const std::uint8_t> beginning) {
   if (text.starts_with("SON,")) return true;
   Lines lines(text);
   const auto header = lines.next();
-  return header && header->starts_with("SOf") && header->find("Bearing") != std::string_view::npos;
+  if (header && header->starts_with("SOf") && header->find("Bearing") != std::string_view::npos) return true;
+  // If the log begins within a line, the next one is whole.
+  const auto second = lines.next();
+  return second && second->starts_with("SON,") && beam_in(*second);
 }
 
 Result<std::unique_ptr<BeamSource>> open_dumplog(ByteStream stream, Damage damage) {

@@ -64,7 +64,7 @@ class V4Log final : public DeviceLog {
       const Result<Bytes> bytes = reader_.peek(kMaxRecord);
       if (!bytes) return tl::unexpected(bytes.error());
       if (bytes->empty()) {
-        if (end_) {
+        if (end_ && !in_damage_) {
           if (const auto counted = report_damage(FrameFinder::kCutOff, "records are missing"); !counted) {
             return tl::unexpected(counted.error());
           }
