@@ -30,6 +30,15 @@ Eigen::Vector3d north_east_down(const Eigen::Vector3d& position_m) {
   return from_ned::world(position_m);
 }
 
+/// Autopilots without a position report 0, 0, and readers take that as none: at the origin it is off by 1 mm, as no
+/// estimate is exact.
+Eigen::Vector3d estimated_position(const Pose& pose) {
+  constexpr double kError_m = 0.001;
+  Eigen::Vector3d position_m = north_east_down(pose.translation());
+  if (position_m.head<2>().isZero(0.0)) position_m.x() = kError_m;
+  return position_m;
+}
+
 /// In the map frame [m/s].
 Eigen::Vector3d velocity(const NavEmulator::PoseAt& pose_at, double time_s) {
   constexpr double kStep_s = 0.05;
@@ -85,7 +94,7 @@ NavEmulator::Say NavEmulator::mavlink(PoseAt pose_at) {
     say(kHeartbeat, Payload().add(std::uint32_t{0}).add_bytes({12, 3, 0x81, 4, 3}));
     say(kAttitude, Payload().add(boot_ms).add(roll_pitch_yaw(pose)).add(Eigen::Vector3d(0, 0, 0)));
     say(kLocalPosition,
-        Payload().add(boot_ms).add(north_east_down(pose.translation())).add(north_east_down(velocity(pose_at, now_s))));
+        Payload().add(boot_ms).add(estimated_position(pose)).add(north_east_down(velocity(pose_at, now_s))));
     const double depth_m = std::max(0.0, -pose.translation().z());
     say(kPressure2,
         Payload().add(boot_ms).add(kSurface_hpa + depth_m * kHpaPerMetre).add(0.0).add_bytes({0xdc, 0x05, 0, 0}));

@@ -102,6 +102,24 @@ TEST(NavEmulator, MavlinkSaysWhereTheVehicleIs) {
   expect_near(*pose, pose_at(2.0), 1e-3);
 }
 
+// Kills an emulator whose position at the origin, where it is by default, is taken for none.
+TEST(NavEmulator, AVehicleThatStandsAtTheOriginHasAPose) {
+  NavEmulator vehicle({.reports_per_s = 10.0}, NavEmulator::mavlink([](double) { return Pose(Pose::Identity()); }));
+  MavlinkNav nav;
+  LivePoses poses;
+  for (int i = 0; i < 30; ++i) {
+    const double now_s = 0.1 * i;
+    for (const NavEmulator::Message& message : vehicle.send(now_s)) {
+      const MavlinkRead read = read_mavlink(message);
+      ASSERT_TRUE(read.frame);
+      for (const auto& report : nav.add(*read.frame, now_s)) poses.add(report.source, report.quantity, report.sample);
+    }
+  }
+  const std::optional<Pose> pose = poses.at(1.5);
+  ASSERT_TRUE(pose);
+  expect_near(*pose, Pose::Identity(), 0.0011);
+}
+
 TEST(NavEmulator, FaultsAreThoseThatWereAskedFor) {
   NavEmulator vehicle({.reports_per_s = 1000.0, .lost = 0.1, .doubled = 0.2, .damaged = 0.3},
                       NavEmulator::mavlink(pose_at));
