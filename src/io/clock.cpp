@@ -2,28 +2,75 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 
 #include "io/date.hpp"
 
 namespace pingvox {
 
-std::optional<double> date_in_name(std::string_view path) {
-  constexpr std::size_t kDateAndTime = 14, kWithMilliseconds = 17;
-  path.remove_prefix(path.find_last_of("/\\") + 1);  // npos + 1 is 0
-  std::string digits;
-  for (const char c : path) {
-    if (c >= '0' && c <= '9') {
-      digits += c;
-    } else if (std::string_view("-_ ").find(c) == std::string_view::npos) {
-      break;
-    }
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Cuts a number of that many digits off the start, with separators in front of it; false: there is none.
+bool cut_digits(std::string_view& text, std::size_t count, std::string_view separators, std::string& to) {
+  const std::size_t first = std::min(text.find_first_not_of(separators), text.size());
+  const std::string_view number = text.substr(first, count);
+  if (number.size() != count || !std::ranges::all_of(number, is_digit)) return false;
+  to += number;
+  text.remove_prefix(first + count);
+  return true;
+}
+
+/// Cuts a date and a time of day off the start of `text`; nullopt: there is none, or digits follow.
+std::optional<double> cut_date(std::string_view& text) {
+  constexpr std::string_view kBetween = "-_ ", kBeforeTime = "-_ T";
+  constexpr double kFirst_s = 0.0, kLast_s = 4'102'444'800.0;  // 1970 to 2100
+  std::string d;
+  std::string_view rest = text;
+  const bool has_all = cut_digits(rest, 4, "", d) && cut_digits(rest, 2, kBetween, d) &&
+                       cut_digits(rest, 2, kBetween, d) && cut_digits(rest, 2, kBeforeTime, d) &&
+                       cut_digits(rest, 2, kBetween, d) && cut_digits(rest, 2, kBetween, d);
+  if (!has_all) return std::nullopt;
+  std::string_view behind = rest;
+  std::string milliseconds;
+  const auto ends = [](std::string_view at) { return at.empty() || !is_digit(at.front()); };
+  if (cut_digits(behind, 3, kBetween, milliseconds) && ends(behind)) {
+    rest = behind;
+  } else {
+    milliseconds = "000";
   }
-  if (digits.size() != kDateAndTime && digits.size() != kWithMilliseconds) return std::nullopt;
-  digits.resize(kWithMilliseconds, '0');
-  const std::string_view d = digits;
-  return date_time_s(fmt::format("{}.{}.{} {}.{}.{}.{}", d.substr(0, 4), d.substr(4, 2), d.substr(6, 2), d.substr(8, 2),
-                                 d.substr(10, 2), d.substr(12, 2), d.substr(14)));
+  if (!ends(rest)) return std::nullopt;
+  const std::string_view n = d;
+  const std::optional<double> time_s =
+      date_time_s(fmt::format("{}.{}.{} {}.{}.{}.{}", n.substr(0, 4), n.substr(4, 2), n.substr(6, 2), n.substr(8, 2),
+                              n.substr(10, 2), n.substr(12, 2), milliseconds));
+  if (!time_s || !(*time_s >= kFirst_s && *time_s < kLast_s)) return std::nullopt;
+  text = rest;
+  return time_s;
+}
+
+}  // namespace
+
+std::optional<double> date_in_name(std::string_view path) {
+  path.remove_prefix(path.find_last_of("/\\") + 1);  // npos + 1 is 0
+  std::optional<double> found;
+  while (!path.empty()) {
+    const std::optional<double> date_s = cut_date(path);
+    if (date_s) {
+      if (found && *found != *date_s) return std::nullopt;
+      found = date_s;
+      continue;
+    }
+    // The next number.
+    path.remove_prefix(static_cast<std::size_t>(std::ranges::find_if_not(path, is_digit) - path.begin()));
+    path.remove_prefix(static_cast<std::size_t>(std::ranges::find_if(path, is_digit) - path.begin()));
+  }
+  return found;
 }
 
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc) {

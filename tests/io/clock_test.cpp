@@ -25,8 +25,23 @@ TEST(Clock, ADateInTheNameOfALog) {
   EXPECT_THAT(date_in_name("2024-04-05 09-16-48.csv"), Optional(1712308608.0));
   EXPECT_EQ(date_in_name("20240405.bin"), std::nullopt) << "no time of day";
   EXPECT_EQ(date_in_name("20241305-091648974.bin"), std::nullopt) << "no 13th month";
-  EXPECT_EQ(date_in_name("dive 20240405-091648974.bin"), std::nullopt);
+  EXPECT_EQ(date_in_name("20240405-0916489745.bin"), std::nullopt) << "digits behind it";
+  EXPECT_EQ(date_in_name("120240405-091648974.bin"), std::nullopt) << "digits before it";
+  EXPECT_EQ(date_in_name("20240405-091648 20240405-101648.bin"), std::nullopt) << "two dates";
+  EXPECT_EQ(date_in_name("1234-02-03 04-05-06.bin"), std::nullopt) << "no year of a log";
   EXPECT_EQ(date_in_name(""), std::nullopt);
+}
+
+// Kills logs that are refused because a program or a person put something before or behind the date.
+TEST(Clock, ADateMayStandAnywhereInTheName) {
+  for (const auto* name : {"ping360_20240405-091648974.bin", "20240405-091648974-5.bin", "20240405-091648974 (1).bin",
+                           "dive1-20240405-091648974.bin", "ping360_20240405-091648974-19.bin"}) {
+    EXPECT_THAT(date_in_name(name), Optional(1712308608.974)) << name;
+  }
+  for (const auto* name : {"UdpHubLog_4001_2024_04_05_09_16_48.csv", "20240405T091648.csv", "20240405-091648-2024.csv",
+                           "20240405-091648_20240405-091648.csv"}) {
+    EXPECT_THAT(date_in_name(name), Optional(1712308608.0)) << name;
+  }
 }
 
 TEST(Clock, TheTimeZoneIsTheOnlyOneWithWhichTheLogsOverlap) {

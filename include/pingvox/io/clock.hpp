@@ -5,9 +5,9 @@
 
 namespace pingvox {
 
-/// The date and time of day in the name of a log, as Ping Viewer writes it ("20240405-091648974.bin") and others do
-/// ("2024-04-05 09-19-03.csv"): seconds since 1970 if it were UTC, though programs write local time. nullopt: there is
-/// none.
+/// The date and time of day anywhere in the name of a log, as Ping Viewer writes it ("20240405-091648974.bin") and
+/// others do ("dive1 2024-04-05 09-19-03.csv"), with no digits before or behind it: seconds since 1970 if it were UTC,
+/// though programs write local time. nullopt: there is none, or two different ones.
 std::optional<double> date_in_name(std::string_view path);
 
 /// A stretch of time.
