@@ -193,7 +193,12 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
         learn_background(panel.input, *panel.background_m, command.damage, command.bag.beams);
     if (!background) return tl::unexpected(background.error());
     if (panel.image == ShownImage::kBackground) {
-      *source = std::make_unique<BeamsInMemory>(background->beams());
+      std::vector<Beam> beams = background->beams();
+      if (beams.empty()) {
+        return fail(Error::Code::kUnsupported,
+                    fmt::format("{}: --show background: needs {} beams of one direction", name, Background::kMinBeams));
+      }
+      *source = std::make_unique<BeamsInMemory>(std::move(beams));
       of_head.marks = EchoMarks::kOff;
     } else {
       *source = subtract_background(std::move(*source), *std::move(background));

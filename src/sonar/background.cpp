@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -28,9 +29,12 @@ std::size_t cell_of(const Beam& beam, std::size_t bin) {
   return static_cast<std::size_t>((static_cast<double>(bin) + 0.5) * beam.bin_length_m / Background::kCell_m);
 }
 
+std::size_t beams_in(const Histogram& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
 std::uint8_t median_of(const Histogram& counts) {
-  std::size_t total = 0;
-  for (const std::uint16_t count : counts) total += count;
+  const std::size_t total = beams_in(counts);
   if (total < Background::kMinBeams) return 0;
   std::size_t below = 0, step = 0;
   while (2 * (below + counts[step]) < total) below += counts[step++];
@@ -84,7 +88,9 @@ Result<Background> Background::learn(BeamSource& source, const BackgroundOptions
   }
   std::vector<std::uint8_t> medians(histograms.size());
   std::ranges::transform(histograms, medians.begin(), median_of);
-  return Background(cells, std::move(medians));
+  std::vector<bool> heard(histograms.size());
+  for (std::size_t i = 0; i < heard.size(); ++i) heard[i] = beams_in(histograms[i]) >= kMinBeams;
+  return Background(cells, std::move(medians), std::move(heard));
 }
 
 void Background::subtract_from(Beam& beam) const {
@@ -99,11 +105,19 @@ void Background::subtract_from(Beam& beam) const {
 std::vector<Beam> Background::beams() const {
   std::vector<Beam> beams;
   for (std::size_t n = 0; n < kDirections; ++n) {
-    const auto first = intensities_.begin() + static_cast<std::ptrdiff_t>(n * cells_);
+    std::vector<std::uint8_t> intensities;
+    for (std::size_t cell = 0, next = 0; cell < cells_; ++cell) {
+      // A bin longer than a cell was heard in the cell of its middle, and lies around it.
+      if (!heard_[n * cells_ + cell]) continue;
+      if (next > 0) intensities.resize(next + (cell - next) / 2, intensities.back());
+      intensities.resize(cell + 1, intensities_[n * cells_ + cell]);
+      next = cell + 1;
+    }
+    if (intensities.empty()) continue;
     beams.push_back({.time_s = static_cast<double>(n),
                      .bearing_rad = static_cast<double>(n) * 2.0 * std::numbers::pi / kDirections,
                      .bin_length_m = kCell_m,
-                     .intensities = {first, first + static_cast<std::ptrdiff_t>(cells_)}});
+                     .intensities = std::move(intensities)});
   }
   return beams;
 }

@@ -1,11 +1,13 @@
 #include "pingvox/sonar/background.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 
 #include "pingvox/geometry/degree.hpp"
 #include "support/tank_recording.hpp"
@@ -95,7 +97,8 @@ TEST(Background, DoesNotDependOnTheLengthOfBins) {
   // Bins of 2.5 and of 1.25 mm, 8 and 16 of which fill a cell.
   const std::vector<Beam> eight = learned(with_short_bins(beams_of_a_vehicle(12), 5), 2.0).beams();
   const std::vector<Beam> sixteen = learned(with_short_bins(beams_of_a_vehicle(12), 10), 2.0).beams();
-  for (std::size_t n = 0; n < 360; ++n) EXPECT_EQ(eight[n].intensities, sixteen[n].intensities) << n << " degrees";
+  ASSERT_EQ(eight.size(), sixteen.size());
+  for (std::size_t n = 0; n < eight.size(); ++n) EXPECT_EQ(eight[n].intensities, sixteen[n].intensities) << n;
   Beam fine{.bearing_rad = 20.0 * kDegree_rad, .bin_length_m = 0.00125, .intensities = {}};
   fine.intensities.assign(2000, 120);
   background.subtract_from(fine);
@@ -103,13 +106,32 @@ TEST(Background, DoesNotDependOnTheLengthOfBins) {
   EXPECT_GE(fine.intensities[static_cast<std::size_t>(0.70 / 0.00125)], 110);
 }
 
-TEST(Background, IsShownAsASweep) {
-  const Background background = learned(beams_of_a_vehicle(12), 1.5);
+// Kills silent beams in directions, and beyond ranges, that were never heard: black stripes in pictures.
+TEST(Background, IsShownAsASweepOfWhatWasHeard) {
+  const Background background = learned(beams_of_a_vehicle(12), 10.0);
   const std::vector<Beam> beams = background.beams();
-  ASSERT_EQ(beams.size(), 360U);
-  for (const Beam& beam : beams) EXPECT_TRUE(validate(beam));
-  EXPECT_GE(*std::ranges::max_element(beams[20].intensities), 116);
-  EXPECT_LE(*std::ranges::max_element(beams[100].intensities), 8);
+  ASSERT_EQ(beams.size(), 200U) << "steps of 1.8 degrees";
+  for (const Beam& beam : beams) {
+    EXPECT_TRUE(validate(beam));
+    EXPECT_EQ(beam.intensities.size(), 375U) << "7.5 m";
+    const double bearing_deg = beam.bearing_rad / kDegree_rad;
+    const auto loudest = *std::ranges::max_element(std::span(beam.intensities).first(75));
+    if (bearing_deg > 11.0 && bearing_deg < 29.0) {
+      EXPECT_GE(loudest, 116) << bearing_deg;
+    } else if (bearing_deg < 9.0 || bearing_deg > 31.0) {
+      EXPECT_LE(loudest, 8) << bearing_deg;
+    }
+  }
+  EXPECT_TRUE(learned(beams_of_a_vehicle(Background::kMinBeams - 1), 10.0).beams().empty());
+}
+
+// Kills black rings where bins are longer than the cells of the background.
+TEST(Background, LongBinsAreShownWithoutGaps) {
+  std::vector<Beam> beams(5, Beam{.bin_length_m = 0.06, .intensities = {40, 80, 120, 160}});
+  for (std::size_t i = 0; i < beams.size(); ++i) beams[i].time_s = static_cast<double>(i);
+  const std::vector<Beam> shown = learned(beams, 1.0).beams();
+  ASSERT_EQ(shown.size(), 1U);
+  EXPECT_THAT(shown[0].intensities, testing::ElementsAre(40, 40, 40, 80, 80, 80, 120, 120, 120, 160, 160));
 }
 
 TEST(Background, RefusesARangeThatIsNone) {

@@ -32,7 +32,8 @@ class Background {
   /// Lowers the beam's intensities by the background, down to 0. Bins are taken by their middle.
   void subtract_from(Beam& beam) const;
 
-  /// The background as a sweep: a beam in the middle of each direction, with bins of kCell_m.
+  /// The background as a sweep: a beam in the middle of each direction that has one, with bins of kCell_m as far as
+  /// kMinBeams beams reached.
   std::vector<Beam> beams() const;
 
   static constexpr double kCell_m = 0.02;
@@ -40,11 +41,12 @@ class Background {
 
  private:
   static constexpr std::size_t kDirections = 360;
-  Background(std::size_t cells, std::vector<std::uint8_t> intensities)
-      : cells_(cells), intensities_(std::move(intensities)) {}
+  Background(std::size_t cells, std::vector<std::uint8_t> intensities, std::vector<bool> heard)
+      : cells_(cells), intensities_(std::move(intensities)), heard_(std::move(heard)) {}
 
   std::size_t cells_;                      ///< of each direction
   std::vector<std::uint8_t> intensities_;  ///< kDirections * cells_
+  std::vector<bool> heard_;                ///< of each: kMinBeams beams had the middle of a bin there
 };
 
 /// A source without the background of its beams.
