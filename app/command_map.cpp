@@ -205,7 +205,7 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
     const ThresholdRange thresholds{report.min_threshold, report.max_threshold};
     beams += report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
-  if (totals.nav_water) beams += report_line("water", water_text(*totals.nav_water));
+  beams += totals.nav_water ? report_line("water", water_text(*totals.nav_water)) : sound_line(totals.sound_speed_m_s);
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path)) +
                          report_line("nav clock", text_of(path.nav->offset, totals.clock_check)) +

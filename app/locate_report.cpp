@@ -104,7 +104,7 @@ std::string locate_text(const LocatedRecording& found, const LocateCommand& comm
                                              : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
   if (motion.clock) text += report_line("nav clock", text_of(*motion.clock, found.clock_check));
-  if (motion.water) text += report_line("water", water_text(*motion.water));
+  text += motion.water ? report_line("water", water_text(*motion.water)) : sound_line(inputs.sound_speed_m_s);
   text += report_line(
       "trajectory",
       fmt::format("{} poses of {} beams, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",

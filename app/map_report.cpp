@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "console.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox::app {
 
@@ -49,6 +50,11 @@ std::string empty_map_text(const std::string& output) {
 
 std::string report_line(std::string_view label, std::string_view value) {
   return fmt::format("  {:<12}{}\n", label, value);
+}
+
+std::string sound_line(double sound_speed_m_s) {
+  if (sound_speed_m_s == kAssumedSoundSpeed_m_s) return "";
+  return report_line("sound", fmt::format("{:.1f} m/s", sound_speed_m_s));
 }
 
 std::string map_text(const OccupancyMap& map, const MapCounts& counts) {

@@ -31,6 +31,9 @@ std::string empty_map_text(const std::string& output);
 /// A line of a report, with the values aligned.
 std::string report_line(std::string_view label, std::string_view value);
 
+/// A line with the speed of sound; empty where it is the one that devices assume.
+std::string sound_line(double sound_speed_m_s);
+
 /// Summary of a map as text.
 std::string map_text(const OccupancyMap& map, const MapCounts& counts);
 

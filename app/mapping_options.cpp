@@ -40,8 +40,8 @@ constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
 /// "T,S", "T,S,D" or "nav,S".
-Take store_water(EchoArgs& args) {
-  return [&args](const std::string& text) -> Result<void> {
+Take store_water(EchoArgs& args, WaterOfNav of_nav) {
+  return [&args, of_nav](const std::string& text) -> Result<void> {
     constexpr std::string_view kOfNav = "nav,";
     std::array<double, 3> n{};
     args.water.reset();
@@ -58,8 +58,9 @@ Take store_water(EchoArgs& args) {
     if (three) n = *three;
     if (two) n = {(*two)[0], (*two)[1], 0.0};
     if (!two && !three) {
-      return usage_error(fmt::format(
-          "'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D; or nav,S", text));
+      return usage_error(
+          fmt::format("'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D{}", text,
+                      of_nav == WaterOfNav::kYes ? "; or nav,S" : ""));
     }
     const Water given{.temperature_c = n[0], .salinity = n[1], .depth_m = n[2]};
     if (const auto valid = given.validate(); !valid) return tl::unexpected(valid.error());
@@ -232,7 +233,7 @@ Result<void> EchoArgs::validate(const std::vector<std::string>& navs) const {
   return {};
 }
 
-OptionTable::Group echo_group(EchoArgs& args) {
+OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
   EchoOptions& echo = args.echo;
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
   OptionTable::Group group = {
@@ -249,10 +250,10 @@ OptionTable::Group echo_group(EchoArgs& args) {
         number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                store_optional(args.sound_speed_m_s))},
-       {"--water", 0, "T,S[,D]|nav,S",
-        "the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m; nav: "
-        "temperature and depth of the log of --nav",
-        "none", store_water(args)},
+       {"--water", 0, water == WaterOfNav::kYes ? "T,S[,D]|nav,S" : "T,S[,D]",
+        std::string("the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m") +
+            (water == WaterOfNav::kYes ? "; nav: temperature and depth of the log of --nav" : ""),
+        "none", store_water(args, water)},
        choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; without it more beams are silent",
               args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",

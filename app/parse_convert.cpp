@@ -45,7 +45,7 @@ Result<Command> convert_command(const Args& args) {
     return {};
   };
   EchoArgs echo;
-  OptionTable::Group echo_options = echo_group(echo);
+  OptionTable::Group echo_options = echo_group(echo, WaterOfNav::kNo);
   echo_options.title = "Echoes of a log";
   for (Option& option : echo_options.options) {
     option.only_for = {std::string(kEchoTables)};

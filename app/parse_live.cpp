@@ -293,7 +293,7 @@ Result<Command> live_command(const Args& args) {
           obstacles}}},
        map_group(typed.build),
        without(sensor_group(typed.build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
-       without(echo_group(typed.build.echoes), {"--background"}),
+       without(echo_group(typed.build.echoes, WaterOfNav::kNo), {"--background"}),
        {"Input", {config_option()}}},
       {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",
        "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",

@@ -56,7 +56,7 @@ Result<Command> locate_command(const Args& args) {
   EchoArgs echoes;
   LocalizerOptions& localizer = command.localizer;
   std::string calibration;
-  OptionTable::Group echo_options = echo_group(echoes);
+  OptionTable::Group echo_options = echo_group(echoes, WaterOfNav::kYes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   for (Option& option : echo_options.options) option.only_for.clear();
   Option map{"--map", 0, "FILE", "the map, .bt, .ot or .pvx", "", store(command.map)};

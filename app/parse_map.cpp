@@ -81,7 +81,7 @@ Result<Command> map_command(const Args& args) {
                 command.output_options.progress)}},
        map_options,
        sensor_options,
-       echo_group(build.echoes),
+       echo_group(build.echoes, WaterOfNav::kYes),
        {"Input",
         {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
       {"pingvox map tank.csv -o tank.bt",

@@ -100,7 +100,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
          "1000; of several pictures 640", within({16.0, 3072.0}, store_optional(args.size_px))},
         {"--caption", 0, "TEXT", "text below the picture", "the options that differ between pictures",
          store(panel.caption)}}},
-      echo_group(args.build.echoes),
+      echo_group(args.build.echoes, WaterOfNav::kYes),
       map_group(args.build),
       sensor_group(args.build)};
   for (Option& option : occupancy_options(panel.occupancy)) groups[0].options.push_back(std::move(option));

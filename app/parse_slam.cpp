@@ -37,7 +37,7 @@ Result<Command> slam_command(const Args& args) {
               "N",      "seed of the random choice of sweeps that a sweep is matched with",
               "1",      store_number(slam.seed)};
   seed.only_with = {{"--matching", {"pairs"}}};
-  OptionTable::Group echo_options = echo_group(echoes);
+  OptionTable::Group echo_options = echo_group(echoes, WaterOfNav::kYes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
   Option calibration_option{

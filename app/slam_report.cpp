@@ -214,7 +214,8 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   if (inputs.skipped > 0) read += fmt::format("; skipped {}", counted(inputs.skipped, "damaged record"));
   text += report_line("read", read);
   text += report_line("nav clock", text_of(inputs.nav_offset, report.clock_check));
-  if (inputs.nav_water) text += report_line("water", water_text(*inputs.nav_water));
+  text += inputs.nav_water ? report_line("water", water_text(*inputs.nav_water))
+                           : sound_line(command.slam.sound_speed_ratio * kAssumedSoundSpeed_m_s);
   text += report_line("velocity", velocity_text(report));
   const std::size_t poses = solution.trajectory.poses().size();
   std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));

@@ -166,6 +166,21 @@ TEST(FirstUse, TheSpeedOfSoundComesFromTheWater) {
                {"--sound-speed and --water: exclude each other"});
   expect_error(here.call({"map", "a.csv", "-o", "a.bt", "--water", "20"}), 2, {"T,S or T,S,D"});
   expect_error(here.call({"map", "a.csv", "-o", "a.bt", "--water", "60,0"}), 2, {"--water", "0..35"});
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt", "--water", "20,0"}).out, HasSubstr("sound       1482.4 m/s\n"));
+  EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).out, Not(HasSubstr("m/s")));
+}
+
+// Kills help that offers the water of a navigation log to commands that have none.
+TEST(FirstUse, TheWaterOfNavigationIsOfferedWhereThereIsNavigation) {
+  const Workplace here;
+  for (const char* command : {"map", "render", "slam", "locate"}) {
+    EXPECT_THAT(here.call({command, "--help"}).out, HasSubstr("--water T,S[,D]|nav,S")) << command;
+  }
+  for (const char* command : {"live", "convert"}) {
+    const Outcome help = here.call({command, "--help"});
+    EXPECT_THAT(help.out, HasSubstr("--water T,S[,D] ")) << command;
+    EXPECT_THAT(help.out, Not(HasSubstr("nav,S"))) << command;
+  }
 }
 
 TEST(FirstUse, AMapIsMadeOfConesAndSaysSo) {
