@@ -135,6 +135,11 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
   const Result<BagContents> contents = read_nav_log(std::move(stream), command.damage, command.bag.nav);
   if (!contents) return tl::unexpected(contents.error());
   const NavFile& nav = contents->nav;
+  if (nav.log.sources().empty()) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: has no samples of navigation in {}, {} damaged", command.input,
+                            counted(nav.records, "record"), damaged_records(nav)));
+  }
   std::size_t samples = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
     const Result<std::size_t> count = write_nav_csv(nav.log, out);
@@ -145,7 +150,7 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
   if (!written) return tl::unexpected(written.error());
   std::string what = fmt::format("{} samples of {} sources", samples, nav.log.sources().size());
   if (const std::size_t skipped = damaged_records(nav); skipped > 0) {
-    what += fmt::format("; {} damaged records skipped", skipped);
+    what += fmt::format("; {} skipped", counted(skipped, "damaged record"));
   }
   // Samples are written in order of time, where nothing tells it any more.
   if (const auto checked = check_clocks(nav.log); !checked) what += "; " + on_one_line(checked.error().message);

@@ -200,6 +200,7 @@ class BeamSurvey {
 
  private:
   std::string sweeps_text() const {
+    if (sweeps_ == 0) return "0";
     if (complete_.size() == sweeps_) return fmt::format("{}, all complete", sweeps_);
     if (complete_.empty()) return fmt::format("{}, none complete", sweeps_);
     return fmt::format("{}, complete: {}", sweeps_, numbers_text(complete_));

@@ -49,6 +49,15 @@ TEST(DeviceLogs, InfoTellsTheHeadAndWhereDamageIs) {
   EXPECT_THAT(strict.err, HasSubstr("standard input: byte 0: bytes between frames"));
 }
 
+// Kills "0, all complete".
+TEST(DeviceLogs, ALogWithoutABeamHasNoSweeps) {
+  const Workplace here;
+  const Outcome told = here.call({"info", "-"}, {.in = "SON,00:00:00.500,2,16\nSON,00:00:00.600,2,16\n"});
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr("sweeps      0\n"));
+  EXPECT_THAT(told.out, HasSubstr("2 damaged records"));
+}
+
 TEST(DeviceLogs, ABeamIsAsWideAndHighAsThatOfTheHead) {
   const Workplace here;
   here.write("log", serial_capture());

@@ -260,6 +260,17 @@ TEST(Nav, ThatTellsNoPathIsRefusedBeforeItsClock) {
                {"dvl.csv", "give it with --nav"});
 }
 
+// Kills an empty table that looks like a conversion, and "1 damaged records".
+TEST(Nav, AConversionSaysWhatItLacks) {
+  const Workplace here;
+  here.write("remote.txt", "$USRTH,20.0,-20.0,30.0,14.8,49.3,40.7,28.3,-0.3,1.7,29.5,60.5,72*51\n");
+  expect_error(here.call({"convert", "remote.txt", "-o", "z.csv"}), 1,
+               {"remote.txt: has no samples of navigation in 1 record, 0 damaged"});
+  EXPECT_FALSE(std::filesystem::exists(here.path("z.csv")));
+  here.write("one.csv", "time_s,source,quantity,x,y,z\n0,DVL,velocity,0.1,0,0\n1,DVL,velocity,0.1,0\n");
+  EXPECT_THAT(here.call({"convert", "one.csv", "-o", "z.csv"}).out, HasSubstr("; 1 damaged record skipped\n"));
+}
+
 TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   const Workplace here;
   // 2026-01-01 00:00:10 UTC, at noon in local time and in the name of the log.
