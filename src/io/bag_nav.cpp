@@ -228,7 +228,9 @@ constexpr std::array kNavTypes = {
     NavType{{"TwistWithCovarianceStamped", {"twist.twist.linear.x", "twist.twist.linear.y", "twist.twist.linear.z"}},
             add_velocity},
     NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix},
-    NavType{{"Xsens700Position", {"lat", "lon", "fixind"}}, add_xsens_fix},
+    // Its driver writes the latitude into `lon` and the longitude into `lat`: so in the recordings on the lake of
+    // Ratzeburg (53.8 N, 10.8 E; NilsKompe/Bluerov2), the only ones that are known.
+    NavType{{"Xsens700Position", {"lon", "lat", "fixind"}, "", "monsun_msgs/"}, add_xsens_fix},
     NavType{{"FluidPressure", {"fluid_pressure"}}, add_pressure},
     NavType{{"Temperature", {"temperature"}}, add_temperature},
     NavType{{"Range", {"range", "min_range", "max_range"}}, add_range},

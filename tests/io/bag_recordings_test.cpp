@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
@@ -84,6 +85,24 @@ TEST(BagRecordings, CompressedSlicesAreThoseOfTheList) {
 }
 
 TEST(BagRecordings, Ping360AndNavigationInOneDatabase) {
+// Kills a path that is mirrored: the driver writes the latitude into the field `lon`.
+TEST(BagRecordings, FixesOnTheLakeOfRatzeburg) {
+  const std::string path = recording("micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01.bag");
+  if (path.empty()) GTEST_SKIP() << "no recording";
+  const auto nav = read_nav(*ByteStream::open(path));
+  ASSERT_TRUE(nav);
+  std::size_t fixes = 0;
+  for (const NavSource& source : nav->log.sources()) {
+    if (source.quantity != NavQuantity::kFix) continue;
+    for (const NavSample& sample : source.samples) {
+      ASSERT_NEAR(sample.value.x() / kDegree_rad, 53.7784, 1e-3);
+      ASSERT_NEAR(sample.value.y() / kDegree_rad, 10.7550, 1e-3);
+      ++fixes;
+    }
+  }
+  EXPECT_EQ(fixes, 1353U);
+}
+
   const std::string path = recording("solaqua-ping360-dvl/sintef_dataset_ros2_bag_fixed.db3");
   if (path.empty()) GTEST_SKIP() << "no recording";
   const auto read = beams_of(path);
