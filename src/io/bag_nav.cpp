@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/without_exceptions.hpp"
@@ -27,6 +29,7 @@ struct TopicState {
   DeadReckoningFrame frame;
   double altitude_m = 0.0;                 ///< the last one that a receiver knew
   std::optional<double> pressure_unit_pa;  ///< nullopt: there was no pressure yet
+  std::vector<A50Arrival> arrivals;        ///< of reports with a time of the device
 };
 
 /// Unit of a pressure, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
@@ -53,7 +56,9 @@ class Samples {
 
   /// A report of a DVL in its own format, which contains the delay of the message.
   void add(const A50Report& report) {
-    add_a50_report(sources_, name_, time_s_ - report.latency_s, report, state_.frame);
+    const double time_s = time_s_ - report.latency_s;
+    if (report.made_s) state_.arrivals.push_back({time_s, *report.made_s});
+    add_a50_report(sources_, name_, time_s, report, state_.frame);
   }
 
   /// Degrees; NaN for an altitude that is not known. The last one is taken then, so that the height does not jump.
@@ -294,7 +299,9 @@ class BagSurvey {
 
   Result<BagContents> finish() {
     if (const auto added = add_topics(); !added) return tl::unexpected(added.error());
-    Result<NavLog> log = NavLog::make(sources_.take(), NavClock::kUnix);
+    std::vector<NavSource> sources = sources_.take();
+    set_times(sources);
+    Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
     return BagContents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}};
   }
@@ -306,6 +313,26 @@ class BagSurvey {
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
     TopicState state;
   };
+
+  /// Sets the times of samples of DVLs that say when their reports were true.
+  void set_times(std::span<NavSource> sources) const {
+    std::map<std::string_view, std::map<double, double>> by_arrival;  // of each topic
+    for (const Topic& topic : topics_) {
+      const std::vector<A50Arrival>& arrivals = topic.state.arrivals;
+      if (arrivals.empty()) continue;
+      std::map<double, double>& times_s = by_arrival[summaries_[topic.summary].name];
+      const std::vector<double> found_s = times_of(arrivals);
+      for (std::size_t i = 0; i < arrivals.size(); ++i) times_s.try_emplace(arrivals[i].received_s, found_s[i]);
+    }
+    for (NavSource& source : sources) {
+      const auto times_s = by_arrival.find(source.name);
+      if (times_s == by_arrival.end()) continue;
+      for (NavSample& sample : source.samples) {
+        const auto time_s = times_s->second.find(sample.time_s);
+        if (time_s != times_s->second.end() && std::isfinite(time_s->second)) sample.time_s = time_s->second;
+      }
+    }
+  }
 
   Result<void> add_topics() {
     while (topics_.size() < bag_.topics().size()) {

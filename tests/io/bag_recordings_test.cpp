@@ -84,7 +84,6 @@ TEST(BagRecordings, CompressedSlicesAreThoseOfTheList) {
   }
 }
 
-TEST(BagRecordings, Ping360AndNavigationInOneDatabase) {
 // Kills a path that is mirrored: the driver writes the latitude into the field `lon`.
 TEST(BagRecordings, FixesOnTheLakeOfRatzeburg) {
   const std::string path = recording("micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01.bag");
@@ -103,6 +102,7 @@ TEST(BagRecordings, FixesOnTheLakeOfRatzeburg) {
   EXPECT_EQ(fixes, 1353U);
 }
 
+TEST(BagRecordings, Ping360AndNavigationInOneDatabase) {
   const std::string path = recording("solaqua-ping360-dvl/sintef_dataset_ros2_bag_fixed.db3");
   if (path.empty()) GTEST_SKIP() << "no recording";
   const auto read = beams_of(path);
@@ -161,15 +161,16 @@ TEST(BagRecordings, ADvlA50) {
       (source.name == "/dvl/json_data" ? own : sent) = &source;
     }
     ASSERT_TRUE(own != nullptr && sent != nullptr);
+    EXPECT_TRUE(check_clock(*own)) << "reports that were held back keep their order";
     for (const NavSample& sample : own->samples) {
       if (!sample.valid) continue;
       const auto same =
           std::ranges::find_if(sent->samples, [&](const NavSample& s) { return s.value == sample.value; });
       ASSERT_NE(same, sent->samples.end());
-      // By the README: what the device held back before it sent it.
+      // What the device held back before it sent it (4.6 s at most, by itself), and what waited for the driver.
       const double late_s = same->time_s - sample.time_s;
       ASSERT_GT(late_s, 0.09);
-      ASSERT_LT(late_s, name == std::string("dvl_circle.bag") ? 4.7 : 0.4);
+      ASSERT_LT(late_s, name == std::string("dvl_circle.bag") ? 8.6 : 0.5);
     }
   }
 }
