@@ -193,9 +193,9 @@ Result<LocatedRecording> locate_recording(std::vector<Beam> beams, const Recorde
     if (*smoother) fits = smooth_all(**smoother, map, found.poses, segments);
     if (!fits) return tl::unexpected(fits.error());
     for (const Poses& segment : segments) mark_known(segment, &segment == &segments.back() ? 0.0 : doubt_s);
-    // One place is left, and the map fits there all the time.
+    // One place is left, and the map fits there all the time. Before and after the navigation only the filter tells.
     if (*fits && !found.hypotheses.empty() && found.hypotheses.front().weight >= Localizer::kSureWeight) {
-      for (LocatedPose& pose : found.poses) pose.is_known = true;
+      for (LocatedPose& pose : found.poses) pose.is_known = pose.is_smoothed || pose.was_sure;
     }
     return found;
   });

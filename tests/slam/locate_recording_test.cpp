@@ -135,13 +135,16 @@ double located_error_m(const LocatedRecording& found) {
   return std::sqrt(squares / static_cast<double>(found.poses.size()));
 }
 
-// Kills a smoother that is not asked, or whose poses are not taken: a velocity that is 20 % too large leads the filter.
-TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
-  const Room room;
+std::vector<Beam> beams_around(const Room& room) {
   std::vector<Beam> beams;
   for (int i = 0; i < 800; ++i) beams.push_back(room.beam(i, state_at(0.1 * i)));
+  return beams;
+}
+
+/// What navigation says of the way round, with a velocity that is 20 % too large.
+RecordedMotion motion_around(double from_s) {
   NavSource velocity{"dvl", NavQuantity::kVelocity, {}, {}}, heading{"imu", NavQuantity::kAttitude, {}, {}};
-  for (double time_s = -0.5; time_s < 81.0; time_s += 0.25) {
+  for (double time_s = from_s; time_s < 81.0; time_s += 0.25) {
     velocity.samples.push_back({.time_s = time_s, .value = {1.2 * 2.0 * std::numbers::pi / 80.0, 0.0, 0.0}});
     heading.samples.push_back(
         {.time_s = time_s, .value = {0.0, 0.0, std::remainder(state_at(time_s).yaw, 2.0 * std::numbers::pi)}});
@@ -149,6 +152,14 @@ TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
   RecordedMotion motion;
   motion.nav = *NavLog::make({velocity, heading}, NavClock::kUnknown);
   motion.odometry_from_body = odometry_of(*motion.nav, motion.nav_options)->odometry_from_body;
+  return motion;
+}
+
+// Kills a smoother that is not asked, or whose poses are not taken: a wrong velocity leads the filter.
+TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
+  const Room room;
+  std::vector<Beam> beams = beams_around(room);
+  const RecordedMotion motion = motion_around(-0.5);
   LocateOptions options;
   options.start = StartPose{state_at(0.0).x, state_at(0.0).y, state_at(0.0).yaw};
 
@@ -163,6 +174,20 @@ TEST(LocateRecording, VelocitiesSmoothThePosesOfTheFilter) {
   EXPECT_TRUE(std::ranges::none_of(causal->poses, &LocatedPose::is_smoothed));
   EXPECT_LT(located_error_m(*smoothed), 0.05);
   EXPECT_LT(located_error_m(*smoothed), 0.7 * located_error_m(*causal));
+}
+
+// Kills a wrong start that counts as known until the navigation begins, because the map fits ever after.
+TEST(LocateRecording, WhatIsBeforeTheNavigationIsNotKnownByWhatComesLater) {
+  const Room room;
+  LocateOptions options;
+  options.start = StartPose{state_at(0.0).x + 0.4, state_at(0.0).y, state_at(0.0).yaw};
+  const auto found = locate_recording(beams_around(room), motion_around(3.0), field_of(room), options);
+  ASSERT_TRUE(found) << found.error().message;
+  for (const LocatedPose& pose : found->poses) {
+    EXPECT_EQ(pose.is_smoothed, pose.time_s >= 3.0) << pose.time_s;
+    EXPECT_EQ(pose.is_known, pose.is_smoothed || pose.was_sure) << pose.time_s;
+  }
+  EXPECT_FALSE(found->poses.front().is_known);
 }
 
 // Kills an odometry on another clock that is followed without a word, and an offset of the wrong sign.
