@@ -40,7 +40,8 @@ std::vector<Jump> possible_jumps(const std::vector<Pause>& pauses, const TimeSer
 
 std::optional<ClockOffset> clock_jump(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
                                       const TimeSeries& yaw_rad) {
-  constexpr double kSure = 25.0;  // five standard deviations
+  // Five standard deviations from no turning, and from no jump.
+  constexpr double kSure = 25.0, kSecond = 0.75;
   constexpr int kSteps = 10;
   constexpr double kMin_rad = 1e-6, kMaxStep_s = 0.25, kMaxOff_s = 2.0;
   if (yaw_rad.to_s() - yaw_rad.from_s() > EvenYaw::kMaxLength_s) return std::nullopt;
@@ -53,7 +54,7 @@ std::optional<ClockOffset> clock_jump(const std::vector<YawChange>& changes, con
     if (rests_rad.size() < YawComparison::kMinChanges) continue;
     const double deviation_rad = std::max(kMin_rad, kMadToDeviation * median(rests_rad));
     const double gain = comparison.gain(jump.offset_s, deviation_rad), none = comparison.gain(0.0, deviation_rad);
-    if (gain < kSure || !std::isfinite(none) || gain - none < kSure) continue;
+    if (gain < kSure || !std::isfinite(none) || gain - none < kSure || none > kSecond * gain) continue;
     ClockOffset found{jump.offset_s, 0.0, rests_rad.size()};
     for (int i = 0; i < kSteps; ++i) {
       found.offset_s += std::clamp(comparison.step(found.offset_s, deviation_rad).step_s, -kMaxStep_s, kMaxStep_s);

@@ -190,23 +190,23 @@ class ClockJump : public testing::Test {
   static constexpr double kJump_s = 200.0, kEnd_s = 400.0;
 
   /// What the sonar sees. @param ahead_s  by which its clock jumps, @param pause_s  for which the head stops
-  static std::vector<YawChange> changes(double ahead_s, double pause_s) {
+  static std::vector<YawChange> changes(double ahead_s, double pause_s, const Yaw& yaw = wander) {
     std::vector<YawChange> all;
     const auto clock = [&](double time_s) { return time_s + (time_s > kJump_s ? ahead_s : 0.0); };
     for (double time_s = 0.0; time_s < kEnd_s; time_s += 2.0) {
       if (time_s > kJump_s && time_s < kJump_s + pause_s) continue;
       const double next_s = time_s == kJump_s && pause_s > 0.0 ? kJump_s + pause_s + 1.0 : time_s + 2.0;
-      all.push_back({clock(time_s), clock(next_s), wander(next_s) - wander(time_s), 0.5});
+      all.push_back({clock(time_s), clock(next_s), yaw(next_s) - yaw(time_s), 0.5});
     }
     return all;
   }
   static std::vector<Pause> pause_of(double length_s) { return {{kJump_s, kJump_s + length_s}}; }
-  static Trajectory poses(double ahead_s, double pause_s) {
+  static Trajectory poses(double ahead_s, double pause_s, const Yaw& yaw = wander) {
     std::vector<StampedPose> all;
     for (double time_s = 0.0; time_s < kEnd_s + 100.0; time_s += 0.5) {
       if (time_s > kJump_s && time_s < kJump_s + pause_s) continue;
       const double clock_s = time_s + (time_s > kJump_s ? ahead_s : 0.0);
-      all.push_back({clock_s, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, wander(time_s))});
+      all.push_back({clock_s, pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, yaw(time_s))});
     }
     return *Trajectory::make(all);
   }
@@ -241,6 +241,13 @@ TEST_F(ClockJump, IsNoPause) {
     EXPECT_FALSE(error->from_s) << error->offset_s;
     EXPECT_FALSE(error->is_apart()) << error->offset_s;
   }
+}
+
+// Kills a jump that explains the turning no better than the pause.
+TEST_F(ClockJump, IsNoPauseAfterWhichTheVehicleTurnsAsBefore) {
+  const Yaw again = [](double time_s) { return 0.6 * std::sin(2.0 * std::numbers::pi * time_s / 25.0); };
+  const auto error = clock_error(changes(0.0, 0.0, again), {}, poses(0.0, 25.0, again));
+  EXPECT_FALSE(error && error->from_s);
 }
 
 }  // namespace
