@@ -44,8 +44,11 @@ std::vector<DamageKind> merge_damage(const std::vector<DamageKind>& kinds) {
     if (kind.what != FrameFinder::kCutOff) same->count += kind.count;
     same->first_byte = std::min(same->first_byte, kind.first_byte);
   }
-  std::ranges::stable_sort(merged, {}, &DamageKind::first_byte);
-  return merged;
+  std::vector<DamageKind> in_order;
+  for (const DamageKind& kind : merged) {
+    in_order.insert(std::ranges::upper_bound(in_order, kind.first_byte, {}, &DamageKind::first_byte), kind);
+  }
+  return in_order;
 }
 
 /// Maps positions of the byte stream to positions in the file and times.
