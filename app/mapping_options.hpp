@@ -86,9 +86,9 @@ Option nav_offset_option(std::optional<double>& target_s);
 Option nav_mount_option(std::map<std::string, Pose>& body_from_source);
 Option use_calibration_option(std::string& target, std::string help);
 
-/// Groups of options that write into their arguments, which must outlive them.
 /// Whether a command has a navigation log that can tell of the water.
 enum class WaterOfNav { kNo, kYes };
+/// Groups of options that write into their arguments, which must outlive them.
 OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water);
 std::vector<Option> occupancy_options(OccupancyArgs& args);
 OptionTable::Group map_group(BuildArgs& args);

@@ -40,13 +40,11 @@ std::vector<Jump> possible_jumps(const std::vector<Pause>& pauses, const TimeSer
 
 std::optional<ClockOffset> clock_jump(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
                                       const TimeSeries& yaw_rad) {
-  // Five standard deviations from no turning, and from no jump.
-  constexpr double kSure = 25.0, kSecond = 0.75;
-  constexpr int kSteps = 10;
-  constexpr double kMin_rad = 1e-6, kMaxStep_s = 0.25, kMaxOff_s = 2.0;
-  if (yaw_rad.to_s() - yaw_rad.from_s() > EvenYaw::kMaxLength_s) return std::nullopt;
+  constexpr double kMin_rad = 1e-6, kMaxOff_s = 2.0;
+  const std::vector<Jump> jumps = possible_jumps(pauses, yaw_rad);
+  if (jumps.empty() || yaw_rad.to_s() - yaw_rad.from_s() > EvenYaw::kMaxLength_s) return std::nullopt;
   const EvenYaw yaw(yaw_rad);
-  for (const Jump& jump : possible_jumps(pauses, yaw_rad)) {
+  for (const Jump& jump : jumps) {
     std::vector<YawChange> after;
     std::ranges::copy_if(changes, std::back_inserter(after), [&](const YawChange& c) { return c.from_s >= jump.at_s; });
     const YawComparison comparison(after, yaw);
@@ -54,11 +52,8 @@ std::optional<ClockOffset> clock_jump(const std::vector<YawChange>& changes, con
     if (rests_rad.size() < YawComparison::kMinChanges) continue;
     const double deviation_rad = std::max(kMin_rad, kMadToDeviation * median(rests_rad));
     const double gain = comparison.gain(jump.offset_s, deviation_rad), none = comparison.gain(0.0, deviation_rad);
-    if (gain < kSure || !std::isfinite(none) || gain - none < kSure || none > kSecond * gain) continue;
-    ClockOffset found{jump.offset_s, 0.0, rests_rad.size()};
-    for (int i = 0; i < kSteps; ++i) {
-      found.offset_s += std::clamp(comparison.step(found.offset_s, deviation_rad).step_s, -kMaxStep_s, kMaxStep_s);
-    }
+    if (gain < kSureGain || !std::isfinite(none) || !stands_out(gain, none)) continue;
+    ClockOffset found{comparison.refine(jump.offset_s, deviation_rad), 0.0, rests_rad.size()};
     found.deviation_s = comparison.step(found.offset_s, deviation_rad).deviation_s;
     if (!(std::abs(found.offset_s - jump.offset_s) < kMaxOff_s) || !found.is_apart()) continue;
     found.from_s = jump.resumes_s;

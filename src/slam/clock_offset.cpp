@@ -99,18 +99,10 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const TimeSe
   const bool is_cut_off = (top == 0 && lowest_s == -most_s) || (top + 1 == scan.gains.size() && highest_s == most_s);
   if (is_cut_off) return cannot_tell("the best offset is the largest that was tried");
 
-  // Five standard deviations from no turning, and from any other offset.
-  constexpr double kSure = 25.0, kSecond = 0.75;
   const double gain = scan.gains[top], second = scan.best_beside(top);
-  if (gain < kSure) return cannot_tell("the vehicle turns too little");
-  if (gain - second < kSure || second > kSecond * gain) {
-    return cannot_tell("several offsets explain the turning equally well");
-  }
-  ClockOffset found{scan.offset_s(top), 0.0, 0};
-  constexpr int kSteps = 10;
-  for (int i = 0; i < kSteps; ++i) {
-    found.offset_s += std::clamp(comparison.step(found.offset_s, deviation_rad).step_s, -kCoarse_s, kCoarse_s);
-  }
+  if (gain < kSureGain) return cannot_tell("the vehicle turns too little");
+  if (!stands_out(gain, second)) return cannot_tell("several offsets explain the turning equally well");
+  ClockOffset found{comparison.refine(scan.offset_s(top), deviation_rad), 0.0, 0};
   found.changes = comparison.rests_rad(found.offset_s).size();
   // Where in a part of a sweep the vehicle turns may be the same each time: that error does not average out.
   std::vector<double> spreads_s;

@@ -20,7 +20,7 @@ namespace {
 
 using Poses = std::span<LocatedPose>;
 
-std::vector<StampedPose> stamped(std::span<const LocatedPose> poses) {
+std::vector<StampedPose> poses_of(std::span<const LocatedPose> poses) {
   std::vector<StampedPose> all;
   all.reserve(poses.size());
   for (const LocatedPose& pose : poses) all.push_back({pose.time_s, pose.map_from_body});
@@ -72,7 +72,7 @@ std::vector<Poses> segments_of(Poses poses) {
 
 /// Replaces poses by those of all of the recording where the map fits. False: it does not.
 Result<bool> smooth(const SlamSmoother& smoother, const DistanceField& map, Poses poses) {
-  const Result<Trajectory> near = Trajectory::make(stamped(poses));
+  const Result<Trajectory> near = Trajectory::make(poses_of(poses));
   if (!near) return false;
   const Result<SlamSolution> solution = smoother.solve_in(map, *near);
   if (!solution && solution.error().code == Error::Code::kUnsupported) return false;
@@ -132,7 +132,7 @@ void note(const Localizer& localizer, double time_s, std::vector<LocatedPose>& p
 }  // namespace
 
 Result<Trajectory> LocatedRecording::trajectory() const {
-  return trajectory_with_gaps(stamped(poses));
+  return trajectory_with_gaps(poses_of(poses));
 }
 
 std::optional<Trajectory> LocatedRecording::known_trajectory() const {

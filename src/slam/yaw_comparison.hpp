@@ -51,6 +51,14 @@ class EvenYaw {
   std::vector<double> values_;
 };
 
+/// A gain (YawComparison) that is five standard deviations from no turning.
+inline constexpr double kSureGain = 25.0;
+/// Whether it is as far from that of another offset, which explains the turning less well.
+inline bool stands_out(double gain, double other) {
+  constexpr double kSecond = 0.75;
+  return gain - other >= kSureGain && other <= kSecond * gain;
+}
+
 /// How well a yaw explains changes of yaw, by the offset between their clocks.
 class YawComparison {
  public:
@@ -113,6 +121,16 @@ class YawComparison {
     for (const double s : sums) sum += s;
     for (const double s : sums) together += std::pow(s - sum / kStretches, 2);
     return {-sum / information, std::sqrt(std::max(alone, together)) / information};
+  }
+
+  /// An offset [s] after ten steps, no longer than those between offsets that are tried.
+  double refine(double offset_s, double deviation_rad) const {
+    constexpr int kSteps = 10;
+    constexpr double kMaxStep_s = 0.25;
+    for (int i = 0; i < kSteps; ++i) {
+      offset_s += std::clamp(step(offset_s, deviation_rad).step_s, -kMaxStep_s, kMaxStep_s);
+    }
+    return offset_s;
   }
 
  private:
