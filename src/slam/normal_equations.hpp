@@ -1,14 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "slam/block_cholesky.hpp"
 
 namespace pingvox {
 
@@ -31,29 +31,17 @@ class NormalEquations {
   struct Step {
     Eigen::VectorXd knots, globals;
     Eigen::MatrixXd global_covariance;
-    std::size_t factor_entries = 0;  ///< of the triangular factor, to measure the fill-in
   };
   /// The Gauss-Newton step. nullopt: the problem does not determine its unknowns.
   std::optional<Step> solve() const;
 
-  /// Covariance of each knot's unknowns: the diagonal blocks of the inverse, from those entries of it alone that the
-  /// triangular factor has (Takahashi et al. 1973). nullopt as above.
+  /// Covariance of each knot's unknowns: the diagonal blocks of the inverse. nullopt as above.
   std::optional<std::vector<Eigen::Matrix3d>> knot_covariances() const;
 
-  std::size_t blocks() const { return rows_.size(); }
-
  private:
-  struct Factor;
-  /// nullptr: not positive definite.
-  std::unique_ptr<Factor> factor() const;
-  /// The border in the order of the factor.
-  Eigen::MatrixXd ordered_border(const Factor& factor) const;
   std::size_t slot(std::size_t row, std::size_t column) const;
 
-  std::size_t knots_;
-  std::vector<std::size_t> starts_;  ///< of each column's blocks in rows_
-  std::vector<std::uint32_t> rows_;  ///< of the lower triangle, rising in each column
-  std::vector<Eigen::Matrix3d> blocks_;
+  LowerBlocks matrix_;  ///< of the knots
 };
 
 }  // namespace pingvox
