@@ -224,8 +224,12 @@ class LiveRun {
     if (poses.position().empty() && nav_->now_s() > kLong_s && !was_silence_reported_) {
       was_silence_reported_ = true;
       bar_.clear();
-      console_.say(fmt::format("{}: no attitude and position yet, {} messages so far: beams are not mapped",
-                               nav_->names(), nav_->messages()));
+      const bool has_attitude = poses.has(NavQuantity::kAttitude), has_position = poses.has(NavQuantity::kPosition);
+      console_.say(fmt::format("{}: no {} yet, {} messages so far: beams are not mapped", nav_->names(),
+                               has_attitude == has_position ? "attitude and position"
+                               : has_attitude               ? "position"
+                                                            : "attitude",
+                               nav_->messages()));
     }
     if (were_sources_reported_ || poses.position().empty()) return;
     were_sources_reported_ = true;

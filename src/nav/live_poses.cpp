@@ -52,12 +52,16 @@ void LivePoses::add(const std::string& source, NavQuantity quantity, const NavSa
   if (!is_decided) decide();
 }
 
+bool LivePoses::has(NavQuantity quantity) const {
+  return std::ranges::any_of(samples_, [&](const auto& of) { return of.first.second == quantity; });
+}
+
 void LivePoses::decide() {
   const auto is_long = [](const auto& of) { return of.second.back().time_s - of.second.front().time_s >= kToDecide_s; };
-  const auto has = [&](NavQuantity quantity) {
+  const auto has_long = [&](NavQuantity quantity) {
     return std::ranges::any_of(samples_, [&](const auto& of) { return of.first.second == quantity && is_long(of); });
   };
-  if (!has(NavQuantity::kAttitude) || !has(NavQuantity::kPosition)) return;
+  if (!has_long(NavQuantity::kAttitude) || !has_long(NavQuantity::kPosition)) return;
   std::vector<NavSource> sources;
   for (const auto& of : samples_) {
     const auto& [name, quantity] = of.first;

@@ -128,6 +128,21 @@ TEST(LivePoses, TakeTheAttitudeOfThePositionsOwnSource) {
   }
 }
 
+TEST(LivePoses, SayWhatIsMissing) {
+  LivePoses poses;
+  poses.add("VFR_HUD", NavQuantity::kDepth, at(0.0, {2.0, 0.0, 0.0}));
+  EXPECT_FALSE(poses.has(NavQuantity::kAttitude));
+  EXPECT_FALSE(poses.has(NavQuantity::kPosition));
+  NavSample invalid = at(0.0, {63.4, 10.4, 0.0});
+  invalid.valid = false;
+  poses.add("GPS_RAW_INT", NavQuantity::kFix, invalid);
+  poses.add("ATTITUDE", NavQuantity::kAttitude, at(0.0, {0.0, 0.0, 0.0}));
+  EXPECT_TRUE(poses.has(NavQuantity::kAttitude));
+  EXPECT_FALSE(poses.has(NavQuantity::kPosition));
+  poses.add("GPS_RAW_INT", NavQuantity::kFix, at(0.2, {63.4, 10.4, 0.0}));
+  EXPECT_TRUE(poses.has(NavQuantity::kPosition));
+}
+
 TEST(LivePoses, LeaveOutWhatSaysNothing) {
   LivePoses poses;
   const std::vector<NavSource> sources = turning_vehicle(10.0);

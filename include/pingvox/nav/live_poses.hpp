@@ -25,6 +25,9 @@ class LivePoses {
   /// Later poses may become known by further samples; earlier ones do not. nullopt: none is known so far.
   std::optional<double> known_until_s() const;
 
+  /// Whether a valid sample came so far: of an attitude, or of a position (a fix is one).
+  bool has(NavQuantity quantity) const;
+
   /// Names of the sources; empty: not chosen yet.
   const std::string& attitude() const { return attitude_; }
   const std::string& position() const { return position_; }
