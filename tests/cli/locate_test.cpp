@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "call.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -152,6 +153,7 @@ TEST(Locate, NavigationOnAnotherClockIsMovedOrRefused) {
 }
 
 TEST(Locate, NamesAnOffsetOfTheClockThatTheSonarContradicts) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "harbour", "-o", "a.csv", "--trajectory", "loop", "--nav", "nav.csv", "--nav-delay",
                        "0", "--truth", "t", "--resolution", "0.1"})

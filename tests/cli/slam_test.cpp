@@ -322,6 +322,7 @@ double error_m(const Workplace& here, const std::string& trajectory, const std::
 // Kills gates of pairs that are wider than the way from one boulder to the next: 1.5 m, where dead reckoning has 0.74
 // m.
 TEST(Slam, DoesNotTakeOneBoulderForTheNext) {
+  PINGVOX_SKIP_UNDER_SANITIZERS();
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "seabed", "-o", "s.csv", "--trajectory", "loop", "--nav", "n.csv", "--truth", "t",
                        "--resolution", "1", "--seed", "2"})
