@@ -8,6 +8,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -225,10 +226,10 @@ class LiveRun {
       was_silence_reported_ = true;
       bar_.clear();
       const bool has_attitude = poses.has(NavQuantity::kAttitude), has_position = poses.has(NavQuantity::kPosition);
-      console_.say(fmt::format("{}: no {} yet, {} messages so far: beams are not mapped", nav_->names(),
-                               has_attitude == has_position ? "attitude and position"
-                               : has_attitude               ? "position"
-                                                            : "attitude",
+      const std::string_view missing = has_attitude == has_position ? "attitude and position"
+                                       : has_attitude               ? "position"
+                                                                    : "attitude";
+      console_.say(fmt::format("{}: no {} yet, {} messages so far: beams are not mapped", nav_->names(), missing,
                                nav_->messages()));
     }
     if (were_sources_reported_ || poses.position().empty()) return;

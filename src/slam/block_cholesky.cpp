@@ -4,7 +4,6 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <cassert>
 #include <limits>
 
 namespace pingvox {
@@ -43,8 +42,9 @@ LowerBlocks ordered(const LowerBlocks& matrix, const std::vector<std::uint32_t>&
   result.starts.assign(matrix.columns() + 1, 0);
   const auto each = [&](const auto& of_block) {
     for (std::size_t c = 0; c < matrix.columns(); ++c) {
-      for (std::size_t s = matrix.starts[c]; s < matrix.starts[c + 1]; ++s)
+      for (std::size_t s = matrix.starts[c]; s < matrix.starts[c + 1]; ++s) {
         of_block(s, places[matrix.rows[s]], places[c]);
+      }
     }
   };
   each([&](std::size_t, std::uint32_t row, std::uint32_t column) { ++result.starts[std::min(row, column) + 1]; });
@@ -76,9 +76,15 @@ std::optional<BlockCholesky> BlockCholesky::factor(const LowerBlocks& matrix) {
 
   std::vector<Matrix3d> sums(columns);                       // of each row
   std::vector<std::uint32_t> summed_in(columns, kNoColumn);  // the column for which a row's sum was begun
-  // The columns whose next row is this one, as a list, and where they have it.
+  // Of each row a list of the columns before it that have it as their next row, and where they have it.
   std::vector<std::uint32_t> first_at(columns, kNoColumn), next_at(columns, kNoColumn);
   std::vector<std::size_t> at(columns);
+  const auto put_on_list = [&](std::uint32_t column, std::size_t of_row) {
+    const std::uint32_t row = result.rows_[of_row];
+    at[column] = of_row;
+    next_at[column] = first_at[row];
+    first_at[row] = column;
+  };
   std::vector<std::uint32_t> rows;
   for (std::uint32_t j = 0; j < columns; ++j) {
     rows.clear();
@@ -95,9 +101,7 @@ std::optional<BlockCholesky> BlockCholesky::factor(const LowerBlocks& matrix) {
       const Matrix3d by = result.below_[s].transpose();
       sums[j].noalias() -= result.below_[s] * by;
       if (++s == end) continue;
-      at[k] = s;
-      next_at[k] = first_at[result.rows_[s]];
-      first_at[result.rows_[s]] = k;
+      put_on_list(k, s);
       for (; s < end; ++s) {
         const std::uint32_t row = result.rows_[s];
         if (summed_in[row] != j) {
@@ -117,11 +121,7 @@ std::optional<BlockCholesky> BlockCholesky::factor(const LowerBlocks& matrix) {
       result.below_.emplace_back(diagonal.matrixL().solve(sums[row].transpose()).transpose());
     }
     result.starts_.push_back(result.rows_.size());
-    if (!rows.empty()) {
-      at[j] = result.starts_[j];
-      next_at[j] = first_at[rows.front()];
-      first_at[rows.front()] = j;
-    }
+    if (!rows.empty()) put_on_list(j, result.starts_[j]);
   }
   return result;
 }
@@ -146,8 +146,9 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
     diagonal_[j].transpose().triangularView<Eigen::Upper>().solveInPlace(of_j);
   }
   Eigen::MatrixXd result(right.rows(), right.cols());
-  for (std::size_t c = 0; c < places_.size(); ++c)
+  for (std::size_t c = 0; c < places_.size(); ++c) {
     result.middleRows<3>(row_of(c)) = x.middleRows<3>(row_of(places_[c]));
+  }
   return result;
 }
 
