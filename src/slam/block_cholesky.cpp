@@ -127,6 +127,7 @@ std::optional<BlockCholesky> BlockCholesky::factor(const LowerBlocks& matrix) {
 }
 
 Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
+  if (right.cols() == 0) return right;
   const auto row_of = [](std::size_t column) { return static_cast<Eigen::Index>(3 * column); };
   // Rows of a block lie side by side.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> x(right.rows(), right.cols());

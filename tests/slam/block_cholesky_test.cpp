@@ -69,7 +69,7 @@ TEST(BlockCholesky, SolvesAndInvertsAsDenseSolvers) {
     const Problem problem = random_problem(columns, seed % 17, 10.0, random);
     const auto factor = BlockCholesky::factor(problem.sparse);
     ASSERT_TRUE(factor);
-    const Eigen::MatrixXd right = random_matrix(problem.dense.rows(), static_cast<Eigen::Index>(seed % 5), random);
+    const Eigen::MatrixXd right = random_matrix(problem.dense.rows(), static_cast<Eigen::Index>(1 + seed % 5), random);
     EXPECT_TRUE(factor->solve(right).isApprox(problem.dense.ldlt().solve(right), 1e-10));
     const Eigen::MatrixXd inverse = problem.dense.inverse();
     const auto diagonal = factor->inverse_diagonal();
@@ -79,6 +79,14 @@ TEST(BlockCholesky, SolvesAndInvertsAsDenseSolvers) {
       EXPECT_TRUE(diagonal[c].isApprox(inverse.block<3, 3>(from, from), 1e-9)) << c;
     }
   }
+}
+
+TEST(BlockCholesky, SolvesForNoRightSide) {
+  const auto factor = BlockCholesky::factor({.starts = {0, 1}, .rows = {0}, .blocks = {Eigen::Matrix3d::Identity()}});
+  ASSERT_TRUE(factor);
+  const Eigen::MatrixXd solved = factor->solve(Eigen::MatrixXd(3, 0));
+  EXPECT_EQ(solved.rows(), 3);
+  EXPECT_EQ(solved.cols(), 0);
 }
 
 // Inverses of blocks lose what one direction of a stiff block leaves to the others.
