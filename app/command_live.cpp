@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -365,7 +366,7 @@ Result<int> run(const LiveCommand& command, Console& console) {
     if (!opened) return tl::unexpected(opened.error());
     obstacles = *std::move(opened);
   }
-  recordings.keep();
+  for (const std::filesystem::path& file : recordings.keep()) console.say("recording to " + file.string());
   return LiveRun(command, console, std::move(*source), std::move(nav), std::move(obstacles), std::move(*mapper), *map)
       .run(*signals, watch);
 }

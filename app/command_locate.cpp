@@ -57,8 +57,9 @@ Result<DistanceField> field_of(const OccupancyMap& map, const LocateCommand& com
   const double z_m = (first * command.localizer.body_from_sonar.translation()).z();
   const DistanceFieldOptions layer{command.min_z_m.value_or(z_m - kHalf_m), command.max_z_m.value_or(z_m + kHalf_m)};
   return DistanceField::make(map, layer).map_error([&](const Error& error) {
-    return Error{error.code, fmt::format("{}: {}; the sonar is at {:.2f} m at the first beam (see --min-z and --max-z)",
-                                         command.map, error.message, z_m)};
+    return Error{error.code, fmt::format("{}: {}; the map has {}, and the sonar is at z = {:.2f} m at the first beam: "
+                                         "give the layer to use with --min-z and --max-z",
+                                         command.map, error.message, bounds_text(map.bounds()), z_m)};
   });
 }
 

@@ -151,10 +151,12 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Stopwatch solve;
   const Result<SlamSolution> solution = smoother.solve();
   if (!solution) {
-    const bool lacks_nav = command.navs.empty() && all->beams > 0 && solution.error().code == Error::Code::kUnsupported;
-    return fail(solution.error().code,
-                fmt::format("{}: {}{}", inputs_text(command), solution.error().message,
-                            lacks_nav ? ": give the navigation with --nav, a heading or a turn rate at least" : ""));
+    std::string advice;
+    if (command.navs.empty() && all->beams > 0 && solution.error().code == Error::Code::kUnsupported) {
+      const std::string in_bag = command.logs.front() == "-" ? "" : hint_at_nav(command.logs.front());
+      advice = in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;
+    }
+    return fail(solution.error().code, fmt::format("{}: {}{}", inputs_text(command), solution.error().message, advice));
   }
   seconds.solve = solve.seconds();
 
@@ -186,6 +188,12 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   }
   seconds.write = write.seconds();
   seconds.total = total.seconds();
+  if (const auto& implausible = solution->report.implausible; !implausible.empty()) {
+    console.say(
+        fmt::format("{}: implausible: {}: far from what was expected; are --mount, --nav-mount and --nav-offset "
+                    "right?",
+                    inputs_text(command), fmt::join(implausible, ", ")));
+  }
   const Result<void> summary = command.output_options.report == Report::kJson
                                    ? console.print(slam_json(*solution, command, inputs, options, seconds))
                                    : console.summarise(slam_text(*solution, command, inputs, seconds), command.output);

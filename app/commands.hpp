@@ -153,7 +153,7 @@ struct ConvertCommand {
 enum class PictureView { kPolar, kCartesian, kAbove, kSide, kSlice };
 /// Kinds that options of 'render' may be limited to (Option::only_for), besides those of logs.
 inline constexpr std::string_view kDrawnMaps = "pictures of maps",
-                                  kMappedLogs = "logs that are mapped (--view above, side, slice)";
+                                  kMappedLogs = "logs drawn as maps (--view above, side, slice)";
 /// "--view polar"
 std::string view_kind(PictureView view);
 enum class ShownImage { kRaw, kFiltered, kBackground };
@@ -186,7 +186,7 @@ struct RenderCommand {
   Damage damage = Damage::kSkip;
   BagArgs bag;
   std::vector<PanelCommand> panels;    ///< at least one
-  std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs that are mapped"
+  std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs drawn as maps"
 };
 
 struct SimulateCommand {

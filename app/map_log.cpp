@@ -83,7 +83,7 @@ std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, co
 
 }  // namespace
 
-Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
+Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::string_view nav_advice) {
   if (!poses) return Trajectory::still(Pose::Identity());
   const Result<FileBytes> file = read_file(*poses);
   if (!file) return tl::unexpected(file.error());
@@ -94,12 +94,12 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses) {
   if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
   return fail(Error::Code::kUnsupported,
               fmt::format("{}: is {}, not a trajectory{}", file->name, description_of(*format),
-                          kind_of(*format) == FormatKind::kNav ? ": give it with --nav" : ""));
+                          kind_of(*format) == FormatKind::kNav ? fmt::format(": {}", nav_advice) : ""));
 }
 
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, const BagArgs& bag, Damage damage) {
   if (path.navs.empty()) {
-    return trajectory_of(path.poses).map([](Trajectory trajectory) {
+    return trajectory_of(path.poses, "give it with --nav").map([](Trajectory trajectory) {
       return VehiclePath{std::move(trajectory), std::nullopt};
     });
   }
@@ -267,7 +267,10 @@ std::string hint_at_path(const std::string& log, Format format) {
   if (std::filesystem::is_regular_file(beside, error)) {
     return "its trajectory may be --poses " + quote_for_shell(beside);
   }
-  if (!is_bag(format)) return {};
+  return is_bag(format) ? hint_at_nav(log) : "";
+}
+
+std::string hint_at_nav(const std::string& log) {
   const Result<BagContents> bag =
       ByteStream::open(log).and_then([](ByteStream stream) { return read_bag(std::move(stream)); });
   return bag && tells_path(bag->nav.log) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";

@@ -19,7 +19,9 @@
 namespace pingvox::app {
 
 /// The trajectory in a file of TUM lines; without one the vehicle stays at the origin.
-Result<Trajectory> trajectory_of(const std::optional<std::string>& poses);
+/// @param nav_advice  what to do with a file of navigation
+Result<Trajectory> trajectory_of(const std::optional<std::string>& poses,
+                                 std::string_view nav_advice = "'pingvox convert' makes one of positions");
 
 /// Trajectory of the vehicle, and the navigation that it was made from.
 struct VehiclePath {
@@ -84,5 +86,7 @@ std::string odd_times_text(const Trajectory& trajectory, const BuildReport& repo
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum"
 /// (a file beside it), or "navigation in the bag is used with --nav dive.db3"; empty: nowhere. Reads a bag once.
 std::string hint_at_path(const std::string& log, Format format);
+/// The same of a log that is a bag; empty also for others.
+std::string hint_at_nav(const std::string& log);
 
 }  // namespace pingvox::app

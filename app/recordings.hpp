@@ -33,8 +33,8 @@ class Recordings {
     return std::optional<Recorder>(*std::move(recorder));
   }
 
-  /// The run begins.
-  void keep() { created_.clear(); }
+  /// The run begins. @return the files
+  std::vector<std::filesystem::path> keep() { return std::exchange(created_, {}); }
 
  private:
   std::optional<std::filesystem::path> sonar_;

@@ -166,6 +166,7 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
     velocity.add_null("check");
   }
   json.add("poses", solution.trajectory.poses().size())
+      .add("in_pauses", report.in_pauses)
       .add("beams", report.beams)
       .add("sweeps", report.sweeps)
       .add("echoes", report.echoes)
@@ -219,7 +220,9 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   text += report_line("velocity", velocity_text(report));
   const std::size_t poses = solution.trajectory.poses().size();
   std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));
-  if (poses < report.beams) trajectory += fmt::format("; {} without one", counted(report.beams - poses, "beam"));
+  const std::size_t of_beams = poses - report.in_pauses;
+  if (of_beams < report.beams) trajectory += fmt::format("; {} without one", counted(report.beams - of_beams, "beam"));
+  if (report.in_pauses > 0) trajectory += fmt::format(", {} of them in pauses of the sonar", report.in_pauses);
   if (const std::size_t gaps = solution.trajectory.gaps(); gaps > 0) trajectory += ", " + counted(gaps, "gap");
   text += report_line("trajectory", trajectory);
   text += report_line("frame", frame_text(report.heading));
@@ -253,12 +256,6 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
     text +=
         report_line("not known",
                     on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(report.not_observable, ", "))));
-  }
-  if (!report.implausible.empty()) {
-    text +=
-        report_line("implausible", on_one_line(fmt::format("{}: far from what was expected; are --mount, --nav-mount "
-                                                           "and --nav-offset right?",
-                                                           fmt::join(report.implausible, ", "))));
   }
   return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
                                                    recorded_s(solution) / seconds.total));

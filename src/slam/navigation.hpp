@@ -42,7 +42,8 @@ class TimeSeries {
   /// How long that is in the stretch, all in all.
   double gap_s(double from_s, double to_s) const;
   double longest_step_s() const;
-  double usual_step_s() const { return usual_step_s_; }  ///< median; 0 of one sample
+  double usual_step_s() const { return usual_step_s_; }    ///< median; 0 of one sample
+  double usual_limit_s() const { return usual_limit_s_; }  ///< longer steps are gaps
 
  private:
   std::vector<double> times_s_, values_;

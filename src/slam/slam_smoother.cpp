@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -199,11 +200,17 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
   if (!of_knots) {
     return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
   }
+  const std::vector<double> in_pauses_s = times_in_pauses(recording);
+  std::vector<double> poses_s;
+  std::ranges::merge(recording.beam_times_s, in_pauses_s, std::back_inserter(poses_s));
   std::vector<StampedPose> poses =
-      poses_at(recording.beam_times_s, solver.problem(), solver.unknowns(), recording.navigation.depth, options);
+      poses_at(poses_s, solver.problem(), solver.unknowns(), recording.navigation.depth, options);
   begin_at_origin(poses);
-  Result<SlamSolution> solution = solution_of(solver, options, std::move(poses));
+  Result<SlamSolution> solution =
+      solution_of(solver, options, std::move(poses), in_pauses_s.empty() ? 0.0 : velocity.ahead.usual_limit_s());
   if (!solution) return solution;
+  solution->report.in_pauses = static_cast<std::size_t>(
+      std::ranges::count_if(in_pauses_s, [&](double time_s) { return solution->trajectory.at(time_s).has_value(); }));
   solution->report.beams = recording.beam_times_s.size();
   solution->report.sweeps = static_cast<std::size_t>(
       std::ranges::count_if(recording.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -38,7 +39,7 @@ SlamCalibration calibration_of(const SlamSolver& solver) {
 /// In the order of the globals.
 std::vector<std::string> global_names(const SlamProblem& problem) {
   std::vector<std::string> names = {"angle of the velocity", "scale of the velocity", "place of the wall in an echo",
-                                    "place of the sonar, ahead", "place of the sonar, to port"};
+                                    "place of the sonar ahead", "place of the sonar to port"};
   for (const HeadingSource& heading : problem.headings()) {
     for (const char* part : {"constant", "sin1", "cos1", "sin2", "cos2"}) {
       names.push_back(fmt::format("{} of heading {}", part, heading.name));
@@ -155,9 +156,27 @@ void begin_at_origin(std::vector<StampedPose>& poses) {
   for (StampedPose& pose : poses) pose.map_from_body.translation().head<2>() -= origin;
 }
 
-Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses) {
+std::vector<double> times_in_pauses(const Recording& recording) {
+  const TimeSeries& velocity = recording.navigation.velocity.ahead;
+  const TimeSeries& heading = recording.navigation.headings.front().yaw_rad;
+  std::vector<double> found;
+  if (recording.navigation.velocity.by_sonar) return found;
+  std::vector<double> beams_s(recording.beam_times_s.begin(), recording.beam_times_s.end());
+  beams_s.erase(std::ranges::unique(beams_s).begin(), beams_s.end());
+  const TimeSeries beams(beams_s, std::vector<double>(beams_s.size()));
+  for (const auto& [from_s, to_s] : beams.gaps(beams.from_s(), beams.to_s())) {
+    if (velocity.gap_s(from_s, to_s) > 0.0 || heading.gap_s(from_s, to_s) > 0.0) continue;
+    const std::vector<double>& times_s = velocity.times_s();
+    std::copy(std::ranges::upper_bound(times_s, from_s), std::ranges::lower_bound(times_s, to_s),
+              std::back_inserter(found));
+  }
+  return found;
+}
+
+Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses,
+                                 double least_gap_s) {
   if (poses.empty()) return fail(Error::Code::kUnsupported, "no beam is within the time of the navigation");
-  Result<Trajectory> trajectory = trajectory_with_gaps(std::move(poses));
+  Result<Trajectory> trajectory = trajectory_with_gaps(std::move(poses), least_gap_s);
   if (!trajectory) return tl::unexpected(trajectory.error());
   SlamSolution solution{*std::move(trajectory), {}, {}, report_of(solver)};
   if (options.matching == Matching::kPairs) {

@@ -27,10 +27,15 @@ std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::
 /// Shifts poses so that the first is at x, y = 0.
 void begin_at_origin(std::vector<StampedPose>& poses);
 
+/// Times of measured velocities in pauses of the sonar in which velocity and heading go on.
+std::vector<double> times_in_pauses(const Recording& recording);
+
 /// With all of the report but beams and sweeps, and without covariances.
-/// @param poses  of the beams
+/// @param poses  of the beams, and others
+/// @param least_gap_s  the trajectory has no shorter gap
 /// @return kUnsupported without poses
-Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses);
+Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& options, std::vector<StampedPose> poses,
+                                 double least_gap_s = 0.0);
 
 /// What the report says of the velocity. @param span  of the trajectory
 void report_velocity(const VelocitySource& velocity, const Span& span, SlamReport& report);

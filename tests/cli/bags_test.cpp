@@ -57,6 +57,7 @@ TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
   const Workplace here;
   EXPECT_THAT(here.call({"map", kBag, "-o", "net.bt"}).err,
               HasSubstr("did not move; navigation in the bag is used with --nav"));
+  expect_error(here.call({"slam", kBag, "-o", "o.tum"}), 1, {"navigation in the bag is used with --nav"});
   EXPECT_THAT(here.call({"map", kBag, "--nav", kBag, "-o", "net.bt"}).err, Not(HasSubstr("did not move")));
   const std::string without = PINGVOX_SOURCE_DIR "/fuzz/corpus/mcap/image_without_chunk";
   EXPECT_THAT(here.call({"map", without, "-o", "net.bt"}).err, Not(HasSubstr("--nav")));

@@ -87,6 +87,7 @@ TEST(Live, MapsTheSameAsItsRecordToTheBit) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr(R"("done": true)"));
   EXPECT_THAT(outcome.out, HasSubstr(R"("not_mapped": 0)"));
+  EXPECT_THAT(outcome.err, HasSubstr("recording to dive.bin\n"));
   EXPECT_THAT(outcome.err, HasSubstr("connected"));
   expect_map_of_record(here);
 }

@@ -109,7 +109,9 @@ TEST(Locate, SaysWhatIsWrongWithItsWordsAndFiles) {
   expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--start", "100,100,0"}), 2,
                {"--start: 100, 100 is outside of t/world.bt"});
   expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--min-z", "50", "--max-z", "51"}),
-               1, {"t/world.bt", "nothing is occupied between the heights 50 and 51 m", "the sonar is at 0.00 m"});
+               1,
+               {"t/world.bt", "nothing is occupied between the heights 50 and 51 m", "the map has x ",
+                "the sonar is at z = 0.00 m"});
   here.write("late.tum", "5000 0 0 0 0 0 0 1\n5001 0 0 0 0 0 0 1\n");
   expect_error(here.call({"locate", "a.csv", "--map", "t/world.bt", "-o", "o.tum", "--odometry", "late.tum"}), 1,
                {"do not overlap in time"});

@@ -258,6 +258,9 @@ TEST(Nav, ThatTellsNoPathIsRefusedBeforeItsClock) {
                {"tank.csv: is a log of beams (.csv), not a navigation log"});
   expect_error(here.call({"map", "tank.csv", "-o", "o.bt", "--poses", "dvl.csv"}), 1,
                {"dvl.csv", "give it with --nav"});
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt"}).status, 0);
+  expect_error(here.call({"compare", "tank.bt", "tank.bt", "--visible-from", "dvl.csv"}), 2,
+               {"dvl.csv", "'pingvox convert' makes one"});
 }
 
 // Kills an empty table that looks like a conversion, and "1 damaged records".

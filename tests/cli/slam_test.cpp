@@ -273,6 +273,16 @@ TEST(Slam, CountsTheBeamsThatAreLeftOutOfTheMap) {
   EXPECT_THAT(outcome.err, HasSubstr(fmt::format(" of {} beams", all)));
 }
 
+TEST(Slam, WarnsOfWhatIsImplausible) {
+  const Workplace here;
+  write_basin(here);
+  const Outcome outcome = here.call(
+      {"slam", "beams.csv", "--nav", "nav.csv", "--nav-mount", "dvl=0,0,0,0,0,90", "-o", "out.tum", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("beams.csv, nav.csv: implausible: "));
+  EXPECT_THAT(outcome.err, HasSubstr("are --mount, --nav-mount and --nav-offset right?"));
+}
+
 TEST(Slam, SaysWhatIsMissingInTheNavigation) {
   const Workplace here;
   write_basin(here);

@@ -164,7 +164,7 @@ TEST(Usage, OptionsWithoutEffectAreRefused) {
       {{"convert", "tank.csv", "-o", "b.csv", "--z", "0"}, {"--z: has no effect on logs of beams"}},
       {{"convert", "tank.csv", "-o", "b.csv", "--threshold", "9"}, {"--threshold: has no effect", "tables of echoes"}},
       {{"render", "tank.csv", "-o", "b.png", "--resolution", "1"},
-       {"--resolution: has no effect", "logs that are mapped (--view above, side, slice)"}},
+       {"--resolution: has no effect", "logs drawn as maps (--view above, side, slice)"}},
       {{"render", "tank.csv", "-o", "b.png", "--view", "above", "--sweep", "1"}, {"--sweep: has no effect"}},
       {{"map", "a.csv", "-o", "m.bt", "--nav-offset", "1"}, {"--nav-offset: has no effect without --nav\n"}},
       {{"simulate", "harbour", "-o", "b.csv", "--side", "5"}, {"--side: has no effect with WORLD harbour"}},

@@ -153,19 +153,44 @@ TEST(SlamSmoother, BridgesALostBottomLock) {
   EXPECT_LT(error_m(solved->trajectory), 0.5);
 }
 
-// Kills a straight line through the time in which the head stopped: later beams would be mapped along it.
-TEST(SlamSmoother, HasAGapWhereThereWereNoBeams) {
-  const Basin basin{.duration_s = 200.0};
+/// The solution of a sonar that pauses from 100 to 130 s.
+Result<SlamSolution> solve_with_pause(const Basin& basin, const std::vector<NavSource>& sources) {
   SlamSmoother smoother = smoother_of(basin, {});
-  add(smoother, basin.sources());
+  add(smoother, sources);
   for (const Beam& beam : basin.beams()) {
     if (beam.time_s < 100.0 || beam.time_s > 130.0) smoother.add(beam);
   }
-  const auto solved = smoother.solve();
+  return smoother.solve();
+}
+
+// Kills a straight line through the time in which the head stopped: later beams would be mapped along it.
+TEST(SlamSmoother, HasAGapWhereBeamsAndVelocitiesPause) {
+  const Basin basin{.duration_s = 200.0};
+  for (const std::size_t silent : {0U, 1U}) {
+    std::vector<NavSource> sources = basin.sources();
+    std::erase_if(sources[silent].samples,
+                  [](const NavSample& sample) { return sample.time_s > 105.0 && sample.time_s < 125.0; });
+    const auto solved = solve_with_pause(basin, sources);
+    ASSERT_TRUE(solved) << solved.error().message;
+    EXPECT_EQ(solved->trajectory.gaps(), 1U);
+    EXPECT_EQ(solved->report.in_pauses, 0U);
+    EXPECT_TRUE(solved->trajectory.at(90.0));
+    EXPECT_FALSE(solved->trajectory.at(115.0));
+  }
+}
+
+// Kills a gap, or a straight line, where only the head stopped.
+TEST(SlamSmoother, TheNavigationTellsTheWayInAPauseOfTheSonar) {
+  const Basin basin{.duration_s = 200.0};
+  const auto solved = solve_with_pause(basin, basin.sources());
   ASSERT_TRUE(solved) << solved.error().message;
-  EXPECT_EQ(solved->trajectory.gaps(), 1U);
-  EXPECT_TRUE(solved->trajectory.at(90.0));
-  EXPECT_FALSE(solved->trajectory.at(115.0));
+  EXPECT_EQ(solved->trajectory.gaps(), 0U);
+  EXPECT_GT(solved->report.in_pauses, 25U);
+  EXPECT_EQ(solved->trajectory.poses().size(), solved->report.beams + solved->report.in_pauses);
+  const auto before = solved->trajectory.at(95.0), within = solved->trajectory.at(115.0);
+  ASSERT_TRUE(before && within);
+  const Eigen::Vector2d moved = (within->translation() - before->translation()).head<2>();
+  EXPECT_LT((moved - (Basin::at(115.0).place - Basin::at(95.0).place)).norm(), 0.3) << "a line is 0.5 m off";
 }
 
 // Kills a trajectory that ends with its DVL while the sonar hears on.

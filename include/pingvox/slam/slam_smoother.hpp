@@ -107,7 +107,8 @@ struct LargestSolution {
 struct SlamReport {
   std::size_t beams = 0;
   std::size_t sweeps = 0;
-  std::size_t echoes = 0;  ///< within the time of the trajectory
+  std::size_t in_pauses = 0;  ///< poses in pauses of the sonar
+  std::size_t echoes = 0;     ///< within the time of the trajectory
   std::size_t knots = 0;
   std::size_t pairs = 0;        ///< of echoes, in the last iteration
   double pair_median_m = 0.0;   ///< median distance from line to point over the pairs
@@ -139,7 +140,9 @@ struct SlamReport {
 };
 
 struct SlamSolution {
-  Trajectory trajectory;  ///< map_from_body at each beam: x east, y north as the headings say, the first pose at 0, 0
+  /// map_from_body: x east, y north as the headings say, the first pose at 0, 0. At each beam, and in pauses of the
+  /// sonar at each velocity, where velocity and heading go on; else pauses are gaps. With Estimation::kCausal all are.
+  Trajectory trajectory;
   SlamCalibration calibration;
   std::vector<PoseCovariance> covariances;  ///< of the knots, some four a sweep; none with Estimation::kCausal
   SlamReport report;
