@@ -193,7 +193,7 @@ std::string text_of(const TrajectoryScore& score) {
   const std::string relative = std::isnan(score.per_m)
                                    ? "B did not move"
                                    : fmt::format("{:.4g} m/m, over segments of {:.4g} m", score.per_m, score.segment_m);
-  return fmt::format("Horizontal error of A at {} poses of B{}, aligned by\n", score.poses, outside) +
+  return fmt::format("Horizontal error of A at {} of B{}, aligned by\n", counted(score.poses, "pose"), outside) +
          report_line("nothing", text_of(score.none)) + report_line("first fix", text_of(score.first_fix)) +
          report_line("translation", text_of(score.translation)) +
          report_line("SE(2)",

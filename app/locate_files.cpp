@@ -10,6 +10,7 @@
 
 #include "calibration_file.hpp"
 #include "map_log.hpp"
+#include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
@@ -22,7 +23,7 @@ Result<LocateMotion> read_motion(const LocateCommand& command) {
   if (command.odometry) {
     Result<Trajectory> odometry = trajectory_of(command.odometry);
     if (!odometry) return tl::unexpected(odometry.error());
-    motion.text = fmt::format("{} poses of {}", odometry->poses().size(), on_one_line(*command.odometry));
+    motion.text = fmt::format("{} of {}", counted(odometry->poses().size(), "pose"), on_one_line(*command.odometry));
     motion.recorded.odometry_from_body = *std::move(odometry);
     return motion;
   }

@@ -106,18 +106,17 @@ std::string locate_text(const LocatedRecording& found, const LocateCommand& comm
   if (motion.clock) text += report_line("nav clock", text_of(*motion.clock, found.clock_check));
   text += motion.water ? report_line("water", water_text(*motion.water)) : sound_line(inputs.sound_speed_m_s);
   text += report_line(
-      "trajectory",
-      fmt::format("{} poses of {} beams, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",
-                  inputs.written, inputs.beams, unsure_poses(found),
-                  inputs.written == found.poses.size() ? "may be wrong" : "left out", smoothed_poses(found),
-                  found.mean_particles, found.most_particles));
+      "trajectory", fmt::format("{} of {}, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",
+                                counted(inputs.written, "pose"), counted(inputs.beams, "beam"), unsure_poses(found),
+                                inputs.written == found.poses.size() ? "may be wrong" : "left out",
+                                smoothed_poses(found), found.mean_particles, found.most_particles));
   for (const PoseHypothesis& h : std::span(found.hypotheses).first(std::min(kShown, found.hypotheses.size()))) {
     text += report_line("at the end",
                         fmt::format("{:.3f} {:.3f} m +- {:.3f}, {:.1f} +- {:.1f} degrees, weight {:.3f}", h.x_m, h.y_m,
                                     h.deviation_m, h.yaw_rad / kDegree_rad, h.deviation_rad / kDegree_rad, h.weight));
   }
   if (found.hypotheses.size() > kShown) {
-    text += report_line("at the end", fmt::format("{} places more", found.hypotheses.size() - kShown));
+    text += report_line("at the end", fmt::format("and {}", counted(found.hypotheses.size() - kShown, "other place")));
   }
   text += report_line("sure", sure_text(found));
   return text +

@@ -251,6 +251,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& g
   if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}};
 
   for (const std::string& word : app.remaining()) {
+    if (word == "--") continue;  // what follows are no options
     if (word.size() > 1 && word.front() == '-') {
       const std::string name = word.substr(0, word.find('='));
       std::string advice = did_you_mean(name, option_names(table));

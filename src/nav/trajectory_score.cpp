@@ -1,5 +1,7 @@
 #include "pingvox/nav/trajectory_score.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -86,7 +88,12 @@ Result<TrajectoryScore> score_trajectory(const Trajectory& trajectory, const Tra
     score.max_difference_m = std::max(score.max_difference_m, (at - true_at).norm());
   }
   if (matches.empty()) {
-    return fail(Error::Code::kUnsupported, "the trajectory and its reference are never known at the same time");
+    const auto span_of = [](const Trajectory& of) {
+      return fmt::format("from {:.3f} to {:.3f} s", of.poses().front().time_s, of.poses().back().time_s);
+    };
+    return fail(Error::Code::kUnsupported, fmt::format("the trajectory and its reference are never known at the same "
+                                                       "time: the trajectory is {}, the reference {}",
+                                                       span_of(trajectory), span_of(reference)));
   }
   score.poses = matches.size();
 

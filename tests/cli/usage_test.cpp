@@ -283,6 +283,15 @@ TEST(Usage, TheOverviewTellsTheStatusOfCompareApart) {
   EXPECT_THAT(Workplace().call({"--help"}).out, HasSubstr("compare: 0 equal, 1 different, 2 failed"));
 }
 
+TEST(Usage, NoArgumentAfterTwoDashesIsAnOption) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("-tank.csv", here.read("tank.csv"));
+  expect_error(here.call({"map", "-o", "tank.bt", "-tank.csv"}), 2, {"unknown option '-tank.csv'"});
+  const Outcome outcome = here.call({"map", "-o", "tank.bt", "--", "-tank.csv"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST(Usage, VersionIsOneLine) {
   const Outcome outcome = Workplace().call({"--version"});
   EXPECT_EQ(outcome.status, 0);
