@@ -102,6 +102,17 @@ Beams laser_beam(const RosFields& message, SonarSettings&) {
   return beam_of(message.number(0), bin_length_m, std::move(samples));
 }
 
+/// The points of a beam: the k-th of n (from 1) at k / n of the range, at the angle as the head counts.
+Beams points_beam(const RosFields& message, SonarSettings&) {
+  const std::size_t count = message.count(0);
+  std::vector<std::uint8_t> samples = message.bytes(2);
+  if (samples.size() != count) return NoBeam(kImpossible);
+  if (count == 0) return NoBeam(kNoSamples);
+  const double x_m = message.number(0, count - 1), y_m = message.number(1, count - 1);
+  const double bin_length_m = std::hypot(x_m, y_m) / static_cast<double>(count);
+  return beam_of(bearing_of(std::atan2(y_m, x_m)), bin_length_m, std::move(samples));
+}
+
 /// All beams of an imaging sonar at once, in its frame: z ahead, y right, x up.
 Beams image_beams(const RosFields& message, SonarSettings&) {
   constexpr double kBytes = 0.0;
@@ -143,23 +154,33 @@ struct SonarType {
   RosType type;
   std::string_view device;  ///< empty: unknown
   Beams (*beams_in)(const RosFields& message, SonarSettings& settings);
-  bool has_beams = true;  ///< false: settings
+  enum class Holds { kBeams, kBeamsToo, kSettings } holds = Holds::kBeams;  ///< kBeamsToo: the driver's, once more
 };
 
 constexpr std::array kSonarTypes = {
     SonarType{{"SonarEcho", {"angle", "range", "intensities"}}, "ping360", echo_beam},
     SonarType{{"Ping360", {"angle_ping360", "sample_period", "data"}}, "ping360", ping_beam},
-    SonarType{{"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, false},
-    SonarType{{"Ping360_config", {"sample_period"}}, "ping360", ping_settings, false},
+    SonarType{{"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, SonarType::Holds::kSettings},
+    SonarType{{"Ping360_config", {"sample_period"}}, "ping360", ping_settings, SonarType::Holds::kSettings},
     SonarType{{"ScanLine", {"angle", "bin_distance_step", "bins.intensity"}}, "micron", scan_line_beam},
     SonarType{{"TritechMicronSlice", {"angle", "range", "data"}}, "micron", slice_beam},
     SonarType{{"AcousticBeam", {"angle", "range_max", "intensities"}}, "miniking", acoustic_beam},
+    SonarType{{"PointCloud", {"points.x", "points.y", "channels.values"}, "tritech_micron/scan"},
+              "micron",
+              points_beam,
+              SonarType::Holds::kBeamsToo},
     SonarType{{"LaserScan", {"angle_min", "angle_max", "range_max", "intensities"}}, "", laser_beam},
     SonarType{{"ProjectedSonarImage",
                {"beam_directions.y", "beam_directions.z", "ranges", "image.beam_count", "image.dtype", "image.data"}},
               "",
               image_beams},
 };
+
+/// Whether messages of the topic are beams that the driver sends in another topic, too.
+bool is_second_sonar(const BagTopic& topic) {
+  const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
+  return known && kSonarTypes[known->type].holds == SonarType::Holds::kBeamsToo;
+}
 
 class BagBeams final : public DeviceLog {
  public:
@@ -204,7 +225,7 @@ class BagBeams final : public DeviceLog {
     if (!topic && fields_ && name == wanted_) return missing_field(bag_->topics()[message.topic]);
     if (!topic) return {};
     const SonarType& type = kSonarTypes[topic->type];
-    if (!fields_ && type.has_beams && !wanted_.empty() && name != wanted_) return {};
+    if (!fields_ && is_unwanted(type, name)) return {};
     if (!message_.read(topic->layout, message.bytes)) {
       add_damage(unusable_, kNoFit, message.file_byte);
       return {};
@@ -231,6 +252,11 @@ class BagBeams final : public DeviceLog {
     return {};
   }
 
+  bool is_unwanted(const SonarType& type, const std::string& name) const {
+    if (type.holds == SonarType::Holds::kSettings || name == wanted_) return false;
+    return !wanted_.empty() || type.holds == SonarType::Holds::kBeamsToo;
+  }
+
   std::optional<KnownTopic> sonar_topic(const BagTopic& topic) const {
     if (!fields_) return known_topic(topic, kSonarTypes);
     if (topic.name != wanted_ || !topic.is_readable) return std::nullopt;
@@ -246,26 +272,27 @@ class BagBeams final : public DeviceLog {
                                    : std::string(" and cannot be read: its definition is not in the bag")));
   }
 
-  /// Names and types of the topics with beams.
-  std::string sonar_topics() const {
+  /// Names and types of the topics that are of a kind.
+  std::string topics_that(bool (*are_of_kind)(const BagTopic&)) const {
     std::set<std::string> names;
     for (const BagTopic& topic : bag_->topics()) {
-      if (is_sonar(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
+      if (are_of_kind(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
     }
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
   tl::unexpected<Error> several_topics() const {
     return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with beams: {}: choose one with --topic",
-                                                     bag_->name(), sonar_topics()));
+                                                     bag_->name(), topics_that(is_sonar)));
   }
 
   std::string why_none() const {
-    const std::string others = sonar_topics();
+    const std::string others = topics_that(is_sonar), second = topics_that(is_second_sonar);
     if (!wanted_.empty()) {
       return fmt::format("{}: has no beams in the topic {}{}", bag_->name(), wanted_,
                          others.empty() ? "" : ", only in " + others);
     }
+    if (!second.empty()) return fmt::format("{}: choose the topic of its beams with --topic: {}", bag_->name(), second);
     return fmt::format("{}: is a ROS bag without beams of a sonar that we know{}", bag_->name(),
                        damage().empty() ? "" : ", or it is damaged");
   }
@@ -301,7 +328,9 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
       fields.push_back(field.value_or(0));
     }
     if (!has_all) continue;
-    const auto stamp_s = layout->field("header.stamp.sec"), stamp_ns = layout->field("header.stamp.nanosec");
+    const bool has_stamp = layout->field("header.stamp.sec").has_value();
+    const std::string stamp = has_stamp ? "header.stamp." : "transforms.header.stamp.";
+    const auto stamp_s = layout->field(stamp + "sec"), stamp_ns = layout->field(stamp + "nanosec");
     return KnownTopic{0, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
   }
   return std::nullopt;
@@ -309,7 +338,7 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
 
 bool is_sonar(const BagTopic& topic) {
   const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
-  return known && kSonarTypes[known->type].has_beams;
+  return known && kSonarTypes[known->type].holds != SonarType::Holds::kSettings;
 }
 
 Result<std::unique_ptr<Bag>> open_bag(ByteStream stream) {

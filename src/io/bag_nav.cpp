@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <span>
 #include <string>
@@ -204,6 +205,23 @@ void add_odometry(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kVelocity, three(message, 7));
 }
 
+/// Of Sonardyne's USBL: x east, y north, z up.
+void add_usbl(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kPosition, three(message, 0), message.number(3) != 0.0);
+}
+
+/// From the third field on: of tf, whose first two are the names of the frames.
+void add_transform(const RosFields& message, Samples& samples) {
+  samples.add(NavQuantity::kPosition, three(message, 2));
+  add_attitude(message, 5, true, samples);
+}
+
+/// Whether a frame stands still while the vehicle moves (REP 105); "bluerov2/odom" is "odom" of one of several.
+bool is_fixed_frame(std::string_view frame) {
+  const std::string_view name = frame.substr(frame.rfind('/') + 1);  // npos + 1 is 0
+  return name == "map" || name == "odom" || name == "world";
+}
+
 void add_depth(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
 }
@@ -211,6 +229,7 @@ void add_depth(const RosFields& message, Samples& samples) {
 struct NavType {
   RosType type;
   void (*add)(const RosFields& message, Samples& samples);
+  bool is_of_transforms = false;
 };
 
 constexpr std::array kNavTypes = {
@@ -257,6 +276,15 @@ constexpr std::array kNavTypes = {
               "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w", "twist.twist.linear.x",
               "twist.twist.linear.y", "twist.twist.linear.z"}},
             add_odometry},
+    NavType{
+        {"TFMessage",
+         {"transforms.header.frame_id", "transforms.child_frame_id", "transforms.transform.translation.x",
+          "transforms.transform.translation.y", "transforms.transform.translation.z", "transforms.transform.rotation.x",
+          "transforms.transform.rotation.y", "transforms.transform.rotation.z", "transforms.transform.rotation.w"},
+         "tf"},
+        add_transform,
+        true},
+    NavType{{"SonardyneUSBL2", {"east", "north", "depth", "connected"}}, add_usbl},
     NavType{{"String", {"data"}, "dvl/json_data"}, add_json},
     NavType{{"Float64", {"data"}, "depth"}, add_depth},
     NavType{{"Float32", {"data"}, "depth"}, add_depth},
@@ -286,6 +314,10 @@ class BagSurvey {
       reader.add(message_, *topic.known, message.time_s, name, sources_);
     }
     if (!topic.readers.empty()) return {};
+    if (kNavTypes[topic.known->type].is_of_transforms) {
+      add_transforms(message, topic);
+      return {};
+    }
     Samples samples(sources_, name, topic.known->time_of(message_, message.time_s), topic.state);
     kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
     return {};
@@ -301,6 +333,7 @@ class BagSurvey {
     if (const auto added = add_topics(); !added) return tl::unexpected(added.error());
     std::vector<NavSource> sources = sources_.take();
     set_times(sources);
+    add_where_no_other_is(transforms_.take(), sources);
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
     return BagContents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}};
@@ -313,6 +346,30 @@ class BagSurvey {
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
     TopicState state;
   };
+
+  /// Adds what the transforms of a message say of where the vehicle is in a fixed frame.
+  void add_transforms(const BagMessage& message, Topic& topic) {
+    constexpr std::size_t kMaxTransforms = 256;
+    const KnownTopic& known = *topic.known;
+    const RosFields transform(message_, known.fields);
+    for (std::size_t i = 0; i < kMaxTransforms; ++i) {
+      if (!message_.read(known.layout, message.bytes, i) || transform.count(2) == 0) return;
+      const std::string_view parent = transform.text(0), child = transform.text(1);
+      if (!is_fixed_frame(parent) || is_fixed_frame(child)) continue;
+      const std::string name = fmt::format("{}:{}:{}", summaries_[topic.summary].name, parent, child);
+      Samples samples(transforms_, name, known.time_of(message_, message.time_s), topic.state);
+      add_transform(transform, samples);
+    }
+  }
+
+  /// tf repeats, often filtered, what other topics tell.
+  static void add_where_no_other_is(std::vector<NavSource> transforms, std::vector<NavSource>& sources) {
+    const auto is_position = [](const NavSource& source) {
+      return source.quantity == NavQuantity::kPosition || source.quantity == NavQuantity::kFix;
+    };
+    if (std::ranges::any_of(sources, is_position)) return;
+    std::ranges::move(transforms, std::back_inserter(sources));
+  }
 
   /// Sets the times of samples of DVLs that say when their reports were true.
   void set_times(std::span<NavSource> sources) const {
@@ -379,7 +436,7 @@ class BagSurvey {
   std::vector<Topic> topics_;
   std::vector<BagTopicSummary> summaries_;
   std::map<std::string, std::size_t> places_;  ///< in summaries_
-  NavSources sources_;
+  NavSources sources_, transforms_;
   RosMessage message_;
   std::size_t records_ = 0;
   std::vector<DamageKind> unusable_;

@@ -46,7 +46,8 @@ struct KnownTopic {
   std::vector<std::size_t> fields;
   std::optional<std::size_t> stamp_s, stamp_ns;
 
-  /// When the message was made: its stamp, if that is within a minute of the recording, else the recording's time.
+  /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording, else the
+  /// recording's time.
   double time_of(const RosMessage& message, double recorded_s) const {
     constexpr double kNear_s = 60.0;
     if (!stamp_s || !stamp_ns) return recorded_s;

@@ -56,6 +56,15 @@ float64[36] covariance
 MSG: geometry_msgs/TwistWithCovarianceStamped
 std_msgs/Header header
 TwistWithCovariance twist
+MSG: geometry_msgs/Transform
+Vector3 translation
+Quaternion rotation
+MSG: geometry_msgs/TransformStamped
+std_msgs/Header header
+string child_frame_id
+Transform transform
+MSG: tf2_msgs/TFMessage
+geometry_msgs/TransformStamped[] transforms
 MSG: nav_msgs/Odometry
 std_msgs/Header header
 string child_frame_id

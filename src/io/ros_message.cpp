@@ -283,7 +283,8 @@ std::string fields_text(const RosLayout& layout) {
 /// Walks through the bytes of a message.
 class RosMessage::Walk {
  public:
-  Walk(const RosLayout& layout, RosMessage& message) : layout_(layout), message_(message) {}
+  Walk(const RosLayout& layout, RosMessage& message, std::size_t element)
+      : layout_(layout), message_(message), element_(element) {}
 
   bool finish() {
     if (!read(layout_.records_.back(), true)) return false;
@@ -330,9 +331,10 @@ class RosMessage::Walk {
     if (!member.record) return read_numbers(member, count, has_values);
     const RosLayout::Record& record = layout_.records_[*member.record];
     if (record.is_fixed) return read_fixed(record, count, has_values);
+    const std::size_t with_values = member.array == Array::kNone ? 0 : element_;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t before = at_;
-      if (!read(record, has_values && i == 0)) return false;
+      if (!read(record, has_values && i == with_values)) return false;
       if (at_ == before) return true;  // so are all others
     }
     return true;
@@ -376,10 +378,10 @@ class RosMessage::Walk {
 
   const RosLayout& layout_;
   RosMessage& message_;
-  std::size_t at_ = 0;
+  std::size_t element_, at_ = 0;
 };
 
-bool RosMessage::read(const RosLayout& layout, std::span<const std::uint8_t> bytes) {
+bool RosMessage::read(const RosLayout& layout, std::span<const std::uint8_t> bytes, std::size_t element) {
   values_.assign(layout.fields().size(), RosValues{});
   order_ = std::endian::little;
   if (layout.encoding() == RosEncoding::kCdr) {
@@ -390,7 +392,7 @@ bool RosMessage::read(const RosLayout& layout, std::span<const std::uint8_t> byt
     bytes = bytes.subspan(kEncapsulation);
   }
   bytes_ = bytes;
-  return Walk(layout, *this).finish();
+  return Walk(layout, *this, element).finish();
 }
 
 namespace {

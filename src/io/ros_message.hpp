@@ -81,12 +81,13 @@ class RosLayout {
 /// The numbers of a message, without those of its header: "x float64, valid bool".
 std::string fields_text(const RosLayout& layout);
 
-/// Reads messages of a layout. Of an array of messages whose size varies (with texts or arrays in them) only the first
-/// has values.
+/// Reads messages of a layout. Of an array of messages whose size varies (with texts or arrays in them) only one has
+/// values.
 class RosMessage {
  public:
   /// false: the bytes do not fit the layout. They must outlive the use of the values.
-  bool read(const RosLayout& layout, std::span<const std::uint8_t> bytes);
+  /// @param element  which one has values, in each such array; there are none in a shorter one
+  bool read(const RosLayout& layout, std::span<const std::uint8_t> bytes, std::size_t element = 0);
 
   std::size_t count(std::size_t field) const { return values_[field].count; }
   /// NaN when it has less values. Of a text, the codes of its characters.

@@ -88,6 +88,32 @@ TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
 }
 
+// Kills beams that are mapped twice, and a bag of points alone that has "no beams".
+TEST(Bags, PointsOfAMicronAreBeamsWhereTheyAreChosen) {
+  const Workplace here;
+  bags::Ros1 bag;
+  bag.topic(0, "/tritech_micron/scan", "sensor_msgs/PointCloud",
+            "geometry_msgs/Point32[] points\nChannelFloat32[] channels\n================\nMSG: geometry_msgs/Point32\n"
+            "float32 x\nfloat32 y\nfloat32 z\n================\nMSG: sensor_msgs/ChannelFloat32\nstring name\n"
+            "float32[] values\n");
+  bags::Bytes cloud;
+  bags::put(cloud, std::uint32_t{4});
+  for (const float range_m : {0.5F, 1.0F, 1.5F, 2.0F}) {
+    for (const float number : {range_m, 0.0F, 0.0F}) bags::put(cloud, number);
+  }
+  bags::put(cloud, std::uint32_t{1});
+  bags::put_text(cloud, "intensity");
+  bags::put(cloud, std::uint32_t{4});
+  for (const float intensity : {1.0F, 2.0F, 200.0F, 4.0F}) bags::put(cloud, intensity);
+  bag.message(0, 1000, 0, cloud);
+  bag.end_chunk();
+  here.write("points.bag", std::string(bag.file().begin(), bag.file().end()));
+  expect_error(here.call({"convert", "points.bag", "-o", "beams.csv"}), 1,
+               {"points.bag: choose the topic of its beams with --topic: /tritech_micron/scan"});
+  ASSERT_EQ(here.call({"convert", "points.bag", "--topic", "/tritech_micron/scan", "-o", "beams.csv"}).status, 0);
+  EXPECT_THAT(here.read("beams.csv"), HasSubstr("1000,3.141592653589793,0.5,1,2,200,4\n")) << "astern";
+}
+
 TEST(Bags, ATopicIsChosenByName) {
   const Workplace here;
   EXPECT_EQ(here.call({"convert", kMcap, "-o", "echoes.csv", "--topic", "/echo"}).status, 0);

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pingvox/io/file.hpp"
@@ -112,6 +114,86 @@ TEST(BagNav, AFixWithoutAltitudeKeepsTheLastOne) {
   EXPECT_EQ(values[0].z(), 0.0);
   EXPECT_EQ(values[1].z(), 41.5);
   EXPECT_EQ(values[2].z(), 41.5);
+}
+
+/// A message of tf in CDR, as it grows.
+class Transforms {
+ public:
+  explicit Transforms(std::uint32_t count) { number(count); }
+
+  void add(std::string_view parent, std::string_view child, const std::vector<double>& place_and_rotation) {
+    number(std::int32_t{1000});
+    number(std::uint32_t{500'000'000});
+    text(parent);
+    text(child);
+    for (const double each : place_and_rotation) number(each);
+  }
+  const bags::Bytes& bytes() const { return bytes_; }
+
+ private:
+  template <class T>
+  void number(T value) {
+    while ((bytes_.size() - 4) % sizeof(T) != 0) bytes_.push_back(0);
+    bags::put(bytes_, value);
+  }
+  void text(std::string_view value) {
+    number(static_cast<std::uint32_t>(value.size() + 1));
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+    bytes_.push_back(0);
+  }
+
+  bags::Bytes bytes_ = {0, 1, 0, 0};
+};
+
+/// A bag with one message of tf, in which the vehicle is the last of three.
+bags::Mcap bag_of_transforms(std::string_view topic) {
+  Transforms transforms(3);
+  transforms.add("base_link", "sonar", {0.1, 0, -0.4, 1, 0, 0, 0});
+  transforms.add("map", "odom", {7, 7, 7, 0, 0, 0, 1});
+  transforms.add("rov/odom", "rov/base_link", {1, 2, -3, 0, 0, std::sqrt(0.5), std::sqrt(0.5)});
+  bags::Mcap mcap;
+  mcap.topic(1, topic, "tf2_msgs/msg/TFMessage", "");
+  mcap.message(1, 1'000'600'000'000U, transforms.bytes());
+  return mcap;
+}
+
+std::vector<NavSource> sources_in(bags::Mcap mcap) {
+  mcap.end_chunk();
+  const auto nav = read_nav(FileBytes{"dive.mcap", mcap.closed()});
+  EXPECT_TRUE(nav);
+  return nav ? std::vector(nav->log.sources().begin(), nav->log.sources().end()) : std::vector<NavSource>{};
+}
+
+// Kills a reader that takes the first transform of a message only, or a sensor for the vehicle.
+TEST(BagNav, TheVehicleIsWhatMovesInAFixedFrameOfTf) {
+  const auto sources = sources_in(bag_of_transforms("/tf"));
+  ASSERT_THAT(sources, SizeIs(2));
+  for (const NavSource& source : sources) {
+    EXPECT_EQ(source.name, "/tf:rov/odom:rov/base_link");
+    ASSERT_THAT(source.samples, SizeIs(1));
+    EXPECT_EQ(source.samples[0].time_s, 1000.5);
+    if (source.quantity == NavQuantity::kPosition) {
+      EXPECT_EQ(source.samples[0].value, Eigen::Vector3d(1, 2, -3));
+    } else {
+      EXPECT_EQ(source.quantity, NavQuantity::kAttitude);
+      EXPECT_NEAR((source.samples[0].value - Eigen::Vector3d(0, 0, std::acos(0.0))).norm(), 0.0, 1e-12);
+    }
+  }
+  EXPECT_THAT(sources_in(bag_of_transforms("/tf_static")), SizeIs(0)) << "what does not move";
+}
+
+// Kills a path of tf, which may be filtered or in another frame, instead of the one that was measured.
+TEST(BagNav, TfIsUsedWhereNoOtherTopicHasAPosition) {
+  bags::Mcap mcap = bag_of_transforms("/tf");
+  mcap.topic(2, "/fix", "lab_msgs/msg/NavSatFix",
+             "float64 latitude\nfloat64 longitude\nfloat64 altitude\n"
+             "Status status\n================\nMSG: lab_msgs/Status\nfloat64 status\n");
+  bags::Bytes fix = {0, 1, 0, 0};
+  for (const double number : {60.0, 10.0, 0.0, 0.0}) bags::put(fix, number);
+  mcap.message(2, 1'000'700'000'000U, fix);
+  const auto sources = sources_in(std::move(mcap));
+  ASSERT_THAT(sources, SizeIs(1));
+  EXPECT_EQ(sources[0].name, "/fix");
 }
 
 TEST(BagNav, TurnsADvlThatLooksDown) {

@@ -31,10 +31,10 @@ std::string recording(const std::string& name) {
   return std::filesystem::exists(path) ? path : "";
 }
 
-ReadResult<Beam> beams_of(const std::string& path) {
+ReadResult<Beam> beams_of(const std::string& path, const std::string& topic = "") {
   auto stream = ByteStream::open(path);
   if (!stream) return {{}, 0, stream.error().message};
-  return read_everything<Beam>(open_beams(*std::move(stream)));
+  return read_everything<Beam>(open_beams(*std::move(stream), Damage::kSkip, {.name = topic}));
 }
 
 TEST(BagRecordings, LinesOfAMicron) {
@@ -82,6 +82,26 @@ TEST(BagRecordings, CompressedSlicesAreThoseOfTheList) {
       ASSERT_EQ(listed, intensity);
     }
   }
+}
+
+// Its driver sends each beam as points, too.
+TEST(BagRecordings, PointsOfAMicronAreTheBeamsOfItsSlices) {
+  const std::string path = recording("micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01.bag");
+  if (path.empty()) GTEST_SKIP() << "no recording";
+  const auto points = beams_of(path, "/tritech_micron/scan"), slices = beams_of(path);
+  EXPECT_EQ(points.error, "");
+  ASSERT_THAT(points.items, SizeIs(665));
+  std::size_t same = 0;
+  for (const Beam& beam : points.items) {
+    for (const Beam& slice : slices.items) {
+      if (std::abs(slice.time_s - beam.time_s) > 0.05) continue;
+      ASSERT_EQ(beam.intensities, slice.intensities);
+      ASSERT_NEAR(std::remainder(beam.bearing_rad - slice.bearing_rad, 2.0 * std::numbers::pi), 0.0, 1e-5);
+      ASSERT_NEAR(beam.bin_length_m, slice.bin_length_m, 1e-7);
+      ++same;
+    }
+  }
+  EXPECT_EQ(same, 665U);
 }
 
 // Kills a path that is mirrored: the driver writes the latitude into the field `lon`.
@@ -132,6 +152,7 @@ TEST(BagRecordings, Ping360AndNavigationInOneDatabase) {
   EXPECT_EQ(summary("/sensor/dvl_position", NavQuantity::kPosition).samples, 427U);
   EXPECT_EQ(summary("/sensor/attitude", NavQuantity::kAttitude).samples, 1498U);
   EXPECT_EQ(summary("/sensor/depth_temperature", NavQuantity::kDepth).samples, 1412U);
+  EXPECT_EQ(summary("/sensor/usbl", NavQuantity::kPosition).samples, 48U);
   const auto path_of_vehicle = nav_trajectory(bag->nav.log);
   ASSERT_TRUE(path_of_vehicle);
   // It moves to its left along the net, 15 m in all, at one depth.
