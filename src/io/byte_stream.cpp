@@ -37,6 +37,19 @@ class ByteStream::Source {
     }
   }
 
+  /// The same from a position on, without moving. REQUIRES a regular file.
+  tl::expected<std::size_t, int> read_at(std::uint64_t position, std::span<std::uint8_t> to) const {
+    std::size_t filled = 0;
+    while (filled < to.size() && position + filled < *size_) {
+      const ssize_t got = ::pread(fd_, &to[filled], to.size() - filled, static_cast<off_t>(position + filled));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) return tl::unexpected(errno);
+      if (got == 0) break;
+      filled += static_cast<std::size_t>(got);
+    }
+    return filled;
+  }
+
   std::uint64_t bytes_read() const { return read_; }
   std::optional<std::uint64_t> size() const { return size_; }
   bool is_standard_input() const { return !owned_.valid(); }
@@ -123,6 +136,20 @@ Result<std::size_t> ByteStream::read(std::span<std::uint8_t> to) {
   }
   if (!rest_) return std::size_t{0};
   const auto got = rest_->read(to);
+  if (!got) return os_error(name(), got.error());
+  return *got;
+}
+
+Result<std::size_t> ByteStream::read_at(std::uint64_t position, std::span<std::uint8_t> to) const {
+  if (!rest_) {
+    const std::span<const std::uint8_t> held = held_.view();
+    const std::span<const std::uint8_t> from = held.subspan(std::min<std::uint64_t>(position, held.size()));
+    const std::size_t count = std::min(from.size(), to.size());
+    std::copy_n(from.begin(), count, to.begin());
+    return count;
+  }
+  if (!path()) return std::size_t{0};
+  const auto got = rest_->read_at(position, to);
   if (!got) return os_error(name(), got.error());
   return *got;
 }

@@ -27,6 +27,7 @@ struct RecordHeader {
   std::uint8_t op = 0;
   std::uint32_t connection = 0, size = 0, count = 0;
   std::uint32_t time_s = 0, time_ns = 0;
+  std::uint64_t index_at = 0;  ///< of the index in the file; 0: the bag was not closed
   std::string_view compression, topic, type, definition;
 };
 
@@ -62,6 +63,8 @@ bool read_fields(Bytes bytes, RecordHeader& header) {
     } else if (name == "time") {
       fits = value.size() == 8 && take_number(value.first(4), header.time_s) &&
              take_number(value.subspan(4), header.time_ns);
+    } else if (name == "index_pos") {
+      fits = take_number(value, header.index_at);
     } else if (name == "compression") {
       header.compression = value_text;
     } else if (name == "topic") {
@@ -186,6 +189,7 @@ class Ros1Bag final : public Bag {
   std::optional<BagMessage> take(const RecordHeader& header, Bytes data, std::uint64_t at) {
     if (header.op == kConnection) add_connection(header, data, at);
     if (header.op != kMessage) return std::nullopt;
+    if (!connections_.contains(header.connection)) read_index();
     const auto topic = connections_.find(header.connection);
     if (topic == connections_.end()) {
       add_damage(damage_, "message of an unknown topic", at);
@@ -205,6 +209,27 @@ class Ros1Bag final : public Bag {
         {std::string(header.topic), std::string(about.type), std::string(about.definition), RosEncoding::kRos1, true});
   }
 
+  /// Each connection stands in one chunk, which may be damaged, and once more in the index at the end of the file. Of a
+  /// pipe, and of a bag that was not closed, nothing is read.
+  void read_index() {
+    constexpr std::size_t kBlock = std::size_t{1} << 20;
+    if (index_at_ == 0) return;
+    std::vector<std::uint8_t> block(kBlock);
+    for (std::uint64_t at = std::exchange(index_at_, 0);;) {
+      // An error of the operating system comes again when reading gets there.
+      const std::size_t size = reader_.read_at(at, block).value_or(0);
+      Bytes rest = Bytes(block).first(size);
+      for (;;) {
+        const std::optional<Record> record = record_in(rest);
+        if (!record || record->header.op != kConnection || record->data > rest.size() - record->data_at) break;
+        add_connection(record->header, rest.subspan(record->data_at, record->data), at + (size - rest.size()));
+        rest = rest.subspan(record->data_at + record->data);
+      }
+      if (rest.size() == size) return;
+      at += size - rest.size();
+    }
+  }
+
   /// Reads a record of the file, and opens it when it is a chunk. @return false at the end of the file
   Result<bool> read_record() {
     constexpr std::size_t kUsual = 1024;
@@ -219,6 +244,7 @@ class Ros1Bag final : public Bag {
     }
     if (!record || !has_possible_length(*record)) return skip_damage();
     if (record->header.op == kChunk) return open_chunk(*record);
+    if (record->header.op == kBagHeader) index_at_ = record->header.index_at;
     return pass_over(*record);
   }
 
@@ -302,6 +328,7 @@ class Ros1Bag final : public Bag {
   std::size_t chunk_size_ = 0;
   std::uint64_t chunk_at_ = 0;  ///< its data in the file
   bool is_packed_ = false, is_cut_ = false;
+  std::uint64_t index_at_ = 0;  ///< of the index, unless it was read or there is none
 };
 
 }  // namespace

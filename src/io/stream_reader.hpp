@@ -23,6 +23,10 @@ class StreamReader {
   Result<std::span<const std::uint8_t>> peek(std::size_t count);
   /// Skips `count` bytes. REQUIRES that peek() returned them.
   void skip(std::size_t count);
+  /// As ByteStream::read_at().
+  Result<std::size_t> read_at(std::uint64_t position, std::span<std::uint8_t> to) const {
+    return stream_.read_at(position, to);
+  }
   /// Number of bytes skipped so far.
   std::uint64_t position() const { return position_; }
 

@@ -55,6 +55,18 @@ TEST(BagRecordings, LinesOfAMicron) {
   }
 }
 
+TEST(BagRecordings, AWrongBitInTheFirstChunkCostsItsOwnSlices) {
+  const std::string path = recording("micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01.bag");
+  if (path.empty()) GTEST_SKIP() << "no recording";
+  auto file = read_file(path);
+  ASSERT_TRUE(file);
+  file->bytes[142'224] ^= 4;
+  const auto read = all_beams(*file);
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.skipped, 1U);
+  EXPECT_THAT(read.items, SizeIs(581)) << "of 666";
+}
+
 TEST(BagRecordings, CompressedSlicesAreThoseOfTheList) {
   const std::string path = recording("micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01.bag");
   const std::string list = recording("micron-ratzeburg-bag/micron_beams.txt");

@@ -1,11 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -42,7 +46,7 @@ bags::Bytes scan_line(float angle_deg, std::uint32_t seconds) {
 }
 
 /// Chunks of ten lines each, 9 degrees apart.
-bags::Bytes micron_bag(std::string_view compression, int chunks = 3) {
+bags::Ros1 micron_chunks(std::string_view compression, int chunks) {
   bags::Ros1 bag;
   bag.topic(1, "/scan_line", "micron_driver_ros/ScanLine", kScanLine);
   for (int i = 0; i < 10 * chunks; ++i) {
@@ -50,7 +54,11 @@ bags::Bytes micron_bag(std::string_view compression, int chunks = 3) {
                 scan_line(static_cast<float>(9 * i), 1000U + static_cast<unsigned>(i)));
     if (i % 10 == 9) bag.end_chunk(compression);
   }
-  return bag.file();
+  return bag;
+}
+
+bags::Bytes micron_bag(std::string_view compression, int chunks = 3) {
+  return micron_chunks(compression, chunks).file();
 }
 
 TEST(RosBag, GivesTheLinesOfAMicronInOurFrame) {
@@ -88,11 +96,49 @@ TEST(RosBag, LosesOneChunkWithALostByte) {
     bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at));
     const auto read = all_beams({"dive.bag", bytes});
     fewest = std::min(fewest, read.items.size());
-    // The first chunk names the topic; without that nothing is known of the others.
+    // The first chunk names the topic; this bag was not closed, so nothing else does.
     if (at <= 900) continue;
     EXPECT_GE(read.items.size(), 19U) << "without byte " << at;
   }
   EXPECT_LT(fewest, 30U);
+}
+
+TEST(RosBag, FindsTheTopicsOfADamagedChunkInTheIndex) {
+  const auto whole = micron_chunks("bz2", 3).closed();
+  const auto undamaged = all_beams({"dive.bag", whole});
+  ASSERT_THAT(undamaged.items, SizeIs(30));
+  EXPECT_EQ(undamaged.skipped, 0U);
+  std::size_t without_first = 0;
+  for (std::size_t at = 13; at < whole.size(); ++at) {  // behind "#ROSBAG V2.0"
+    auto bytes = whole;
+    bytes[at] ^= 1;
+    const auto read = all_beams({"dive.bag", bytes});
+    EXPECT_GE(read.items.size(), 20U) << "byte " << at;
+    without_first += !read.items.empty() && read.items.front().time_s > 1010.0 ? 1U : 0U;
+  }
+  EXPECT_GT(without_first, 100U);
+}
+
+TEST(RosBag, ReadsTheIndexOfAFileButNotThatOfAPipe) {
+  auto bytes = micron_chunks("bz2", 500).closed();  // longer than what stays in memory
+  ASSERT_GT(bytes.size(), 2 * ByteStream::kBeginning);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  bytes[text.find("BZh9") + 20] ^= 4;
+  const std::string path = testing::TempDir() + "/pingvox_index.bag", pipe = testing::TempDir() + "/pingvox_index_pipe";
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const auto of_file = read_everything<Beam>(open_beams(*ByteStream::open(path)));
+  EXPECT_EQ(of_file.error, "");
+  EXPECT_THAT(of_file.items, SizeIs(4990));
+  EXPECT_EQ(of_file.skipped, 1U);
+
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << std::ifstream(path, std::ios::binary).rdbuf(); });
+  const auto of_pipe = read_everything<Beam>(open_beams(*ByteStream::open(pipe)));
+  writer.join();
+  EXPECT_THAT(of_pipe.error, HasSubstr("or it is damaged"));
+  std::filesystem::remove(path);
+  std::filesystem::remove(pipe);
 }
 
 TEST(RosBag, ReadsWhatThereIsBeforeTheCut) {

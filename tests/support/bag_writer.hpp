@@ -5,6 +5,8 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -83,6 +85,7 @@ class Ros1 {
     field(about, "md5sum", text("*"));
     field(about, "message_definition", text(definition));
     record(chunk_, header, about);
+    record(connections_, header, about);
   }
 
   void message(std::uint32_t connection, std::uint32_t seconds, std::uint32_t nanoseconds, const Bytes& data) {
@@ -112,6 +115,21 @@ class Ros1 {
 
   const Bytes& file() const { return file_; }
 
+  /// The file with its index, as a recorder leaves it that was ended.
+  Bytes closed() const {
+    Bytes file = file_, index_at, info;
+    put(index_at, std::uint64_t{file_.size()});
+    const std::string_view name = "index_pos=";
+    std::copy(
+        index_at.begin(), index_at.end(),
+        std::search(file.begin(), file.end(), name.begin(), name.end()) + static_cast<std::ptrdiff_t>(name.size()));
+    append(file, connections_);
+    field(info, "count", number(1));
+    field(info, "op", Bytes{6});
+    record(file, info, Bytes(8));
+    return file;
+  }
+
  private:
   static Bytes text(std::string_view value) { return {value.begin(), value.end()}; }
   static Bytes number(std::uint32_t value) {
@@ -132,7 +150,7 @@ class Ros1 {
     append(to, data);
   }
 
-  Bytes file_, chunk_;
+  Bytes file_, chunk_, connections_;
 };
 
 /// An MCAP of ROS 2, chunk by chunk.

@@ -40,6 +40,10 @@ class ByteStream {
   /// @return their number, 0 only at the end; kIo when the operating system reports an error
   /// REQUIRES a `to` that is not empty
   Result<std::size_t> read(std::span<std::uint8_t> to);
+  /// Copies the bytes from `position` on to the front of `to`; read() goes on where it was.
+  /// @return their number, fewer than wanted only at the end, 0 for a stream that is read only once (a pipe, a device,
+  ///         standard input); kIo when the operating system reports an error
+  Result<std::size_t> read_at(std::uint64_t position, std::span<std::uint8_t> to) const;
   /// Fraction read so far, 0..1; nullopt if the size is unknown.
   std::optional<double> share_read() const;
 
