@@ -140,6 +140,7 @@ std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning
   if (looks_like_udp_capture(beginning)) return Format::kUdpCapture;
   if (looks_like_ping_text(beginning)) return Format::kPingText;
   // These have no magic number: other files may contain such bytes, but not at their beginning.
+  if (looks_like_cut_ping_viewer(beginning)) return Format::kPingViewer;
   if (looks_like_sonarview(beginning)) return Format::kSonarView;
   if (looks_like_seanet_capture(beginning)) return Format::kSeanetCapture;
   return std::nullopt;

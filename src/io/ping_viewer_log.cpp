@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -113,11 +114,33 @@ std::optional<RecordHeader> record_header_in(Bytes bytes, Encoding encoding) {
   return RecordHeader{*time_s, 4 + text + 4, data};
 }
 
+/// The first whole record of a log that begins anywhere.
+struct FirstRecord {
+  Encoding encoding;
+  double time_s;
+};
+
+/// nullopt: there is none near the beginning.
+std::optional<FirstRecord> first_record_in(Bytes beginning) {
+  constexpr std::size_t kSearched = 16384;
+  for (std::size_t at = 0; at < std::min(beginning.size(), kSearched); ++at) {
+    for (const Encoding encoding : {Encoding::kUtf16, Encoding::kUtf8}) {
+      const std::optional<RecordHeader> header = record_header_in(beginning.subspan(at), encoding);
+      if (header) return FirstRecord{encoding, header->time_s};
+    }
+  }
+  return std::nullopt;
+}
+
 class PingViewerRecords : public FrameContainer {
  public:
   /// @param start_s  of the log: time 0 of its records
   PingViewerRecords(StreamReader reader, Encoding encoding, double start_s)
       : reader_(std::move(reader)), encoding_(encoding), time_s_(start_s), day_s_(start_s) {}
+  /// A log whose header is damaged or missing. What is before its first whole record has the time of that one, and is
+  /// damage only where it is no frame.
+  PingViewerRecords(StreamReader reader, const FirstRecord& first)
+      : reader_(std::move(reader)), encoding_(first.encoding), time_s_(first.time_s), day_s_(0.0), in_damage_(true) {}
 
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
@@ -189,6 +212,10 @@ bool looks_like_ping_viewer(Bytes beginning) {
   return encoding_of(beginning).has_value();
 }
 
+bool looks_like_cut_ping_viewer(Bytes beginning) {
+  return first_record_in(beginning).has_value();
+}
+
 Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage) {
   constexpr std::int32_t kPingFamily = 1, kPing1d = 1, kPing360 = 2;
   constexpr std::uint32_t kNullString = 0xffffffff;
@@ -211,6 +238,9 @@ Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage d
   }
   const auto family = header.read<std::int32_t>(), type = header.read<std::int32_t>();
   if (!is_whole || !family || !type) {
+    if (const auto first = first_record_in(*beginning)) {
+      return beams_of(std::make_unique<PingViewerRecords>(std::move(reader), *first), ping_protocol(), damage);
+    }
     return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", name));
   }
   if (family == kPingFamily && type == kPing1d) {

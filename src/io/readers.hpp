@@ -25,6 +25,8 @@ Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage
 
 // Logs that are read as streams, recognised by their beginning.
 bool looks_like_ping_viewer(std::span<const std::uint8_t> beginning);
+/// Whether it begins within a record, behind the header.
+bool looks_like_cut_ping_viewer(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage damage);
 
 bool looks_like_ping_text(std::span<const std::uint8_t> beginning);

@@ -277,6 +277,35 @@ TEST(PingViewer, ARecordOfImpossibleLengthCostsItsOwnFramesAtMost) {
   EXPECT_EQ(strict.error, "broken.bin: byte " + std::to_string(second) + ": damaged record");
 }
 
+TEST(PingViewer, MayBeginWithinARecord) {
+  const auto ping = from_hex(kPing);
+  const auto whole = LogWriter()
+                         .record(U"00:00:01.000", ping)
+                         .record(U"00:00:02.000", ping)
+                         .record(U"23:59:59.000", ping)
+                         .record(U"00:00:01.000", ping)
+                         .bytes();
+  const std::size_t record = 4 + 24 + 4 + ping.size(), second = whole.size() - 3 * record;
+  for (std::size_t from = second - record; from <= second; ++from) {
+    SCOPED_TRACE(from);
+    const auto log = cut(whole, from, whole.size());
+    EXPECT_EQ(format_of(log), Format::kPingViewer);
+    const auto all = all_beams({"tail.bin", log});
+    EXPECT_EQ(all.error, "");
+    EXPECT_EQ(all.skipped, from == second - record || from == second - ping.size() || from == second ? 0U : 1U);
+    ASSERT_EQ(all.items.size(), from <= second - ping.size() ? 4U : 3U);
+    const double first_s = from == second - record ? 1.0 : 2.0;
+    EXPECT_DOUBLE_EQ(all.items.front().time_s, first_s) << "the beginning has no time of its own";
+    const std::vector<Beam> last(all.items.end() - 3, all.items.end());
+    EXPECT_DOUBLE_EQ(last[0].time_s, 2.0);
+    EXPECT_DOUBLE_EQ(last[1].time_s, 86399.0);
+    EXPECT_DOUBLE_EQ(last[2].time_s, 86401.0);
+  }
+  auto misnamed = whole;
+  misnamed[5] ^= 1;
+  EXPECT_EQ(all_beams({"misnamed.bin", misnamed}).items.size(), 4U);
+}
+
 TEST(PingViewer, DamageIsToldByItsPlaceInTheFile) {
   const auto ping = from_hex(kPing);
   auto wrong = ping;
@@ -394,6 +423,23 @@ TEST(PingViewer, RealLogsEqualTheGoldenDecodesBitForBit) {
     }
     EXPECT_EQ(frames, all.items.size());
     EXPECT_GT(frames, 200U);
+  }
+}
+
+TEST(PingViewer, ARealLogFromItsMiddleOnKeepsItsTimes) {
+  const auto log = read_file((kLogs / "ping360_20210829-002023975.bin").string());
+  if (!log) GTEST_SKIP() << kLogs << " is missing: skipped";
+  const auto whole = all_beams(*log);
+  for (const std::size_t from : {std::size_t{600'001}, std::size_t{600'500}, std::size_t{1'234'567}}) {
+    SCOPED_TRACE(from);
+    const auto tail = all_beams({"tail.bin", cut(log->bytes, from, log->bytes.size())});
+    EXPECT_EQ(tail.error, "");
+    EXPECT_LE(tail.skipped, whole.skipped + 1);
+    ASSERT_GT(tail.items.size(), 1000U);
+    // The first one may be what is left of a record without a time.
+    for (std::size_t i = 1; i < tail.items.size(); ++i) {
+      ASSERT_TRUE(same(tail.items[i], whole.items[whole.items.size() - tail.items.size() + i])) << i;
+    }
   }
 }
 
