@@ -1,5 +1,6 @@
 #include "io/tlog.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <optional>
 
@@ -21,12 +22,29 @@ std::optional<std::uint64_t> time_at(std::span<const std::uint8_t> bytes) {
   return time_us;
 }
 
+std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
+  return a > b ? a - b : b - a;
+}
+
 /// Whether a record may follow here: the end of the file may too.
 bool may_follow(std::span<const std::uint8_t> bytes, std::uint64_t before_us) {
   if (bytes.size() <= kTime) return true;
   const std::optional<std::uint64_t> time_us = time_at(bytes);
-  return time_us && (*time_us > before_us ? *time_us - before_us : before_us - *time_us) <= kMinute_us;
+  return time_us && difference(*time_us, before_us) <= kMinute_us;
 }
+
+/// Whether a time is far from those before and after it, which agree: a wrong bit, not a clock that was set.
+bool is_alone(std::uint64_t before_us, std::uint64_t time_us, std::uint64_t after_us) {
+  constexpr std::uint64_t kFar_us = 1'000'000;
+  return difference(before_us, after_us) <= kFar_us && difference(before_us, time_us) > kFar_us &&
+         difference(time_us, after_us) > kFar_us;
+}
+
+/// A record whose time is judged by that of the next one.
+struct HeldRecord {
+  TlogRecord record;
+  std::size_t at;  ///< in the file
+};
 
 }  // namespace
 
@@ -41,6 +59,19 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
   const auto end_of_stray = [&](bool at_end) {
     if (is_stray) add_damage(damage, at_end && is_cut ? "cut off at the end" : "bytes between records", stray_from);
     is_stray = is_cut = false;
+  };
+  std::optional<std::uint64_t> before_us;  ///< time of the last record that was passed on
+  std::optional<HeldRecord> held;
+  const auto pass_on = [&](std::optional<std::uint64_t> after_us) {
+    if (!held) return;
+    if (before_us && after_us && is_alone(*before_us, held->record.time_us, *after_us)) {
+      add_damage(damage, "wrong time", held->at);
+    } else {
+      ++records;
+      before_us = held->record.time_us;
+      take(held->record);
+    }
+    held.reset();
   };
   while (at < bytes.size()) {
     const auto rest = bytes.subspan(at);
@@ -61,12 +92,15 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
     if (read.frame->check == Check::kWrong) {
       add_damage(damage, "wrong checksum", at);
     } else {
-      ++records;
-      take({*time_us, *read.frame});
+      pass_on(*time_us);
+      held = HeldRecord{{*time_us, *read.frame}, at};
     }
     at += length;
   }
   end_of_stray(true);
+  pass_on(std::nullopt);
+  // A wrong time is noticed only at the next record, behind damage in between.
+  std::ranges::sort(damage, {}, &DamageKind::first_byte);
   return records;
 }
 

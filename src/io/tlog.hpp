@@ -16,7 +16,8 @@ struct TlogRecord {
   MavlinkFrame frame;
 };
 
-/// Walks through the records of a telemetry log, frames with a wrong checksum left out.
+/// Walks through the records of a telemetry log, without frames with a wrong checksum and those with a time that is far
+/// from those of both neighbours, which agree.
 /// @return how many there were
 std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vector<DamageKind>& damage,
                                  const std::function<void(const TlogRecord&)>& take);

@@ -111,6 +111,75 @@ TEST(Tlog, StepsOverDamageAndSaysWhere) {
   EXPECT_THAT(strict.error().message, testing::StartsWith("dive.tlog: byte "));
 }
 
+/// Records of one frame at these times.
+std::vector<std::uint8_t> tlog_at(const std::vector<std::uint64_t>& times_us) {
+  std::vector<std::uint8_t> bytes;
+  for (const std::uint64_t time_us : times_us) {
+    for (int shift = 56; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(time_us >> shift));
+    const std::vector<std::uint8_t> record = from_hex(kTimedAttitude);
+    bytes.insert(bytes.end(), record.begin() + 8, record.end());
+  }
+  return bytes;
+}
+
+std::vector<std::uint64_t> times_in(const std::vector<std::uint8_t>& bytes, std::vector<DamageKind>& damage) {
+  std::vector<std::uint64_t> times_us;
+  for_each_tlog_record(bytes, damage, [&](const TlogRecord& record) { times_us.push_back(record.time_us); });
+  return times_us;
+}
+
+TEST(Tlog, AWrongBitInATimeCostsItsRecordOnly) {
+  constexpr std::uint64_t kStart_us = 1'683'220'541'493'000, kStep_us = 10'000;
+  std::vector<std::uint64_t> right_us;
+  for (std::uint64_t i = 0; i < 5; ++i) right_us.push_back(kStart_us + i * kStep_us);
+  const std::size_t third = 2 * from_hex(kTimedAttitude).size();
+  std::size_t skipped = 0;
+  for (int bit = 0; bit < 64; ++bit) {
+    SCOPED_TRACE(bit);
+    auto times_us = right_us;
+    times_us[2] ^= std::uint64_t{1} << bit;
+    std::vector<DamageKind> damage;
+    const auto read_us = times_in(tlog_at(times_us), damage);
+    if (damage.empty()) {
+      EXPECT_EQ(read_us, times_us);
+      EXPECT_LE(bit, 19) << "0.5 s";
+      continue;
+    }
+    ++skipped;
+    times_us.erase(times_us.begin() + 2);
+    EXPECT_EQ(read_us, times_us);
+    ASSERT_EQ(damage.size(), 1U);
+    EXPECT_EQ(damage[0].count, 1U);
+    EXPECT_EQ(damage[0].first_byte, third);
+  }
+  EXPECT_EQ(skipped, 44U);
+}
+
+TEST(Tlog, AClockThatIsSetIsNoDamage) {
+  constexpr std::uint64_t kStart_us = 1'683'220'541'493'000, kSecond_us = 1'000'000;
+  for (const std::vector<int>& times_s :
+       {std::vector{0, 1, 100, 101}, {100, 101, 0, 1}, {0, 100, 200}, {0, 1, 100}, {100, 0, 1}, {0, 1, 30, 60, 2, 3}}) {
+    std::vector<std::uint64_t> times_us;
+    for (const int time_s : times_s) times_us.push_back(kStart_us + static_cast<std::uint64_t>(time_s) * kSecond_us);
+    std::vector<DamageKind> damage;
+    EXPECT_EQ(times_in(tlog_at(times_us), damage), times_us);
+    EXPECT_TRUE(damage.empty());
+  }
+}
+
+TEST(Tlog, DamageBehindAWrongTimeIsNotTheFirst) {
+  constexpr std::uint64_t kStart_us = 1'683'220'541'493'000;
+  auto bytes = tlog_at({kStart_us, kStart_us + 100'000'000, kStart_us + 2, kStart_us + 3});
+  const std::size_t record = bytes.size() / 4;
+  bytes[2 * record + 30] ^= 1;
+  std::vector<DamageKind> damage;
+  EXPECT_EQ(times_in(bytes, damage).size(), 2U);
+  ASSERT_EQ(damage.size(), 2U);
+  EXPECT_EQ(damage[0].what, "wrong time");
+  EXPECT_EQ(damage[0].first_byte, record);
+  EXPECT_EQ(damage[1].what, "wrong checksum");
+}
+
 struct TlogRecording {
   const char* file;
   std::size_t frames;  ///< right ones, and those of messages that we do not check
