@@ -92,7 +92,7 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
     if (read.frame->check == Check::kWrong) {
       add_damage(damage, "wrong checksum", at);
     } else {
-      pass_on(*time_us);
+      pass_on(time_us);
       held = HeldRecord{{*time_us, *read.frame}, at};
     }
     at += length;
