@@ -6,10 +6,13 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"
@@ -17,6 +20,8 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
+#include "support/mutants.hpp"
+#include "support/rounds.hpp"
 
 namespace pingvox {
 namespace {
@@ -144,6 +149,27 @@ TEST_F(IctineuHits, SkipDamagedLinesAndNeedTheirTimes) {
   auto none = open("");
   ASSERT_TRUE(none) << none.error().message;
   EXPECT_TRUE(read_all(**none)->empty());
+}
+
+// Not among the readers of tests/io/mutation_test.cpp: its times are in another file.
+TEST_F(IctineuHits, KeepTheirPromisesWhenDamaged) {
+  write_times();
+  const std::string whole = "# turn beam count bin...\n1 0 1 5\n1 7 3 10 20 30\n2 0 1 500\n2 199 2 1 30\n";
+  const std::vector<std::uint8_t> seed(whole.begin(), whole.end());
+  std::size_t readable = 0;
+  constexpr std::size_t kMutants = test::rounds(10'000);
+  for (std::size_t i = 0; i < kMutants; ++i) {
+    SCOPED_TRACE(i);
+    std::mt19937_64 random(i);
+    const auto source = open_beams({(folder_ / "hits.txt").string(), mutant(seed, seed, random)});
+    if (!source) continue;
+    const auto beams = read_all(**source);
+    ASSERT_TRUE(beams);
+    ASSERT_LE(beams->size(), 400U);
+    for (const Beam& beam : *beams) ASSERT_TRUE(validate(beam));
+    readable += beams->empty() ? 0 : 1;
+  }
+  EXPECT_GT(readable, kMutants / 20);
 }
 
 TEST(IctineuRecording, HoldsWhatItsDescriptionSays) {
