@@ -153,7 +153,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!solution) {
     std::string advice;
     if (command.navs.empty() && all->beams > 0 && solution.error().code == Error::Code::kUnsupported) {
-      const std::string in_bag = command.logs.front() == "-" ? "" : hint_at_nav(command.logs.front());
+      const std::string in_bag = hint_at_nav(command.logs.front());
       advice = in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;
     }
     return fail(solution.error().code, fmt::format("{}: {}{}", inputs_text(command), solution.error().message, advice));

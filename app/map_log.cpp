@@ -271,6 +271,7 @@ std::string hint_at_path(const std::string& log, Format format) {
 }
 
 std::string hint_at_nav(const std::string& log) {
+  if (log == "-") return {};
   const Result<BagContents> bag =
       ByteStream::open(log).and_then([](ByteStream stream) { return read_bag(std::move(stream)); });
   return bag && tells_path(bag->nav.log) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";

@@ -86,7 +86,7 @@ std::string odd_times_text(const Trajectory& trajectory, const BuildReport& repo
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum"
 /// (a file beside it), or "navigation in the bag is used with --nav dive.db3"; empty: nowhere. Reads a bag once.
 std::string hint_at_path(const std::string& log, Format format);
-/// The same of a log that is a bag; empty also for others.
+/// The same of a log that is a bag; empty also for others and for standard input.
 std::string hint_at_nav(const std::string& log);
 
 }  // namespace pingvox::app

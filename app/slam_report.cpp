@@ -220,9 +220,9 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   text += report_line("velocity", velocity_text(report));
   const std::size_t poses = solution.trajectory.poses().size();
   std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));
+  if (report.in_pauses > 0) trajectory += fmt::format(", {} of them in pauses of the sonar", report.in_pauses);
   const std::size_t of_beams = poses - report.in_pauses;
   if (of_beams < report.beams) trajectory += fmt::format("; {} without one", counted(report.beams - of_beams, "beam"));
-  if (report.in_pauses > 0) trajectory += fmt::format(", {} of them in pauses of the sonar", report.in_pauses);
   if (const std::size_t gaps = solution.trajectory.gaps(); gaps > 0) trajectory += ", " + counted(gaps, "gap");
   text += report_line("trajectory", trajectory);
   text += report_line("frame", frame_text(report.heading));

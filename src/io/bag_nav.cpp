@@ -347,18 +347,20 @@ class BagSurvey {
     TopicState state;
   };
 
-  /// Adds what the transforms of a message say of where the vehicle is in a fixed frame.
+  /// Adds what the transforms of a message say of where the vehicle is in a fixed frame. REQUIRES that the first of
+  /// them was read.
   void add_transforms(const BagMessage& message, Topic& topic) {
     constexpr std::size_t kMaxTransforms = 256;
     const KnownTopic& known = *topic.known;
     const RosFields transform(message_, known.fields);
-    for (std::size_t i = 0; i < kMaxTransforms; ++i) {
-      if (!message_.read(known.layout, message.bytes, i) || transform.count(2) == 0) return;
+    for (std::size_t next = 1; transform.count(2) > 0 && next <= kMaxTransforms; ++next) {
       const std::string_view parent = transform.text(0), child = transform.text(1);
-      if (!is_fixed_frame(parent) || is_fixed_frame(child)) continue;
-      const std::string name = fmt::format("{}:{}:{}", summaries_[topic.summary].name, parent, child);
-      Samples samples(transforms_, name, known.time_of(message_, message.time_s), topic.state);
-      add_transform(transform, samples);
+      if (is_fixed_frame(parent) && !is_fixed_frame(child)) {
+        const std::string name = fmt::format("{}:{}:{}", summaries_[topic.summary].name, parent, child);
+        Samples samples(transforms_, name, known.time_of(message_, message.time_s), topic.state);
+        add_transform(transform, samples);
+      }
+      if (!message_.read(known.layout, message.bytes, next)) return;
     }
   }
 

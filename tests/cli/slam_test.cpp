@@ -273,6 +273,25 @@ TEST(Slam, CountsTheBeamsThatAreLeftOutOfTheMap) {
   EXPECT_THAT(outcome.err, HasSubstr(fmt::format(" of {} beams", all)));
 }
 
+// Kills "3 beams without one, 60 of them in pauses": the pauses are those of the poses.
+TEST(Slam, CountsPosesInPausesOfTheSonar) {
+  const Workplace here;
+  write_basin(here);
+  std::istringstream beams(here.read("beams.csv"));
+  std::string line, without;
+  for (std::size_t i = 0; std::getline(beams, line); ++i) {
+    if (i < 400 || i > 600) without += line + "\n";
+  }
+  here.write("pause.csv", without);
+  const Outcome outcome =
+      here.call({"slam", "pause.csv", "--nav", "nav.csv", "--nav-offset", "5", "--matching", "none", "-o", "out.tum"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(std::regex_search(
+      outcome.out,
+      std::regex(R"(\d+ poses over [0-9.]+ s, \d+ of them in pauses of the sonar; \d+ beams without one)")))
+      << outcome.out;
+}
+
 TEST(Slam, WarnsOfWhatIsImplausible) {
   const Workplace here;
   write_basin(here);
