@@ -245,7 +245,7 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   if (is_bag(format) && to == FormatKind::kBeams) {
     const Result<BagContents> bag = bag_contents(stream, command.damage, command.bag.nav);
     if (!bag) return tl::unexpected(bag.error());
-    if (!has_beams(*bag) && !command.bag.beams.fields && !bag->nav.log.sources().empty())
+    if (!has(*bag, BagTopicSummary::Use::kBeams) && !command.bag.beams.fields && !bag->nav.log.sources().empty())
       return convert_nav(std::move(stream), command);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);

@@ -247,6 +247,7 @@ Result<Summary> summarize(BeamSource& source, const std::string& name, Format fo
 
 Result<Summary> summarize(ScanSource& source, const std::string& name, Format format) {
   std::size_t scans = 0, points = 0;
+  std::optional<double> first_s, last_s;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::optional<Box> bounds;
   for (;;) {
@@ -255,6 +256,10 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
     if (!*scan) break;
     ++scans;
     origin = (*scan)->origin_m;
+    if (const std::optional<double> time_s = (*scan)->time_s) {
+      first_s = std::min(first_s.value_or(*time_s), *time_s);
+      last_s = std::max(last_s.value_or(*time_s), *time_s);
+    }
     points += (*scan)->points_m.size();
     for (const Eigen::Vector3d& point : (*scan)->points_m) {
       if (!bounds) bounds = Box{point, point};
@@ -273,8 +278,12 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
     summary.json.add("kind", "scans").add("format", name_of(format)).add("scans", scans).add("points", points);
     summary.text += report_line("scans", fmt::format("{} with {} points", scans, points));
   }
+  if (first_s) {
+    summary.json.add("duration_s", *last_s - *first_s);
+    summary.text += report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", *last_s - *first_s, *first_s));
+  }
   summary.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
-  summary.text += report_line("bounds", bounds_text(bounds));
+  summary.text += report_line("bounds", bounds_text(bounds) + (first_s ? ", around the sensor" : ""));
   if (source.skipped() > 0) summary.text += skipped_line(source);
   return summary;
 }
@@ -365,7 +374,16 @@ Result<Summary> summarize_nav(const FileBytes& file, Format format, Damage damag
 
 std::string_view name_of(BagTopicSummary::Use use) {
   using Use = BagTopicSummary::Use;
-  return use == Use::kBeams ? "beams" : use == Use::kNavigation ? "navigation" : "";
+  switch (use) {
+    case Use::kBeams:
+      return "beams";
+    case Use::kScans:
+      return "scans";
+    case Use::kNavigation:
+      return "navigation";
+    default:
+      return "";
+  }
 }
 
 void add_topics(Summary& summary, const std::vector<BagTopicSummary>& topics) {
@@ -425,9 +443,11 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
     topic.fields.clear();
   }
   const bool is_navigated = !bag->nav.log.sources().empty();
-  if (!has_beams(*bag) && !command.bag.beams.fields) return summarize_contents(*bag, name, format);
+  using Use = BagTopicSummary::Use;
+  const bool has_log = has(*bag, Use::kBeams) || has(*bag, Use::kScans);
+  if (!has_log && !command.bag.beams.fields) return summarize_contents(*bag, name, format);
   Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
-  // Messages of a sonar's type may hold none, as LaserScans of a lidar do.
+  // Messages of a sonar's type may hold nothing.
   const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported;
   if (has_none && is_navigated && command.bag.beams.name.empty()) return summarize_contents(*bag, name, format);
   if (!summary) return summary;

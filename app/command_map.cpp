@@ -244,12 +244,10 @@ class LogMapper {
     }
     const Result<Format> format = identify_format(*stream);
     if (!format) return tl::unexpected(format.error());
-    const FormatKind kind = kind_of(*format);
-    add_kind(kind_text(kind));
-    if (kind == FormatKind::kBeams && build_.model.shape == BeamShape::kRay) add_kind(std::string(kRayBeams));
-    if (const auto used = check_options_used(); !used) return used;
     Result<Log> log = open_log(std::move(*stream), command_.damage, command_.cloud_origin_m, command_.bag.beams);
     if (!log) return tl::unexpected(log.error());
+    add_kinds(*log, *format);
+    if (const auto used = check_options_used(); !used) return used;
     if (const auto done = subtract_background(*log, file, command_.background_m, command_.damage, command_.bag.beams);
         !done) {
       return done;
@@ -267,8 +265,8 @@ class LogMapper {
       return {};
     }
     say_what_is_odd(*mapped, name);
-    if (std::holds_alternative<std::unique_ptr<BeamSource>>(*log) && !command_.path.poses &&
-        command_.path.navs.empty()) {
+    const bool is_on_vehicle = std::holds_alternative<std::unique_ptr<BeamSource>>(*log) || is_bag(*format);
+    if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {
       if (const std::string hint = hint_at_path(name, *format); !hint.empty()) {
         say(fmt::format("{}: mapped as if the vehicle did not move; {}", name, hint));
       }
@@ -285,6 +283,15 @@ class LogMapper {
  private:
   void add_kind(std::string kind) {
     if (std::ranges::find(kinds_, kind) == kinds_.end()) kinds_.push_back(std::move(kind));
+  }
+
+  /// Kinds of a log, which options may be limited to.
+  void add_kinds(const Log& log, Format format) {
+    const bool is_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(log);
+    const bool is_bag_of_scans = is_bag(format) && !is_beams;
+    add_kind(kind_text(is_bag_of_scans ? FormatKind::kScans : kind_of(format)));
+    if (is_bag_of_scans) add_kind(std::string(kBagScans));
+    if (is_beams && build_.model.shape == BeamShape::kRay) add_kind(std::string(kRayBeams));
   }
 
   /// Options without effect are known with the last log, before it is mapped.

@@ -34,7 +34,7 @@ Result<BuildReport> build(const Log& log, const Trajectory& trajectory, const Bu
     if (const auto ranges = check_ranges(options); !ranges) return tl::unexpected(ranges.error());
     return build_map(**beams, trajectory, options, map, progress);
   }
-  return build_map(*std::get<std::unique_ptr<ScanSource>>(log), options, map, progress);
+  return build_map(*std::get<std::unique_ptr<ScanSource>>(log), trajectory, options, map, progress);
 }
 
 bool has(const NavLog& nav, NavQuantity quantity) {
@@ -52,26 +52,27 @@ bool tells_path(const NavLog& nav) {
 
 /// "3036 of 4000 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover
 /// the log, with times in seconds of the same clock)"
-std::string text_of_skipped(const MappedLog& mapped, const VehiclePath& path, const Lattice& lattice) {
+/// @param unit  of what the log holds: "beam" or "point"
+std::string text_of_skipped(const MappedLog& mapped, std::string_view unit, const VehiclePath& path,
+                            const Lattice& lattice) {
   std::string text;
   const auto& [no_pose, blocked, outside] =
       std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.outside);
   const std::size_t all = mapped.report.beams + no_pose.count + blocked.count;
-  const auto add = [&text, all](const LeftOut& left_out, std::string_view unit, const std::string& reason,
-                                std::string_view advice) {
+  const auto add = [&text, all, unit](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
     if (left_out.count == 0) return;
     text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit, reason);
     if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
     text += fmt::format(" ({})", advice);
   };
   const auto& poses = path.trajectory.poses();
-  add(no_pose, "beam",
+  add(no_pose,
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
                   path.trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
       path.advice);
-  add(blocked, "beam", "towards an obstacle of the map that is nearer than --min-range",
+  add(blocked, "towards an obstacle of the map that is nearer than --min-range",
       "they would record its second echo, or what lies around it");
-  add(outside, outside.first_s ? "beam" : "point",
+  add(outside,
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
       "lengths are in metres; a larger --resolution reaches farther");
@@ -231,7 +232,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   mapped.assumes_beam = beams != nullptr && head.assumes_beam(device);
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
   mapped.first_damage = std::visit([](const auto& source) { return source->first_damage(); }, log);
-  mapped.skipped_text = text_of_skipped(mapped, path, map.lattice());
+  mapped.skipped_text = text_of_skipped(mapped, beams != nullptr ? "beam" : "point", path, map.lattice());
   const bool are_all_outside =
       report->outside.count == report->beams && report->cells_freed == 0 && report->cells_hit == 0;
   mapped.is_nothing = report->beams == 0 || are_all_outside;

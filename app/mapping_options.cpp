@@ -406,6 +406,9 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};
   for (Option& option : group.options) {
     option.only_for = {std::string(kBeamLogs)};
+    if (option.name == "--poses" || option.name == "--nav" || option.name == "--nav-offset" ||
+        option.name == "--use-calibration" || option.name == "--mount")
+      option.only_for.emplace_back(kBagScans);
     if (option.name == "--ray")
       option.only_for = {std::string(kRayBeams), std::string(kPointLogs), std::string(kClouds)};
     if (option.name == "--beam-width" || option.name == "--free-share" || option.name == "--device")

@@ -21,7 +21,8 @@ namespace pingvox::app {
 /// The kinds of input that options may be limited to (Option::only_for).
 inline constexpr std::string_view kBeamLogs = "logs of beams", kPointLogs = "point scans", kClouds = "clouds of points",
                                   kNavLogs = "navigation logs", kMaps = "maps", kMeshes = "meshes",
-                                  kEchoTables = "tables of echoes (--echoes)", kRayBeams = "beams as rays (--beam ray)";
+                                  kBagScans = "scans in ROS bags", kEchoTables = "tables of echoes (--echoes)",
+                                  kRayBeams = "beams as rays (--beam ray)";
 
 /// Echo options of the command line. The default filter follows from the detector.
 struct EchoArgs {

@@ -9,8 +9,10 @@
 #include <ctime>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "open_log.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/clock.hpp"
 
@@ -20,9 +22,9 @@ namespace {
 /// Times since the start of a device or of a log stay below it; 2001 since 1970.
 constexpr double kFirstDate_s = 1e9;
 
-Result<std::unique_ptr<BeamSource>> open(const SonarLog& sonar, Damage damage) {
+Result<Log> open(const SonarLog& sonar, Damage damage) {
   return ByteStream::open(sonar.name).and_then([&](ByteStream stream) {
-    return open_beams(std::move(stream), damage, sonar.topic);
+    return open_log(std::move(stream), damage, std::nullopt, sonar.topic);
   });
 }
 
@@ -48,12 +50,28 @@ struct SonarTimes {
 
 enum class Want { kSpan, kTurns };
 
+/// Of scans, whose turning is not looked at; nullopt: they have no times.
+Result<std::optional<SonarTimes>> times_of(ScanSource& scans, const std::optional<TimeSpan>& enough) {
+  std::optional<SonarTimes> times;
+  for (;;) {
+    const Result<std::optional<PointScan>> scan = scans.next();
+    if (!scan) return tl::unexpected(scan.error());
+    if (!*scan || !(*scan)->time_s) return times;
+    const double time_s = *(*scan)->time_s;
+    if (!times) times = SonarTimes{{time_s, time_s}, BeamClock::kOwn, {}};
+    times->span = {std::min(times->span.from_s, time_s), std::max(times->span.to_s, time_s)};
+    if (enough && overlap(times->span, *enough)) return times;
+  }
+}
+
 /// nullopt: it has no beams.
 /// @param enough  the rest need not be read once the log overlaps it
 Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Damage damage, Want want,
                                            const std::optional<TimeSpan>& enough = std::nullopt) {
-  const auto source = open(sonar, damage);
-  if (!source) return tl::unexpected(source.error());
+  auto log = open(sonar, damage);
+  if (!log) return tl::unexpected(log.error());
+  if (auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log)) return times_of(**scans, enough);
+  auto* source = std::get_if<std::unique_ptr<BeamSource>>(&*log);
   if (const auto has = check_has_times(**source, sonar.name); !has) return tl::unexpected(has.error());
   std::optional<SonarTimes> times;
   PictureTurns turns(sonar.body_from_sonar);

@@ -48,10 +48,9 @@ Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<co
   return read_nav_log(ByteStream(stream.held()), damage, fields);
 }
 
-bool has_beams(const BagContents& bag) {
-  return std::ranges::any_of(bag.topics, [](const BagTopicSummary& topic) {
-    return topic.use == BagTopicSummary::Use::kBeams && topic.messages > 0;
-  });
+bool has(const BagContents& bag, BagTopicSummary::Use use) {
+  return std::ranges::any_of(bag.topics,
+                             [use](const BagTopicSummary& topic) { return topic.use == use && topic.messages > 0; });
 }
 
 std::string kind_text(FormatKind kind) {
@@ -84,6 +83,7 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
     return usage_error(
         fmt::format("{}: --topic: has no effect on {}, only on ROS bags", stream.name(), description_of(*format)));
   }
+  if (is_bag(*format)) return open_bag_log(std::move(stream), damage, topic);
   if (kind == FormatKind::kBeams) {
     return open_beams(std::move(stream), damage, topic).map([](auto source) { return Log(std::move(source)); });
   }

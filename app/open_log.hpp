@@ -26,7 +26,7 @@ Result<Format> identify_format(ByteStream& stream);
 std::string kind_text(FormatKind kind);
 
 /// A log of either kind.
-using Log = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource>>;
+using Log = BagLog;
 
 /// Opens a log or cloud by its content. kUnsupported when it is neither; the message describes the file.
 /// @param cloud_origin_m  as for open_scans
@@ -37,7 +37,8 @@ Result<Log> open_log(ByteStream stream, Damage damage,
 /// What a bag holds; the stream can still be read afterwards. A pipe is loaded into memory for that.
 /// @param fields  of messages; there must be some of each
 Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<const NavFields> fields);
-bool has_beams(const BagContents& bag);
+/// Whether it has messages that are read as `use`.
+bool has(const BagContents& bag, BagTopicSummary::Use use);
 
 /// What each direction of the log at a path always hears nearer than `range_m`.
 /// @return kBadOption for standard input, which cannot be read once more

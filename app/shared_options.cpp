@@ -44,9 +44,13 @@ Option strict_option(Damage& damage) {
 }
 
 Option topic_option(BagArgs& bag) {
-  Option option{
-      "--topic", 0, "NAME", "topic of a ROS bag to read beams from", "the only one with beams", store(bag.beams.name)};
-  option.only_for = {std::string(kBeamLogs)};
+  Option option{"--topic",
+                0,
+                "NAME",
+                "topic of a ROS bag to read beams (or scans) from",
+                "the only one with beams",
+                store(bag.beams.name)};
+  option.only_for = {std::string(kBeamLogs), std::string(kBagScans)};
   return option;
 }
 
@@ -60,7 +64,7 @@ Option fields_option(BagArgs& bag) {
       "(length of one in m), intensities; and unit=rad|deg|grad, turn=ccw|cw, ahead=N of the angle",
       "by the type of the message; unit=rad,turn=ccw,ahead=0",
       [&bag](const std::string& text) { return take_fields(text, bag); }};
-  option.only_for = {std::string(kBeamLogs)};
+  option.only_for = {std::string(kBeamLogs), std::string(kBagScans)};
   return option;
 }
 

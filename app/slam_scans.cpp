@@ -49,7 +49,7 @@ Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command,
   auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
   if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));
   MovedScans moved(std::move(*scans), trajectory);
-  const auto report = build_map(moved, BuildOptions{}, map);
+  const auto report = build_map(moved, Trajectory::still(Pose::Identity()), BuildOptions{}, map);
   return report ? Result<void>() : tl::unexpected(report.error());
 }
 
@@ -70,6 +70,12 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
     const Result<std::optional<PointScan>> scan = scans->next();
     if (!scan) return tl::unexpected(scan.error());
     if (!*scan) break;
+    if ((*scan)->time_s) {
+      return fail(
+          Error::Code::kUnsupported,
+          fmt::format("{}: its scans have no poses to begin with: 'pingvox map' maps them along --nav or --poses",
+                      command.logs.front()));
+    }
     slam.add(**scan);
   }
   seconds.read = read.seconds();

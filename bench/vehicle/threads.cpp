@@ -43,7 +43,7 @@ Result<std::vector<Row>> threads(const BenchOptions&) {
                   BuildOptions options;
                   options.threads = count;
                   OneScan source(scan);
-                  (void)build_map(source, options, *map);
+                  (void)build_map(source, Trajectory::still(Pose::Identity()), options, *map);
                 }};
   };
   std::unique_ptr<OccupancyMap> by_one, by_two;

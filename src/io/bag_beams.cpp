@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
 #include <tl/expected.hpp>
 
+#include "io/bag_scans.hpp"
 #include "io/bag_topics.hpp"
 #include "io/device_log.hpp"
 #include "io/readers.hpp"
@@ -32,13 +32,6 @@ using Beams = tl::expected<std::vector<Beam>, std::string_view>;
 constexpr std::string_view kImpossible = "impossible values", kNoSamples = "ping without samples",
                            kNoFit = "message that does not fit its definition",
                            kOtherSamples = "samples that are not of 8 bits";
-
-/// A whole number in its range; nullopt: it is none.
-template <class T>
-std::optional<T> whole(double number) {
-  const bool is_in = number >= std::numeric_limits<T>::min() && number <= std::numeric_limits<T>::max();
-  return is_in ? std::optional(static_cast<T>(number)) : std::nullopt;
-}
 
 Beams beam_of(double bearing_rad, double bin_length_m, std::vector<std::uint8_t> intensities) {
   constexpr double kMaxAngle_rad = 1e3;  // beyond any number of turns that a driver counts
@@ -187,14 +180,30 @@ class BagBeams final : public DeviceLog {
   BagBeams(std::unique_ptr<Bag> bag, Damage damage, BeamTopic wanted)
       : bag_(std::move(bag)), damage_(damage), wanted_(std::move(wanted.name)), fields_(std::move(wanted.fields)) {}
 
-  /// Reads the first beam. An error also when there is none.
-  Result<void> start() {
+  enum class Start { kBeam, kScan, kNothing };
+
+  /// Reads to the first beam, or the first scan of the wanted topic.
+  Result<Start> start() {
     Result<std::optional<Beam>> first = read();
     if (!first) return tl::unexpected(first.error());
-    if (!*first) return fail(Error::Code::kUnsupported, why_none());
+    if (scan_) return Start::kScan;
+    if (!*first) return Start::kNothing;
     set_first(std::move(first));
-    return {};
+    return Start::kBeam;
   }
+
+  /// Goes on with the scans of the topic. REQUIRES that one was met at the start.
+  Result<std::unique_ptr<ScanSource>> into_scans() && { return bag_scans(std::move(bag_), damage_, wanted_, scan_); }
+
+  /// Names and types of the topics that may have scans where no topic has beams; empty: there are none.
+  std::string scan_topics() const {
+    const bool has_fields_or_topic = fields_ || !wanted_.empty();
+    if (has_fields_or_topic || !topics_that(is_second_sonar).empty()) return {};
+    return topics_that([](const BagTopic& topic) { return scan_topic(topic).has_value(); });
+  }
+
+  /// REQUIRES that there are no beams.
+  tl::unexpected<Error> no_beams() const { return fail(Error::Code::kUnsupported, why_none()); }
 
   std::vector<DamageKind> damage() const override {
     std::vector<DamageKind> kinds = bag_->damage();
@@ -202,10 +211,11 @@ class BagBeams final : public DeviceLog {
     return kinds;
   }
   std::optional<double> share_read() const override { return bag_->share_read(); }
+  const std::string& name() const { return bag_->name(); }
 
  private:
   Result<std::optional<Beam>> read() override {
-    while (beams_.empty()) {
+    while (beams_.empty() && !scan_) {
       const Result<std::optional<BagMessage>> message = bag_->next();
       if (!message) return tl::unexpected(message.error());
       if (damage_ == Damage::kFail && !bag_->damage().empty()) return damage_error(bag_->damage().front());
@@ -213,6 +223,7 @@ class BagBeams final : public DeviceLog {
       if (const Result<void> added = add(**message); !added) return tl::unexpected(added.error());
       if (damage_ == Damage::kFail && !unusable_.empty()) return damage_error(unusable_.front());
     }
+    if (scan_) return std::nullopt;
     Beam beam = std::move(beams_.front());
     beams_.pop_front();
     return beam;
@@ -223,6 +234,10 @@ class BagBeams final : public DeviceLog {
     const std::optional<KnownTopic>& topic = topics_[message.topic];
     const std::string& name = bag_->topics()[message.topic].name;
     if (!topic && fields_ && name == wanted_) return missing_field(bag_->topics()[message.topic]);
+    if (is_wanted_scan(message)) {
+      scan_ = message;
+      return {};
+    }
     if (!topic) return {};
     const SonarType& type = kSonarTypes[topic->type];
     if (!fields_ && is_unwanted(type, name)) return {};
@@ -250,6 +265,13 @@ class BagBeams final : public DeviceLog {
     if (!fields_) device_ = find_device(type.device);
     beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
     return {};
+  }
+
+  bool is_wanted_scan(const BagMessage& message) const {
+    const BagTopic& topic = bag_->topics()[message.topic];
+    if (fields_ || !chosen_.empty() || topic.name != wanted_) return false;
+    const std::optional<KnownTopic> scans = scan_topic(topic);
+    return scans && is_scan(*scans, message);
   }
 
   bool is_unwanted(const SonarType& type, const std::string& name) const {
@@ -309,6 +331,7 @@ class BagBeams final : public DeviceLog {
   SonarSettings settings_;
   RosMessage message_;
   std::deque<Beam> beams_;
+  std::optional<BagMessage> scan_;  ///< the first of the wanted topic
   std::vector<DamageKind> unusable_;
 };
 
@@ -347,16 +370,36 @@ Result<std::unique_ptr<Bag>> open_bag(ByteStream stream) {
   return open_sqlite_bag(std::move(stream));
 }
 
-Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
+Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& topic) {
   if (topic.fields && topic.name.empty()) {
     return fail(Error::Code::kBadOption,
                 fmt::format("{}: --fields: needs the --topic whose messages have them", stream.name()));
   }
+  const std::optional<std::string> path = stream.path();
+  const std::optional<FileBytes> bytes = stream.is_all_held() ? std::optional(stream.held()) : std::nullopt;
   Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
   if (!bag) return tl::unexpected(bag.error());
   auto beams = std::make_unique<BagBeams>(*std::move(bag), damage, topic);
-  if (const Result<void> started = beams->start(); !started) return tl::unexpected(started.error());
-  return beams;
+  const Result<BagBeams::Start> start = beams->start();
+  if (!start) return tl::unexpected(start.error());
+  const auto as_log = [](std::unique_ptr<ScanSource> scans) { return BagLog(std::move(scans)); };
+  if (*start == BagBeams::Start::kBeam) return BagLog(std::move(beams));
+  if (*start == BagBeams::Start::kScan) return std::move(*beams).into_scans().map(as_log);
+  const std::string scan_topics = beams->scan_topics();
+  if (scan_topics.empty()) return beams->no_beams();
+  if (!path && !bytes) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}: choose the topic of its scans with --topic, as it can be read "
+                            "only once: {}",
+                            beams->name(), scan_topics));
+  }
+  // Beams may have come behind the first scans.
+  Result<std::unique_ptr<ScanSource>> scans =
+      (path ? ByteStream::open(*path) : Result<ByteStream>(*bytes))
+          .and_then(open_bag)
+          .and_then([&](std::unique_ptr<Bag> again) { return bag_scans(std::move(again), damage, topic.name); });
+  if (!scans && scans.error().code == Error::Code::kUnsupported) return beams->no_beams();
+  return std::move(scans).map(as_log);
 }
 
 }  // namespace pingvox

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/without_exceptions.hpp"
+#include "io/bag_scans.hpp"
 #include "io/bag_topics.hpp"
 #include "io/dvl_a50.hpp"
 #include "io/nav_fields.hpp"
@@ -302,7 +303,12 @@ class BagSurvey {
   Result<void> add(const BagMessage& message) {
     if (const auto added = add_topics(); !added) return added;
     Topic& topic = topics_[message.topic];
-    ++summaries_[topic.summary].messages;
+    BagTopicSummary& summary = summaries_[topic.summary];
+    using Use = BagTopicSummary::Use;
+    const bool is_first = ++summary.messages == 1;
+    if (is_first && summary.use == Use::kBeams && topic.scans && is_scan(*topic.scans, message)) {
+      summary.use = Use::kScans;
+    }
     if (!topic.known) return {};
     if (!message_.read(topic.known->layout, message.bytes)) {
       add_damage(unusable_, "message that does not fit its definition", message.file_byte);
@@ -342,7 +348,7 @@ class BagSurvey {
  private:
   struct Topic {
     std::size_t summary;
-    std::optional<KnownTopic> known;
+    std::optional<KnownTopic> known, scans;
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
     TopicState state;
   };
@@ -401,7 +407,7 @@ class BagSurvey {
       if (!readers) return tl::unexpected(readers.error());
       std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, kNavTypes) : topic_with(topic, {});
       if (is_new) summaries_.push_back(summary_of(topic, known.has_value()));
-      topics_.push_back({place->second, std::move(known), *std::move(readers), {}});
+      topics_.push_back({place->second, std::move(known), scan_topic(topic), *std::move(readers), {}});
     }
     return {};
   }
@@ -427,6 +433,7 @@ class BagSurvey {
     using Use = BagTopicSummary::Use;
     BagTopicSummary summary{topic.name, topic.type, 0, is_sonar(topic) ? Use::kBeams : Use::kNone, {}};
     if (summary.use == Use::kNone && has_navigation) summary.use = Use::kNavigation;
+    if (summary.use == Use::kNone && scan_topic(topic)) summary.use = Use::kScans;
     if (summary.use == Use::kNone && topic.is_readable) {
       if (const auto known = topic_with(topic, {})) summary.fields = fields_text(known->layout);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -76,6 +77,13 @@ std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types)
     }
   }
   return std::nullopt;
+}
+
+/// A whole number in its range; nullopt: it is none.
+template <class T>
+std::optional<T> whole(double number) {
+  const bool is_in = number >= std::numeric_limits<T>::min() && number <= std::numeric_limits<T>::max();
+  return is_in ? std::optional(static_cast<T>(number)) : std::nullopt;
 }
 
 /// Whether messages of the topic are beams.

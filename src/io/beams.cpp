@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "base/without_exceptions.hpp"
 #include "io/readers.hpp"
@@ -20,6 +21,14 @@ tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wan
   return fail(Error::Code::kUnsupported,
               format ? fmt::format("{}: not {} (it is {})", name, wanted, description_of(*format))
                      : fmt::format("{}: not {} that we know", name, wanted));
+}
+
+Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
+  const std::string name = stream.name();
+  Result<BagLog> log = open_any_bag(std::move(stream), damage, topic);
+  if (!log) return tl::unexpected(log.error());
+  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) return std::move(*beams);
+  return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", name));
 }
 
 Result<std::unique_ptr<BeamSource>> open_any_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {
@@ -113,6 +122,18 @@ Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage,
                                                const std::optional<Eigen::Vector3d>& cloud_origin_m) {
   const std::string name = file.name;
   return open_guarded<GuardedScans>(name, [&] { return open_any_scans(std::move(file), damage, cloud_origin_m); });
+}
+
+Result<BagLog> open_bag_log(ByteStream stream, Damage damage, const BeamTopic& topic) {
+  const std::string name = stream.name();
+  return detail::without_exceptions(name, [&]() -> Result<BagLog> {
+    Result<BagLog> log = open_any_bag(std::move(stream), damage, topic);
+    if (!log) return log;
+    if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) {
+      return BagLog(std::make_unique<GuardedBeams>(name, std::move(*beams)));
+    }
+    return BagLog(std::make_unique<GuardedScans>(name, std::get<std::unique_ptr<ScanSource>>(std::move(*log))));
+  });
 }
 
 Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::string& file, const std::string& place,

@@ -47,8 +47,8 @@ Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage)
 bool looks_like_dumplog(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_dumplog(ByteStream stream, Damage damage);
 
-/// The beams of a ROS bag (bag.hpp). Unlike those of other logs, an error when there is none.
-Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const BeamTopic& topic);
+/// A ROS bag, as open_bag_log(). Unlike with other logs, an error when there is nothing to map.
+Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& topic);
 
 bool looks_like_scan_graph(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<ScanSource>> open_scan_graph(FileBytes file, Damage damage);

@@ -443,6 +443,12 @@ std::string_view RosMessage::text(std::size_t field) const {
   return {reinterpret_cast<const char*>(bytes_.data()) + values.first, values.count};
 }
 
+std::span<const std::uint8_t> RosMessage::byte_array(std::size_t field) const {
+  const RosValues& values = values_[field];
+  if (values.type != RosNumber::kU8 || values.stride != 1) return {};
+  return bytes_.subspan(values.first, values.count);
+}
+
 std::vector<std::uint8_t> RosMessage::bytes(std::size_t field) const {
   const RosValues& values = values_[field];
   std::vector<std::uint8_t> bytes(values.count);

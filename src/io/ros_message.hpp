@@ -94,6 +94,8 @@ class RosMessage {
   double number(std::size_t field, std::size_t i = 0) const;
   /// Nothing for a field of numbers.
   std::string_view text(std::size_t field) const;
+  /// An array of bytes where it is in the message; nothing for a field of other values.
+  std::span<const std::uint8_t> byte_array(std::size_t field) const;
   /// All values, rounded to 0..255.
   std::vector<std::uint8_t> bytes(std::size_t field) const;
 

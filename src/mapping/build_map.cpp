@@ -24,6 +24,12 @@ BuildReport report_of(const BeamMapper& mapper, const BeamSource& source, double
   return report;
 }
 
+/// From the frame of the sensor to that of the map.
+void move_scan(const Pose& map_from_sensor, PointScan& scan) {
+  scan.origin_m = map_from_sensor * scan.origin_m;
+  for (Eigen::Vector3d& point_m : scan.points_m) point_m = map_from_sensor * point_m;
+}
+
 }  // namespace
 
 Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_body, const BuildOptions& options,
@@ -54,8 +60,8 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
   return report;
 }
 
-Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, OccupancyMap& map,
-                              const Progress& progress) {
+Result<BuildReport> build_map(ScanSource& source, const Trajectory& map_from_body, const BuildOptions& options,
+                              OccupancyMap& map, const Progress& progress) {
   if (const auto valid = options.validate_for_points(); !valid) return tl::unexpected(valid.error());
   const PointScanOptions how{
       .ray = options.model.ray, .hit = options.model.hit, .max_range_m = options.echo.max_range_m};
@@ -85,15 +91,28 @@ Result<BuildReport> build_map(ScanSource& source, const BuildOptions& options, O
     return {};
   };
   for (;;) {
-    const Result<std::optional<PointScan>> points = source.next();
+    Result<std::optional<PointScan>> points = source.next();
     watch.lap(report.seconds.read);
     if (!points) return tl::unexpected(points.error());
-    report.skipped = source.skipped() + report.outside.count;
+    const auto count_skipped = [&] { report.skipped = source.skipped() + report.outside.count + report.no_pose.count; };
+    count_skipped();
     if (!*points) return report;
-    if (const auto mapped = detail::without_exceptions([&] { return map_scan(**points); }); !mapped) {
+    PointScan& next = **points;
+    if (const std::optional<double> time_s = next.time_s) {
+      report.first_s = std::min(report.first_s.value_or(*time_s), *time_s);
+      report.last_s = std::max(report.last_s.value_or(*time_s), *time_s);
+      const std::optional<Pose> pose = map_from_body.at(*time_s);
+      if (!pose) {
+        report.no_pose.first_s = report.no_pose.first_s.value_or(*time_s);
+        report.no_pose.count += next.points_m.size();
+        continue;
+      }
+      move_scan(*pose * options.body_from_sensor, next);
+    }
+    if (const auto mapped = detail::without_exceptions([&] { return map_scan(next); }); !mapped) {
       return tl::unexpected(mapped.error());
     }
-    report.skipped = source.skipped() + report.outside.count;
+    count_skipped();
     if (progress) progress(report);
   }
 }

@@ -88,6 +88,73 @@ TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
 }
 
+/// A bag of one LaserScan in four directions at 1000 s, without beams, and its poses.
+std::string bag_of_a_scan() {
+  bags::Mcap mcap;
+  mcap.topic(1, "/scan", "sensor_msgs/msg/LaserScan", "");
+  mcap.topic(2, "/pose", "geometry_msgs/msg/PoseStamped", "");
+  const auto put_header = [](bags::Bytes& to, std::uint32_t seconds) {
+    to = {0, 1, 0, 0};
+    bags::put(to, seconds);
+    for (const std::uint32_t number : {0U, 1U, 0U}) bags::put(to, number);  // nanoseconds, an empty frame, padding
+  };
+  bags::Bytes scan;
+  put_header(scan, 1000);
+  for (const float number : {0.0F, 1.5F, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
+  bags::put(scan, std::uint32_t{4});
+  for (const float range_m : {2.02F, 3.0F, 4.0F, 50.0F}) bags::put(scan, range_m);
+  bags::put(scan, std::uint32_t{0});
+  for (const std::uint32_t seconds : {999U, 1001U}) {
+    bags::Bytes pose;
+    put_header(pose, seconds);
+    for (const double number : {10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}) bags::put(pose, number);
+    mcap.message(2, seconds * 1'000'000'000ULL, pose);
+  }
+  mcap.message(1, 1'000'000'000'000U, scan);
+  mcap.end_chunk();
+  const bags::Bytes file = mcap.closed();
+  return {file.begin(), file.end()};
+}
+
+// Kills a bag of a multibeam or lidar that nobody can map, and scans that are mapped where the vehicle was not.
+TEST(Bags, ScansAreMappedAlongTheNavigation) {
+  const Workplace here;
+  here.write("scan.mcap", bag_of_a_scan());
+  const Outcome info = here.call({"info", "scan.mcap", "--json"});
+  for (const char* part : {R"("kind": "scans", "format": "mcap", "scans": 1, "points": 3)", R"("duration_s": 0)",
+                           R"("messages": 1, "read_as": "scans")", R"("nav": {"clock": "unix", "records": 2)"}) {
+    EXPECT_THAT(info.out, HasSubstr(part));
+  }
+  const Outcome map = here.call({"map", "scan.mcap", "--nav", "scan.mcap", "-o", "scan.xyz", "--json"});
+  ASSERT_EQ(map.status, 0) << map.err;
+  EXPECT_THAT(map.out, HasSubstr(R"("beams": 3)"));
+  EXPECT_THAT(map.out, HasSubstr(R"("from": "both have dates")"));
+  EXPECT_THAT(here.read("scan.xyz"), HasSubstr("12.025 0.025 0.025"));
+  ASSERT_EQ(here.call({"map", "scan.mcap", "--nav", "scan.mcap", "--mount", "0,0,0,0,0,180", "-o", "scan.xyz"}).status,
+            0);
+  EXPECT_THAT(here.read("scan.xyz"), HasSubstr("7.975 0.025 0.025"));
+  EXPECT_THAT(here.call({"map", "scan.mcap", "-o", "scan.bt"}).err, HasSubstr("--nav scan.mcap"));
+  const Outcome late = here.call({"map", "scan.mcap", "--nav", "scan.mcap", "--nav-offset", "60", "-o", "scan.bt"});
+  expect_error(late, 1, {"nothing could be mapped", "3 of 3 points outside the time of the poses"});
+}
+
+TEST(Bags, ScansOfAPipeNeedTheirTopic) {
+  const Workplace here;
+  const std::string bag = bag_of_a_scan();
+  expect_error(here.call({"map", "-", "-o", "scan.bt"}, {.in = bag}), 2,
+               {"choose the topic of its scans with --topic"});
+  EXPECT_EQ(here.call({"map", "-", "--topic", "/scan", "-o", "scan.bt"}, {.in = bag}).status, 0);
+}
+
+TEST(Bags, ScansHaveNoBeams) {
+  const Workplace here;
+  here.write("scan.mcap", bag_of_a_scan());
+  EXPECT_EQ(here.call({"render", "scan.mcap", "--view", "above", "-o", "scan.png"}).status, 0);
+  expect_error(here.call({"render", "scan.mcap", "-o", "scan.png"}), 1, {"holds scans of points, not beams"});
+  expect_error(here.call({"slam", "scan.mcap", "-o", "scan.tum"}), 1, {"its scans have no poses to begin with"});
+  expect_error(here.call({"map", "scan.mcap", "--threshold", "5", "-o", "scan.bt"}), 2, {"--threshold: has no effect"});
+}
+
 // Kills beams that are mapped twice, and a bag of points alone that has "no beams".
 TEST(Bags, PointsOfAMicronAreBeamsWhereTheyAreChosen) {
   const Workplace here;

@@ -291,7 +291,7 @@ class ThreePoints : public ScanSource {
 TEST(BuildMap, PointScansFreeAndHitAndCountWhatLiesOutside) {
   ThreePoints source;
   OccupancyMap map({.resolution_m = 0.1});
-  const auto report = build_map(source, clean_options(), map);
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), clean_options(), map);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->sweeps, 1U);
   EXPECT_EQ(report->skipped, 1U);
@@ -305,10 +305,55 @@ TEST(BuildMap, PointScansTakeAnyMaximumRange) {
   BuildOptions options = clean_options();
   options.echo.max_range_m = 0.5;
   OccupancyMap map({.resolution_m = 0.1});
-  const auto report = build_map(source, options, map);
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->cells_hit, 0U);
   EXPECT_GT(report->cells_freed, 0U);
+}
+
+/// One scan of the points ahead and to port, seen from the sensor at a time.
+class TimedScan : public ScanSource {
+ public:
+  explicit TimedScan(double time_s) : time_s_(time_s) {}
+
+  Result<std::optional<PointScan>> next() override {
+    if (std::exchange(given_, true)) return std::nullopt;
+    PointScan scan{.points_m = {{2.0, 0.0, 0.0}, {0.0, 3.0, 0.0}}};
+    scan.time_s = time_s_;
+    return scan;
+  }
+
+ private:
+  double time_s_;
+  bool given_ = false;
+};
+
+// Kills scans mapped at the origin, with a mount on the wrong side, or at the pose of another time.
+TEST(BuildMap, ScansWithATimeArePlacedAlongTheTrajectory) {
+  const Pose quarter_turn = pose_from_rpy(Eigen::Vector3d::Zero(), 0.0, 0.0, std::numbers::pi / 2.0);
+  const auto path =
+      Trajectory::make({{10.0, quarter_turn}, {12.0, Pose(Eigen::Translation3d(4.05, 0.05, 0.05)) * quarter_turn}});
+  ASSERT_TRUE(path);
+  BuildOptions options = clean_options();
+  options.body_from_sensor = Pose(Eigen::Translation3d(1.0, 0.0, 0.0));
+  OccupancyMap map({.resolution_m = 0.1});
+  TimedScan source(11.0);
+  const auto report = build_map(source, *path, options, map);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->first_s, 11.0);
+  EXPECT_EQ(report->no_pose.count, 0U);
+  // Half way, at (2.025, 0.025, 0.025), the sensor is one metre ahead of it, which is along y.
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.025, 3.025, 0.025)), Occupancy::kOccupied);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(-0.975, 1.025, 0.025)), Occupancy::kOccupied);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.025, 1.525, 0.025)), Occupancy::kFree);
+
+  TimedScan too_late(12.5);
+  const auto none = build_map(too_late, *path, options, map);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->no_pose.count, 2U);
+  EXPECT_EQ(none->no_pose.first_s, 12.5);
+  EXPECT_EQ(none->skipped, 2U);
+  EXPECT_EQ(none->cells_hit, 0U);
 }
 
 }  // namespace

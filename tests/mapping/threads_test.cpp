@@ -82,7 +82,7 @@ TEST(BuildMapThreads, TheMapDoesNotDependOnTheirNumber) {
     options.threads = threads;
     Cloud cloud;
     auto map = std::make_unique<OccupancyMap>(MapOptions{.resolution_m = 0.05});
-    ASSERT_TRUE(build_map(cloud, options, *map));
+    ASSERT_TRUE(build_map(cloud, Trajectory::still(Pose::Identity()), options, *map));
     if (first) expect_same(*first, *map);
     if (!first) first = std::move(map);
   }

@@ -15,7 +15,7 @@ namespace pingvox {
 
 /// A topic of a ROS bag. Publishers of one topic are counted as one.
 struct BagTopicSummary {
-  enum class Use { kBeams, kNavigation, kNone };
+  enum class Use { kBeams, kScans, kNavigation, kNone };
 
   std::string name, type;
   std::size_t messages = 0;

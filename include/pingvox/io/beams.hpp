@@ -5,6 +5,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <variant>
 
 #include "pingvox/io/beam_topic.hpp"
 #include "pingvox/io/byte_stream.hpp"
@@ -37,6 +38,14 @@ Result<std::unique_ptr<BeamSource>> open_beams(FileBytes file, Damage damage = D
 ///                        logs, which hold the origins of their scans
 Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = Damage::kSkip,
                                                const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt);
+
+/// What of a bag can be mapped.
+using BagLog = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource>>;
+
+/// Opens a ROS bag: its beams, else scans of points (PointCloud2, PointCloud, LaserScan), which have
+/// times.
+/// @param topic  of beams or scans, else as for open_beams; scans from a pipe need one
+Result<BagLog> open_bag_log(ByteStream stream, Damage damage = Damage::kSkip, const BeamTopic& topic = {});
 
 /// Writes all beams of a source as CSV (docs/formats.md). Reading them back gives exactly the same beams.
 /// @return the number of beams; the source's error; kIo when `out` fails

@@ -51,6 +51,7 @@ class ByteStream {
   Result<void> load_all();
   /// The bytes in memory: at least the beginning, everything after load_all().
   const FileBytes& held() const { return held_; }
+  bool is_all_held() const { return rest_ == nullptr; }
   /// Everything, as load_all(). REQUIRES the same.
   static Result<FileBytes> whole(ByteStream stream);
 

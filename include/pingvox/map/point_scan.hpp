@@ -12,12 +12,15 @@
 namespace pingvox {
 
 /// End points of rays that were seen from one place: a scan of a laser, a multibeam, or one of OctoMap's scan logs.
+/// In the map frame; with a time, in the frame of the sensor.
 struct PointScan {
-  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< map frame
-  std::vector<Eigen::Vector3d> points_m;               ///< map frame
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> points_m;
   /// Rotation of the sensor: map_from_sensor. The identity where the log has none.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   std::size_t number = 0;  ///< of the scan in its log, counted from 0, with those that were left out
+  /// When it was taken [s]: a trajectory tells where the sensor was. nullopt: the scan is in the map frame.
+  std::optional<double> time_s = std::nullopt;
 };
 
 /// Scans in the order in which they were taken.

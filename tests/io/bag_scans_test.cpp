@@ -1,0 +1,211 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "pingvox/io/bag.hpp"
+#include "pingvox/io/beams.hpp"
+#include "support/bag_writer.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+constexpr std::string_view kCloud2 = "sensor_msgs/msg/PointCloud2", kLaser = "sensor_msgs/msg/LaserScan";
+
+/// A cloud of two rows of two points, at 1000.5 s: an intensity, then x (float), y (double) and z (16 bits), and four
+/// bytes behind each row. The points are (1, 2, 3), (NaN, 0, 0), (-4.5, 5.25, -6) and (0, 0, 0). Written by another
+/// program (@foxglove/rosmsg2-serialization), as are the others.
+constexpr std::string_view kCloud =
+    "00010000e80300000065cd1d030000006d6200000200000002000000040000000a000000696e74656e736974790000000000000007000000"
+    "0100000002000000780000000400000007000000010000000200000079000000080000000800000001000000020000007a00000010000000"
+    "030000000100000000000000140000002c000000580000000000003f0000803f0000000000000040030000000000003f0000c07f00000000"
+    "0000000000000000000000000000003f000090c00000000000001540faff00000000003f0000000000000000000000000000000000000000"
+    "00";
+/// The same in ROS 1.
+constexpr std::string_view kRos1Cloud =
+    "01000000e80300000065cd1d020000006d6202000000020000000400000009000000696e74656e7369747900000000070100000001000000"
+    "780400000007010000000100000079080000000801000000010000007a10000000030100000000140000002c000000580000000000003f00"
+    "00803f0000000000000040030000000000003f0000c07f000000000000000000000000000000000000003f000090c00000000000001540fa"
+    "ff00000000003f000000000000000000000000000000000000000000";
+/// At 1000 s: ranges 4, infinite, 0.25 and 8 m from -0.5 rad on, each 0.5 rad and 0.25 s after the one before; valid
+/// from 0.5 to 20 m.
+constexpr std::string_view kFourRanges =
+    "00010000e8030000000000000200000073000000000000bf0000803f0000003f0000803e0000803f0000003f0000a0410400000000008040"
+    "0000807f0000803e0000004100000000";
+constexpr std::string_view kCloudDefinition =
+    "Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\nuint32 point_step\n"
+    "uint32 row_step\nuint8[] data\nbool is_dense\n================\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\n"
+    "string frame_id\n================\nMSG: sensor_msgs/PointField\nstring name\nuint32 offset\nuint8 datatype\n"
+    "uint32 count\n";
+
+/// A message of a topic alone in a bag.
+bags::Bytes bag_of(std::string_view type, const bags::Bytes& message, std::string_view topic = "/points") {
+  bags::Mcap mcap;
+  mcap.topic(1, topic, type, "");
+  mcap.message(1, 1'000'600'000'000U, message);
+  mcap.end_chunk();
+  return mcap.closed();
+}
+
+ReadResult<PointScan> scans_of(bags::Bytes file, const std::string& topic = "/points", Damage damage = Damage::kSkip) {
+  Result<BagLog> log = open_bag_log(FileBytes{"dive.mcap", std::move(file)}, damage, {.name = topic});
+  if (!log) return {{}, 0, log.error().message};
+  auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
+  if (scans == nullptr) return {{}, 0, "has beams"};
+  return read_everything<PointScan, ScanSource>(std::move(*scans));
+}
+
+// Kills columns at fixed places, padding of rows that is read as points, and points where there was no echo.
+TEST(BagScans, ReadsCloudsThatAnotherWriterMade) {
+  bags::Ros1 ros1;
+  ros1.topic(0, "/points", "sensor_msgs/PointCloud2", kCloudDefinition);
+  ros1.message(0, 1000, 600'000'000, from_hex(kRos1Cloud));
+  ros1.end_chunk();
+  for (const auto& file : {bag_of(kCloud2, from_hex(kCloud)), ros1.file()}) {
+    const auto read = scans_of(file);
+    ASSERT_THAT(read.items, SizeIs(1)) << read.error;
+    EXPECT_EQ(read.skipped, 0U);
+    EXPECT_EQ(read.items[0].time_s, 1000.5);
+    EXPECT_THAT(read.items[0].points_m, testing::ElementsAre(Vector3d(1.0, 2.0, 3.0), Vector3d(-4.5, 5.25, -6.0)));
+  }
+}
+
+// Kills a turn of a slow head that is mapped from one place, and ranges that are no echoes.
+TEST(BagScans, DirectionsThatWereLookedAtInTurnHaveTimesOfTheirOwn) {
+  const auto read = scans_of(bag_of(kLaser, from_hex(kFourRanges)));
+  ASSERT_THAT(read.items, SizeIs(4)) << read.error;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(read.items[i].time_s, 1000.0 + 0.25 * static_cast<double>(i));
+    EXPECT_EQ(read.items[i].number, i);
+  }
+  ASSERT_THAT(read.items[0].points_m, SizeIs(1));
+  EXPECT_TRUE(read.items[0].points_m[0].isApprox(4.0 * Vector3d(std::cos(-0.5), std::sin(-0.5), 0.0)));
+  EXPECT_THAT(read.items[1].points_m, SizeIs(0)) << "infinite: no echo";
+  EXPECT_THAT(read.items[2].points_m, SizeIs(0)) << "nearer than the sensor can see";
+  ASSERT_THAT(read.items[3].points_m, SizeIs(1));
+  EXPECT_TRUE(read.items[3].points_m[0].isApprox(8.0 * Vector3d(std::cos(1.0), std::sin(1.0), 0.0)));
+}
+
+// A fast scan is one: its rays vote once for each cell.
+TEST(BagScans, DirectionsOfOneMomentAreOneScan) {
+  bags::Bytes message = from_hex(kFourRanges);
+  const std::size_t time_increment = 4 + 8 + 4 + 4 + 3 * 4;
+  const float step_s = 1e-4F;
+  std::memcpy(message.data() + time_increment, &step_s, sizeof(step_s));
+  const auto read = scans_of(bag_of(kLaser, message));
+  ASSERT_THAT(read.items, SizeIs(1)) << read.error;
+  EXPECT_THAT(read.items[0].points_m, SizeIs(2));
+}
+
+// Kills a read beyond the data, sizes whose product overflows, and loops without an end.
+TEST(BagScans, SizesThatDoNotFitTheDataAreDamage) {
+  const bags::Bytes good = from_hex(kCloud);
+  constexpr std::size_t kHeight = 20, kWidth = 24, kOffsetOfX = 68, kPointStep = 124;
+  const auto number_at = [&](std::size_t place) {
+    std::uint32_t number = 0;
+    std::memcpy(&number, good.data() + place, sizeof(number));
+    return number;
+  };
+  ASSERT_EQ(number_at(kHeight), 2U);
+  ASSERT_EQ(number_at(kWidth), 2U);
+  ASSERT_EQ(number_at(kPointStep), 20U);
+  ASSERT_EQ(number_at(kPointStep + 4), 44U) << "row step";
+  const auto scans_with = [&](std::size_t place, std::uint32_t number) {
+    bags::Bytes changed = good;
+    std::memcpy(changed.data() + place, &number, sizeof(number));
+    return scans_of(bag_of(kCloud2, changed)).items.size();
+  };
+  EXPECT_EQ(scans_with(kHeight, 1), 1U);
+  EXPECT_EQ(scans_with(kOffsetOfX, 16), 1U);
+  for (const std::uint32_t wrong : {17U, 4'000'000'000U, 0xFFFF'FFFFU}) {
+    for (const std::size_t place : {kHeight, kWidth, kPointStep, kPointStep + 4, kOffsetOfX}) {
+      EXPECT_EQ(scans_with(place, wrong), 0U) << wrong << " at " << place;
+    }
+  }
+  EXPECT_EQ(scans_with(kWidth, 3), 0U) << "beyond its row";
+  EXPECT_EQ(scans_with(kHeight, 3), 0U);
+  bags::Bytes wide = good;
+  const std::uint32_t none = 0, many = 0xFFFF'FFFF;
+  std::memcpy(wide.data() + kHeight, &many, sizeof(many));
+  std::memcpy(wide.data() + kWidth, &none, sizeof(none));
+  std::memcpy(wide.data() + kPointStep + 4, &none, sizeof(none));
+  EXPECT_THAT(scans_of(bag_of(kCloud2, wide)).items, SizeIs(0));
+}
+
+// Kills clouds without the places of points that are mapped from whatever stands there.
+TEST(BagScans, ACloudNeedsXYAndZ) {
+  bags::Bytes message = from_hex(kCloud);
+  const auto z = std::ranges::find(message, 'z');
+  ASSERT_NE(z, message.end());
+  *z = 'q';
+  EXPECT_THAT(scans_of(bag_of(kCloud2, message)).error, HasSubstr("has no scans of points in the topic /points"));
+  const auto strict = scans_of(bag_of(kCloud2, message), "/points", Damage::kFail);
+  EXPECT_THAT(strict.error, HasSubstr("cloud without numbers x, y and z"));
+}
+
+class BagWithBoth : public testing::Test {
+ protected:
+  BagWithBoth() {
+    bags::Mcap mcap;
+    mcap.topic(1, "/points", kCloud2, "");
+    mcap.topic(2, "/others", kCloud2, "");
+    mcap.topic(3, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+    mcap.message(1, 1'000'600'000'000U, from_hex(kCloud));
+    mcap.message(1, 1'001'600'000'000U, from_hex(kCloud));
+    mcap.message(3, 1'000'700'000'000U, from_hex(bags::kSonarEcho));
+    mcap.end_chunk();
+    file_ = mcap.closed();
+  }
+
+  bags::Bytes file_;
+};
+
+TEST_F(BagWithBoth, BeamsComeFirstAndScansAreChosen) {
+  const auto log = open_bag_log(FileBytes{"dive.mcap", file_});
+  ASSERT_TRUE(log) << log.error().message;
+  EXPECT_TRUE(std::holds_alternative<std::unique_ptr<BeamSource>>(*log));
+  EXPECT_THAT(scans_of(file_).items, SizeIs(2));
+  const auto beams = open_beams(FileBytes{"dive.mcap", file_}, Damage::kSkip, {.name = "/points"});
+  ASSERT_FALSE(beams);
+  EXPECT_EQ(beams.error().message, "dive.mcap: holds scans of points, not beams of a sonar");
+  const auto contents = read_bag(FileBytes{"dive.mcap", file_});
+  ASSERT_TRUE(contents);
+  using Use = BagTopicSummary::Use;
+  EXPECT_EQ(contents->topics[0].use, Use::kScans);
+  EXPECT_EQ(contents->topics[2].use, Use::kBeams);
+}
+
+TEST(BagScans, TheOnlyTopicNeedsNoName) {
+  EXPECT_THAT(scans_of(bag_of(kLaser, from_hex(kFourRanges)), "").items, SizeIs(4));
+}
+
+TEST(BagScans, OneOfSeveralTopicsIsChosen) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/points", kCloud2, "");
+  mcap.topic(2, "/scan", kLaser, "");
+  mcap.message(1, 1'000'600'000'000U, from_hex(kCloud));
+  mcap.message(2, 1'000'600'000'000U, from_hex(kFourRanges));
+  mcap.end_chunk();
+  EXPECT_THAT(scans_of(mcap.closed(), "/points").items, SizeIs(1));
+  EXPECT_THAT(scans_of(mcap.closed(), "/scan").items, SizeIs(4));
+  EXPECT_EQ(scans_of(mcap.closed(), "").error,
+            "dive.mcap: holds several topics with scans: /points (sensor_msgs/msg/PointCloud2), /scan "
+            "(sensor_msgs/msg/LaserScan): choose one with --topic");
+}
+
+}  // namespace
+}  // namespace pingvox
