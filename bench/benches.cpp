@@ -24,6 +24,7 @@
 #include "speed/queries.hpp"
 #include "speed/rays.hpp"
 #include "speed/scans.hpp"
+#include "vehicle/day.hpp"
 #include "vehicle/growth.hpp"
 #include "vehicle/live.hpp"
 #include "vehicle/log_reading.hpp"
@@ -58,8 +59,9 @@ std::span<const Bench> benches() {
       Bench{"memory", "what the map of tank-3d takes in memory", Family::kSpeed, &memory},
       Bench{"command", "a million points in 20 scans: pingvox map against graph2tree", Family::kSpeed, &command},
       Bench{"realtime", "the tank recording beam by beam: time until each is in the map", Family::kVehicle, &realtime},
-      Bench{"live", "beams of a Ping360 at a socket: time from the last byte of each until it is in the map",
+      Bench{"live", "beams of a Ping360 at a socket: time from the last byte of each until the mapper is done with it",
             Family::kVehicle, &live},
+      Bench{"day", "24 hours of a Ping360 at a socket, in accelerated time: beams and memory", Family::kVehicle, &day},
       Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
       Bench{"threads", "the bundles of tank-fine by two threads against one", Family::kVehicle, &threads},
       Bench{"log-reading", "sonar logs from memory to beams, megabytes a second", Family::kVehicle, &log_reading},
