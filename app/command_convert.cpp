@@ -137,7 +137,7 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
   const NavFile& nav = contents->nav;
   if (nav.log.sources().empty()) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("{}: has no samples of navigation in {}, {} damaged", command.input,
+                fmt::format("{}: has no samples of navigation in {}, {} damaged", name_of_input(command.input),
                             counted(nav.records, "record"), damaged_records(nav)));
   }
   std::size_t samples = 0;
@@ -168,7 +168,7 @@ Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand
 }
 
 Error with_name(Error error, const std::string& name) {
-  error.message = fmt::format("{}: {}", name, error.message);
+  error.message = fmt::format("{}: {}", name_of_input(name), error.message);
   return error;
 }
 

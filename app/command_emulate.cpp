@@ -131,7 +131,7 @@ Result<int> run(const EmulateCommand& command, Console& console) {
   if (!signals) return tl::unexpected(signals.error());
   const bool sends = command.device == EmulateCommand::Device::kMavlink;
   Result<Link> link = sends ? Link::open(command.line) : Link::listen(command.line);
-  if (!link) return tl::unexpected(link.error());
+  if (!link) return fail(link.error().code, fmt::format("{}: {}", sends ? "--to" : "--listen", link.error().message));
   if (const auto printed = console.print(link->address() + "\n"); !printed) return tl::unexpected(printed.error());
   switch (command.device) {
     case EmulateCommand::Device::kPing360:

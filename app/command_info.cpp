@@ -22,6 +22,7 @@
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/mapping/beam_model.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -65,9 +66,12 @@ std::string_view name_of(BeamClock clock) {
   }
 }
 
+double degrees_of(double angle_rad) {
+  return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6;
+}
+
 void add_device(Summary& summary, const DeviceProfile& device, Format format) {
-  const auto degrees = [](double angle_rad) { return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6; };
-  const double width_deg = degrees(device.beam_width_rad), height_deg = degrees(device.beam_height_rad);
+  const double width_deg = degrees_of(device.beam_width_rad), height_deg = degrees_of(device.beam_height_rad);
   JsonObject json;
   json.add("name", device.name)
       .add("beam_width_deg", width_deg)
@@ -192,7 +196,14 @@ class BeamSurvey {
                       report_line("duration", duration_text(source.clock())) +
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
-    if (const DeviceProfile* device = source.device()) add_device(summary, *device, format);
+    if (const DeviceProfile* device = source.device()) {
+      add_device(summary, *device, format);
+    } else {
+      const BeamModelOptions assumed;
+      summary.text +=
+          report_line("device", fmt::format("not named: a beam of {:.6g} x {:.6g} degrees is assumed (--device)",
+                                            degrees_of(assumed.width_rad), degrees_of(assumed.height_rad)));
+    }
     if (skipped > 0) summary.text += skipped_line(source);
     add_damage(summary, source.damage());
     return summary;

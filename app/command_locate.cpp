@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "locate_files.hpp"
 #include "locate_report.hpp"
 #include "map_report.hpp"
@@ -120,12 +121,14 @@ Result<int> run(const LocateCommand& command, Console& console) {
         if (bar.is_due()) bar.draw(share, "locating");
       });
   bar.clear();
-  if (!found) return fail(found.error().code, fmt::format("{}: {}", command.logs.front(), found.error().message));
+  if (!found)
+    return fail(found.error().code, fmt::format("{}: {}", name_of_input(command.logs.front()), found.error().message));
   seconds.locate = locating.seconds();
 
   if (found->clock_check && found->clock_check->is_apart()) {
     const char* const option = command.odometry ? "the clock of --odometry" : "--nav-offset";
-    console.say(fmt::format("{}: {}", command.logs.front(), wrong_clock_text(*found->clock_check, option)));
+    console.say(
+        fmt::format("{}: {}", name_of_input(command.logs.front()), wrong_clock_text(*found->clock_check, option)));
   }
   const Result<std::optional<Trajectory>> trajectory = found_trajectory(*found, command, console);
   if (!trajectory) return tl::unexpected(trajectory.error());
@@ -141,7 +144,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
   if (!summary) return tl::unexpected(summary.error());
   if (!*trajectory) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("{}: it is never sure where the vehicle was", command.logs.front()));
+                fmt::format("{}: it is never sure where the vehicle was", name_of_input(command.logs.front())));
   }
   return 0;
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
@@ -344,7 +345,7 @@ Result<void> check_layer(const MapToDraw& shown, const PanelCommand& panel) {
   const auto z_m = panel.map_picture.layer_z_m;
   if (shown.view != PictureView::kSlice || !z_m) return {};
   if (const auto layer = check_slice(shown.map, {z_m, z_m}); !layer) {
-    return fail(layer.error().code, fmt::format("{}: {}", panel.input, layer.error().message));
+    return fail(layer.error().code, fmt::format("{}: {}", name_of_input(panel.input), layer.error().message));
   }
   return {};
 }

@@ -11,6 +11,7 @@
 
 #include "calibration_file.hpp"
 #include "commands.hpp"
+#include "console.hpp"
 #include "map_log.hpp"
 #include "mapping_options.hpp"
 #include "nav_clock.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 /// The files that a solution is made of: "dive.csv, nav.csv"
 std::string inputs_text(const SlamCommand& command) {
-  std::string text = command.logs.front();
+  std::string text = name_of_input(command.logs.front());
   for (const std::string& nav : command.navs) {
     if (nav != command.logs.front()) text += ", " + nav;
   }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <ostream>
 
+#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/file.hpp"
 
 namespace pingvox::app {
@@ -30,6 +31,10 @@ void print_error(std::string_view message) {
   // One write, so that lines of several processes do not mix.
   const std::string line = "pingvox: " + on_one_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+std::string name_of_input(const std::string& path) {
+  return path == "-" ? std::string(ByteStream::kStandardInput) : path;
 }
 
 std::string on_one_line(std::string_view text) {

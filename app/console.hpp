@@ -43,6 +43,9 @@ class Console {
 /// Prints "pingvox: message" as one line on standard error.
 void print_error(std::string_view message);
 
+/// A file of the command line as messages name it: "-" is standard input.
+std::string name_of_input(const std::string& path);
+
 /// Replaces control characters (a file name may contain line breaks) by '?'.
 std::string on_one_line(std::string_view text);
 

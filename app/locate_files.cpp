@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "calibration_file.hpp"
+#include "console.hpp"
 #include "map_log.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
@@ -89,7 +90,7 @@ Result<std::vector<Beam>> read_beams(const LocateCommand& command, std::size_t& 
     std::ranges::move(*read, std::back_inserter(beams));
   }
   if (beams.empty()) {
-    return fail(Error::Code::kUnsupported, fmt::format("{}: there are no beams", command.logs.front()));
+    return fail(Error::Code::kUnsupported, fmt::format("{}: there are no beams", name_of_input(command.logs.front())));
   }
   return beams;
 }

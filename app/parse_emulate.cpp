@@ -109,7 +109,8 @@ Result<Command> emulate_command(const Args& args) {
     }
     const std::string_view scheme = sends ? "udp://" : "tcp://";
     if (!is_head && !command.line.starts_with(scheme)) {
-      return usage_error(fmt::format("'{}': must be {}HOST:PORT", command.line, scheme));
+      return usage_error(
+          fmt::format("{}: '{}': must be {}HOST:PORT", sends ? "--to" : "--listen", command.line, scheme));
     }
     if (rate > 0.0) head.pings_per_s = command.nav.reports_per_s = rate;
     head.lost = command.nav.lost = lost;

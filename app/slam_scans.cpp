@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "console.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/g2o.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -74,7 +75,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
       return fail(
           Error::Code::kUnsupported,
           fmt::format("{}: its scans have no poses to begin with: 'pingvox map' maps them along --nav or --poses",
-                      command.logs.front()));
+                      name_of_input(command.logs.front())));
     }
     slam.add(**scan);
   }
@@ -85,7 +86,8 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   const Stopwatch solve;
   const Result<ScanSlamSolution> solution = slam.solve();
   if (!solution) {
-    return fail(solution.error().code, fmt::format("{}: {}", command.logs.front(), solution.error().message));
+    return fail(solution.error().code,
+                fmt::format("{}: {}", name_of_input(command.logs.front()), solution.error().message));
   }
   seconds.solve = solve.seconds();
   if (command.map) {

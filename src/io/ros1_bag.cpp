@@ -166,17 +166,17 @@ class Ros1Bag final : public Bag {
   std::optional<BagMessage> next_in_chunk() {
     const std::uint64_t at = is_packed_ ? chunk_at_ : chunk_at_ + (chunk_size_ - rest_.size());
     const std::optional<Record> record = record_in(rest_);
+    if (!is_packed_ && record && record->header.op == kChunk && is_chunk(rest_)) {
+      // The length of the chunk before it was wrong.
+      add_damage(damage_, "damaged record", at);
+      held_ -= rest_.size();
+      rest_ = {};
+      return std::nullopt;
+    }
     if (!record || record->data > rest_.size() - record->data_at) {
       // In a chunk that was cut or could not be unpacked, this is not one more damage.
       if (!is_cut_) add_damage(damage_, "damaged record", at);
       if (!is_packed_) give_back_next_chunk(rest_);
-      rest_ = {};
-      return std::nullopt;
-    }
-    if (record->header.op == kChunk && !is_packed_) {
-      // The length of the chunk before it was wrong.
-      add_damage(damage_, "damaged record", at);
-      held_ -= rest_.size();
       rest_ = {};
       return std::nullopt;
     }
@@ -267,7 +267,8 @@ class Ros1Bag final : public Bag {
     rest_ = bytes->first(held_).subspan(record.data_at);
     if (is_packed_) {
       const bool is_whole = unpack(*compression, rest_, record.header.size, unpacked_);
-      if (!is_whole && !is_cut_) {
+      // What is packed ends by itself: with another chunk behind it, the length is wrong.
+      if (!is_cut_ && (!is_whole || next_chunk(data))) {
         add_damage(damage_, "damaged chunk", reader_.position());
         give_back_next_chunk(data);
       }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -101,6 +102,28 @@ TEST(RosBag, LosesOneChunkWithALostByte) {
     EXPECT_GE(read.items.size(), 19U) << "without byte " << at;
   }
   EXPECT_LT(fewest, 30U);
+}
+
+// Kills whole chunks that are passed over as the end of the one before.
+TEST(RosBag, AChunkWhoseLengthIsTooLargeCostsNoOther) {
+  constexpr std::string_view kSize = "size=";
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    const bags::Bytes whole = micron_bag(compression);
+    const auto field = std::search(whole.begin(), whole.end(), kSize.begin(), kSize.end());
+    ASSERT_NE(field, whole.end());
+    const auto at = static_cast<std::size_t>(field - whole.begin()) + kSize.size() + 4;
+    std::uint32_t length = 0;
+    std::memcpy(&length, whole.data() + at, sizeof(length));
+    for (const std::size_t more :
+         {std::size_t{100}, (whole.size() - at - 4 - length) / 2, whole.size() - at - 4 - length}) {
+      bags::Bytes bytes = whole;
+      const auto wrong = static_cast<std::uint32_t>(length + more);
+      std::memcpy(bytes.data() + at, &wrong, sizeof(wrong));
+      const auto read = all_beams({"dive.bag", bytes});
+      EXPECT_THAT(read.items, SizeIs(30)) << compression << ", " << more << " bytes more";
+      EXPECT_GE(read.skipped, 1U);
+    }
+  }
 }
 
 TEST(RosBag, FindsTheTopicsOfADamagedChunkInTheIndex) {
