@@ -245,8 +245,8 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   if (is_bag(format) && to == FormatKind::kBeams) {
     const Result<BagContents> bag = bag_contents(stream, command.damage, command.bag.nav);
     if (!bag) return tl::unexpected(bag.error());
-    if (!has(*bag, BagTopicSummary::Use::kBeams) && !command.bag.beams.fields && !bag->nav.log.sources().empty())
-      return convert_nav(std::move(stream), command);
+    const bool is_for_beams = has(*bag, BagTopicSummary::Use::kBeams) || !command.bag.beams.name.empty();
+    if (!is_for_beams && !bag->nav.log.sources().empty()) return convert_nav(std::move(stream), command);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   if (from == FormatKind::kScans && to == FormatKind::kCloud) return convert_scans(std::move(stream), command);

@@ -459,8 +459,10 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
   if (!has_log && !command.bag.beams.fields) return summarize_contents(*bag, name, format);
   Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
   // Messages of a sonar's type may hold nothing.
-  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported;
-  if (has_none && is_navigated && command.bag.beams.name.empty()) return summarize_contents(*bag, name, format);
+  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported && is_navigated;
+  // Of several topics with scans none is chosen.
+  const bool has_only_scans = !summary && !has(*bag, Use::kBeams) && command.damage == Damage::kSkip;
+  if ((has_none || has_only_scans) && command.bag.beams.name.empty()) return summarize_contents(*bag, name, format);
   if (!summary) return summary;
   add_topics(*summary, bag->topics);
   if (is_navigated) {

@@ -183,8 +183,13 @@ template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   const std::string name = file.name;
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
-  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(file), command.damage, command.bag.beams);
-  if (!source) return tl::unexpected(source.error());
+  Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
+  if (!log) return tl::unexpected(log.error());
+  auto* const source = std::get_if<std::unique_ptr<BeamSource>>(&*log);
+  if (source == nullptr) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: holds scans of points, not beams of a sonar: --view above draws their map", name));
+  }
   const Result<double> ratio = sound_speed_ratio_of(panel, command);
   if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;

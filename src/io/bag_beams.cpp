@@ -230,7 +230,11 @@ class BagBeams final : public DeviceLog {
   }
 
   Result<void> add(const BagMessage& message) {
-    while (topics_.size() <= message.topic) topics_.push_back(sonar_topic(bag_->topics()[topics_.size()]));
+    while (topics_.size() <= message.topic) {
+      const BagTopic& next = bag_->topics()[topics_.size()];
+      topics_.push_back(sonar_topic(next));
+      scan_topics_.push_back(next.name == wanted_ && !fields_ ? scan_topic(next) : std::nullopt);
+    }
     const std::optional<KnownTopic>& topic = topics_[message.topic];
     const std::string& name = bag_->topics()[message.topic].name;
     if (!topic && fields_ && name == wanted_) return missing_field(bag_->topics()[message.topic]);
@@ -268,10 +272,8 @@ class BagBeams final : public DeviceLog {
   }
 
   bool is_wanted_scan(const BagMessage& message) const {
-    const BagTopic& topic = bag_->topics()[message.topic];
-    if (fields_ || !chosen_.empty() || topic.name != wanted_) return false;
-    const std::optional<KnownTopic> scans = scan_topic(topic);
-    return scans && is_scan(*scans, message);
+    const std::optional<KnownTopic>& topic = scan_topics_[message.topic];
+    return topic && chosen_.empty() && is_scan(*topic, message);
   }
 
   bool is_unwanted(const SonarType& type, const std::string& name) const {
@@ -309,9 +311,11 @@ class BagBeams final : public DeviceLog {
   }
 
   std::string why_none() const {
-    const std::string others = topics_that(is_sonar), second = topics_that(is_second_sonar);
+    const std::string second = topics_that(is_second_sonar);
+    const std::string others =
+        topics_that([](const BagTopic& topic) { return is_sonar(topic) || scan_topic(topic).has_value(); });
     if (!wanted_.empty()) {
-      return fmt::format("{}: has no beams in the topic {}{}", bag_->name(), wanted_,
+      return fmt::format("{}: has no beams or scans in the topic {}{}", bag_->name(), wanted_,
                          others.empty() ? "" : ", only in " + others);
     }
     if (!second.empty()) return fmt::format("{}: choose the topic of its beams with --topic: {}", bag_->name(), second);
@@ -328,6 +332,7 @@ class BagBeams final : public DeviceLog {
   std::string wanted_, chosen_;
   std::optional<BeamFields> fields_;
   std::vector<std::optional<KnownTopic>> topics_;
+  std::vector<std::optional<KnownTopic>> scan_topics_;  ///< of each topic, where it is the wanted one
   SonarSettings settings_;
   RosMessage message_;
   std::deque<Beam> beams_;
@@ -376,7 +381,8 @@ Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& t
                 fmt::format("{}: --fields: needs the --topic whose messages have them", stream.name()));
   }
   const std::optional<std::string> path = stream.path();
-  const std::optional<FileBytes> bytes = stream.is_all_held() ? std::optional(stream.held()) : std::nullopt;
+  std::optional<FileBytes> bytes;
+  if (stream.is_all_held() && topic.name.empty()) bytes = stream.held();
   Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
   if (!bag) return tl::unexpected(bag.error());
   auto beams = std::make_unique<BagBeams>(*std::move(bag), damage, topic);
@@ -394,11 +400,13 @@ Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& t
                             beams->name(), scan_topics));
   }
   // Beams may have come behind the first scans.
+  const tl::unexpected<Error> no_beams = beams->no_beams();
+  beams.reset();
   Result<std::unique_ptr<ScanSource>> scans =
-      (path ? ByteStream::open(*path) : Result<ByteStream>(*bytes))
+      (path ? ByteStream::open(*path) : Result<ByteStream>(*std::move(bytes)))
           .and_then(open_bag)
           .and_then([&](std::unique_ptr<Bag> again) { return bag_scans(std::move(again), damage, topic.name); });
-  if (!scans && scans.error().code == Error::Code::kUnsupported) return beams->no_beams();
+  if (!scans && scans.error().code == Error::Code::kUnsupported) return no_beams;
   return std::move(scans).map(as_log);
 }
 

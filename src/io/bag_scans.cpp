@@ -28,6 +28,9 @@ using NoScan = tl::unexpected<std::string_view>;
 constexpr std::string_view kImpossible = "impossible values", kNoFit = "message that does not fit its definition",
                            kNoPlaces = "cloud without numbers x, y and z";
 
+/// Of a message. Small numbers in overlapping columns would make points of much less than they take.
+constexpr std::uint64_t kMaxPoints = 10'000'000;
+
 /// Whether a direction has a point: sensors write NaN, an infinite or no distance where there was no echo.
 bool is_point(const Eigen::Vector3d& point_m) {
   return point_m.allFinite() && !point_m.isZero(0.0);
@@ -37,6 +40,7 @@ Scans cloud_scan(RosMessage& message, const KnownTopic& topic, std::span<const s
   const RosFields fields(message, topic.fields);
   PointScan scan;
   scan.time_s = time_s;
+  if (fields.count(0) > kMaxPoints) return NoScan(kImpossible);
   for (std::size_t i = 0; i < fields.count(0); ++i) {
     const Eigen::Vector3d point_m(fields.number(0, i), fields.number(1, i), fields.number(2, i));
     if (is_point(point_m)) scan.points_m.push_back(point_m);
@@ -74,9 +78,10 @@ std::optional<std::array<CloudColumn, 3>> columns_of(RosMessage& message, const 
 }
 
 Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const std::uint8_t> bytes, double time_s) {
-  const auto columns = columns_of(message, topic, bytes);
-  if (!columns) return NoScan(kNoPlaces);
+  // The columns are looked up by walking through all but the data again and again.
+  constexpr std::size_t kMaxDescription = 65'536;
   const RosFields fields(message, topic.fields);
+  if (bytes.size() - message.byte_array(topic.fields[8]).size() > kMaxDescription) return NoScan(kImpossible);
   std::array<std::uint64_t, 4> sizes{};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const auto size = whole<std::uint32_t>(fields.number(3 + i));
@@ -84,17 +89,20 @@ Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const 
     sizes[i] = *size;
   }
   const auto [height, width, point_step, row_step] = sizes;
+  PointScan scan;
+  scan.time_s = time_s;
+  if (height == 0 || width == 0) return std::vector{std::move(scan)};  // nothing was seen
+  const auto columns = columns_of(message, topic, bytes);
+  if (!columns) return NoScan(kNoPlaces);
   const std::endian order = fields.number(7) != 0.0 ? std::endian::big : std::endian::little;
   const std::span<const std::uint8_t> data = message.byte_array(topic.fields[8]);
   // Products of numbers of 32 bits have no overflow.
   const std::uint64_t row = width * point_step;
-  const bool has_rows = height <= 1 || (row > 0 && row_step >= row && row_step * (height - 1) + row <= data.size());
+  const bool has_rows = height == 1 || (row_step >= row && row_step * (height - 1) + row <= data.size());
   const bool fits = row <= data.size() && has_rows;
   const bool are_within = std::ranges::all_of(
       *columns, [&](const CloudColumn& column) { return column.offset + bytes_of(column.type) <= point_step; });
-  if (!fits || !are_within) return NoScan(kImpossible);
-  PointScan scan;
-  scan.time_s = time_s;
+  if (!fits || !are_within || height * width > kMaxPoints) return NoScan(kImpossible);
   for (std::uint64_t i = 0; i < height; ++i) {
     for (std::uint64_t j = 0; j < width; ++j) {
       const auto point = data.subspan(i * row_step + j * point_step, point_step);
@@ -168,8 +176,11 @@ class BagScans final : public ScanSource {
     if (const auto read = fill(); !read) return read;
     if (!scans_.empty()) return {};
     const std::string of_topic = wanted_.empty() ? "" : " in the topic " + wanted_;
-    return fail(Error::Code::kUnsupported, fmt::format("{}: has no scans of points{}{}", bag_->name(), of_topic,
-                                                       skipped() > 0 ? ", or it is damaged" : ""));
+    if (skipped() == 0) {
+      return fail(Error::Code::kUnsupported, fmt::format("{}: has no scans of points{}", bag_->name(), of_topic));
+    }
+    return fail(Error::Code::kCorrupt, fmt::format("{}: has no scans of points{} that can be read: {}", bag_->name(),
+                                                   of_topic, first_damage()));
   }
 
   Result<std::optional<PointScan>> next() override {

@@ -217,7 +217,7 @@ class Mcap final : public Bag {
       add_damage(damage_, FrameFinder::kCutOff, reader_.position());
       if (is_packed_) data = {};
     } else if (is_packed_) {
-      if (!unpack(*compression, data, chunk->size, unpacked_)) {
+      if (!unpack(*compression, data, chunk->size, unpacked_).is_whole) {
         add_damage(damage_, "damaged chunk", reader_.position());
         unpacked_.clear();
       }

@@ -124,6 +124,9 @@ bool has_possible_length(const Record& record) {
 }
 
 bool is_chunk(Bytes bytes) {
+  constexpr std::uint32_t kMaxChunkHeader = 256;  // that of a chunk has some 50 bytes
+  const auto length = ByteReader(bytes).read<std::uint32_t>();
+  if (!length || *length > kMaxChunkHeader) return false;
   const std::optional<Record> record = record_in(bytes);
   return record && record->header.op == kChunk && compression_of(record->header) && record->data <= kMaxChunk;
 }
@@ -266,11 +269,12 @@ class Ros1Bag final : public Bag {
     if (is_cut_) give_back_next_chunk(data);
     rest_ = bytes->first(held_).subspan(record.data_at);
     if (is_packed_) {
-      const bool is_whole = unpack(*compression, rest_, record.header.size, unpacked_);
+      const auto [is_whole, packed] = unpack(*compression, rest_, record.header.size, unpacked_);
       // What is packed ends by itself: with another chunk behind it, the length is wrong.
-      if (!is_cut_ && (!is_whole || next_chunk(data))) {
+      const Bytes behind = data.subspan(is_whole ? packed : 0);
+      if (!is_cut_ && (!is_whole || next_chunk(behind))) {
         add_damage(damage_, "damaged chunk", reader_.position());
-        give_back_next_chunk(data);
+        give_back_next_chunk(behind);
       }
       is_cut_ = is_cut_ || !is_whole;
       rest_ = unpacked_;

@@ -82,8 +82,9 @@ class Zstd {
 };
 
 /// Unpacks at most `size` bytes. Grows with what is there, as a damaged size may be any.
+/// @return what is left of `packed`
 template <class Unpacker>
-void unpack_with(Unpacker unpacker, Bytes packed, std::size_t size, std::vector<std::uint8_t>& to) {
+Bytes unpack_with(Unpacker unpacker, Bytes packed, std::size_t size, std::vector<std::uint8_t>& to) {
   constexpr std::size_t kLeast = std::size_t{1} << 16, kUsualRatio = 4;
   to.clear();
   while (to.size() < size) {
@@ -91,28 +92,25 @@ void unpack_with(Unpacker unpacker, Bytes packed, std::size_t size, std::vector<
     to.resize(done + std::min(size - done, std::max({kLeast, kUsualRatio * packed.size(), done})));
     const std::optional<std::size_t> written = unpacker.next(packed, Room(to).subspan(done));
     to.resize(done + written.value_or(0));
-    if (!written || (*written == 0 && packed.size() == before)) return;
+    if (!written || (*written == 0 && packed.size() == before)) break;
   }
+  return packed;
 }
 
 }  // namespace
 
-bool unpack(Compression compression, std::span<const std::uint8_t> packed, std::uint64_t size,
-            std::vector<std::uint8_t>& to) {
+Unpacked unpack(Compression compression, std::span<const std::uint8_t> packed, std::uint64_t size,
+                std::vector<std::uint8_t>& to) {
   assert(compression != Compression::kNone);
   // No sonar compresses like this, but a damaged size does.
   constexpr std::uint64_t kMaxRatio = 1024, kMaxUnchecked = 65'536;
   to.clear();
-  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMaxUnchecked + kMaxRatio * packed.size()) return false;
+  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMaxUnchecked + kMaxRatio * packed.size()) return {};
   const auto whole = static_cast<std::size_t>(size);
-  if (compression == Compression::kBz2) {
-    unpack_with(Bz2(), packed, whole, to);
-  } else if (compression == Compression::kLz4) {
-    unpack_with(Lz4(), packed, whole, to);
-  } else {
-    unpack_with(Zstd(), packed, whole, to);
-  }
-  return to.size() == whole;
+  const Bytes left = compression == Compression::kBz2   ? unpack_with(Bz2(), packed, whole, to)
+                     : compression == Compression::kLz4 ? unpack_with(Lz4(), packed, whole, to)
+                                                        : unpack_with(Zstd(), packed, whole, to);
+  return {to.size() == whole, packed.size() - left.size()};
 }
 
 }  // namespace pingvox

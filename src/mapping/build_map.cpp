@@ -105,6 +105,7 @@ Result<BuildReport> build_map(ScanSource& source, const Trajectory& map_from_bod
       if (!pose) {
         report.no_pose.first_s = report.no_pose.first_s.value_or(*time_s);
         report.no_pose.count += next.points_m.size();
+        if (progress) progress(report);
         continue;
       }
       move_scan(*pose * options.body_from_sensor, next);

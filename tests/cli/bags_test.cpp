@@ -84,7 +84,7 @@ TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   EXPECT_THAT(info.out, HasSubstr(R"("kind": "nav")"));
   EXPECT_THAT(info.out, HasSubstr(R"("name": "/depth", "quantity": "depth", "samples": 1)"));
   expect_error(here.call({"info", "lidar.mcap", "--topic", "/scan"}), 1,
-               {"lidar.mcap: has no beams in the topic /scan"});
+               {"lidar.mcap: has no beams or scans in the topic /scan"});
   expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
 }
 
@@ -138,6 +138,32 @@ TEST(Bags, ScansAreMappedAlongTheNavigation) {
   expect_error(late, 1, {"nothing could be mapped", "3 of 3 points outside the time of the poses"});
 }
 
+// Kills a bag of two lidars of which nobody can list the topics.
+TEST(Bags, InfoListsSeveralTopicsWithScans) {
+  const Workplace here;
+  bags::Mcap mcap;
+  bags::Bytes scan = {0, 1, 0, 0};
+  for (const std::uint32_t number : {1000U, 0U, 1U, 0U}) bags::put(scan, number);
+  for (const float number : {0.0F, 1.5F, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
+  bags::put(scan, std::uint32_t{1});
+  bags::put(scan, 2.0F);
+  bags::put(scan, std::uint32_t{0});
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
+    mcap.topic(id, id == 1 ? "/left" : "/right", "sensor_msgs/msg/LaserScan", "");
+    mcap.message(id, 1'000'000'000'000U, scan);
+  }
+  mcap.end_chunk();
+  const bags::Bytes file = mcap.closed();
+  here.write("two.mcap", std::string(file.begin(), file.end()));
+  const Outcome info = here.call({"info", "two.mcap", "--json"});
+  ASSERT_EQ(info.status, 0) << info.err;
+  EXPECT_THAT(
+      info.out,
+      HasSubstr(R"({"name": "/right", "type": "sensor_msgs/msg/LaserScan", "messages": 1, "read_as": "scans"})"));
+  expect_error(here.call({"map", "two.mcap", "-o", "two.bt"}), 2, {"choose one with --topic"});
+  expect_error(here.call({"map", "two.mcap", "--topic", "/nope", "-o", "two.bt"}), 1, {"only in /left"});
+}
+
 TEST(Bags, ScansOfAPipeNeedTheirTopic) {
   const Workplace here;
   const std::string bag = bag_of_a_scan();
@@ -150,7 +176,8 @@ TEST(Bags, ScansHaveNoBeams) {
   const Workplace here;
   here.write("scan.mcap", bag_of_a_scan());
   EXPECT_EQ(here.call({"render", "scan.mcap", "--view", "above", "-o", "scan.png"}).status, 0);
-  expect_error(here.call({"render", "scan.mcap", "-o", "scan.png"}), 1, {"holds scans of points, not beams"});
+  expect_error(here.call({"render", "scan.mcap", "-o", "scan.png"}), 1,
+               {"holds scans of points, not beams of a sonar: --view above"});
   expect_error(here.call({"slam", "scan.mcap", "-o", "scan.tum"}), 1, {"its scans have no poses to begin with"});
   expect_error(here.call({"map", "scan.mcap", "--threshold", "5", "-o", "scan.bt"}), 2, {"--threshold: has no effect"});
 }

@@ -143,7 +143,48 @@ TEST(BagScans, SizesThatDoNotFitTheDataAreDamage) {
   std::memcpy(wide.data() + kHeight, &many, sizeof(many));
   std::memcpy(wide.data() + kWidth, &none, sizeof(none));
   std::memcpy(wide.data() + kPointStep + 4, &none, sizeof(none));
-  EXPECT_THAT(scans_of(bag_of(kCloud2, wide)).items, SizeIs(0));
+  EXPECT_THAT(scans_of(bag_of(kCloud2, wide)).items.at(0).points_m, SizeIs(0));
+}
+
+// A driver sends one when nothing was seen. Kills a strict read that refuses it.
+TEST(BagScans, AnEmptyCloudIsNoDamage) {
+  bags::Bytes message = from_hex("00010000e80300000065cd1d030000006d620000");
+  for (int i = 0; i < 3; ++i) bags::put(message, std::uint32_t{0});  // height, width, no fields
+  for (int i = 0; i < 4; ++i) bags::put(message, std::uint32_t{0});  // byte order, sizes, no data
+  message.push_back(0);
+  const auto read = scans_of(bag_of(kCloud2, message), "/points", Damage::kFail);
+  ASSERT_THAT(read.items, SizeIs(1)) << read.error;
+  EXPECT_THAT(read.items[0].points_m, SizeIs(0));
+}
+
+// Columns that overlap make points of a byte each: 24 times the memory of the message.
+TEST(BagScans, AMessageHasTenMillionPointsAtMost) {
+  bags::Bytes message = from_hex("00010000e80300000065cd1d030000006d620000");
+  constexpr std::uint32_t kPoints = 10'000'001;
+  for (const std::uint32_t number : {1U, kPoints, 3U}) bags::put(message, number);
+  for (const char axis : {'x', 'y', 'z'}) {
+    bags::put(message, std::uint32_t{2});
+    message.insert(message.end(), {static_cast<std::uint8_t>(axis), 0, 0, 0});
+    for (const std::uint32_t number : {0U, 1U, 1U}) bags::put(message, number);  // at 0, int8 (and padding), one
+  }
+  bags::put(message, std::uint32_t{0});  // little-endian, padding
+  for (const std::uint32_t number : {1U, kPoints, kPoints}) bags::put(message, number);
+  message.insert(message.end(), kPoints, 1);
+  message.push_back(0);
+  EXPECT_THAT(scans_of(bag_of(kCloud2, message)).error, HasSubstr("that can be read: byte"));
+}
+
+// Kills a walk through all of them for each column.
+TEST(BagScans, ADescriptionOfMillionsOfFieldsIsRefused) {
+  bags::Bytes message = from_hex("00010000e80300000065cd1d030000006d620000");
+  constexpr std::uint32_t kFields = 5000;
+  for (const std::uint32_t number : {1U, 1U, kFields}) bags::put(message, number);
+  for (std::uint32_t i = 0; i < kFields; ++i) {
+    for (const std::uint32_t number : {1U, 0U, 0U, 7U, 1U}) bags::put(message, number);
+  }
+  for (const std::uint32_t number : {0U, 4U, 4U, 4U, 0U}) bags::put(message, number);
+  message.push_back(0);
+  EXPECT_THAT(scans_of(bag_of(kCloud2, message)).error, HasSubstr("impossible values"));
 }
 
 // Kills clouds without the places of points that are mapped from whatever stands there.
@@ -152,7 +193,9 @@ TEST(BagScans, ACloudNeedsXYAndZ) {
   const auto z = std::ranges::find(message, 'z');
   ASSERT_NE(z, message.end());
   *z = 'q';
-  EXPECT_THAT(scans_of(bag_of(kCloud2, message)).error, HasSubstr("has no scans of points in the topic /points"));
+  EXPECT_THAT(scans_of(bag_of(kCloud2, message)).error,
+              testing::AllOf(HasSubstr("has no scans of points in the topic /points that can be read"),
+                             HasSubstr("cloud without numbers x, y and z")));
   const auto strict = scans_of(bag_of(kCloud2, message), "/points", Damage::kFail);
   EXPECT_THAT(strict.error, HasSubstr("cloud without numbers x, y and z"));
 }

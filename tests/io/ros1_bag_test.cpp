@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <string>
 #include <string_view>
 
@@ -124,6 +125,29 @@ TEST(RosBag, AChunkWhoseLengthIsTooLargeCostsNoOther) {
       EXPECT_GE(read.skipped, 1U);
     }
   }
+}
+
+// lz4 stores what it cannot pack as it is. Kills a bag in a message that is read as chunks of the outer one.
+TEST(RosBag, ABagInAMessageIsNoChunk) {
+  bags::Ros1 bag;
+  bag.topic(1, "/scan_line", "micron_driver_ros/ScanLine", kScanLine);
+  bag.topic(2, "/upload", "std_msgs/String", "string data\n");
+  bag.message(1, 1000, 0, scan_line(9.0F, 1000));
+  std::mt19937 random(1);
+  std::string data(100'000, ' ');
+  std::ranges::generate(data, [&] { return static_cast<char>(random()); });
+  constexpr std::string_view kField = "compression=";
+  const bags::Bytes inner = micron_bag("none", 1);
+  const auto field = std::search(inner.begin(), inner.end(), kField.begin(), kField.end());
+  ASSERT_NE(field, inner.end());
+  std::copy(field - 8, field + 60, data.begin() + 20'000);  // the header of a chunk, in what cannot be packed
+  bags::Bytes upload;
+  bags::put_text(upload, data);
+  bag.message(2, 1001, 0, upload);
+  bag.end_chunk("lz4");
+  const auto read = all_beams({"dive.bag", bag.file()}, Damage::kFail);
+  EXPECT_EQ(read.error, "");
+  EXPECT_THAT(read.items, SizeIs(1));
 }
 
 TEST(RosBag, FindsTheTopicsOfADamagedChunkInTheIndex) {

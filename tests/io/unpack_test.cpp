@@ -51,9 +51,10 @@ TEST(Unpack, GivesBackWhatWasPacked) {
   const Bytes bytes = recorded();
   for (const Compression compression : kAll) {
     Bytes to;
-    EXPECT_TRUE(unpack(compression, packed_by(compression, bytes), bytes.size(), to));
+    EXPECT_TRUE(unpack(compression, packed_by(compression, bytes), bytes.size(), to).is_whole);
     EXPECT_TRUE(to == bytes);
-    EXPECT_FALSE(unpack(compression, packed_by(compression, bytes), bytes.size() + 1, to)) << "one byte is missing";
+    EXPECT_FALSE(unpack(compression, packed_by(compression, bytes), bytes.size() + 1, to).is_whole)
+        << "one byte is missing";
     EXPECT_TRUE(to == bytes);
   }
 }
@@ -65,7 +66,7 @@ TEST(Unpack, ReadsFramesBehindEachOther) {
     const Bytes packed = packed_by(compression, bytes);
     Bytes twice = packed, to;
     twice.insert(twice.end(), packed.begin(), packed.end());
-    EXPECT_TRUE(unpack(compression, twice, 2 * bytes.size(), to));
+    EXPECT_TRUE(unpack(compression, twice, 2 * bytes.size(), to).is_whole);
     EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), to.begin() + 1'000'000));
   }
 }
@@ -76,9 +77,9 @@ TEST(Unpack, TakesNoMemoryForBytesThatAreNotThere) {
   for (const Compression compression : kAll) {
     const Bytes packed = packed_by(compression, bytes);
     Bytes to;
-    EXPECT_FALSE(unpack(compression, packed, 900 * packed.size(), to));
+    EXPECT_FALSE(unpack(compression, packed, 900 * packed.size(), to).is_whole);
     EXPECT_LT(to.capacity(), 4 * bytes.size());
-    EXPECT_FALSE(unpack(compression, packed, 2000 * packed.size(), to)) << "out of proportion";
+    EXPECT_FALSE(unpack(compression, packed, 2000 * packed.size(), to).is_whole) << "out of proportion";
     EXPECT_TRUE(to.empty());
   }
 }
@@ -89,7 +90,7 @@ TEST(Unpack, KeepsTheBeginningOfDamagedData) {
     Bytes packed = packed_by(compression, bytes);
     packed.resize(packed.size() - packed.size() / 4);
     Bytes to;
-    EXPECT_FALSE(unpack(compression, packed, bytes.size(), to));
+    EXPECT_FALSE(unpack(compression, packed, bytes.size(), to).is_whole);
     ASSERT_LT(to.size(), bytes.size());
     EXPECT_TRUE(std::equal(to.begin(), to.end(), bytes.begin()));
   }
