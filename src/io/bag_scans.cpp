@@ -36,6 +36,13 @@ bool is_point(const Eigen::Vector3d& point_m) {
   return point_m.allFinite() && !point_m.isZero(0.0);
 }
 
+/// A scan alone, without a copy of its points.
+std::vector<PointScan> only(PointScan scan) {
+  std::vector<PointScan> scans;
+  scans.push_back(std::move(scan));
+  return scans;
+}
+
 Scans cloud_scan(RosMessage& message, const KnownTopic& topic, std::span<const std::uint8_t>, double time_s) {
   const RosFields fields(message, topic.fields);
   PointScan scan;
@@ -45,7 +52,7 @@ Scans cloud_scan(RosMessage& message, const KnownTopic& topic, std::span<const s
     const Eigen::Vector3d point_m(fields.number(0, i), fields.number(1, i), fields.number(2, i));
     if (is_point(point_m)) scan.points_m.push_back(point_m);
   }
-  return std::vector{std::move(scan)};
+  return only(std::move(scan));
 }
 
 /// Types of PointField, from 1.
@@ -91,7 +98,7 @@ Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const 
   const auto [height, width, point_step, row_step] = sizes;
   PointScan scan;
   scan.time_s = time_s;
-  if (height == 0 || width == 0) return std::vector{std::move(scan)};  // nothing was seen
+  if (height == 0 || width == 0) return only(std::move(scan));  // nothing was seen
   const auto columns = columns_of(message, topic, bytes);
   if (!columns) return NoScan(kNoPlaces);
   const std::endian order = fields.number(7) != 0.0 ? std::endian::big : std::endian::little;
@@ -116,7 +123,7 @@ Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const 
       if (is_point(point_m)) scan.points_m.push_back(point_m);
     }
   }
-  return std::vector{std::move(scan)};
+  return only(std::move(scan));
 }
 
 /// Directions in which a sensor looked one after the other are of several scans, so that a moving vehicle does not
