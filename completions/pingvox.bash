@@ -5,7 +5,7 @@ _pingvox_commands() { printf '%s\n' map info compare convert render simulate sla
 # What `pingvox bench list` lists.
 _pingvox_benches() {
   printf '%s\n' cube-each cube-lazy points-5000 points-50 points-5 tank-2d tank-3d tank-3d-cells tank-fine tank-cone
-  printf '%s\n' multibeam lidar-16 lidar-128 rays look-up cast-ray leaves bt-write bt-read memory command realtime live growth threads log-reading startup
+  printf '%s\n' multibeam lidar-16 lidar-128 rays look-up cast-ray leaves bt-write bt-read memory command realtime live day growth threads log-reading startup
   printf '%s\n' accuracy slam locate paper
   printf '%s\n' paper-{figures,maps,keys,drop,parents,table-1,bytes,rays,bits,smooth,edges,canny}
 }
