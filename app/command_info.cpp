@@ -51,8 +51,7 @@ double sector_deg(std::vector<double> bearings_rad, bool has_turn) {
   for (std::size_t i = 1; i < bearings_rad.size(); ++i) {
     widest = std::max(widest, bearings_rad[i] - bearings_rad[i - 1]);
   }
-  // Rounded to a millionth of a degree, so that 90 is not 90.00000000000001.
-  return std::round((kTurn_rad - widest) / std::numbers::pi * 180.0 * 1e6) / 1e6;
+  return rounded_degrees(kTurn_rad - widest);
 }
 
 std::string_view name_of(BeamClock clock) {
@@ -66,12 +65,8 @@ std::string_view name_of(BeamClock clock) {
   }
 }
 
-double degrees_of(double angle_rad) {
-  return std::round(angle_rad / std::numbers::pi * 180.0 * 1e6) / 1e6;
-}
-
 void add_device(Summary& summary, const DeviceProfile& device, Format format) {
-  const double width_deg = degrees_of(device.beam_width_rad), height_deg = degrees_of(device.beam_height_rad);
+  const double width_deg = rounded_degrees(device.beam_width_rad), height_deg = rounded_degrees(device.beam_height_rad);
   JsonObject json;
   json.add("name", device.name)
       .add("beam_width_deg", width_deg)
@@ -202,7 +197,7 @@ class BeamSurvey {
       const BeamModelOptions assumed;
       summary.text +=
           report_line("device", fmt::format("not named: a beam of {:.6g} x {:.6g} degrees is assumed (--device)",
-                                            degrees_of(assumed.width_rad), degrees_of(assumed.height_rad)));
+                                            rounded_degrees(assumed.width_rad), rounded_degrees(assumed.height_rad)));
     }
     if (skipped > 0) summary.text += skipped_line(source);
     add_damage(summary, source.damage());

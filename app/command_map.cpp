@@ -20,7 +20,6 @@
 #include "open_log.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
-#include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/sonar/device_profile.hpp"
@@ -92,16 +91,13 @@ std::string_view name_of(BeamShape shape) {
   return shape == BeamShape::kRay ? "ray" : shape == BeamShape::kFan ? "fan" : "cone";
 }
 
-double degrees(double angle_rad) {
-  return std::round(angle_rad / kDegree_rad * 1e6) / 1e6;
-}
-
 /// "cone, 3 degrees wide, 35 high"
 std::string beam_text(const BeamModelOptions& model, bool is_assumed) {
   std::string text(name_of(model.shape));
-  if (model.shape == BeamShape::kFan) text += fmt::format(", {:.6g} degrees wide", degrees(model.width_rad));
+  if (model.shape == BeamShape::kFan) text += fmt::format(", {:.6g} degrees wide", rounded_degrees(model.width_rad));
   if (model.shape == BeamShape::kCone) {
-    text += fmt::format(", {:.6g} degrees wide, {:.6g} high", degrees(model.width_rad), degrees(model.height_rad));
+    text += fmt::format(", {:.6g} degrees wide, {:.6g} high", rounded_degrees(model.width_rad),
+                        rounded_degrees(model.height_rad));
   }
   if (is_assumed && model.shape != BeamShape::kRay) text += ", assumed (the log names no sonar: see --device)";
   return text;
@@ -110,8 +106,9 @@ std::string beam_text(const BeamModelOptions& model, bool is_assumed) {
 JsonObject beam_json(const BeamModelOptions& model) {
   JsonObject json;
   json.add("shape", name_of(model.shape));
-  model.shape == BeamShape::kRay ? json.add_null("width_deg") : json.add("width_deg", degrees(model.width_rad));
-  model.shape == BeamShape::kCone ? json.add("height_deg", degrees(model.height_rad)) : json.add_null("height_deg");
+  model.shape == BeamShape::kRay ? json.add_null("width_deg") : json.add("width_deg", rounded_degrees(model.width_rad));
+  model.shape == BeamShape::kCone ? json.add("height_deg", rounded_degrees(model.height_rad))
+                                  : json.add_null("height_deg");
   return json;
 }
 

@@ -185,11 +185,8 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
   Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
-  auto* const source = std::get_if<std::unique_ptr<BeamSource>>(&*log);
-  if (source == nullptr) {
-    return fail(Error::Code::kUnsupported,
-                fmt::format("{}: holds scans of points, not beams of a sonar: --view above draws their map", name));
-  }
+  Result<std::unique_ptr<BeamSource>> source = only_beams(*std::move(log), name);
+  if (!source) return fail(source.error().code, source.error().message + ": --view above draws their map");
   const Result<double> ratio = sound_speed_ratio_of(panel, command);
   if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;

@@ -75,12 +75,11 @@ Result<std::vector<Beam>> read_beams(const LocateCommand& command, std::size_t& 
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
-    Result<Log> log = open_log(std::move(*stream), command.damage, std::nullopt, command.bag.beams);
-    if (!log) return tl::unexpected(log.error());
-    auto* source = std::get_if<std::unique_ptr<BeamSource>>(&*log);
-    if (source == nullptr) {
-      return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", shown));
-    }
+    const auto source =
+        open_log(std::move(*stream), command.damage, std::nullopt, command.bag.beams).and_then([&](Log log) {
+          return only_beams(std::move(log), shown);
+        });
+    if (!source) return tl::unexpected(source.error());
     if (!command.navs.empty()) {
       if (const auto has = check_has_times(**source, shown); !has) return tl::unexpected(has.error());
     }

@@ -2,7 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "console.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox::app {
@@ -27,6 +30,10 @@ std::string bytes_text(std::size_t bytes) {
   if (size < kKilo * kKilo) return fmt::format("{:.1f} kB", size / kKilo);
   if (size < kKilo * kKilo * kKilo) return fmt::format("{:.1f} MB", size / (kKilo * kKilo));
   return fmt::format("{:.1f} GB", size / (kKilo * kKilo * kKilo));
+}
+
+double rounded_degrees(double angle_rad) {
+  return std::round(angle_rad / kDegree_rad * 1e6) / 1e6;
 }
 
 std::string counted(std::size_t count, std::string_view noun) {

@@ -18,6 +18,9 @@ std::string bounds_text(const std::optional<Box>& bounds);
 /// A number of bytes as text: "12.3 MB".
 std::string bytes_text(std::size_t bytes);
 
+/// Degrees, rounded to a millionth: 90 is not 90.00000000000001.
+double rounded_degrees(double angle_rad);
+
 /// "1 beam", "2 echoes": a number with a noun.
 std::string counted(std::size_t count, std::string_view noun);
 /// "4000 beams, 10 complete sweeps, 3900 echoes"

@@ -18,9 +18,7 @@
 namespace pingvox::app {
 
 std::size_t damaged_records(const NavFile& nav) {
-  std::size_t count = 0;
-  for (const DamageKind& kind : nav.damage) count += kind.count;
-  return count;
+  return damage_count(nav.damage);
 }
 
 namespace {

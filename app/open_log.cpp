@@ -100,6 +100,11 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
                                                             : ""));
 }
 
+Result<std::unique_ptr<BeamSource>> only_beams(Log log, const std::string& name) {
+  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log)) return std::move(*beams);
+  return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", name));
+}
+
 Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic) {
   if (path == "-") return usage_error("--background: reads the log twice, and standard input can be read only once");
   return ByteStream::open(path)

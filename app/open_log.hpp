@@ -34,6 +34,9 @@ using Log = BagLog;
 Result<Log> open_log(ByteStream stream, Damage damage,
                      const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt, const BeamTopic& topic = {});
 
+/// The beams of a log. kUnsupported naming it when it holds scans.
+Result<std::unique_ptr<BeamSource>> only_beams(Log log, const std::string& name);
+
 /// What a bag holds; the stream can still be read afterwards. A pipe is loaded into memory for that.
 /// @param fields  of messages; there must be some of each
 Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<const NavFields> fields);

@@ -5,7 +5,6 @@
 #include <optional>
 #include <ostream>
 #include <utility>
-#include <variant>
 
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
@@ -19,10 +18,7 @@ Result<Log> open_slam_log(const std::string& file, const SlamCommand& command) {
 }
 
 Result<std::unique_ptr<BeamSource>> open_slam_beams(const std::string& file, const SlamCommand& command) {
-  Result<Log> log = open_slam_log(file, command);
-  if (!log) return tl::unexpected(log.error());
-  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) return std::move(*beams);
-  return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", file));
+  return open_slam_log(file, command).and_then([&](Log log) { return only_beams(std::move(log), file); });
 }
 
 Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command) {

@@ -51,7 +51,7 @@ std::uint64_t status_bytes(const std::string& name) {
 std::uint64_t peak_growth(const std::function<void()>& work) {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5" << std::flush;  // resets the peak
-  const std::uint64_t before = status_bytes("VmRSS");
+  const std::uint64_t before = resident_bytes();
   work();
   const std::uint64_t peak = status_bytes("VmHWM");
   return before != 0 && peak > before ? peak - before : 0;
@@ -59,10 +59,10 @@ std::uint64_t peak_growth(const std::function<void()>& work) {
 
 std::uint64_t live_growth(const std::function<std::shared_ptr<const void>()>& build) {
   malloc_trim(0);
-  const std::uint64_t before = status_bytes("VmRSS");
+  const std::uint64_t before = resident_bytes();
   const std::shared_ptr<const void> object = build();
   malloc_trim(0);
-  const std::uint64_t after = status_bytes("VmRSS");
+  const std::uint64_t after = resident_bytes();
   return before != 0 && after > before ? after - before : 0;
 }
 
@@ -85,6 +85,10 @@ std::uint64_t measure_in_child(const std::function<std::uint64_t()>& measure) {
 }
 
 }  // namespace
+
+std::uint64_t resident_bytes() {
+  return status_bytes("VmRSS");
+}
 
 double cpu_time_s() {
   timespec now{};

@@ -53,6 +53,9 @@ struct PairedTimingOptions {
 /// Runs both sides alternately.
 PairedTimes time_in_pairs(const Side& ours, const Side& peer, const PairedTimingOptions& options = {});
 
+/// Resident memory of this process [bytes]; 0 if unknown.
+std::uint64_t resident_bytes();
+
 /// Peak growth of resident memory while `work` runs in a child process [bytes]; 0 if unknown. `work` must not use other
 /// threads.
 std::uint64_t peak_memory_bytes(const std::function<void()>& work);

@@ -1,15 +1,16 @@
 #include "day.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <fstream>
 #include <memory>
+#include <span>
 #include <utility>
 
+#include "bench/paired_timing.hpp"
 #include "bench/vehicle/tank_head.hpp"
 #include "pingvox/device/link.hpp"
 #include "pingvox/device/live_source.hpp"
@@ -24,9 +25,7 @@ constexpr double kPings_per_s = 10.0;
 constexpr double kMaxGrowth_mb = 2.0;
 
 double resident_mb() {
-  std::uint64_t all = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> all >> resident;
-  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
+  return static_cast<double>(resident_bytes()) / 1e6;
 }
 
 /// A head and its host at two ends of a socket, and a clock that they share.

@@ -81,8 +81,7 @@ class HeadSource final : public LiveSource {
     LiveStatus status = status_;
     status.is_connected = link_ && driver_.is_connected();
     status.unanswered = driver_.unanswered();
-    for (const DamageKind& kind : finder_.damage()) status.damaged += kind.count;
-    status.damaged += unusable_;
+    status.damaged += damage_count(finder_.damage()) + unusable_;
     return status;
   }
 

@@ -29,9 +29,7 @@ struct SonarSettings {
 using NoBeam = tl::unexpected<std::string_view>;
 using Beams = tl::expected<std::vector<Beam>, std::string_view>;
 
-constexpr std::string_view kImpossible = "impossible values", kNoSamples = "ping without samples",
-                           kNoFit = "message that does not fit its definition",
-                           kOtherSamples = "samples that are not of 8 bits";
+constexpr std::string_view kNoSamples = "ping without samples", kOtherSamples = "samples that are not of 8 bits";
 
 Beams beam_of(double bearing_rad, double bin_length_m, std::vector<std::uint8_t> intensities) {
   constexpr double kMaxAngle_rad = 1e3;  // beyond any number of turns that a driver counts
@@ -198,18 +196,14 @@ class BagBeams final : public DeviceLog {
   /// Names and types of the topics that may have scans where no topic has beams; empty: there are none.
   std::string scan_topics() const {
     const bool has_fields_or_topic = fields_ || !wanted_.empty();
-    if (has_fields_or_topic || !topics_that(is_second_sonar).empty()) return {};
-    return topics_that([](const BagTopic& topic) { return scan_topic(topic).has_value(); });
+    if (has_fields_or_topic || !topics_text(*bag_, is_second_sonar).empty()) return {};
+    return topics_text(*bag_, may_have_scans);
   }
 
   /// REQUIRES that there are no beams.
   tl::unexpected<Error> no_beams() const { return fail(Error::Code::kUnsupported, why_none()); }
 
-  std::vector<DamageKind> damage() const override {
-    std::vector<DamageKind> kinds = bag_->damage();
-    kinds.insert(kinds.end(), unusable_.begin(), unusable_.end());
-    return kinds;
-  }
+  std::vector<DamageKind> damage() const override { return damage_of(*bag_, unusable_); }
   std::optional<double> share_read() const override { return bag_->share_read(); }
   const std::string& name() const { return bag_->name(); }
 
@@ -265,7 +259,7 @@ class BagBeams final : public DeviceLog {
       }
     }
     if (chosen_.empty()) chosen_ = name;
-    if (name != chosen_) return several_topics();
+    if (name != chosen_) return several_topics(*bag_, "beams", is_sonar);
     if (!fields_) device_ = find_device(type.device);
     beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
     return {};
@@ -296,24 +290,10 @@ class BagBeams final : public DeviceLog {
                                    : std::string(" and cannot be read: its definition is not in the bag")));
   }
 
-  /// Names and types of the topics that are of a kind.
-  std::string topics_that(bool (*are_of_kind)(const BagTopic&)) const {
-    std::set<std::string> names;
-    for (const BagTopic& topic : bag_->topics()) {
-      if (are_of_kind(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
-    }
-    return fmt::format("{}", fmt::join(names, ", "));
-  }
-
-  tl::unexpected<Error> several_topics() const {
-    return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with beams: {}: choose one with --topic",
-                                                     bag_->name(), topics_that(is_sonar)));
-  }
-
   std::string why_none() const {
-    const std::string second = topics_that(is_second_sonar);
+    const std::string second = topics_text(*bag_, is_second_sonar);
     const std::string others =
-        topics_that([](const BagTopic& topic) { return is_sonar(topic) || scan_topic(topic).has_value(); });
+        topics_text(*bag_, [](const BagTopic& topic) { return is_sonar(topic) || may_have_scans(topic); });
     if (!wanted_.empty()) {
       return fmt::format("{}: has no beams or scans in the topic {}{}", bag_->name(), wanted_,
                          others.empty() ? "" : ", only in " + others);
@@ -364,6 +344,25 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
   return std::nullopt;
 }
 
+std::vector<DamageKind> damage_of(const Bag& bag, const std::vector<DamageKind>& unusable) {
+  std::vector<DamageKind> kinds = bag.damage();
+  kinds.insert(kinds.end(), unusable.begin(), unusable.end());
+  return kinds;
+}
+
+std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&)) {
+  std::set<std::string> names;
+  for (const BagTopic& topic : bag.topics()) {
+    if (is_of_kind(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool (*is_of_kind)(const BagTopic&)) {
+  return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with {}: {}: choose one with --topic",
+                                                   bag.name(), what, topics_text(bag, is_of_kind)));
+}
+
 bool is_sonar(const BagTopic& topic) {
   const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
   return known && kSonarTypes[known->type].holds != SonarType::Holds::kSettings;
@@ -395,8 +394,7 @@ Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& t
   if (scan_topics.empty()) return beams->no_beams();
   if (!path && !bytes) {
     return fail(Error::Code::kBadOption,
-                fmt::format("{}: choose the topic of its scans with --topic, as it can be read "
-                            "only once: {}",
+                fmt::format("{}: choose the topic of its scans with --topic, as it can be read only once: {}",
                             beams->name(), scan_topics));
   }
   // Beams may have come behind the first scans.

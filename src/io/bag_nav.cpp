@@ -311,7 +311,7 @@ class BagSurvey {
     }
     if (!topic.known) return {};
     if (!message_.read(topic.known->layout, message.bytes)) {
-      add_damage(unusable_, "message that does not fit its definition", message.file_byte);
+      add_damage(unusable_, kNoFit, message.file_byte);
       return {};
     }
     ++records_;
@@ -329,11 +329,7 @@ class BagSurvey {
     return {};
   }
 
-  std::vector<DamageKind> damage() const {
-    std::vector<DamageKind> kinds = bag_.damage();
-    kinds.insert(kinds.end(), unusable_.begin(), unusable_.end());
-    return kinds;
-  }
+  std::vector<DamageKind> damage() const { return damage_of(bag_, unusable_); }
 
   Result<BagContents> finish() {
     if (const auto added = add_topics(); !added) return tl::unexpected(added.error());
@@ -406,8 +402,9 @@ class BagSurvey {
       Result<std::vector<NavReader>> readers = readers_of(topic);
       if (!readers) return tl::unexpected(readers.error());
       std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, kNavTypes) : topic_with(topic, {});
-      if (is_new) summaries_.push_back(summary_of(topic, known.has_value()));
-      topics_.push_back({place->second, std::move(known), scan_topic(topic), *std::move(readers), {}});
+      std::optional<KnownTopic> scans = scan_topic(topic);
+      if (is_new) summaries_.push_back(summary_of(topic, known.has_value(), scans.has_value()));
+      topics_.push_back({place->second, std::move(known), std::move(scans), *std::move(readers), {}});
     }
     return {};
   }
@@ -429,11 +426,11 @@ class BagSurvey {
     return readers;
   }
 
-  static BagTopicSummary summary_of(const BagTopic& topic, bool has_navigation) {
+  static BagTopicSummary summary_of(const BagTopic& topic, bool has_navigation, bool may_have_scans) {
     using Use = BagTopicSummary::Use;
     BagTopicSummary summary{topic.name, topic.type, 0, is_sonar(topic) ? Use::kBeams : Use::kNone, {}};
     if (summary.use == Use::kNone && has_navigation) summary.use = Use::kNavigation;
-    if (summary.use == Use::kNone && scan_topic(topic)) summary.use = Use::kScans;
+    if (summary.use == Use::kNone && may_have_scans) summary.use = Use::kScans;
     if (summary.use == Use::kNone && topic.is_readable) {
       if (const auto known = topic_with(topic, {})) summary.fields = fields_text(known->layout);
     }

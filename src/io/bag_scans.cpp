@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <set>
 #include <span>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -25,8 +24,7 @@ namespace {
 using Scans = tl::expected<std::vector<PointScan>, std::string_view>;
 using NoScan = tl::unexpected<std::string_view>;
 
-constexpr std::string_view kImpossible = "impossible values", kNoFit = "message that does not fit its definition",
-                           kNoPlaces = "cloud without numbers x, y and z";
+constexpr std::string_view kNoPlaces = "cloud without numbers x, y and z";
 
 /// Of a message. Small numbers in overlapping columns would make points of much less than they take.
 constexpr std::uint64_t kMaxPoints = 10'000'000;
@@ -170,6 +168,13 @@ constexpr std::array kScanTypes = {
              true},
 };
 
+/// Whether a message is no beam, which looks in one direction.
+bool looks_around(const KnownTopic& topic, const RosMessage& message) {
+  if (!kScanTypes[topic.type].may_be_beams) return true;
+  const RosFields fields(message, topic.fields);
+  return fields.number(0) != fields.number(1);
+}
+
 class BagScans final : public ScanSource {
  public:
   BagScans(std::unique_ptr<Bag> bag, Damage damage, std::string wanted)
@@ -198,16 +203,10 @@ class BagScans final : public ScanSource {
     scan.number = given_++;
     return scan;
   }
-  std::size_t skipped() const override {
-    std::size_t count = 0;
-    for (const auto* kinds : {&bag_->damage(), &unusable_}) {
-      for (const DamageKind& kind : *kinds) count += kind.count;
-    }
-    return count;
-  }
+  std::size_t skipped() const override { return damage_count(damage_of(*bag_, unusable_)); }
   std::string first_damage() const override {
-    if (!bag_->damage().empty()) return first_damage_text(bag_->damage().front());
-    return unusable_.empty() ? "" : first_damage_text(unusable_.front());
+    const std::vector<DamageKind> kinds = damage_of(*bag_, unusable_);
+    return kinds.empty() ? "" : first_damage_text(kinds.front());
   }
   std::optional<double> share_read() const override { return bag_->share_read(); }
 
@@ -237,7 +236,7 @@ class BagScans final : public ScanSource {
       add_damage(unusable_, kNoFit, message.file_byte);
       return {};
     }
-    if (!is_scan(*topic, message)) return {};
+    if (!looks_around(*topic, message_)) return {};
     const double time_s = topic->time_of(message_, message.time_s);
     Scans scans = kScanTypes[topic->type].scans_in(message_, *topic, message.bytes, time_s);
     if (!scans) {
@@ -245,18 +244,9 @@ class BagScans final : public ScanSource {
       return {};
     }
     if (chosen_.empty()) chosen_ = name;
-    if (name != chosen_) return several_topics();
+    if (name != chosen_) return several_topics(*bag_, "scans", may_have_scans);
     scans_.insert(scans_.end(), std::make_move_iterator(scans->begin()), std::make_move_iterator(scans->end()));
     return {};
-  }
-
-  tl::unexpected<Error> several_topics() const {
-    std::set<std::string> names;
-    for (const BagTopic& topic : bag_->topics()) {
-      if (scan_topic(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
-    }
-    return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with scans: {}: choose one with --topic",
-                                                     bag_->name(), fmt::join(names, ", ")));
   }
 
   std::unique_ptr<Bag> bag_;
@@ -277,12 +267,13 @@ std::optional<KnownTopic> scan_topic(const BagTopic& topic) {
   return known;
 }
 
+bool may_have_scans(const BagTopic& topic) {
+  return scan_topic(topic).has_value();
+}
+
 bool is_scan(const KnownTopic& topic, const BagMessage& message) {
-  if (!kScanTypes[topic.type].may_be_beams) return true;
   RosMessage read;
-  if (!read.read(topic.layout, message.bytes)) return false;
-  const RosFields fields(read, topic.fields);
-  return fields.number(0) != fields.number(1);
+  return !kScanTypes[topic.type].may_be_beams || (read.read(topic.layout, message.bytes) && looks_around(topic, read));
 }
 
 Result<std::unique_ptr<ScanSource>> bag_scans(std::unique_ptr<Bag> bag, Damage damage, const std::string& wanted,

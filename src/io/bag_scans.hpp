@@ -15,6 +15,9 @@ namespace pingvox {
 /// A topic whose messages may be scans; nullopt: they are not.
 std::optional<KnownTopic> scan_topic(const BagTopic& topic);
 
+/// The same as a question.
+bool may_have_scans(const BagTopic& topic);
+
 /// Whether a message of such a topic is a scan. REQUIRES a topic of scan_topic().
 bool is_scan(const KnownTopic& topic, const BagMessage& message);
 

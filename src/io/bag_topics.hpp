@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -85,6 +86,19 @@ std::optional<T> whole(double number) {
   const bool is_in = number >= std::numeric_limits<T>::min() && number <= std::numeric_limits<T>::max();
   return is_in ? std::optional(static_cast<T>(number)) : std::nullopt;
 }
+
+/// Kinds of damage: messages that cannot be used.
+inline constexpr std::string_view kNoFit = "message that does not fit its definition",
+                                  kImpossible = "impossible values";
+
+/// That of the bag, then its messages that cannot be used.
+std::vector<DamageKind> damage_of(const Bag& bag, const std::vector<DamageKind>& unusable);
+
+/// "/left (sensor_msgs/LaserScan), /right (sensor_msgs/LaserScan)": the topics so far that are of a kind.
+std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&));
+
+/// The error where nothing says which topic is meant. @param what  that they hold: "beams"
+tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool (*is_of_kind)(const BagTopic&));
 
 /// Whether messages of the topic are beams.
 bool is_sonar(const BagTopic& topic);

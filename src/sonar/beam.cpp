@@ -33,10 +33,14 @@ std::string first_damage_text(const DamageKind& kind) {
   return kind.first_byte ? fmt::format("byte {}: {}", *kind.first_byte, kind.what) : std::string(kind.what);
 }
 
-std::size_t BeamSource::skipped() const {
+std::size_t damage_count(std::span<const DamageKind> kinds) {
   std::size_t count = 0;
-  for (const DamageKind& kind : damage()) count += kind.count;
+  for (const DamageKind& kind : kinds) count += kind.count;
   return count;
+}
+
+std::size_t BeamSource::skipped() const {
+  return damage_count(damage());
 }
 
 std::string BeamSource::first_damage() const {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -88,29 +89,34 @@ TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
 }
 
+/// The beginning of a message in CDR, with an empty frame.
+bags::Bytes header_at(std::uint32_t seconds) {
+  bags::Bytes header = {0, 1, 0, 0};
+  for (const std::uint32_t number : {seconds, 0U, 1U, 0U}) bags::put(header, number);  // a NUL and padding at the end
+  return header;
+}
+
+/// A LaserScan at 1000 s, 0.5 rad from range to range.
+bags::Bytes laser_scan(std::initializer_list<float> ranges_m) {
+  bags::Bytes scan = header_at(1000);
+  for (const float number : {0.0F, 1.5F, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
+  bags::put(scan, static_cast<std::uint32_t>(ranges_m.size()));
+  for (const float range_m : ranges_m) bags::put(scan, range_m);
+  bags::put(scan, std::uint32_t{0});
+  return scan;
+}
+
 /// A bag of one LaserScan in four directions at 1000 s, without beams, and its poses.
 std::string bag_of_a_scan() {
   bags::Mcap mcap;
   mcap.topic(1, "/scan", "sensor_msgs/msg/LaserScan", "");
   mcap.topic(2, "/pose", "geometry_msgs/msg/PoseStamped", "");
-  const auto put_header = [](bags::Bytes& to, std::uint32_t seconds) {
-    to = {0, 1, 0, 0};
-    bags::put(to, seconds);
-    for (const std::uint32_t number : {0U, 1U, 0U}) bags::put(to, number);  // nanoseconds, an empty frame, padding
-  };
-  bags::Bytes scan;
-  put_header(scan, 1000);
-  for (const float number : {0.0F, 1.5F, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
-  bags::put(scan, std::uint32_t{4});
-  for (const float range_m : {2.02F, 3.0F, 4.0F, 50.0F}) bags::put(scan, range_m);
-  bags::put(scan, std::uint32_t{0});
   for (const std::uint32_t seconds : {999U, 1001U}) {
-    bags::Bytes pose;
-    put_header(pose, seconds);
+    bags::Bytes pose = header_at(seconds);
     for (const double number : {10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}) bags::put(pose, number);
     mcap.message(2, seconds * 1'000'000'000ULL, pose);
   }
-  mcap.message(1, 1'000'000'000'000U, scan);
+  mcap.message(1, 1'000'000'000'000U, laser_scan({2.02F, 3.0F, 4.0F, 50.0F}));
   mcap.end_chunk();
   const bags::Bytes file = mcap.closed();
   return {file.begin(), file.end()};
@@ -142,15 +148,9 @@ TEST(Bags, ScansAreMappedAlongTheNavigation) {
 TEST(Bags, InfoListsSeveralTopicsWithScans) {
   const Workplace here;
   bags::Mcap mcap;
-  bags::Bytes scan = {0, 1, 0, 0};
-  for (const std::uint32_t number : {1000U, 0U, 1U, 0U}) bags::put(scan, number);
-  for (const float number : {0.0F, 1.5F, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
-  bags::put(scan, std::uint32_t{1});
-  bags::put(scan, 2.0F);
-  bags::put(scan, std::uint32_t{0});
   for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
     mcap.topic(id, id == 1 ? "/left" : "/right", "sensor_msgs/msg/LaserScan", "");
-    mcap.message(id, 1'000'000'000'000U, scan);
+    mcap.message(id, 1'000'000'000'000U, laser_scan({2.0F}));
   }
   mcap.end_chunk();
   const bags::Bytes file = mcap.closed();

@@ -42,8 +42,7 @@ Result<std::unique_ptr<ScanSource>> open_scans(FileBytes file, Damage damage = D
 /// What of a bag can be mapped.
 using BagLog = std::variant<std::unique_ptr<BeamSource>, std::unique_ptr<ScanSource>>;
 
-/// Opens a ROS bag: its beams, else scans of points (PointCloud2, PointCloud, LaserScan), which have
-/// times.
+/// Opens a ROS bag: its beams, else scans of points (PointCloud2, PointCloud, LaserScan), which have times.
 /// @param topic  of beams or scans, else as for open_beams; scans from a pipe need one
 Result<BagLog> open_bag_log(ByteStream stream, Damage damage = Damage::kSkip, const BeamTopic& topic = {});
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,6 +49,8 @@ struct DamageKind {
   std::optional<std::uint64_t> first_byte;
 };
 
+/// Occurrences of all kinds.
+std::size_t damage_count(std::span<const DamageKind> kinds);
 /// Place and reason of the first one, as in "byte 23: wrong checksum".
 std::string first_damage_text(const DamageKind& kind);
 
