@@ -205,9 +205,8 @@ Result<void> check_ranges(const BuildOptions& options) {
   const double nearest_m = options.echo.min_range_m.value_or(0.0);
   if (options.echo.max_range_m > nearest_m) return {};
   return fail(Error::Code::kBadOption,
-              fmt::format("--max-range: must be above --min-range, which is {:.6g} m{}, is {:.6g} m", nearest_m,
-                          nearest_m == EchoOptions::kDefaultBlanking_m ? " when it is not given" : "",
-                          options.echo.max_range_m));
+              fmt::format("--max-range: must be above --min-range ({:.6g} m{}), is {:.6g} m", nearest_m,
+                          nearest_m == EchoOptions::kDefaultBlanking_m ? " by default" : "", options.echo.max_range_m));
 }
 
 Result<MappedLog> map_log(const Log& log, const std::string& name, const VehiclePath& path, const BuildOptions& options,

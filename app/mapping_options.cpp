@@ -291,8 +291,8 @@ Result<void> OccupancyArgs::check(Format format) const {
 
 Result<void> OccupancyArgs::validate() const {
   if (occupied_from && free_below && *free_below > *occupied_from) {
-    return usage_error(fmt::format("--free: must be at most --occupied, which is {}, is {}",
-                                   number_text(*occupied_from), number_text(*free_below)));
+    return usage_error(fmt::format("--free: must be at most --occupied ({}), is {}", number_text(*occupied_from),
+                                   number_text(*free_below)));
   }
   // It would make walls free: the usual threshold for occupied follows.
   if (free_below > 0.5 && !occupied_from) {

@@ -78,7 +78,7 @@ Result<Command> compare_command(const Args& args) {
     command.limited = parsed.limited;
     if (!visible_from.empty()) command.visible_from = visible_from;
     if (!(command.view.max_range_m > command.view.min_range_m)) {
-      return usage_error(fmt::format("--max-range: must be above --min-range, which is {:.6g} m, is {:.6g} m",
+      return usage_error(fmt::format("--max-range: must be above --min-range ({:.6g} m), is {:.6g} m",
                                      command.view.min_range_m, command.view.max_range_m));
     }
     return command;

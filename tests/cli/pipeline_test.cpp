@@ -282,7 +282,7 @@ TEST(Map, RangeAndShareOfBeamsCount) {
   EXPECT_EQ(map["occupied_cells"], "0");
   EXPECT_GT(std::stol(map["free_cells"]), 300);
   expect_error(here.call({"map", "tank.csv", "-o", "d.bt", "--max-range", "0.5"}), 2,
-               {"--max-range: must be above --min-range, which is 0.75 m when it is not given, is 0.5 m"});
+               {"--max-range: must be above --min-range (0.75 m by default), is 0.5 m"});
 }
 
 TEST(Map, TheRecordingOfTheTankHas28SweepsAnd4BeamsOver) {

@@ -60,7 +60,7 @@ TEST(CompareVisible, RefusesItsOptionsWithoutIt) {
   const Workplace here;
   expect_error(here.call({"compare", "a.bt", "b.bt", "--max-range", "10"}), 2, {"--max-range", "--visible-from"});
   expect_error(here.call({"compare", "a.bt", "b.bt", "--visible-from", "t", "--max-range", "0.5"}), 2,
-               {"--max-range: must be above --min-range, which is 0.75 m, is 0.5 m"});
+               {"--max-range: must be above --min-range (0.75 m), is 0.5 m"});
 }
 
 }  // namespace

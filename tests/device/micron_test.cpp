@@ -2,10 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -20,6 +18,7 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 #include "pingvox/io/seanet_recorder.hpp"
+#include "tests/device/dialogue.hpp"
 #include "tests/device/recording.hpp"
 
 namespace pingvox::test {
@@ -286,26 +285,6 @@ TEST(SeanetRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   EXPECT_NEAR(later[0].time_s, 1'795'456'428.263, 1e-6);
 }
 
-/// Lets a source and an emulator talk over a real line, in virtual time, until `beams` has this many beams.
-void run(LiveSource& source, Link& line, MicronEmulator& head, double& now_s, std::vector<Beam>& beams,
-         std::size_t count) {
-  std::array<std::uint8_t, 65536> bytes;
-  for (int i = 0; i < 50'000 && beams.size() < count; ++i) {
-    ASSERT_TRUE(source.step(now_s, beams));
-    const Result<std::size_t> got = line.read(bytes);
-    ASSERT_TRUE(got);
-    head.take(std::span(bytes).first(*got), now_s);
-    const Bytes sent = head.send(now_s);
-    ASSERT_TRUE(line.write(sent));
-    if (*got > 0 || !sent.empty()) continue;
-    // Terminals take a moment; what takes longer is asked for again.
-    constexpr int kPatience_ms = 1;
-    std::array<pollfd, 2> ends = {pollfd{line.descriptor(), POLLIN, 0}, pollfd{source.descriptor(), POLLIN, 0}};
-    if (::poll(ends.data(), ends.size(), kPatience_ms) > 0) continue;
-    now_s = std::max(now_s + 1e-3, std::min(head.due_s(), source.due_s()));
-  }
-}
-
 class MicronOverALine : public testing::TestWithParam<const char*> {};
 
 // The bytes decide: beams and their times are those of the recording, however they were cut into reads, whatever the
@@ -339,25 +318,12 @@ TEST(MicronSource, FindsTheHeadAgainAHundredTimes) {
   const Folder folder;
   Result<Link> line = Link::listen("udp://127.0.0.1:0");
   ASSERT_TRUE(line);
-  const std::string address = line->address();
   Result<SeanetRecorder> recorder = SeanetRecorder::create(folder.path("dive.csv"));
   ASSERT_TRUE(recorder);
   double now_s = 0.0;
-  const auto source = micron_source(address, {.range_m = 0.5, .timeout_s = 1.0}, std::move(*recorder), now_s);
+  const auto source = micron_source(line->address(), {.range_m = 0.5, .timeout_s = 1.0}, std::move(*recorder), now_s);
   std::vector<Beam> beams;
-  for (std::size_t round = 1; round <= 100; ++round) {
-    MicronEmulator head({.pings_per_s = 1000.0}, hear_bearing);
-    run(*source, *line, head, now_s, beams, 3 * round);
-    ASSERT_EQ(beams.size(), 3 * round);
-    EXPECT_EQ(source->status().connections, round);
-    line = Link::listen("udp://127.0.0.1:0");  // the head is gone
-    ASSERT_TRUE(line);
-    for (int i = 0; i < 100 && source->status().is_connected; ++i) ASSERT_TRUE(source->step(now_s += 0.5, beams));
-    EXPECT_FALSE(source->status().is_connected);
-    EXPECT_THAT(source->status().problem, HasSubstr(address));
-    line = Link::listen(address);
-    ASSERT_TRUE(line) << line.error().message;
-  }
+  expect_found_again(*source, line, [] { return MicronEmulator({.pings_per_s = 1000.0}, hear_bearing); }, now_s, beams);
   source->finish(beams);
   expect_equal(beams, beams_in(folder.path("dive.csv")));
 }

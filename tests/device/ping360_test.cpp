@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -20,10 +20,10 @@
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/device/ping360_emulator.hpp"
-#include "pingvox/io/beams.hpp"
 #include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/ping_viewer_recorder.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "tests/device/dialogue.hpp"
 #include "tests/device/recording.hpp"
 
 namespace pingvox {
@@ -314,86 +314,60 @@ TEST(PingViewerRecorder, WritesWhatReadersReadAndOverwritesNothing) {
   EXPECT_THAT(again.error().message, HasSubstr(path));
 }
 
-/// Lets a source and an emulator talk over a real line, in virtual time, until `beams` has this many beams.
-void run(LiveSource& source, Link& line, Ping360Emulator& head, double& now_s, std::vector<Beam>& beams,
-         std::size_t count) {
-  std::array<std::uint8_t, 65536> bytes;
-  for (int i = 0; i < 20'000 && beams.size() < count; ++i) {
-    ASSERT_TRUE(source.step(now_s, beams));
-    const Result<std::size_t> got = line.read(bytes);
-    ASSERT_TRUE(got);
-    head.take(std::span(bytes).first(*got), now_s);
-    const std::vector<std::uint8_t> sent = head.send(now_s);
-    ASSERT_TRUE(line.write(sent));
-    if (*got > 0 || !sent.empty()) continue;
-    // Terminals take a moment; what takes longer is asked for again.
-    constexpr int kPatience_ms = 2;
-    std::array<pollfd, 2> ends = {pollfd{line.descriptor(), POLLIN, 0}, pollfd{source.descriptor(), POLLIN, 0}};
-    if (std::isinf(head.due_s()) && ::poll(ends.data(), ends.size(), kPatience_ms) > 0) continue;
-    now_s = std::max(now_s + 1e-3, std::min(head.due_s(), source.due_s()));
-  }
-}
-
 bool is_of_scan(const Beam& beam) {
   return beam.intensities.size() == 8;  // scan_request's
 }
 
-class OverALine : public testing::TestWithParam<const char*> {};
+/// A source at a line of a kind, whose other end the test has.
+class OverALine : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    line_ = Link::listen(GetParam());
+    ASSERT_TRUE(line_) << line_.error().message;
+    Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder_.path("dive.bin"));
+    ASSERT_TRUE(recorder);
+    source_ = ping360_source(line_->address(), {.range_m = 1.0, .timeout_s = 1.0}, std::move(*recorder), now_s_);
+  }
+  void run_until(std::size_t count, Ping360Emulator& head) { run(*source_, *line_, head, now_s_, beams_, count); }
+  /// The bytes decide: beams and their times are those of the recording, however they were cut into reads.
+  void expect_equal_recording() {
+    source_->finish(beams_);
+    expect_equal(beams_, beams_in(folder_.path("dive.bin")));
+  }
 
-// The bytes decide: beams and their times are those of the recording, however they were cut into reads.
+  const Folder folder_;
+  double now_s_ = 5.0;
+  Result<Link> line_ = fail(Error::Code::kIo, "not open");
+  std::unique_ptr<LiveSource> source_;
+  std::vector<Beam> beams_;
+};
+
 TEST_P(OverALine, TheRecordingHasTheBeamsOfTheLiveSource) {
-  const Folder folder;
-  Result<Link> line = Link::listen(GetParam());
-  ASSERT_TRUE(line) << line.error().message;
-  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
-  ASSERT_TRUE(recorder);
   Ping360Emulator head({.lost = 2e-4, .doubled = 2e-4, .damaged = 2e-4}, hear_angle);
-  double now_s = 5.0;
-  const auto source = ping360_source(line->address(), {.range_m = 1.0, .timeout_s = 1.0}, std::move(*recorder), now_s);
-  std::vector<Beam> beams;
-  run(*source, *line, head, now_s, beams, 40);
-  ASSERT_GE(beams.size(), 40U);
-  source->finish(beams);
-  EXPECT_GT(source->status().damaged, 0U);
-  expect_equal(beams, beams_in(folder.path("dive.bin")));
+  run_until(40, head);
+  ASSERT_GE(beams_.size(), 40U);
+  expect_equal_recording();
+  EXPECT_GT(source_->status().damaged, 0U);
 }
 
 // Kills a driver that leaves a head scanning, as another host may have left it.
 TEST_P(OverALine, AHeadThatWasLeftScanningIsStopped) {
-  const Folder folder;
-  Result<Link> line = Link::listen(GetParam());
-  ASSERT_TRUE(line) << line.error().message;
-  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
-  ASSERT_TRUE(recorder);
   Ping360Emulator head({}, hear_angle);
-  head.take(scan_request(200, 300, 1), 5.0);
-  double now_s = 5.0;
-  const auto source = ping360_source(line->address(), {.range_m = 1.0, .timeout_s = 1.0}, std::move(*recorder), now_s);
-  std::vector<Beam> beams;
-  run(*source, *line, head, now_s, beams, 60);
-  source->finish(beams);
-  EXPECT_LE(std::ranges::count_if(beams, is_of_scan), 10);
-  expect_equal(beams, beams_in(folder.path("dive.bin")));
+  head.take(scan_request(200, 300, 1), now_s_);
+  run_until(60, head);
+  expect_equal_recording();
+  EXPECT_LE(std::ranges::count_if(beams_, is_of_scan), 10);
 }
 
 // Another host makes it scan: its pings come between those that are asked for.
 TEST_P(OverALine, AHeadThatScansByItselfAnswersAllTheSame) {
-  const Folder folder;
-  Result<Link> line = Link::listen(GetParam());
-  ASSERT_TRUE(line) << line.error().message;
-  Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
-  ASSERT_TRUE(recorder);
   Ping360Emulator head({}, hear_angle);
-  double now_s = 5.0;
-  const auto source = ping360_source(line->address(), {.range_m = 1.0, .timeout_s = 1.0}, std::move(*recorder), now_s);
-  std::vector<Beam> beams;
-  run(*source, *line, head, now_s, beams, 5);
-  head.take(scan_request(200, 300, 1), now_s);
-  run(*source, *line, head, now_s, beams, 60);
-  source->finish(beams);
-  EXPECT_GT(std::ranges::count_if(beams, is_of_scan), 10);
-  EXPECT_GT(std::ranges::count_if(beams, std::not_fn(is_of_scan)), 10);
-  expect_equal(beams, beams_in(folder.path("dive.bin")));
+  run_until(5, head);
+  head.take(scan_request(200, 300, 1), now_s_);
+  run_until(60, head);
+  expect_equal_recording();
+  EXPECT_GT(std::ranges::count_if(beams_, is_of_scan), 10);
+  EXPECT_GT(std::ranges::count_if(beams_, std::not_fn(is_of_scan)), 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Device, OverALine, testing::Values("udp://127.0.0.1:0", "pty"),
@@ -418,30 +392,16 @@ TEST(Ping360Source, AsksAgainSoonWhereAnAnswerIsDamaged) {
   EXPECT_LT(seconds_of({.lost = 1e-4}), 1.8 * clean_s);
 }
 
-// Each time another socket, as a head that is switched off and on.
 TEST(Ping360Source, FindsTheHeadAgainAHundredTimes) {
   const Folder folder;
   Result<Link> line = Link::listen("udp://127.0.0.1:0");
   ASSERT_TRUE(line);
-  const std::string address = line->address();
   Result<PingViewerRecorder> recorder = PingViewerRecorder::create(folder.path("dive.bin"));
   ASSERT_TRUE(recorder);
   double now_s = 0.0;
-  const auto source = ping360_source(address, {.range_m = 0.5, .timeout_s = 1.0}, std::move(*recorder), now_s);
+  const auto source = ping360_source(line->address(), {.range_m = 0.5, .timeout_s = 1.0}, std::move(*recorder), now_s);
   std::vector<Beam> beams;
-  for (std::size_t round = 1; round <= 100; ++round) {
-    Ping360Emulator head({.pings_per_s = 1000.0}, hear_angle);
-    run(*source, *line, head, now_s, beams, 3 * round);
-    ASSERT_EQ(beams.size(), 3 * round);
-    EXPECT_EQ(source->status().connections, round);
-    line = Link::listen("udp://127.0.0.1:0");  // the head is gone
-    ASSERT_TRUE(line);
-    for (int i = 0; i < 100 && source->status().is_connected; ++i) ASSERT_TRUE(source->step(now_s += 0.5, beams));
-    EXPECT_FALSE(source->status().is_connected);
-    EXPECT_THAT(source->status().problem, HasSubstr(address));
-    line = Link::listen(address);
-    ASSERT_TRUE(line) << line.error().message;
-  }
+  expect_found_again(*source, line, [] { return Ping360Emulator({.pings_per_s = 1000.0}, hear_angle); }, now_s, beams);
   source->finish(beams);
   expect_equal(beams, beams_in(folder.path("dive.bin")));
 }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "pingvox/analysis/compare.hpp"
@@ -11,27 +10,13 @@
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "tests/mapping/room.hpp"
 #include "tests/support/tank_recording.hpp"
 
 namespace pingvox {
 namespace {
 
-/// Beams of a head that turns in a room with walls at 1.5 to 2.8 m, 200 to a turn.
-std::vector<Beam> room(int beams) {
-  std::vector<Beam> heard;
-  for (int n = 0; n < beams; ++n) {
-    Beam beam{.time_s = 0.04 * n,
-              .bearing_rad = 2.0 * std::numbers::pi * (n % 200) / 200.0,
-              .bin_length_m = 0.0125,
-              .intensities = std::vector<std::uint8_t>(300, 4)};
-    const int wall = 170 + static_cast<int>(50.0 * std::sin(0.05 * n));
-    for (int i = wall; i < wall + 6; ++i) {
-      beam.intensities[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(120 + n % 100);
-    }
-    heard.push_back(std::move(beam));
-  }
-  return heard;
-}
+using test::room;
 
 BuildOptions options_of(BeamShape shape, Vote vote) {
   BuildOptions options;

@@ -155,6 +155,21 @@ void expect_between(const OccupancyMap& map, const OccupancyMap& before, const O
   EXPECT_TRUE(are_equal(synchronized, map));
 }
 
+/// Whether a change of a map succeeds though its n-th allocation fails. Else it has to say why, and to lose no memory.
+template <class Change>
+bool succeeds(std::int64_t n, Shortage shortage, OccupancyMap& map, Change&& change) {
+  const std::int64_t alive = g_alive;
+  const auto code = with_shortage(n, shortage, [&]() -> std::optional<Error::Code> {
+    const auto done = change(map);
+    return done ? std::nullopt : std::optional(done.error().code);
+  });
+  EXPECT_EQ(g_alive, alive);
+  if (code) {
+    EXPECT_EQ(*code, Error::Code::kNoMemory);
+  }
+  return !code;
+}
+
 class NoMemory : public testing::TestWithParam<Shortage> {};
 
 TEST_P(NoMemory, AScanIsTakenInInPartAtMostAndTheMapStaysWhole) {
@@ -163,22 +178,17 @@ TEST_P(NoMemory, AScanIsTakenInInPartAtMostAndTheMapStaysWhole) {
   const ScanUpdate scan = scan_of_box(before.lattice(), 5, 14);
   OccupancyMap after = before;
   ASSERT_TRUE(after.apply(scan));
+  const auto change = [&](OccupancyMap& map) { return map.apply(scan); };
   until_it_succeeds([&](std::int64_t n) {
     SCOPED_TRACE(n);
     OccupancyMap map = before;
-    const std::int64_t alive = g_alive;
-    const auto code = with_shortage(n, GetParam(), [&]() -> std::optional<Error::Code> {
-      const auto applied = map.apply(scan);
-      return applied ? std::nullopt : std::optional(applied.error().code);
-    });
-    EXPECT_EQ(g_alive, alive);
-    if (code) {
-      EXPECT_EQ(*code, Error::Code::kNoMemory);
-      expect_between(map, before, after);
-    } else {
+    const bool is_done = succeeds(n, GetParam(), map, change);
+    if (is_done) {
       EXPECT_TRUE(are_equal(map, after));
+    } else {
+      expect_between(map, before, after);
     }
-    return !code;
+    return is_done;
   });
 }
 
@@ -191,22 +201,17 @@ TEST_P(NoMemory, ABatchIsTakenInInPartAtMost) {
   }
   OccupancyMap after = before;
   ASSERT_TRUE(after.update(std::span<const Key>(keys), LogOdds(0.4F)));
+  const auto change = [&](OccupancyMap& map) { return map.update(std::span<const Key>(keys), LogOdds(0.4F)); };
   until_it_succeeds([&](std::int64_t n) {
     SCOPED_TRACE(n);
     OccupancyMap map = before;
-    const std::int64_t alive = g_alive;
-    const auto code = with_shortage(n, GetParam(), [&]() -> std::optional<Error::Code> {
-      const auto updated = map.update(std::span<const Key>(keys), LogOdds(0.4F));
-      return updated ? std::nullopt : std::optional(updated.error().code);
-    });
-    EXPECT_EQ(g_alive, alive);
-    if (code) {
-      EXPECT_EQ(*code, Error::Code::kNoMemory);
-      expect_between(map, before, after);
-    } else {
+    const bool is_done = succeeds(n, GetParam(), map, change);
+    if (is_done) {
       EXPECT_TRUE(are_equal(map, after));
+    } else {
+      expect_between(map, before, after);
     }
-    return !code;
+    return is_done;
   });
 }
 
@@ -217,16 +222,11 @@ TEST_P(NoMemory, MapsThatAreNotMergedStayAsTheyWere) {
   until_it_succeeds([&](std::int64_t n) {
     SCOPED_TRACE(n);
     OccupancyMap map = before;
-    const std::int64_t alive = g_alive;
-    const auto code = with_shortage(n, GetParam(), [&]() -> std::optional<Error::Code> {
-      const auto merged = map.merge(other);
-      return merged ? std::nullopt : std::optional(merged.error().code);
-    });
-    EXPECT_EQ(g_alive, alive);
-    if (!code) return true;
-    EXPECT_EQ(*code, Error::Code::kNoMemory);
-    EXPECT_TRUE(are_equal(map, before));
-    return false;
+    const bool is_done = succeeds(n, GetParam(), map, [&](OccupancyMap& changed) { return changed.merge(other); });
+    if (!is_done) {
+      EXPECT_TRUE(are_equal(map, before));
+    }
+    return is_done;
   });
 }
 

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,25 +8,14 @@
 #include "pingvox/analysis/compare.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/rebuilt_map.hpp"
+#include "tests/mapping/room.hpp"
 
 namespace pingvox {
 namespace {
 
-/// Beams of a head that turns, 60 to a turn, with walls at 1.5 to 2.8 m.
+/// 60 beams to a turn.
 std::vector<Beam> room(int beams) {
-  std::vector<Beam> heard;
-  for (int n = 0; n < beams; ++n) {
-    Beam beam{.time_s = 0.04 * n,
-              .bearing_rad = 2.0 * std::numbers::pi * (n % 60) / 60.0,
-              .bin_length_m = 0.025,
-              .intensities = std::vector<std::uint8_t>(150, 4)};
-    const int wall = 85 + static_cast<int>(25.0 * std::sin(0.05 * n));
-    for (int i = wall; i < wall + 4; ++i) {
-      beam.intensities[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(120 + n % 100);
-    }
-    heard.push_back(std::move(beam));
-  }
-  return heard;
+  return test::room(beams, 60, 150);
 }
 
 /// Where the vehicle was: along an arc, bent by a drift.

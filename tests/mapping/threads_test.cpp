@@ -1,35 +1,28 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cstddef>
 #include <memory>
-#include <numbers>
+#include <optional>
 #include <random>
+#include <vector>
 
 #include "pingvox/analysis/compare.hpp"
 #include "pingvox/mapping/build_map.hpp"
+#include "tests/mapping/room.hpp"
 
 namespace pingvox {
 namespace {
 
-/// Sweeps of a head in the middle of a room, with walls here and there.
 class Room : public BeamSource {
  public:
   Result<std::optional<Beam>> next() override {
-    if (n_ == 500) return std::nullopt;
-    Beam beam{.time_s = 0.04 * n_,
-              .bearing_rad = 2.0 * std::numbers::pi * (n_ % 200) / 200.0,
-              .bin_length_m = 0.0125,
-              .intensities = std::vector<std::uint8_t>(300, 4)};
-    const int wall = 160 + static_cast<int>(60.0 * std::sin(0.05 * n_));
-    for (int i = wall; i < wall + 6; ++i) {
-      beam.intensities[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(120 + n_ % 100);
-    }
-    ++n_;
-    return beam;
+    if (n_ == beams_.size()) return std::nullopt;
+    return beams_[n_++];
   }
 
  private:
-  int n_ = 0;
+  std::vector<Beam> beams_ = test::room(500);
+  std::size_t n_ = 0;
 };
 
 class Cloud : public ScanSource {
