@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -67,7 +68,7 @@ class LiveRun {
       if (can_map_one()) map_one(watch);
       report_changes();
       const double now_s = watch.seconds();
-      if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map_, last_pose(), now_s);
+      if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map_, pose_for_obstacles(now_s), now_s);
       if (now_s >= report_at_s) {
         report(now_s);
         report_at_s = now_s + kReport_s;
@@ -112,9 +113,10 @@ class LiveRun {
   /// Without a beam there is no map, and an older one stays.
   bool has_mapped() const { return mapper_.report().beams > 0; }
 
-  /// The latest one that is known. nullopt: it is too old to say where obstacles are.
-  std::optional<Pose> last_pose() const {
+  /// The latest one that is known. nullopt: it, or the last beam, is too old to say where obstacles are.
+  std::optional<Pose> pose_for_obstacles(double now_s) const {
     constexpr double kOldest_s = 2.0;
+    if (cannot_map_ || !last_beam_s_ || now_s - *last_beam_s_ > kLong_s) return std::nullopt;
     if (!nav_) return Pose::Identity();
     const std::optional<double> until_s = nav_->poses().known_until_s();
     return until_s && nav_->now_s() - *until_s <= kOldest_s ? nav_->poses().at(*until_s) : std::nullopt;
@@ -127,6 +129,7 @@ class LiveRun {
     constexpr std::size_t kMaxWaiting = 2000;  // at most 2.4 MB of a Ping360
     for (Beam& beam : arrived_) {
       ++beams_;
+      last_beam_s_ = now_s;
       waiting_.push_back({std::move(beam), now_s});
     }
     arrived_.clear();
@@ -157,7 +160,7 @@ class LiveRun {
     }
     report_changes();
     if (has_mapped()) {
-      if (const auto written = writer_.finish(map_); !written) return tl::unexpected(written.error());
+      if (const auto written = writer_.finish(map_); !written) note(written.error());
     } else if (!cannot_map_) {
       note({Error::Code::kIo, fmt::format("{}: not written: no beam was mapped", command_.output)});
     }
@@ -233,26 +236,42 @@ class LiveRun {
       console_.say(fmt::format("{}: no {} yet, {} messages so far: beams are not mapped", nav_->names(), missing,
                                nav_->messages()));
     }
-    if (were_sources_reported_ || poses.position().empty()) return;
+    if (poses.position().empty()) return;
+    report_silence(poses);
+    if (were_sources_reported_) return;
     were_sources_reported_ = true;
     bar_.clear();
     console_.say(fmt::format("{}: attitude of {}, position of {}", nav_->names(), on_one_line(poses.attitude()),
                              on_one_line(poses.position())));
   }
 
+  /// Prints when the poses end, and when they come again.
+  void report_silence(const LivePoses& poses) {
+    const std::optional<double> until_s = poses.known_until_s();
+    const bool is_silent = !until_s || nav_->now_s() - *until_s > kLong_s;
+    if (is_silent == has_no_pose_) return;
+    has_no_pose_ = is_silent;
+    bar_.clear();
+    console_.say(is_silent ? fmt::format("{}: no pose for {} s: beams are not mapped", nav_->names(), kLong_s)
+                           : fmt::format("{}: poses again", nav_->names()));
+  }
+
   void report(double now_s) {
     const double beams_per_s = static_cast<double>(beams_ - recent_.first_beam) / (now_s - recent_.since_s);
-    if (command_.output_options.report == Report::kJson) {
-      // A reader that has gone ends nothing.
+    // A reader that has gone, or has stopped reading, ends nothing.
+    if (command_.output_options.report == Report::kJson && can_take_more(STDOUT_FILENO)) {
       static_cast<void>(console_.print(json_of(now_s, false).text() + "\n"));
     }
-    const LiveStatus status = source_->status();
-    bar_.draw(std::nullopt,
-              fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, {:.0f} ms late, map {}",
-                          status.is_connected ? "" : "not connected, ", beams_, beams_per_s, mapper_.report().echoes,
-                          status.unanswered + status.damaged, not_mapped(), 1e3 * recent_.latency_s,
-                          bytes_text(map_.memory_bytes())));
+    if (can_take_more(STDERR_FILENO)) bar_.draw(std::nullopt, status_line(beams_per_s));
     recent_ = {now_s, beams_, 0.0};
+  }
+
+  std::string status_line(double beams_per_s) const {
+    const LiveStatus status = source_->status();
+    return fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, {:.0f} ms late, map {}",
+                       status.is_connected ? "" : "not connected, ", beams_, beams_per_s, mapper_.report().echoes,
+                       status.unanswered + status.damaged, not_mapped(), 1e3 * recent_.latency_s,
+                       bytes_text(map_.memory_bytes()));
   }
 
   JsonObject json_of(double now_s, bool is_last) const {
@@ -328,7 +347,8 @@ class LiveRun {
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_reported_ = false;
-  bool were_sources_reported_ = false, was_silence_reported_ = false;
+  bool were_sources_reported_ = false, was_silence_reported_ = false, has_no_pose_ = false;
+  std::optional<double> last_beam_s_;  ///< when it arrived
   std::string last_problem_;
   std::vector<Reported> reported_;  ///< of the devices of navigation
 };
@@ -344,7 +364,9 @@ Result<int> run(const LiveCommand& command, Console& console) {
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
   const auto since_1970_ms = std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count();
   const LiveStart start{watch.seconds(), static_cast<std::uint64_t>(since_1970_ms)};
-  Recordings recordings(record_path(command, start));
+  Result<std::optional<std::filesystem::path>> record = record_path(command, start);
+  if (!record) return tl::unexpected(record.error());
+  Recordings recordings(*std::move(record));
   Result<std::unique_ptr<LiveSource>> source = open_live_sonar(command, recordings, start);
   if (!source) return tl::unexpected(source.error());
   std::optional<Navigation> nav;

@@ -1,5 +1,7 @@
 #include "console.hpp"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <ostream>
@@ -31,6 +33,11 @@ void print_error(std::string_view message) {
   // One write, so that lines of several processes do not mix.
   const std::string line = "pingvox: " + on_one_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+bool can_take_more(int descriptor) {
+  pollfd file = {descriptor, POLLOUT, 0};
+  return ::poll(&file, 1, 0) == 1;
 }
 
 std::string name_of_input(const std::string& path) {

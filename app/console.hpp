@@ -43,6 +43,9 @@ class Console {
 /// Prints "pingvox: message" as one line on standard error.
 void print_error(std::string_view message);
 
+/// Whether a line can be written to a file, pipe or terminal without waiting for its reader.
+bool can_take_more(int descriptor);
+
 /// A file of the command line as messages name it: "-" is standard input.
 std::string name_of_input(const std::string& path);
 

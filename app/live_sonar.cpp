@@ -23,10 +23,14 @@ std::string name_by_time(const LiveStart& start) {
 
 }  // namespace
 
-std::optional<std::filesystem::path> record_path(const LiveCommand& command, const LiveStart& start) {
+Result<std::optional<std::filesystem::path>> record_path(const LiveCommand& command, const LiveStart& start) {
   if (!command.record) return std::nullopt;
   std::filesystem::path path = *command.record;
   std::error_code error;
+  if (path.extension().empty() && !std::filesystem::exists(path, error)) {
+    std::filesystem::create_directories(path, error);
+    if (error) return fail(Error::Code::kIo, fmt::format("{}: {}", *command.record, error.message()));
+  }
   if (std::filesystem::is_directory(path, error)) {
     path /= name_by_time(start) + (command.device.kind == LiveDevice::Kind::kMicron ? ".csv" : ".bin");
   }

@@ -10,6 +10,14 @@
 
 namespace pingvox::app {
 
+Result<void> MapWriter::write_file_of(const OccupancyMap& map) const {
+  try {
+    return write_map(map, command_.format, command_.made_by, command_.output);
+  } catch (const std::bad_alloc&) {
+    return fail(Error::Code::kNoMemory, fmt::format("{}: not written: out of memory", command_.output));
+  }
+}
+
 Result<void> MapWriter::write(const OccupancyMap& map) {
   Result<void> last;
   if (written_.valid()) {
@@ -17,9 +25,7 @@ Result<void> MapWriter::write(const OccupancyMap& map) {
     last = written_.get();
   }
   try {
-    written_ = std::async(std::launch::async, [this, copy = map] {
-      return write_map(copy, command_.format, command_.made_by, command_.output);
-    });
+    written_ = std::async(std::launch::async, [this, copy = map] { return write_file_of(copy); });
   } catch (const std::bad_alloc&) {
     return fail(Error::Code::kNoMemory, fmt::format("{}: not written: out of memory for a copy", command_.output));
   } catch (const std::system_error& error) {
@@ -30,7 +36,7 @@ Result<void> MapWriter::write(const OccupancyMap& map) {
 
 Result<void> MapWriter::finish(const OccupancyMap& map) {
   if (written_.valid()) written_.wait();
-  return write_map(map, command_.format, command_.made_by, command_.output);
+  return write_file_of(map);
 }
 
 }  // namespace pingvox::app

@@ -21,6 +21,8 @@ class MapWriter {
   Result<void> finish(const OccupancyMap& map);
 
  private:
+  Result<void> write_file_of(const OccupancyMap& map) const;
+
   const LiveCommand& command_;
   std::future<Result<void>> written_;
 };

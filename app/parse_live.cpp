@@ -118,6 +118,11 @@ Result<int> steps_in(double angle_deg, double step_deg, int max_steps) {
       fmt::format("--step: must be a multiple of {} up to {:.4g}, is {}", step_deg, step_deg * max_steps, angle_deg));
 }
 
+/// Such a head would not turn, and its sweep would not end.
+tl::unexpected<Error> step_beyond_sector(double step_deg) {
+  return usage_error(fmt::format("--step: is {} degrees, more than --sector", step_deg));
+}
+
 Result<void> apply(const HeadMotion& motion, Ping360Settings& head) {
   const Result<int> step = steps_in(motion.step_deg, kGradian_deg, 20);
   if (!step) return tl::unexpected(step.error());
@@ -125,6 +130,7 @@ Result<void> apply(const HeadMotion& motion, Ping360Settings& head) {
   if (!motion.sector_deg) return {};
   const auto& [from_deg, to_deg] = *motion.sector_deg;
   const int width_grad = static_cast<int>(std::lround((to_deg - from_deg) / kGradian_deg));
+  if (width_grad < *step) return step_beyond_sector(motion.step_deg);
   const int left_grad = 200 - static_cast<int>(std::lround(to_deg / kGradian_deg));
   head.sector = {.first_grad = (left_grad + 800) % 400, .width_grad = std::clamp(width_grad, 1, 399)};
   return {};
@@ -141,6 +147,7 @@ Result<void> apply(const HeadMotion& motion, MicronSettings& head) {
     return (kAhead - static_cast<int>(std::lround(bearing_deg / kStep_deg)) + 2 * kTurn) % kTurn;
   };
   const auto& [from_deg, to_deg] = *motion.sector_deg;
+  if (to_deg - from_deg < motion.step_deg) return step_beyond_sector(motion.step_deg);
   head.sector = {.left = angle(to_deg), .right = angle(from_deg)};
   return {};
 }
@@ -196,6 +203,11 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
   }
   if (!typed.record.empty()) {
     if (is_replay) return usage_error("--record: a replay is a recording already");
+    for (const std::string_view suffix : {".tlog", ".jsonl"}) {
+      if (!command.nav.empty() && typed.record.ends_with(suffix)) {
+        return usage_error(fmt::format("--record: {} is for --nav: give the sonar's log another suffix", suffix));
+      }
+    }
     command.record = typed.record;
   }
   if (!command.nav.empty() && is_replay) {
@@ -262,7 +274,7 @@ Result<Command> live_command(const Args& args) {
           "by suffix, else bt", format},
          {"--record", 0, "FILE",
           "record the bytes of the device: a Ping360's as a log of Ping Viewer, a Micron's as a capture of packets "
-          "with their times; in a folder named by the time",
+          "with their times; in a folder named by the time (a FILE without a suffix is one)",
           "none", store(typed.record)},
          {"--write-every", 0, "S", "seconds from one written map to the next", number_text(command.write_every_s),
           within({0.1, 86'400.0}, store_number(command.write_every_s))},

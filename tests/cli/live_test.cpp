@@ -1,6 +1,7 @@
 // `pingvox live` against `pingvox emulate`, over sockets on the loopback address.
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -15,7 +16,9 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -386,9 +389,84 @@ TEST(Live, TellsNoObstaclesWhereTheVehicleFellSilent) {
     std::this_thread::sleep_for(std::chrono::seconds(1));
     return !is_told();
   }));
+  EXPECT_TRUE(wait_until([&] { return here.read("notes").find("no pose for 5 s") != std::string::npos; }));
   ::kill(child, SIGTERM);
   EXPECT_EQ(status_of(child), 0) << here.read("notes");
   ::close(autopilot);
+}
+
+// Kills sectors that are said to be free by a sonar that is off.
+TEST(Live, TellsNoObstaclesWhenTheHeadFellSilent) {
+  const Workplace here;
+  std::string address;
+  const int autopilot = bound_socket(address);
+  ASSERT_GE(autopilot, 0);
+  std::array<std::uint8_t, 300> frame = {};
+  const auto is_told = [&] { return ::recv(autopilot, frame.data(), frame.size(), 0) > 0; };
+  pid_t child = -1;
+  {
+    const Head head({}, "100");
+    child =
+        here.start({"live", head.address(), "-o", "live.bt", "--range", "4", "--step", "18", "--obstacles", address});
+    EXPECT_TRUE(wait_until(is_told));
+  }
+  EXPECT_TRUE(wait_until([&] {
+    while (is_told()) continue;
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    return !is_told();
+  }));
+  ::kill(child, SIGTERM);
+  EXPECT_EQ(status_of(child), 0);
+  ::close(autopilot);
+}
+
+// A terminal that was stopped with Ctrl-S stopped the head and the recording, too.
+TEST(Live, GoesOnWhereItsStatusIsNotRead) {
+  const Head head({}, "100");
+  const Workplace here;
+  ASSERT_EQ(::mkfifo(here.path("status").c_str(), 0600), 0);
+  const int status = ::open(here.path("status").c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(status, 0);
+  const std::string filler(4096, ' ');
+  while (::write(status, filler.data(), filler.size()) > 0) continue;
+  const pid_t child = here.start(live(head.address(), {"--json"}), {.out_path = here.path("status")});
+  const auto recorded = [&] { return here.has("dive.bin") ? here.read("dive.bin").size() : 0; };
+  EXPECT_TRUE(wait_until([&] { return recorded() > 100'000; }));
+  // Beyond the second at which the status is printed.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  const std::size_t before = recorded();
+  EXPECT_TRUE(wait_until([&] { return recorded() > before + 10'000; }));
+  ::kill(child, SIGTERM);
+  std::string said(1 << 20, ' ');
+  EXPECT_TRUE(wait_until([&] {
+    const ssize_t got = ::read(status, said.data(), said.size());
+    return got > 0 && std::string_view(said).substr(0, static_cast<std::size_t>(got)).find("true") != std::string::npos;
+  }));
+  EXPECT_EQ(status_of(child), 0);
+  ::close(status);
+}
+
+TEST(Live, MakesTheFolderOfItsRecordings) {
+  const Head head;
+  const Workplace here;
+  for (int run = 1; run <= 2; ++run) {
+    const Outcome outcome = here.call({"live", head.address(), "-o", "live.bt", "--record", "dives", "--range", "1",
+                                       "--step", "18", "--beams", "50", "--quiet"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(here.path("dives")), {}), run);
+  }
+}
+
+// Kills a report that is left out where the map could not be written.
+TEST(Live, ReportsWhatItDidThoughTheMapCannotBeWritten) {
+  const Head head;
+  const Workplace here;
+  const Outcome outcome =
+      here.call({"live", head.address(), "-o", "live.bt", "--range", "1", "--step", "18", "--beams", "50", "--json"},
+                {.file_bytes = 100});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("live.bt"));
+  EXPECT_THAT(outcome.out, HasSubstr(R"("done": true)"));
 }
 
 TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
@@ -497,6 +575,13 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--nav", "mavlink:udp://nowhere"}), 2,
                {"udp://HOST:PORT"});
   expect_error(here.call({"live", "replay:a.bin", "-o", "a.bt", "--nav", "mavlink:udp://:14550"}), 2, {"--nav"});
+  for (const char* head : {"ping360:udp://127.0.0.1:9", "micron:udp://127.0.0.1:9"}) {
+    expect_error(here.call({"live", head, "-o", "a.bt", "--sector", "-1,1", "--step", "5.4"}), 2,
+                 {"--step: is 5.4 degrees, more than --sector"});
+  }
+  expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--nav", "mavlink:udp://:14550",
+                          "--record", "a.tlog"}),
+               2, {"--record: .tlog is for --nav"});
   here.write("dive.bin", "here already");
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--record", "dive.bin"}), 1,
                {"dive.bin", "exists"});
