@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -8,17 +9,30 @@
 
 namespace pingvox {
 
-/// Tells the beams of a log's first head from those of others on the same line: together they are not one picture.
+/// Tells the beams of a log's first head from those of others on the same line: together they are not one picture. A
+/// head that sent a single beam, before kEnough of another one, is a damaged number.
 class FirstHead {
  public:
   /// @param head  the number of a head that sent a beam
   bool is(unsigned head) {
     first_ = first_.value_or(head);
-    return *first_ == head;
+    if (*first_ == head) {
+      ++beams_;
+      return true;
+    }
+    other_beams_ = other_ == head ? other_beams_ + 1 : 1;
+    other_ = head;
+    if (beams_ != 1 || other_beams_ != kEnough) return false;
+    first_ = head;
+    beams_ = kEnough;
+    return true;
   }
 
  private:
-  std::optional<unsigned> first_;
+  static constexpr std::size_t kEnough = 8;
+  std::optional<unsigned> first_, other_;
+  std::size_t beams_ = 0;        ///< of the first head
+  std::size_t other_beams_ = 0;  ///< of the other one in succession
 };
 inline constexpr std::string_view kOtherHead = "beam of another head";  ///< kind of damage
 

@@ -5,10 +5,19 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
 #include "pingvox/sonar/beam.hpp"
 
 namespace pingvox {
+
+/// What the status of a head says that is wrong with its beam; nullopt: nothing.
+inline std::optional<std::string_view> seanet_fault(std::uint64_t status) {
+  constexpr std::uint64_t kNoPower = 1, kLostStep = 2;
+  if ((status & kNoPower) != 0) return "the head had lost its power";
+  if ((status & kLostStep) != 0) return "the head's motor had lost its step";
+  return std::nullopt;
+}
 
 /// Bearing in the sensor frame from 1/16 gradians, clockwise with 3200 ahead; nullopt: more than a turn.
 inline std::optional<double> seanet_bearing_rad(std::uint64_t bearing) {

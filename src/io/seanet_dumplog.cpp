@@ -54,6 +54,9 @@ tl::expected<NodeBeam, std::string> beam_in(std::string_view line) {
     return tl::unexpected(fmt::format("\"{}\" is no bearing of 0..6400", printable(fields[kBearing])));
   }
   const auto node = count_in(fields[kNode]);
+  if (const auto status = count_in(fields[kStatus])) {
+    if (const auto fault = seanet_fault(*status)) return tl::unexpected(std::string(*fault));
+  }
   if (!node || *node > 255) return tl::unexpected(fmt::format("\"{}\" is no node", printable(fields[kNode])));
   if (!range_scale || *range_scale > 0xffff) {
     return tl::unexpected(fmt::format("\"{}\" is no range scale", printable(fields[kRangeScale])));
@@ -71,6 +74,12 @@ tl::expected<NodeBeam, std::string> beam_in(std::string_view line) {
   }
   if (samples != beam.intensities.size()) {
     return tl::unexpected(fmt::format("has {} samples, not {}", beam.intensities.size(), printable(fields[kSamples])));
+  }
+  // Samples of 4 bits.
+  const auto control = count_in(fields[kControl]);
+  const bool is_coarse = control && (*control & 1) == 0;
+  if (is_coarse && std::ranges::all_of(beam.intensities, [](std::uint8_t sample) { return sample < 16; })) {
+    for (std::uint8_t& sample : beam.intensities) sample = static_cast<std::uint8_t>(17 * sample);
   }
   beam.bin_length_m = seanet_bin_length_m(static_cast<std::uint16_t>(*range_scale), beam.intensities.size());
   if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);

@@ -131,9 +131,7 @@ std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_bl
 
 tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s) {
   constexpr double kTick_s = 640e-9;
-  constexpr std::uint8_t kNoPower = 1, kLostStep = 2;
-  if ((line.status & kNoPower) != 0) return tl::unexpected(std::string("the head had lost its power"));
-  if ((line.status & kLostStep) != 0) return tl::unexpected(std::string("the head's motor had lost its step"));
+  if (const auto fault = seanet_fault(line.status)) return tl::unexpected(std::string(*fault));
   const std::optional<double> bearing_rad = seanet_bearing_rad(line.bearing);
   if (!bearing_rad) return tl::unexpected(fmt::format("bearing {} of 6400 a turn", line.bearing));
 

@@ -51,8 +51,10 @@ std::optional<std::size_t> record_size(Bytes bytes) {
 
 class V4Log final : public DeviceLog {
  public:
-  V4Log(StreamReader reader, std::optional<std::uint64_t> end, Damage damage)
-      : reader_(std::move(reader)), end_(end), damage_(damage) {
+  /// @param end      of the records; nullopt: end of the file
+  /// @param records  that there are; 0: the log was not closed
+  V4Log(StreamReader reader, std::optional<std::uint64_t> end, std::size_t records, Damage damage)
+      : reader_(std::move(reader)), end_(end), missing_(records), damage_(damage) {
     set_first(read());
   }
   std::vector<DamageKind> damage() const override { return kinds_; }
@@ -60,9 +62,13 @@ class V4Log final : public DeviceLog {
 
  private:
   Result<std::optional<Beam>> read() override {
-    while (!end_ || reader_.position() < *end_) {
+    for (;;) {
       const Result<Bytes> bytes = reader_.peek(kMaxRecord);
       if (!bytes) return tl::unexpected(bytes.error());
+      if (end_ && reader_.position() >= *end_) {
+        if (const auto counted = check_end(*bytes); !counted) return tl::unexpected(counted.error());
+        if (end_) return std::nullopt;
+      }
       if (bytes->empty()) {
         if (end_ && !in_damage_) {
           if (const auto counted = report_damage(FrameFinder::kCutOff, "records are missing"); !counted) {
@@ -85,9 +91,11 @@ class V4Log final : public DeviceLog {
       }
       in_damage_ = false;
       const Bytes record = bytes->first(*size);
+      missing_ -= missing_ > 0 ? 1 : 0;
       if (record[kMessage] == kHeadData) {
-        const bool is_other = !is_of_first_head(record[kFrom]);
-        tl::expected<Beam, std::string> beam = is_other ? tl::unexpected(std::string(kOtherHead)) : beam_in(record);
+        tl::expected<Beam, std::string> beam = beam_in(record);
+        const bool is_other = beam && !is_of_first_head(record[kFrom]);
+        if (is_other) beam = tl::unexpected(std::string(kOtherHead));
         if (!beam) {
           const auto counted = report_damage(is_other ? kOtherHead : "impossible values", beam.error());
           if (!counted) return tl::unexpected(counted.error());
@@ -98,7 +106,18 @@ class V4Log final : public DeviceLog {
         reader_.skip(*size);
       }
     }
-    return std::nullopt;
+  }
+
+  /// Where the header says that the records end: forgets that place when a beam follows, for the header is damaged, and
+  /// counts records that the header has and the log has not.
+  Result<void> check_end(Bytes behind) {
+    const std::optional<std::size_t> size = record_size(behind);
+    if (size && *size <= behind.size() && behind[kMessage] == kHeadData) {
+      end_.reset();
+      return report_damage("damaged header", "records follow behind the end that the header says");
+    }
+    const bool is_short = std::exchange(missing_, 0) > 0 && kinds_.empty();
+    return is_short ? report_damage("damaged header", "records are missing") : Result<void>();
   }
 
   tl::expected<Beam, std::string> beam_in(Bytes record) {
@@ -116,7 +135,8 @@ class V4Log final : public DeviceLog {
   }
 
   StreamReader reader_;
-  std::optional<std::uint64_t> end_;  ///< end of the records; nullopt: end of the file
+  std::optional<std::uint64_t> end_;
+  std::size_t missing_;  ///< records that are still to come
   Damage damage_;
   bool in_damage_ = false;
   std::vector<DamageKind> kinds_;
@@ -129,7 +149,7 @@ bool looks_like_v4log(Bytes beginning) {
 }
 
 Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage) {
-  constexpr std::size_t kHeader = 0x50, kFirstRecord = 0x28, kEndOfRecords = 0x30;
+  constexpr std::size_t kHeader = 0x50, kFirstRecord = 0x28, kRecords = 0x2c, kEndOfRecords = 0x30;
   StreamReader reader(std::move(stream));
   const Result<Bytes> header = reader.peek(kHeader);
   if (!header) return tl::unexpected(header.error());
@@ -148,7 +168,7 @@ Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage)
   }
   // Logs that were not closed hold no end.
   return std::make_unique<V4Log>(std::move(reader), end > first ? std::optional<std::uint64_t>(end) : std::nullopt,
-                                 damage);
+                                 value_at<std::uint32_t>(*header, kRecords), damage);
 }
 
 }  // namespace pingvox

@@ -294,6 +294,62 @@ TEST(Seanet, BeamsOfASecondHeadOnTheLineAreCounted) {
   }
 }
 
+// A wrong bit in the first beam's sender made all beams those of another head.
+TEST(Seanet, ADamagedNumberOfTheFirstHeadCostsFewBeams) {
+  std::vector<std::uint16_t> bearings(20, 3200);
+  auto v4 = v4log(bearings);
+  v4[100 + 10] = 66;
+  std::vector<std::vector<std::uint8_t>> lines(20, line_at(3200));
+  lines[0][7] = 66;
+  std::vector<std::uint8_t> capture;
+  for (const auto& line : lines) capture.insert(capture.end(), line.begin(), line.end());
+  std::string dump = "SON,00:00:00.500,9,16,8967,60,84,0,8,81,2400,4000,16,3232,3,1,2,3\n";
+  for (int i = 1; i < 20; ++i) dump += "SON,00:00:00.600,2,16,8967,60,84,0,8,81,2400,4000,16,3232,3,1,2,3\n";
+  for (const FileBytes& file : {FileBytes{"capture", capture}, {"a.V4LOG", v4}, {"dump.csv", bytes_of(dump)}}) {
+    const auto all = all_beams(file);
+    EXPECT_EQ(all.items.size(), 13U) << file.name;
+    EXPECT_EQ(all.skipped, 7U) << file.name;
+  }
+}
+
+// A head without power, which is heard first, is not the head of the log.
+TEST(Seanet, TheFirstHeadIsOneThatHearsSomething) {
+  auto v4 = v4log({3200, 3216, 3232});
+  v4[100 + 10] = 4;
+  v4[100 + 18] |= 1;
+  const auto all = all_beams({"a.V4LOG", v4});
+  EXPECT_EQ(all.items.size(), 2U);
+  EXPECT_EQ(all.skipped, 1U);
+}
+
+TEST(Seanet, ADumpLogHasItsHeadsStatusAndSamplesOf4Bits) {
+  const auto line = [](const char* status_and_control, const char* samples) {
+    return fmt::format("SON,00:00:00.500,2,{},60,84,0,8,81,2400,4000,16,3232,{}\n", status_and_control, samples);
+  };
+  const auto all =
+      all_beams({"dump.csv", bytes_of(line("16,8967", "2,9,15") + line("1,8967", "2,9,15") + line("2,8967", "2,9,15") +
+                                      line("0,8966", "2,9,15") + line("0,8966", "2,9,16"))});
+  EXPECT_EQ(all.skipped, 2U);
+  ASSERT_EQ(all.items.size(), 3U);
+  EXPECT_THAT(all.items[0].intensities, ElementsAre(9, 15));
+  EXPECT_THAT(all.items[1].intensities, ElementsAre(153, 255));
+  EXPECT_THAT(all.items[2].intensities, ElementsAre(9, 16)) << "of 8 bits after all";
+}
+
+// Kills beams that are left out in silence where the header's numbers are damaged.
+TEST(Seanet, AV4logSaysWhatItsHeaderGetsWrong) {
+  const auto with = [](std::size_t place, std::uint8_t value) {
+    auto log = v4log({3200, 3216, 3232, 3248});
+    log[place] = value;
+    log.insert(log.end(), 64, 0xee);  // the index
+    return all_beams({"a.V4LOG", log});
+  };
+  EXPECT_EQ(with(0x30, 204).items.size(), 4U) << "the end of the records is behind the second";
+  EXPECT_EQ(with(0x30, 204).skipped, 1U);
+  EXPECT_EQ(with(0x28, 152).items.size(), 3U) << "the first record is the second";
+  EXPECT_EQ(with(0x28, 152).skipped, 1U);
+}
+
 // Kills a log that lacks beams and does not say so.
 TEST(Seanet, LinesThatAreCutIntoPacketsAreCounted) {
   auto part = line_at(3300);
