@@ -193,6 +193,7 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   }
   if (report.skipped > 0) read += fmt::format("; {} skipped", report.skipped);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
+  const bool stands_still = !totals.used_beams.empty() && !path.nav && !command.path.poses;
   std::string beams;
   for (const auto& [log, model, is_assumed] : totals.used_beams) {
     const std::string of_log = totals.used_beams.size() > 1 ? on_one_line(log) + ": " : "";
@@ -208,7 +209,8 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
                          report_line("nav clock", text_of(path.nav->offset, totals.clock_check)) +
                          report_line("frame", frame_text(*path.nav))
                    : "") +
-         beams + map_text(map, map.counts()) +
+         (stands_still ? report_line("vehicle", "stands still: no --poses, no --nav") : "") + beams +
+         map_text(map, map.counts()) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",

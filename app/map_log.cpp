@@ -45,6 +45,11 @@ bool has_position(const NavLog& nav) {
   return has(nav, NavQuantity::kPosition) || has(nav, NavQuantity::kFix);
 }
 
+/// Whether it says how the vehicle turned.
+bool can_turn(const NavLog& nav) {
+  return has(nav, NavQuantity::kAttitude) || has(nav, NavQuantity::kHeading) || has(nav, NavQuantity::kTurnRate);
+}
+
 /// Whether poses can be made of it: of positions and attitudes, or by dead reckoning.
 bool tells_path(const NavLog& nav) {
   return has(nav, has_position(nav) ? NavQuantity::kAttitude : NavQuantity::kVelocity);
@@ -109,9 +114,10 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
   if (!tells_path(nav->log)) {
     return fail(
         Error::Code::kUnsupported,
-        fmt::format("{}: tells no path: it has no valid {} ('pingvox slam' estimates one from sonar and heading, "
-                    "for --poses)",
-                    fmt::join(path.navs, ", "), has_position(nav->log) ? "attitude" : "position or velocity"));
+        fmt::format("{}: gives no path: it has no valid {}{}", fmt::join(path.navs, ", "),
+                    has_position(nav->log) ? "attitude" : "position or velocity",
+                    can_turn(nav->log) ? " ('pingvox slam' estimates the path from sonar and heading, for --poses)"
+                                       : ", and no heading; another --nav may have them"));
   }
   const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, log, damage);
   if (!offset) return tl::unexpected(offset.error());
@@ -267,6 +273,14 @@ std::string hint_at_path(const std::string& log, Format format) {
   if (std::filesystem::is_regular_file(beside, error)) {
     return "its trajectory may be --poses " + quote_for_shell(beside);
   }
+  // Named as `live` does.
+  std::string navs;
+  for (const std::string_view suffix : {".tlog", "-2.tlog", ".jsonl"}) {
+    std::filesystem::path nav = std::filesystem::path(log).replace_extension();
+    nav += suffix;
+    if (std::filesystem::is_regular_file(nav, error)) navs += " --nav " + quote_for_shell(nav.string());
+  }
+  if (!navs.empty()) return "its navigation may be" + navs;
   return is_bag(format) ? hint_at_nav(log) : "";
 }
 

@@ -245,12 +245,26 @@ TEST(Nav, WithoutAPositionAVelocityGivesDeadReckoning) {
   EXPECT_EQ(render.status, 0) << render.err;
 }
 
+// The log of a moving vehicle was mapped as if it stood still, and nothing said so.
+TEST(Nav, BesideALogThatIsMappedWithoutIsNamed) {
+  const Workplace here;
+  here.simulate_tank();
+  Outcome mapped = here.call({"map", "tank.csv", "-o", "o.bt"});
+  EXPECT_THAT(mapped.out, HasSubstr("vehicle     stands still: no --poses, no --nav\n"));
+  EXPECT_THAT(mapped.err, Not(HasSubstr("--nav")));
+  here.write("tank.tlog", "of the autopilot");
+  here.write("tank.jsonl", "of the DVL");
+  mapped = here.call({"map", "tank.csv", "-o", "o.bt"});
+  EXPECT_THAT(mapped.err, HasSubstr("mapped as if the vehicle did not move; its navigation may be --nav tank.tlog "
+                                    "--nav tank.jsonl"));
+}
+
 TEST(Nav, ThatTellsNoPathIsRefusedBeforeItsClock) {
   const Workplace here;
   here.simulate_tank();
   here.write("heading.csv", "time_s,source,quantity,x,y,z\n900,IMU,attitude,0,0,0\n901,IMU,attitude,0,0,0.1\n");
   expect_error(here.call({"map", "tank.csv", "-o", "o.bt", "--nav", "heading.csv"}), 1,
-               {"heading.csv: tells no path: it has no valid position or velocity", "pingvox slam"});
+               {"heading.csv: gives no path: it has no valid position or velocity", "pingvox slam"});
   here.write("dvl.csv", "time_s,source,quantity,x,y,z\n0,DVL,velocity,0.1,0,0\n1,DVL,velocity,0.1,0,0\n");
   expect_error(here.call({"convert", "dvl.csv", "-o", "o.tum"}), 1,
                {"dvl.csv", "no valid position", "slam --matching none"});
