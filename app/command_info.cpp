@@ -74,9 +74,9 @@ void add_device(Summary& summary, const DeviceProfile& device, Format format) {
       .add("blanking_m", device.blanking_m)
       .add("full_scale", device.full_scale);
   summary.json.add("device", json);
-  summary.text +=
-      report_line("device", fmt::format("{}, beam {:.6g} x {:.6g} degrees, blanking range {:.6g} m (--device)",
-                                        device.title, width_deg, height_deg, device.blanking_m));
+  summary.text += report_line(
+      "device", fmt::format("{}, beam {:.6g} x {:.6g} degrees (--device); its maker's minimum range is {:.6g} m",
+                            device.title, width_deg, height_deg, device.blanking_m));
   // Bins that were hit have none.
   if (format != Format::kBeamHits) summary.text += report_line("intensities", std::string(device.intensity));
 }

@@ -332,8 +332,9 @@ class LogMapper {
   void say_what_is_odd(const MappedLog& mapped, const std::string& name) {
     if (!mapped.skipped_text.empty()) say(fmt::format("{}: skipped {}", name, mapped.skipped_text));
     if (!command_.path.poses) return;
-    if (const std::string odd = odd_times_text(path_.trajectory, mapped.report); !odd.empty()) {
-      say(fmt::format("{}: {}", *command_.path.poses, odd));
+    for (const std::string& odd :
+         {odd_times_text(path_.trajectory, mapped.report), odd_attitudes_text(path_.trajectory)}) {
+      if (!odd.empty()) say(fmt::format("{}: {}", *command_.path.poses, odd));
     }
   }
 

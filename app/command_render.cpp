@@ -87,17 +87,25 @@ std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> e
   return text;
 }
 
-/// "; all echoes within 5 m (--max-range 5 shows them larger)" where they fill a small part of the picture.
-std::string small_text(const ProcessedSweep& shown, const PanelCommand& panel) {
+/// "; nearly all echoes within 5 m (--max-range 5 shows them larger)" where they fill a small part of the picture.
+std::string small_text(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,
+                       const PanelCommand& panel) {
   if (std::isfinite(panel.build.echo.max_range_m)) return {};
-  double farthest_m = 0.0, range_m = 0.0;
-  for (const auto& echo : shown.echoes) farthest_m = std::max(farthest_m, echo ? echo->range_m : 0.0);
-  for (const Beam& beam : shown.sweep.beams) {
-    range_m = std::max(range_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
+  std::vector<double> ranges_m;
+  for (const auto& echo : echoes) {
+    if (echo) ranges_m.push_back(echo->range_m);
   }
-  if (!(farthest_m > 0.0 && 4.0 * farthest_m < range_m)) return {};
-  const double wanted_m = std::ceil(1.1 * farthest_m);
-  return fmt::format("; all echoes within {:g} m (--max-range {:g} shows them larger)", wanted_m, wanted_m);
+  if (ranges_m.empty()) return {};
+  // A single echo far away must not count.
+  const auto last = ranges_m.begin() + static_cast<std::ptrdiff_t>((ranges_m.size() - 1) * 99 / 100);
+  std::ranges::nth_element(ranges_m, last);
+  double longest_m = 0.0;
+  for (const Beam& beam : beams) {
+    longest_m = std::max(longest_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
+  }
+  if (!(4.0 * *last < longest_m)) return {};
+  const double wanted_m = std::ceil(1.1 * *last);
+  return fmt::format("; nearly all echoes within {:g} m (--max-range {:g} shows them larger)", wanted_m, wanted_m);
 }
 
 /// Collects the beams of a polar picture.
@@ -115,7 +123,7 @@ class PolarCollector {
   std::optional<Drawn> draw(std::size_t skipped) const {
     if (beams_.empty()) return std::nullopt;
     return Drawn{render_echoes(beams_, echoes_, panel_.echo_picture),
-                 count_text(beams_.size(), echoes_, panel_, skipped)};
+                 count_text(beams_.size(), echoes_, panel_, skipped) + small_text(beams_, echoes_, panel_)};
   }
 
  private:
@@ -145,7 +153,7 @@ class CartesianCollector {
     return Drawn{
         render_cartesian(shown.sweep, shown.image, shown.echoes, options),
         fmt::format("sweep {}, {}{}", shown.number, count_text(shown.sweep.beams.size(), shown.echoes, panel_, skipped),
-                    small_text(shown, panel_))};
+                    small_text(shown.sweep.beams, shown.echoes, panel_))};
   }
 
  private:
@@ -295,9 +303,10 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
   if (!format) return tl::unexpected(format.error());
   const FormatKind kind = kind_of(*format);
   if (kind != FormatKind::kBeams && kind != FormatKind::kScans && kind != FormatKind::kMap) {
-    const std::string_view hint = kind == FormatKind::kCloud  ? ": 'pingvox map' makes a map of it"
-                                  : kind == FormatKind::kMesh ? ": 'pingvox convert' makes a map of its surface"
-                                                              : "";
+    const std::string_view hint = kind == FormatKind::kCloud        ? ": 'pingvox map' makes a map of it"
+                                  : kind == FormatKind::kMesh       ? ": 'pingvox convert' makes a map of its surface"
+                                  : kind == FormatKind::kTrajectory ? ": --path draws a trajectory over a map"
+                                                                    : "";
     return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, and only logs and maps can be drawn{}", file.name,
                                                        description_of(*format), hint));
   }

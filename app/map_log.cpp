@@ -266,6 +266,19 @@ std::string odd_times_text(const Trajectory& trajectory, const BuildReport& repo
   return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", poses_s, log_s);
 }
 
+std::string odd_attitudes_text(const Trajectory& trajectory) {
+  constexpr std::size_t kMany = 10;
+  const auto& poses = trajectory.poses();
+  const auto turns = [&](const StampedPose& pose) {
+    return pose.map_from_body.linear() != poses.front().map_from_body.linear();
+  };
+  const auto moves = [&](const StampedPose& pose) {
+    return (pose.map_from_body.translation() - poses.front().map_from_body.translation()).norm() > 1.0;
+  };
+  if (poses.size() < kMany || std::ranges::any_of(poses, turns) || std::ranges::none_of(poses, moves)) return {};
+  return "its poses move but never turn: is the attitude known?";
+}
+
 std::string hint_at_path(const std::string& log, Format format) {
   if (log == "-") return {};
   const std::string beside = std::filesystem::path(log).replace_extension(".tum").string();

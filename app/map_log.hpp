@@ -83,6 +83,9 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
 /// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
 
+/// "its poses move but never turn: is the attitude known?"; empty: nothing is odd.
+std::string odd_attitudes_text(const Trajectory& trajectory);
+
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum" or
 /// "its navigation may be --nav dive.tlog" (files beside it), or "navigation in the bag is used with --nav dive.db3";
 /// empty: nowhere. Reads a bag once.

@@ -228,7 +228,7 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   text += report_line("frame", frame_text(report.heading));
   if (command.slam.matching == Matching::kPairs) {
     text += report_line("pairs", report.pairs == 0
-                                     ? "none: nothing but velocity and headings tells the poses"
+                                     ? "none: the poses come from velocity and headings alone"
                                      : fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
                                                    report.pair_median_m, report.loops_kept, report.loops_found));
     if (report.submap_loops_found > 0) {

@@ -80,7 +80,9 @@ Result<std::string> bag_in(const std::string& folder) {
     if (path.extension() == ".db3" || path.extension() == ".mcap") bags.push_back(path.string());
   }
   if (error) return os_error(folder, error.value());
-  if (bags.empty()) return os_error(folder, EISDIR);
+  if (bags.empty()) {
+    return fail(Error::Code::kIo, fmt::format("{}: is a folder without a ROS bag: name the files in it", folder));
+  }
   if (bags.size() == 1) return bags.front();
   return fail(Error::Code::kIo, fmt::format("{}: is a folder of {} bags: name them one by one", folder, bags.size()));
 }

@@ -89,6 +89,40 @@ TEST(FirstUse, TheFirstDamagedRecordIsNamedByEachCommand) {
   EXPECT_THAT(here.call({"convert", "a.csv", "-o", "b.csv"}).out, HasSubstr("skipped 2 " + where));
 }
 
+// Kills a map of positions alone, as of fixes without attitude.
+TEST(FirstUse, PosesThatNeverTurnAreQuestioned) {
+  const Workplace here;
+  here.write("a.csv", turns_csv(40));
+  const auto errors_of = [&](const char* last_turn) {
+    std::string poses;
+    for (int i = 0; i < 20; ++i) {
+      poses +=
+          std::to_string(2 * i) + " " + std::to_string(0.1 * i) + " 0 0 0 0 " + (i < 19 ? "0 1" : last_turn) + "\n";
+    }
+    here.write("fixes.tum", poses);
+    return here.call({"map", "a.csv", "-o", "a.bt", "--poses", "fixes.tum"}).err;
+  };
+  EXPECT_THAT(errors_of("0 1"), HasSubstr("fixes.tum: its poses move but never turn: is the attitude known?"));
+  EXPECT_THAT(errors_of("0.1 0.995"), Not(HasSubstr("never turn")));
+}
+
+// Kills echoes in a corner of a picture of 60 m, for the sake of one far away.
+TEST(FirstUse, PicturesOfLongRangesNameTheRangeOfTheEchoes) {
+  const Workplace here;
+  std::string csv = "time_s,bearing_cw_deg,bin_length_m,intensities\n";
+  for (int beam = 0; beam < 200; ++beam) {
+    csv += std::to_string(beam) + "," + std::to_string(1.8 * beam) + ",0.1";
+    const int wall = beam == 100 ? 400 : 50;
+    for (int bin = 0; bin < 600; ++bin) csv += (bin / 6 == wall / 6) ? ",200" : ",10";
+    csv += "\n";
+  }
+  here.write("a.csv", csv);
+  for (const char* view : {"polar", "cartesian"}) {
+    EXPECT_THAT(here.call({"render", "a.csv", "-o", "a.png", "--view", view}).out,
+                HasSubstr("nearly all echoes within 6 m (--max-range 6 shows them larger)"));
+  }
+}
+
 TEST(FirstUse, PosesInMillisecondsAreQuestioned) {
   const Workplace here;
   here.write("a.csv", turns_csv(40));

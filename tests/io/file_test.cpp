@@ -122,7 +122,7 @@ TEST_F(Files, ThatCannotBeReadSayWhy) {
     return file ? "" : file.error().message;
   };
   EXPECT_EQ(error_of(path("none")), path("none") + ": No such file or directory");
-  EXPECT_EQ(error_of(folder_.string()), folder_.string() + ": Is a directory");
+  EXPECT_EQ(error_of(folder_.string()), folder_.string() + ": is a folder without a ROS bag: name the files in it");
   EXPECT_EQ(error_of(""), ": No such file or directory");
   put("secret", "x");
   fs::permissions(path("secret"), fs::perms::none);
