@@ -18,7 +18,8 @@ namespace pingvox {
 /// A topic of a bag. Several may have one name: each publisher can have its own.
 struct BagTopic {
   std::string name, type;
-  std::string definition;  ///< of the type; may be empty
+  /// By the definition in the bag, shared by the topics of a type; nullptr: there is none, or it cannot be read.
+  std::shared_ptr<const RosLayout> layout;
   RosEncoding encoding = RosEncoding::kRos1;
   bool is_readable = true;  ///< false: its messages are in another encoding
 };

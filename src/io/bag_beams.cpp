@@ -15,6 +15,7 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/io/ping_frame.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 
 // The beams in bags: drivers' messages, by their type and fields (docs/formats.md).
 namespace pingvox {
@@ -43,10 +44,23 @@ double bearing_of(double head_angle_rad) {
   return std::numbers::pi - head_angle_rad;
 }
 
+/// A length that a driver computed with its own speed of sound, at the assumed one, as that of all beams.
+double at_assumed_speed(double length_m, double sound_speed_m_s) {
+  constexpr double kSlowest_m_s = 1300.0, kFastest_m_s = 1700.0;
+  const bool is_speed = sound_speed_m_s >= kSlowest_m_s && sound_speed_m_s <= kFastest_m_s;
+  return is_speed ? length_m * (kAssumedSoundSpeed_m_s / sound_speed_m_s) : length_m;
+}
+
 Beams echo_beam(const RosFields& message, SonarSettings&) {
   std::vector<std::uint8_t> samples = message.bytes(2);
   const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
   return beam_of(bearing_of(message.number(0)), bin_length_m, std::move(samples));
+}
+
+Beams echo_beam_with_speed(const RosFields& message, SonarSettings& settings) {
+  Beams beams = echo_beam(message, settings);
+  if (beams) beams->front().bin_length_m = at_assumed_speed(beams->front().bin_length_m, message.number(3));
+  return beams;
 }
 
 Beams ping_beam(const RosFields& message, SonarSettings& settings) {
@@ -126,7 +140,8 @@ Beams image_beams(const RosFields& message, SonarSettings&) {
   for (std::size_t i = 0; i < beams; ++i) {
     std::vector<std::uint8_t> intensities(first + ranges);
     for (std::size_t j = 0; j < ranges; ++j) intensities[first + j] = samples[j * beams + i];
-    auto beam = beam_of(std::atan2(-message.number(0, i), message.number(1, i)), bin_length_m, std::move(intensities));
+    auto beam = beam_of(std::atan2(-message.number(0, i), message.number(1, i)),
+                        at_assumed_speed(bin_length_m, message.number(6)), std::move(intensities));
     if (!beam) return NoBeam(beam.error());
     found.push_back(std::move(beam->front()));
   }
@@ -149,6 +164,7 @@ struct SonarType {
 };
 
 constexpr std::array kSonarTypes = {
+    SonarType{{"SonarEcho", {"angle", "range", "intensities", "speed_of_sound"}}, "ping360", echo_beam_with_speed},
     SonarType{{"SonarEcho", {"angle", "range", "intensities"}}, "ping360", echo_beam},
     SonarType{{"Ping360", {"angle_ping360", "sample_period", "data"}}, "ping360", ping_beam},
     SonarType{{"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, SonarType::Holds::kSettings},
@@ -162,7 +178,8 @@ constexpr std::array kSonarTypes = {
               SonarType::Holds::kBeamsToo},
     SonarType{{"LaserScan", {"angle_min", "angle_max", "range_max", "intensities"}}, "", laser_beam},
     SonarType{{"ProjectedSonarImage",
-               {"beam_directions.y", "beam_directions.z", "ranges", "image.beam_count", "image.dtype", "image.data"}},
+               {"beam_directions.y", "beam_directions.z", "ranges", "image.beam_count", "image.dtype", "image.data",
+                "ping_info.sound_speed"}},
               "",
               image_beams},
 };
@@ -239,7 +256,7 @@ class BagBeams final : public DeviceLog {
     if (!topic) return {};
     const SonarType& type = kSonarTypes[topic->type];
     if (!fields_ && is_unwanted(type, name)) return {};
-    if (!message_.read(topic->layout, message.bytes)) {
+    if (!message_.read(*topic->layout, message.bytes)) {
       add_damage(unusable_, kNoFit, message.file_byte);
       return {};
     }
@@ -282,12 +299,12 @@ class BagBeams final : public DeviceLog {
   }
 
   tl::unexpected<Error> missing_field(const BagTopic& topic) const {
-    const std::optional<RosLayout> layout = RosLayout::make(topic.type, topic.definition, topic.encoding);
+    const auto layout = topic.layout ? topic.layout : shared_layout(topic.type, {}, topic.encoding);
     return fail(Error::Code::kBadOption,
                 fmt::format("{}: {} ({}) lacks a field of {}, {}, {}{}", bag_->name(), topic.name, topic.type,
                             fields_->angle, fields_->length, fields_->intensities,
                             layout ? fmt::format(": it has {}", fields_text(*layout))
-                                   : std::string(" and cannot be read: its definition is not in the bag")));
+                                         : std::string(" and cannot be read: its definition is not in the bag")));
   }
 
   std::string why_none() const {
@@ -324,8 +341,8 @@ class BagBeams final : public DeviceLog {
 
 std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std::string_view> paths) {
   // Some writers leave only a part of the definition; a common type has another.
-  for (const std::string_view definition : {std::string_view(topic.definition), std::string_view()}) {
-    std::optional<RosLayout> layout = RosLayout::make(topic.type, definition, topic.encoding);
+  for (const bool is_common : {false, true}) {
+    std::shared_ptr<const RosLayout> layout = is_common ? shared_layout(topic.type, {}, topic.encoding) : topic.layout;
     if (!layout) continue;
     std::vector<std::size_t> fields;
     bool has_all = true;
@@ -339,7 +356,7 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
     const bool has_stamp = layout->field("header.stamp.sec").has_value();
     const std::string stamp = has_stamp ? "header.stamp." : "transforms.header.stamp.";
     const auto stamp_s = layout->field(stamp + "sec"), stamp_ns = layout->field(stamp + "nanosec");
-    return KnownTopic{0, *std::move(layout), std::move(fields), stamp_s, stamp_ns};
+    return KnownTopic{0, std::move(layout), std::move(fields), stamp_s, stamp_ns};
   }
   return std::nullopt;
 }

@@ -310,7 +310,7 @@ class BagSurvey {
       summary.use = Use::kScans;
     }
     if (!topic.known) return {};
-    if (!message_.read(topic.known->layout, message.bytes)) {
+    if (!message_.read(*topic.known->layout, message.bytes)) {
       add_damage(unusable_, kNoFit, message.file_byte);
       return {};
     }
@@ -362,7 +362,7 @@ class BagSurvey {
         Samples samples(transforms_, name, known.time_of(message_, message.time_s), topic.state);
         add_transform(transform, samples);
       }
-      if (!message_.read(known.layout, message.bytes, next)) return;
+      if (!message_.read(*known.layout, message.bytes, next)) return;
     }
   }
 
@@ -415,7 +415,7 @@ class BagSurvey {
     for (const NavFields& fields : fields_) {
       if (!is_of(fields, topic.name, topic.type)) continue;
       const auto known = topic.is_readable ? topic_with(topic, {}) : std::nullopt;
-      const Result<NavReader> reader = known ? NavReader::make(fields, known->layout)
+      const Result<NavReader> reader = known ? NavReader::make(fields, *known->layout)
                                              : fail(Error::Code::kBadOption, "its definition is not in the bag");
       if (!reader) {
         return fail(reader.error().code,
@@ -432,7 +432,7 @@ class BagSurvey {
     if (summary.use == Use::kNone && has_navigation) summary.use = Use::kNavigation;
     if (summary.use == Use::kNone && may_have_scans) summary.use = Use::kScans;
     if (summary.use == Use::kNone && topic.is_readable) {
-      if (const auto known = topic_with(topic, {})) summary.fields = fields_text(known->layout);
+      if (const auto known = topic_with(topic, {})) summary.fields = fields_text(*known->layout);
     }
     return summary;
   }

@@ -69,7 +69,7 @@ std::optional<std::array<CloudColumn, 3>> columns_of(RosMessage& message, const 
   constexpr std::size_t kMaxFields = 256;
   constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
   std::array<std::optional<CloudColumn>, 3> found;
-  for (std::size_t n = 0; n < kMaxFields && message.read(topic.layout, bytes, n); ++n) {
+  for (std::size_t n = 0; n < kMaxFields && message.read(*topic.layout, bytes, n); ++n) {
     const RosFields field(message, topic.fields);
     if (field.count(1) == 0) break;
     const auto axis = static_cast<std::size_t>(std::ranges::find(kNames, field.text(0)) - kNames.begin());
@@ -232,7 +232,7 @@ class BagScans final : public ScanSource {
     const std::optional<KnownTopic>& topic = topics_[message.topic];
     const std::string& name = bag_->topics()[message.topic].name;
     if (!topic || (!wanted_.empty() && name != wanted_)) return {};
-    if (!message_.read(topic->layout, message.bytes)) {
+    if (!message_.read(*topic->layout, message.bytes)) {
       add_damage(unusable_, kNoFit, message.file_byte);
       return {};
     }
@@ -273,7 +273,7 @@ bool may_have_scans(const BagTopic& topic) {
 
 bool is_scan(const KnownTopic& topic, const BagMessage& message) {
   RosMessage read;
-  return !kScanTypes[topic.type].may_be_beams || (read.read(topic.layout, message.bytes) && looks_around(topic, read));
+  return !kScanTypes[topic.type].may_be_beams || (read.read(*topic.layout, message.bytes) && looks_around(topic, read));
 }
 
 Result<std::unique_ptr<ScanSource>> bag_scans(std::unique_ptr<Bag> bag, Damage damage, const std::string& wanted,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,7 +45,7 @@ class RosFields {
 /// A topic of a known type.
 struct KnownTopic {
   std::size_t type = 0;  ///< in the table
-  RosLayout layout;
+  std::shared_ptr<const RosLayout> layout;
   std::vector<std::size_t> fields;
   std::optional<std::size_t> stamp_s, stamp_ns;
 

@@ -140,7 +140,9 @@ class Mcap final : public Bag {
   }
 
   struct Schema {
-    std::string name, encoding, text;
+    std::string name;
+    RosEncoding encoding = RosEncoding::kCdr;
+    std::shared_ptr<const RosLayout> layout;
   };
 
   bool add_schema(Bytes body) {
@@ -149,8 +151,13 @@ class Mcap final : public Bag {
     const auto name = id ? read_text(reader) : std::nullopt;
     const auto encoding = name ? read_text(reader) : std::nullopt;
     const auto text = encoding ? read_text(reader) : std::nullopt;
-    if (!text) return false;
-    schemas_.try_emplace(*id, Schema{std::string(*name), std::string(*encoding), std::string(*text)});
+    constexpr std::size_t kMaxName = 1000;  // each topic has a copy
+    if (!text || name->size() > kMaxName) return false;
+    if (schemas_.contains(*id)) return true;
+    Schema schema{std::string(*name), *encoding == "ros1msg" ? RosEncoding::kRos1 : RosEncoding::kCdr, nullptr};
+    const bool is_message = *encoding == "ros1msg" || *encoding == "ros2msg";
+    if (is_message) schema.layout = shared_layout(schema.name, *text, schema.encoding);
+    schemas_.emplace(*id, std::move(schema));
     return true;
   }
 
@@ -168,8 +175,7 @@ class Mcap final : public Bag {
                    *encoding == "ros1" || *encoding == "cdr"};
     if (const auto schema = schemas_.find(*schema_id); schema != schemas_.end()) {
       added.type = schema->second.name;
-      const bool is_message = schema->second.encoding == "ros1msg" || schema->second.encoding == "ros2msg";
-      if (is_message) added.definition = schema->second.text;
+      if (schema->second.encoding == added.encoding) added.layout = schema->second.layout;
     }
     topics_.push_back(std::move(added));
     return true;

@@ -208,8 +208,8 @@ class Ros1Bag final : public Bag {
       return;
     }
     if (!connections_.try_emplace(header.connection, topics_.size()).second) return;
-    topics_.push_back(
-        {std::string(header.topic), std::string(about.type), std::string(about.definition), RosEncoding::kRos1, true});
+    topics_.push_back({std::string(header.topic), std::string(about.type),
+                       shared_layout(about.type, about.definition, RosEncoding::kRos1), RosEncoding::kRos1, true});
   }
 
   /// Each connection stands in one chunk, which may be damaged, and once more in the index at the end of the file. Of a

@@ -184,8 +184,10 @@ class LayoutMaker {
 
   std::optional<RosLayout::Member> member_of(const FieldLine& line, std::string_view package, const Outer& outer,
                                              int depth) {
-    constexpr std::size_t kMaxMembers = 4096;
-    if (++members_ > kMaxMembers) return std::nullopt;
+    // Messages in messages multiply both.
+    constexpr std::size_t kMaxMembers = 4096, kMaxText = std::size_t{1} << 18;
+    text_ += outer.prefix.size() + line.name.size() + line.type.size() + outer.arrays.size();
+    if (++members_ > kMaxMembers || text_ > kMaxText) return std::nullopt;
     RosLayout::Member member;
     if (line.is_array) member.array = line.size ? Array::kFixed : Array::kVariable;
     member.size = line.size.value_or(1);
@@ -257,11 +259,17 @@ class LayoutMaker {
 
   RosLayout layout_;
   std::vector<Section> sections_;
-  std::size_t members_ = 0;
+  std::size_t members_ = 0, text_ = 0;
 };
 
 std::optional<RosLayout> RosLayout::make(std::string_view type, std::string_view definition, RosEncoding encoding) {
   return LayoutMaker(type, definition, encoding).make(type);
+}
+
+std::shared_ptr<const RosLayout> shared_layout(std::string_view type, std::string_view definition,
+                                               RosEncoding encoding) {
+  std::optional<RosLayout> layout = RosLayout::make(type, definition, encoding);
+  return layout ? std::make_shared<const RosLayout>(*std::move(layout)) : nullptr;
 }
 
 std::optional<std::size_t> RosLayout::field(std::string_view path) const {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -77,6 +78,10 @@ class RosLayout {
   std::vector<Record> records_;  ///< the last one is the message
   std::vector<RosField> fields_;
 };
+
+/// RosLayout::make for topics that share it; nullptr for nullopt.
+std::shared_ptr<const RosLayout> shared_layout(std::string_view type, std::string_view definition,
+                                               RosEncoding encoding);
 
 /// The numbers of a message, without those of its header: "x float64, valid bool".
 std::string fields_text(const RosLayout& layout);

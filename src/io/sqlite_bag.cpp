@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -95,11 +96,14 @@ class SqliteBag final : public Bag {
         last && sqlite3_step(last.get()) == SQLITE_ROW) {
       last_row_ = static_cast<double>(sqlite3_column_int64(last.get(), 0));
     }
-    std::map<std::string, std::string> definitions;
+    std::map<std::string, std::shared_ptr<const RosLayout>> layouts;
     if (const Query query = query_of(database_.get(),
                                      "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE "
                                      "encoding = 'ros2msg'")) {
-      while (has_row(query.get())) definitions[text_in(query.get(), 0)] = text_in(query.get(), 1);
+      while (has_row(query.get())) {
+        const std::string type = text_in(query.get(), 0);
+        layouts[type] = shared_layout(type, text_in(query.get(), 1), RosEncoding::kCdr);
+      }
     }
     const Query query = query_of(database_.get(), "SELECT id, name, type, serialization_format FROM topics");
     if (!query) return refuse("with other columns than those of ROS");
@@ -107,9 +111,7 @@ class SqliteBag final : public Bag {
       numbers_.try_emplace(sqlite3_column_int64(query.get(), 0), topics_.size());
       BagTopic topic{
           text_in(query.get(), 1), text_in(query.get(), 2), {}, RosEncoding::kCdr, text_in(query.get(), 3) == "cdr"};
-      if (const auto definition = definitions.find(topic.type); definition != definitions.end()) {
-        topic.definition = definition->second;
-      }
+      if (const auto layout = layouts.find(topic.type); layout != layouts.end()) topic.layout = layout->second;
       topics_.push_back(std::move(topic));
     }
     messages_ = query_of(database_.get(), "SELECT topic_id, timestamp, data, rowid FROM messages NOT INDEXED");
@@ -120,11 +122,6 @@ class SqliteBag final : public Bag {
   Result<std::optional<BagMessage>> next() override {
     while (messages_ && has_row(messages_.get())) {
       sqlite3_stmt* row = messages_.get();
-      // The smallest row takes four bytes: more of them are pages that are read over and over.
-      if (++rows_ > size_ / 4) {
-        add_damage(damage_, "damaged database page", std::nullopt);
-        break;
-      }
       row_ = static_cast<double>(sqlite3_column_int64(row, 3));
       // A page that the end of a file cuts has rows of nothing.
       const bool is_row = sqlite3_column_type(row, 0) == SQLITE_INTEGER &&
@@ -149,8 +146,13 @@ class SqliteBag final : public Bag {
  private:
   /// Whether a query gives one more row; damage ends it.
   bool has_row(sqlite3_stmt* query) {
-    const int result = sqlite3_step(query);
-    if (result == SQLITE_ROW) return true;
+    // The smallest row takes four bytes: more of them are pages that are read over and over.
+    const bool are_too_many = rows_ > size_ / 4;
+    const int result = are_too_many ? SQLITE_CORRUPT : sqlite3_step(query);
+    if (result == SQLITE_ROW) {
+      ++rows_;
+      return true;
+    }
     if (result != SQLITE_DONE) add_damage(damage_, "damaged database page", std::nullopt);
     return false;
   }
@@ -161,7 +163,7 @@ class SqliteBag final : public Bag {
   std::uint64_t size_;
   std::map<std::int64_t, std::size_t> numbers_;  ///< of topics
   Query messages_;
-  std::uint64_t rows_ = 0;
+  std::uint64_t rows_ = 0;  ///< of all queries
   bool in_damage_ = false;
   double row_ = 0.0, last_row_ = 0.0;
 };

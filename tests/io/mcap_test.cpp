@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <numbers>
 #include <string_view>
 
@@ -87,6 +88,26 @@ TEST(Mcap, NeedsNoEnd) {
   const auto cut = all_beams({"dive.mcap", {whole.begin(), whole.end() - std::ptrdiff_t{kBehindChunks}}});
   EXPECT_THAT(cut.items, SizeIs(30));
   EXPECT_EQ(cut.skipped, 1U) << "it was not closed";
+}
+
+// Kills ranges that are right at the driver's speed of sound, and scaled as if it were 1500 m/s.
+TEST(Mcap, LengthsAtTheDriversSpeedOfSoundAreThoseAtTheAssumedOne) {
+  struct Case {
+    std::uint16_t sound_speed_m_s;
+    double bin_length_m;
+  };
+  for (const Case& c : {Case{1450, 2.5 * 1500.0 / 1450.0}, Case{1500, 2.5}, Case{0, 2.5}, Case{15000, 2.5}}) {
+    auto echo = from_hex(bags::kSonarEcho);
+    echo[30] = static_cast<std::uint8_t>(c.sound_speed_m_s & 0xffU);
+    echo[31] = static_cast<std::uint8_t>(c.sound_speed_m_s >> 8);
+    bags::Mcap mcap;
+    mcap.topic(4, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+    mcap.message(4, 1'000'000'000'000U, echo);
+    mcap.end_chunk();
+    const auto read = all_beams({"dive.mcap", mcap.closed()});
+    ASSERT_THAT(read.items, SizeIs(1));
+    EXPECT_DOUBLE_EQ(read.items[0].bin_length_m, c.bin_length_m) << c.sound_speed_m_s;
+  }
 }
 
 TEST(Mcap, GivesTheBeamsOfAnImagingSonar) {

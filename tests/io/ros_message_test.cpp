@@ -1,5 +1,6 @@
 #include "io/ros_message.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -175,6 +176,23 @@ TEST(RosMessage, EndsSoonWithManyRecordsOfNothing) {
   for (int i = 0; i < 65536; ++i) hex += "ffffffff";
   const Decoded read = decode("A[] a\nMSG: test_msgs/A\nB[] b\nMSG: test_msgs/B\n", RosEncoding::kRos1, from_hex(hex));
   EXPECT_TRUE(read.fits);
+}
+
+// Kills layouts of gigabytes from a bag of kilobytes: each level doubles the fields, and lengthens their paths.
+TEST(RosLayout, RefusesPathsOutOfProportion) {
+  const auto layout_with = [](std::size_t name_size) {
+    const std::string name(name_size, 'a');
+    std::string definition;
+    constexpr int kLevels = 10;
+    for (int level = 0; level < kLevels; ++level) {
+      const std::string type = level + 1 < kLevels ? fmt::format("T{}", level + 1) : "float32";
+      if (level > 0) definition += fmt::format("================\nMSG: lab/T{}\n", level);
+      definition += fmt::format("{0} {1}\n{0} b{1}\n", type, name);
+    }
+    return RosLayout::make("lab/T0", definition, RosEncoding::kCdr);
+  };
+  EXPECT_TRUE(layout_with(2));
+  EXPECT_FALSE(layout_with(2500));
 }
 
 TEST(RosLayout, RefusesDefinitionsWithoutEndAndUnknownTypes) {
