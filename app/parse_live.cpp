@@ -279,7 +279,8 @@ Result<Command> live_command(const Args& args) {
          {"--write-every", 0, "S", "seconds from one written map to the next", number_text(command.write_every_s),
           within({0.1, 86'400.0}, store_number(command.write_every_s))},
          {"--beams", 0, "N", "stop after N beams", "never", store_number(command.max_beams)},
-         json_option(command.output_options),
+         flag("--json", "print one JSON object a second and one at the end, each on a line",
+              command.output_options.report, Report::kJson),
          quiet_option(command.output_options),
          choice("--progress", kProgress, "show the status on standard error; auto: on a terminal",
                 command.output_options.progress)}},
@@ -315,7 +316,6 @@ Result<Command> live_command(const Args& args) {
        "pingvox live replay:dive.bin@10 -o dive.bt"},
       "Without --nav the vehicle is taken to stand still; then the map of a recording, by 'pingvox map' with the same "
       "options,\nis the same.\n"
-      "With --json each line of standard output is one object, one a second and one at the end.\n"
       "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
   for (OptionTable::Group& group : table.groups) {
     for (Option& option : group.options) {
