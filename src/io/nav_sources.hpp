@@ -28,7 +28,8 @@ class NavSources {
 /// Detects when a dead reckoning was reset to zero during the recording: later positions are in another frame.
 class DeadReckoningFrame {
  public:
-  /// Whether the next position is still in the frame of the first one: no step was faster than 10 m/s.
+  /// Whether the next position is still in the frame of the first one: no step was faster than 10 m/s, and none led to
+  /// the origin after a pause.
   bool holds(double time_s, const Eigen::Vector3d& position_m);
 
  private:
