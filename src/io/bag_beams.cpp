@@ -308,6 +308,11 @@ class BagBeams final : public DeviceLog {
   }
 
   std::string why_none() const {
+    if (!unusable_.empty()) {
+      const DamageKind& first = unusable_.front();
+      return fmt::format("{}: none of its messages can be used as a beam: {} x {}", bag_->name(), first.count,
+                         first.what);
+    }
     const std::string second = topics_text(*bag_, is_second_sonar);
     const std::string others =
         topics_text(*bag_, [](const BagTopic& topic) { return is_sonar(topic) || may_have_scans(topic); });
