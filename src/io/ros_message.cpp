@@ -222,7 +222,7 @@ class LayoutMaker {
   /// has the same gaps wherever it is.
   void set_places(RosLayout::Record& record) const {
     if (record.members.empty()) {
-      record.is_fixed = true;
+      record.is_fixed = record.is_fixed_if_aligned = true;
       record.size = layout_.encoding_ == RosEncoding::kCdr ? 1 : 0;  // CDR has no empty records
       return;
     }
@@ -253,6 +253,7 @@ class LayoutMaker {
       if (record.size > kMaxFixed) return;
     }
     record.is_fixed = first_alignment == record.alignment;
+    record.is_fixed_if_aligned = record.is_fixed || record.size % record.alignment == 0;
   }
 
   static constexpr std::size_t kMaxFixed = std::size_t{1} << 30;
@@ -321,7 +322,7 @@ class RosMessage::Walk {
   }
 
   bool read(const RosLayout::Record& record, bool has_values) {
-    if (record.is_fixed) return read_fixed(record, 1, has_values);
+    if (is_fixed_here(record)) return read_fixed(record, 1, has_values);
     for (const RosLayout::Member& member : record.members) {
       std::size_t count = member.size;
       if (member.array == Array::kVariable) {
@@ -334,11 +335,15 @@ class RosMessage::Walk {
     return true;
   }
 
+  bool is_fixed_here(const RosLayout::Record& record) const {
+    return record.is_fixed || (record.is_fixed_if_aligned && align(at_, record.alignment) == at_);
+  }
+
   bool read_member(const RosLayout::Member& member, std::size_t count, bool has_values) {
     if (count == 0) return true;
     if (!member.record) return read_numbers(member, count, has_values);
     const RosLayout::Record& record = layout_.records_[*member.record];
-    if (record.is_fixed) return read_fixed(record, count, has_values);
+    if (is_fixed_here(record)) return read_fixed(record, count, has_values);
     const std::size_t with_values = member.array == Array::kNone ? 0 : element_;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t before = at_;

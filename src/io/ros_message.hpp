@@ -69,7 +69,8 @@ class RosLayout {
   };
   struct Record {
     std::vector<Member> members;
-    bool is_fixed = false;  ///< each has the same size and places, when it begins at a multiple of `alignment`
+    bool is_fixed = false;             ///< each has the same size and places; it begins at a multiple of `alignment`
+    bool is_fixed_if_aligned = false;  ///< the same, where the first one begins at a multiple of `alignment`
     std::size_t size = 0, alignment = 1;
     std::vector<Place> places;
   };

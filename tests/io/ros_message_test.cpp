@@ -120,6 +120,25 @@ TEST(RosMessage, FindsEachRecordOfAnArrayAlsoBetweenGaps) {
   }
 }
 
+// Kills arrays of which only the first record is read, as its first field is not the one that is aligned most.
+TEST(RosMessage, FindsEachRecordOfAnArrayWhoseGapsAreInside) {
+  const Decoded read =
+      decode("Bin[] bins\nuint8 behind\n===\nMSG: test_msgs/Bin\nuint8 intensity\nfloat32 distance\n",
+             RosEncoding::kCdr, from_hex("00010000 03000000 0a000000 0000803f 0b000000 00000040 0c000000 00004040 02"));
+  ASSERT_TRUE(read.fits);
+  EXPECT_EQ(read.count("bins.distance"), 3U);
+  EXPECT_EQ(read.number("bins.distance", 2), 3.0);
+  EXPECT_THAT(read.bytes("bins.intensity"), ElementsAre(10, 11, 12));
+  EXPECT_EQ(read.number("behind"), 2.0);
+  // Here the gaps differ from record to record.
+  const Decoded uneven =
+      decode("Bin[] bins\nuint8 behind\n===\nMSG: test_msgs/Bin\nuint8 a\nfloat32 b\nuint8 c\n", RosEncoding::kCdr,
+             from_hex("00010000 02000000 01000000 0000803f 02 03 0000 00000040 04 05"));
+  ASSERT_TRUE(uneven.fits);
+  EXPECT_EQ(uneven.number("bins.c"), 2.0);
+  EXPECT_EQ(uneven.number("behind"), 5.0);
+}
+
 TEST(RosMessage, TakesTheFirstOfRecordsWhoseSizeVaries) {
   const std::string definition =
       "Channel[] channels\nuint8 behind\n===\nMSG: test_msgs/Channel\nstring name\n"
