@@ -1,28 +1,32 @@
 #pragma once
 
-#include <csignal>
+#include <memory>
+#include <thread>
 
-#include "pingvox/io/descriptor.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox::app {
 
-/// SIGINT and SIGTERM as something to wait for, so that a command ends in good order. Threads are started after it.
+/// SIGINT and SIGTERM as something to wait for, so that a command ends in good order. Another one, at least a second
+/// after the first, ends the process at once, also where the command waits for something else. Threads are started
+/// after it.
 class StopSignals {
  public:
-  /// Blocks the signals.
+  /// Blocks the signals, and starts a thread that waits for them.
   static Result<StopSignals> make();
+  StopSignals(StopSignals&&) noexcept;
+  StopSignals& operator=(StopSignals&&) = delete;
+  ~StopSignals();
 
-  /// For poll().
-  int descriptor() const { return file_.get(); }
-  /// Whether a signal has arrived. A second after that, another one ends the process at once.
-  bool has_arrived();
+  /// For poll(): readable once a signal has arrived.
+  int descriptor() const;
+  bool has_arrived() const;
 
  private:
-  StopSignals(const sigset_t& signals, Descriptor file) : signals_(signals), file_(std::move(file)) {}
-
-  sigset_t signals_;
-  Descriptor file_;
+  struct Files;
+  explicit StopSignals(std::unique_ptr<Files> files);
+  std::unique_ptr<Files> files_;
+  std::thread thread_;
 };
 
 }  // namespace pingvox::app

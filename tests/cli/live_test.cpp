@@ -446,6 +446,26 @@ TEST(Live, GoesOnWhereItsStatusIsNotRead) {
   ::close(status);
 }
 
+// A replay of a pipe in which nothing comes could not be ended by Ctrl-C.
+TEST(Live, EndsAtASecondSignalWhereverItWaits) {
+  const Workplace here;
+  ASSERT_EQ(::mkfifo(here.path("log").c_str(), 0600), 0);
+  const pid_t child = here.start({"live", "replay:log", "-o", "live.bt", "--quiet"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  int status = 0;
+  bool has_ended = false;
+  for (int i = 0; i < 100 && !has_ended; ++i) {
+    ::kill(child, SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    has_ended = ::waitpid(child, &status, WNOHANG) == child;
+  }
+  EXPECT_TRUE(has_ended && WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+  if (!has_ended) {
+    ::kill(child, SIGKILL);
+    status_of(child);
+  }
+}
+
 TEST(Live, MakesTheFolderOfItsRecordings) {
   const Head head;
   const Workplace here;
