@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 
 #include "io/text.hpp"
@@ -98,6 +99,12 @@ std::optional<Eigen::Vector3d> three(std::string_view x, std::string_view y, std
   return Eigen::Vector3d(*a, *b, *c);
 }
 
+/// NaN: there is none.
+double deviation_in(std::string_view text) {
+  const double deviation = number_in(text).value_or(-1.0);
+  return deviation >= 0.0 ? deviation : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// What the forms of a velocity report have in common, as text.
 struct VelocityText {
   std::string_view x, y, z, deviation, altitude, step_ms, made_us, sent_us;
@@ -111,9 +118,7 @@ A50Reading velocity_report(const VelocityText& text) {
   report.kind = A50Report::Kind::kVelocity;
   report.velocity_m_s = *velocity;
   report.valid = text.valid;
-  if (const auto deviation = number_in(text.deviation); deviation && *deviation >= 0.0) {
-    report.deviation_m_s = *deviation;
-  }
+  report.deviation = deviation_in(text.deviation);
   report.altitude_m = number_in(text.altitude).value_or(-1.0);
   if (const auto step_ms = number_in(text.step_ms)) report.step_s = *step_ms * 1e-3;
   if (const auto made_us = number_in(text.made_us)) {
@@ -123,15 +128,21 @@ A50Reading velocity_report(const VelocityText& text) {
   return report;
 }
 
-A50Reading position_report(std::string_view time_s, const std::optional<Eigen::Vector3d>& position_m,
-                           const std::optional<Eigen::Vector3d>& rpy_deg) {
+/// The same of a position report.
+struct PositionText {
+  std::string_view time_s, x, y, z, deviation, roll_deg, pitch_deg, yaw_deg, status;
+};
+
+A50Reading position_report(const PositionText& text) {
+  const auto position_m = three(text.x, text.y, text.z), rpy_deg = three(text.roll_deg, text.pitch_deg, text.yaw_deg);
   if (!position_m || !rpy_deg) return tl::unexpected(kNoNumbers);
   A50Report report;
   report.kind = A50Report::Kind::kPosition;
-  report.valid = true;
+  report.valid = number_in(text.status).value_or(0.0) == 0.0;
   report.position_m = *position_m;
+  report.deviation = deviation_in(text.deviation);
   report.rpy_rad = *rpy_deg * kDegree_rad;
-  report.made_s = number_in(time_s);
+  report.made_s = number_in(text.time_s);
   return report;
 }
 
@@ -180,8 +191,8 @@ A50Reading a50_report(const TextMembers& members) {
         .map(with_host_clock);
   }
   if (type == "position_local") {
-    return position_report(text("ts"), three(text("x"), text("y"), text("z")),
-                           three(text("roll"), text("pitch"), text("yaw")))
+    return position_report({text("ts"), text("x"), text("y"), text("z"), text("std"), text("roll"), text("pitch"),
+                            text("yaw"), text("status")})
         .map(with_host_clock);
   }
   return A50Report{};
@@ -208,11 +219,14 @@ A50Reading a50_serial_report(std::string_view line) {
         {fields[1], fields[2], fields[3], fields[6], fields[5], fields[10], fields[8], fields[9], fields[4] == "y"});
   }
   if (has("wrx", 9)) {
-    return velocity_report(
-        {fields[2], fields[3], fields[4], fields[5], fields[6], fields[1], {}, {}, fields[7] == "y"});
+    A50Reading report =
+        velocity_report({fields[2], fields[3], fields[4], fields[5], fields[6], fields[1], {}, {}, fields[7] == "y"});
+    if (report) report->is_deprecated = true;
+    return report;
   }
   if (has("wrp", 10)) {
-    return position_report(fields[1], three(fields[2], fields[3], fields[4]), three(fields[6], fields[7], fields[8]));
+    return position_report(
+        {fields[1], fields[2], fields[3], fields[4], fields[5], fields[6], fields[7], fields[8], fields[9]});
   }
   const bool is_short = name == "wrz" || name == "wrx" || name == "wrp";
   if (is_short) return tl::unexpected(kNoNumbers);
@@ -257,12 +271,13 @@ void add_a50_report(NavSources& sources, const std::string& name, double time_s,
   };
   if (report.kind == A50Report::Kind::kVelocity) {
     NavSample* const velocity = add(NavQuantity::kVelocity, from_ned::body(report.velocity_m_s), report.valid);
-    if (velocity != nullptr) velocity->deviation.setConstant(report.deviation_m_s);
+    if (velocity != nullptr) velocity->deviation.setConstant(report.deviation);
     add(NavQuantity::kRange, {report.altitude_m, 0.0, 0.0}, report.valid && report.altitude_m > 0.0);
   }
   if (report.kind == A50Report::Kind::kPosition) {
-    const bool valid = frame.holds(time_s, report.position_m);
-    add(NavQuantity::kPosition, from_ned::world(report.position_m), valid);
+    const bool valid = report.valid && frame.holds(time_s, report.position_m);
+    NavSample* const position = add(NavQuantity::kPosition, from_ned::world(report.position_m), valid);
+    if (position != nullptr) position->deviation.setConstant(report.deviation);
     add(NavQuantity::kAttitude, from_ned::attitude(report.rpy_rad), valid);
   }
 }

@@ -19,11 +19,12 @@ struct A50Report {
   enum class Kind { kVelocity, kPosition, kOther };
   Kind kind = Kind::kOther;
   bool valid = false;
-  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< forward, right, down
-  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();    ///< by dead reckoning, in its axes at the last reset
-  Eigen::Vector3d rpy_rad = Eigen::Vector3d::Zero();       ///< since then
-  double altitude_m = -1.0;                                ///< along its axis; not above 0: none
-  double deviation_m_s = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();       ///< forward, right, down
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();         ///< by dead reckoning, in its axes at the last reset
+  Eigen::Vector3d rpy_rad = Eigen::Vector3d::Zero();            ///< since then
+  double altitude_m = -1.0;                                     ///< along its axis; not above 0: none
+  double deviation = std::numeric_limits<double>::quiet_NaN();  ///< of the velocity [m/s] or the position [m]
+  bool is_deprecated = false;          ///< a form that devices send besides the one that replaces it
   std::optional<double> step_s;        ///< since the report before
   std::optional<double> made_s;        ///< when it was true, on the device's clock
   double latency_s = 0.0;              ///< from then until it was sent

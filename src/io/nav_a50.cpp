@@ -65,19 +65,37 @@ A50Reading report_in(std::string_view line) {
   return a50_serial_report(trim(line));
 }
 
+bool is_velocity(const A50Report& report) {
+  return report.kind == A50Report::Kind::kVelocity;
+}
+
 /// Puts reports on one clock: the host's where the log has it, else the device's, else the sum of the steps.
 class ReportTimes {
  public:
+  /// @param reports  of the whole log: where velocities have no times, those of positions are of another clock
+  explicit ReportTimes(const std::vector<A50Report>& reports)
+      : counts_steps_(std::ranges::any_of(reports, [](const A50Report& report) {
+          return is_velocity(report) && !report.made_s && !report.host_clock_s;
+        })) {}
+
   double time_of(const A50Report& report) {
     if (report.host_clock_s) return *report.host_clock_s - report.latency_s;
-    if (report.made_s && !(elapsed_s_ && report.kind == A50Report::Kind::kPosition)) return *report.made_s;
-    elapsed_s_ = elapsed_s_.value_or(0.0) + report.step_s.value_or(0.0);
-    return *elapsed_s_;
+    if (report.made_s && (is_velocity(report) || !counts_steps_)) return *report.made_s;
+    elapsed_s_ += report.step_s.value_or(0.0);
+    return elapsed_s_;
   }
 
  private:
-  std::optional<double> elapsed_s_;  ///< nullopt: the device says its time
+  bool counts_steps_;
+  double elapsed_s_ = 0.0;
 };
+
+/// Devices send both forms of a velocity.
+void leave_out_deprecated(std::vector<A50Report>& reports) {
+  const auto is_new = [](const A50Report& report) { return is_velocity(report) && !report.is_deprecated; };
+  if (std::ranges::any_of(reports, is_new))
+    std::erase_if(reports, [](const A50Report& report) { return report.is_deprecated; });
+}
 
 }  // namespace
 
@@ -108,9 +126,7 @@ NavReading read_a50(std::span<const std::uint8_t> bytes) {
   NavReading reading;
   const std::string_view text = text_of(bytes);
   const std::string kName = "A50";
-  NavSources sources;
-  ReportTimes times;
-  DeadReckoningFrame frame;
+  std::vector<A50Report> reports;
   std::size_t from = 0;
   std::optional<std::vector<std::string_view>> columns;
   bool is_first = true;
@@ -127,8 +143,13 @@ NavReading read_a50(std::span<const std::uint8_t> bytes) {
     ++reading.records;
     if (report->kind == A50Report::Kind::kOther) continue;
     if (report->host_clock_s) reading.clock = NavClock::kUnix;
-    add_a50_report(sources, kName, times.time_of(*report), *report, frame);
+    reports.push_back(*report);
   }
+  leave_out_deprecated(reports);
+  NavSources sources;
+  ReportTimes times(reports);
+  DeadReckoningFrame frame;
+  for (const A50Report& report : reports) add_a50_report(sources, kName, times.time_of(report), report, frame);
   reading.sources = sources.take();
   return reading;
 }

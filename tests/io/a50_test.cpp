@@ -115,6 +115,61 @@ TEST(A50, ReadsTheSerialProtocolWithAnyLineEnd) {
   EXPECT_DOUBLE_EQ(samples_of(nav, NavQuantity::kPosition).at(0).time_s, 49056.809);
 }
 
+/// Lines of the serial protocol, with their checksums.
+constexpr const char* kOldVelocity = "wrx,100.00,0.100,0.000,0.000,0.010,1.30,y,0*89\n";
+constexpr const char* kBadPosition = "wrp,1637321409.000,0.41,0.15,1.23,0.4,53.9,13.0,19.3,1*f9\n";
+
+// Kills velocities that count twice, half of them at the sum of the steps.
+TEST(A50, TheDeprecatedFormOfAVelocityCountsAlone) {
+  const std::string old = kOldVelocity;
+  const NavFile nav = read_as_a50(old +
+                                  "wrz,0.100,0.000,0.000,y,1.30,0.010,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,1637321409000000,"
+                                  "1637321409100000,100.00,0*6a\n" +
+                                  old +
+                                  "wrz,0.100,0.000,0.000,y,1.30,0.010,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,1637321409100000,"
+                                  "1637321409200000,100.00,0*b6\n");
+  const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
+  ASSERT_EQ(velocities.size(), 2U);
+  EXPECT_DOUBLE_EQ(velocities[0].time_s, 1637321409.0);
+  EXPECT_DOUBLE_EQ(velocities[1].time_s, 1637321409.1);
+  EXPECT_EQ(samples_of(read_as_a50(old + old), NavQuantity::kVelocity).size(), 2U);
+}
+
+// Kills an old log whose clock runs back by years behind its first position.
+TEST(A50, TimesOfPositionsDoNotCountWhereVelocitiesHaveNone) {
+  const auto position = [](const std::string& ts) {
+    return R"({"ts":)" + ts +
+           R"(,"x":0,"y":0,"z":0,"std":0,"roll":0,"pitch":0,"yaw":0,"type":"position_local"})"
+           "\n";
+  };
+  const NavFile nav =
+      read_as_a50(position("1637321409.0") + velocity("", "true") + position("1637321409.1") + velocity("", "true"));
+  const auto& positions = samples_of(nav, NavQuantity::kPosition);
+  ASSERT_EQ(positions.size(), 2U);
+  EXPECT_DOUBLE_EQ(positions[0].time_s, 0.0);
+  EXPECT_DOUBLE_EQ(positions[1].time_s, 0.1);
+  EXPECT_TRUE(check_clocks(nav.log));
+}
+
+// Kills positions that count though the device says that they are wrong.
+TEST(A50, APositionIsAsGoodAsItsStatusAndDeviationSay) {
+  const auto position = [](const std::string& more) {
+    return R"({"ts":5,"x":1,"y":2,"z":3,"std":0.25,"roll":0,"pitch":0,"yaw":0,"type":"position_local")" + more + "}\n";
+  };
+  const NavFile nav =
+      read_as_a50(position(R"(,"status":1)") + position(R"(,"status":0)") + position("") + kBadPosition);
+  const auto& positions = samples_of(nav, NavQuantity::kPosition);
+  const auto& attitudes = samples_of(nav, NavQuantity::kAttitude);
+  ASSERT_EQ(positions.size(), 4U);
+  ASSERT_EQ(attitudes.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool is_good = i == 1 || i == 2;
+    EXPECT_EQ(positions[i].valid, is_good) << i;
+    EXPECT_EQ(attitudes[i].valid, is_good) << i;
+    EXPECT_EQ(positions[i].deviation, Eigen::Vector3d::Constant(i < 3 ? 0.25 : 0.4)) << i;
+  }
+}
+
 TEST(A50, CountsDamageByKindAndPlace) {
   const std::string good = "wru,0,0.070,1.10,-40,-95*9c\n";
   const NavFile nav = read_as_a50(good + "wru,1,0.070,1.10,-40,-95*9c\n" + velocity("", "true") + "{\"type\":\"velo\n" +
