@@ -69,16 +69,17 @@ class Message {
   std::vector<Report> take() { return std::move(reports_); }
 
  private:
-  void put(const char* name, NavQuantity quantity, const NavSample& sample) {
+  void put(const std::string& name, NavQuantity quantity, const NavSample& sample) {
     if (!sample.value.allFinite()) return;
     Report report{name + address_, quantity, sample, made_};
     report.sample.time_s = made_ ? starts_s_[made_->start] + made_->since_s : time_s_;
     reports_.push_back(std::move(report));
   }
 
-  /// The message says itself when it was made. Delays only add, so the smallest difference of the two clocks is the
-  /// nearest; a difference that jumps means that the device was started anew.
+  /// The message says itself when it was made; 0: it does not. Delays only add, so the smallest difference of the two
+  /// clocks is the nearest; a difference that jumps means that the device was started anew.
   void has_boot_time(std::uint32_t boot_ms) {
+    if (boot_ms == 0) return;
     constexpr double kNewStart_s = 2.0;
     const double since_s = boot_ms * 1e-3, start_s = time_s_ - since_s;
     if (starts_s_.empty() || std::fabs(start_s - starts_s_.back()) > kNewStart_s) starts_s_.push_back(start_s);
@@ -161,7 +162,8 @@ class Message {
     const auto least_cm = fields.at<std::uint16_t>(4), most_cm = fields.at<std::uint16_t>(6);
     const auto now_cm = fields.at<std::uint16_t>(8);
     const NavSample sample = with_validity(sample_of({now_cm * 0.01, 0, 0}), now_cm >= least_cm && now_cm <= most_cm);
-    put("DISTANCE_SENSOR", NavQuantity::kRange, sample);
+    const auto id = fields.at<std::uint8_t>(11);  // of several that one sender reads
+    put(id == 0 ? "DISTANCE_SENSOR" : fmt::format("DISTANCE_SENSOR[{}]", id), NavQuantity::kRange, sample);
   }
 
   /// How far the vehicle moved in the time before: the velocity in the middle of it.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +19,7 @@ class TlogNav {
   void add(const TlogRecord& record) {
     for (const MavlinkNav::Report& report : nav_.add(record.frame, static_cast<double>(record.time_us) * 1e-6)) {
       const bool is_taken = sources_.add(report.source, report.quantity, report.sample) != nullptr;
-      if (is_taken && report.made) made_[{report.source, report.quantity}].push_back(*report.made);
+      if (is_taken) made_[{report.source, report.quantity}].push_back(report.made);
     }
   }
 
@@ -26,9 +27,10 @@ class TlogNav {
   std::vector<NavSource> finish() {
     std::vector<NavSource> sources = sources_.take();
     for (NavSource& source : sources) {
-      const auto made = made_.find({source.name, source.quantity});
-      if (made == made_.end()) continue;
-      for (std::size_t i = 0; i < source.samples.size(); ++i) source.samples[i].time_s = nav_.time_s(made->second[i]);
+      const auto& made = made_.at({source.name, source.quantity});
+      for (std::size_t i = 0; i < source.samples.size(); ++i) {
+        if (made[i]) source.samples[i].time_s = nav_.time_s(*made[i]);
+      }
     }
     return sources;
   }
@@ -36,7 +38,7 @@ class TlogNav {
  private:
   MavlinkNav nav_;
   NavSources sources_;
-  std::map<std::pair<std::string, NavQuantity>, std::vector<MavlinkNav::SinceBoot>> made_;
+  std::map<std::pair<std::string, NavQuantity>, std::vector<std::optional<MavlinkNav::SinceBoot>>> made_;
 };
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST(Clock, ALogOfPingViewerIsOnTheClockOfItsVehicle) {
   ASSERT_TRUE(log && nav);
   const NavSource* distances = nullptr;
   for (const NavSource& source : nav->log.sources()) {
-    if (source.name == "DISTANCE_SENSOR 1/194") distances = &source;
+    if (source.name == "DISTANCE_SENSOR[1] 1/194") distances = &source;
   }
   ASSERT_NE(distances, nullptr);
 

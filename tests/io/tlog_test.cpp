@@ -7,9 +7,12 @@
 #include <map>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/io/mavlink.hpp"
 #include "pingvox/io/nav.hpp"
 #include "support/logs.hpp"
 
@@ -37,6 +40,59 @@ const NavSource* source_of(const NavLog& log, std::string_view name, NavQuantity
     if (source.name == name && source.quantity == quantity) return &source;
   }
   return nullptr;
+}
+
+/// A record with a DISTANCE_SENSOR of 1.5 m. @param boot_ms  0: the sender does not know its time
+std::vector<std::uint8_t> distance_record(std::uint8_t at_s, std::uint16_t boot_ms, std::uint8_t id) {
+  const std::vector<std::uint8_t> payload = {static_cast<std::uint8_t>(boot_ms & 0xffU),
+                                             static_cast<std::uint8_t>(boot_ms >> 8U),
+                                             0,
+                                             0,
+                                             20,
+                                             0,
+                                             0x10,
+                                             0x27,
+                                             150,
+                                             0,
+                                             4,
+                                             id,
+                                             25,
+                                             0};
+  const std::vector<std::uint8_t> frame = make_mavlink_frame(132, payload, {0, 1, 194});
+  // at_s * 2^20 us after 2023-05-04
+  std::vector<std::uint8_t> record = {0x00, 0x05, 0xfa, 0xe1, 0, static_cast<std::uint8_t>(at_s << 4U), 0, 0};
+  record.insert(record.end(), frame.begin(), frame.end());
+  return record;
+}
+
+// Kills times that repeat the first one because the sender does not know its own.
+TEST(Tlog, AMessageWithoutItsTimeIsOfTheTimeWhenItCame) {
+  std::vector<std::uint8_t> log;
+  for (const auto& [at_s, boot_ms] : {std::pair<std::uint8_t, std::uint16_t>{1, 1000}, {2, 0}, {3, 0}, {4, 4146}}) {
+    const auto record = distance_record(at_s, boot_ms, 0);
+    log.insert(log.end(), record.begin(), record.end());
+  }
+  const auto nav = read_as_tlog(log);
+  ASSERT_TRUE(nav) << nav.error().message;
+  const NavSource* range = source_of(nav->log, "DISTANCE_SENSOR 1/194", NavQuantity::kRange);
+  ASSERT_NE(range, nullptr);
+  ASSERT_EQ(range->samples.size(), 4U);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const double since_first_s = range->samples[i].time_s - range->samples[0].time_s;
+    EXPECT_NEAR(since_first_s, static_cast<double>(i) * 1.048576, 1e-3) << i;
+  }
+}
+
+// Kills rangefinders that look ahead and down and are taken for one.
+TEST(Tlog, RangefindersOfOneSenderAreSourcesOfTheirOwn) {
+  std::vector<std::uint8_t> log = distance_record(1, 1000, 0);
+  const auto other = distance_record(2, 2048, 2);
+  log.insert(log.end(), other.begin(), other.end());
+  const auto nav = read_as_tlog(log);
+  ASSERT_TRUE(nav) << nav.error().message;
+  EXPECT_EQ(nav->log.sources().size(), 2U);
+  EXPECT_NE(source_of(nav->log, "DISTANCE_SENSOR 1/194", NavQuantity::kRange), nullptr);
+  EXPECT_NE(source_of(nav->log, "DISTANCE_SENSOR[2] 1/194", NavQuantity::kRange), nullptr);
 }
 
 TEST(Tlog, TurnsWhatAVehicleSaidIntoOurFrames) {
