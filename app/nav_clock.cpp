@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "open_log.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/clock.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -28,13 +31,17 @@ Result<Log> open(const SonarLog& sonar, Damage damage) {
   });
 }
 
+/// When there may be poses; sources that make none may be on another clock. nullopt: that is never.
 std::optional<TimeSpan> span_of(const NavLog& nav) {
-  std::optional<TimeSpan> span;
-  for (const NavSource& source : nav.sources()) {
-    const double from_s = source.samples.front().time_s, to_s = source.samples.back().time_s;
-    span = span ? TimeSpan{std::min(span->from_s, from_s), std::max(span->to_s, to_s)} : TimeSpan{from_s, to_s};
+  if (const Result<NavTrajectory> path = nav_trajectory(nav, 0.0)) {
+    const std::vector<StampedPose>& poses = path->trajectory.poses();
+    return TimeSpan{poses.front().time_s, poses.back().time_s};
   }
-  return span;
+  // Dead reckoning, or turns alone.
+  const NavSource* const attitude = nav.best(NavQuantity::kAttitude);
+  const NavSource* const turns = attitude != nullptr ? attitude : nav.best(NavQuantity::kHeading);
+  if (turns == nullptr) return std::nullopt;
+  return TimeSpan{turns->samples.front().time_s, turns->samples.back().time_s};
 }
 
 bool overlap(const TimeSpan& a, const TimeSpan& b) {
@@ -107,6 +114,17 @@ std::string zone_text(double zone_s) {
   return fmt::format("UTC{}{}:{:02}", minutes < 0 ? '-' : '+', std::abs(minutes) / 60, std::abs(minutes) % 60);
 }
 
+/// ": in UTC-7:00 --nav-offset -25200.000, in UTC-8:00 --nav-offset -28800.000", for each zone that may be meant
+std::string zones_text(const std::vector<TimeZone>& zones, double zero_s) {
+  constexpr std::size_t kMost = 4;
+  std::string text;
+  for (const TimeZone& zone : std::span(zones).first(std::min(zones.size(), kMost))) {
+    text += fmt::format("{} in {} --nav-offset {:.3f}", text.empty() ? ":" : ",", zone_text(zone.local_from_utc_s),
+                        zone.local_from_utc_s - zero_s);
+  }
+  return zones.size() > kMost ? text + ", or others" : text;
+}
+
 /// @param dates  what is known of the dates, for the error
 Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, Damage damage, const std::string& dates) {
   const auto times = times_of(sonar, damage, Want::kTurns);
@@ -142,23 +160,22 @@ Result<NavOffset> nav_offset(const std::optional<double>& given, const NavLog& n
   const TimeSpan& span = (*times)->span;
 
   const bool nav_has_dates = nav.clock() == NavClock::kUnix;
-  NavOffset by_dates{0.0, std::nullopt, "both have dates"};
-  if (nav_has_dates && overlap(span, *nav_span)) return by_dates;
-  if (nav_has_dates && span.from_s >= kFirstDate_s) {
-    // Programs without a time zone write local time.
-    const auto zone_s = local_from_utc_s(span, *nav_span);
-    return zone_s ? NavOffset{*zone_s, std::nullopt, "both have dates, the sonar log's in " + zone_text(*zone_s)}
-                  : by_dates;
-  }
+  if (nav_has_dates && overlap(span, *nav_span)) return NavOffset{0.0, std::nullopt, "both have dates"};
   std::string dates;
   if (nav_has_dates) {
-    if (const auto zero_s = zero_in_name(sonar.name, (*times)->clock)) {
-      dates = fmt::format(" (its name says {}, --nav is of {})", day_text(*zero_s), day_text(nav_span->from_s));
-      const auto zone_s = local_from_utc_s({*zero_s + span.from_s, *zero_s + span.to_s}, *nav_span);
-      if (zone_s) {
-        return NavOffset{*zone_s - *zero_s, std::nullopt,
-                         "the date in the name of the sonar log, in " + zone_text(*zone_s)};
+    const bool has_dates = span.from_s >= kFirstDate_s;
+    const std::optional<double> zero_s = has_dates ? 0.0 : zero_in_name(sonar.name, (*times)->clock);
+    if (zero_s) {
+      // Programs without a time zone write local time.
+      const TimeSpan local = {*zero_s + span.from_s, *zero_s + span.to_s};
+      if (const auto zone_s = local_from_utc_s(local, *nav_span)) {
+        const char* const from =
+            has_dates ? "both have dates, the sonar log's in " : "the date in the name of the sonar log, in ";
+        return NavOffset{*zone_s - *zero_s, std::nullopt, from + zone_text(*zone_s)};
       }
+      dates =
+          fmt::format(" ({} {}, --nav is of {}{})", has_dates ? "it is of" : "its name says", day_text(local.from_s),
+                      day_text(nav_span->from_s), zones_text(time_zones(local, *nav_span), *zero_s));
     }
   }
   if (nav.clock() == NavClock::kUnknown && overlap(span, *nav_span)) return one_clock;

@@ -42,6 +42,116 @@ bool overlap(const NavSource& a, const NavSource& b) {
   return a.samples.front().time_s < b.samples.back().time_s && b.samples.front().time_s < a.samples.back().time_s;
 }
 
+/// One of several logs of a vehicle.
+struct NavPart {
+  std::string name;
+  BagContents contents;
+  double offset_s = 0.0;  ///< to add to its times to get those of the others
+
+  const NavLog& log() const { return contents.nav.log; }
+};
+
+Result<NavPart> read_part(const std::string& name, Damage damage, std::span<const NavFields> fields) {
+  Result<ByteStream> stream = ByteStream::open(name);
+  if (!stream) return tl::unexpected(stream.error());
+  const std::string shown = stream->name();
+  const std::optional<std::string> unread = describe_unread_file(stream->beginning());
+  const Result<Format> format = identify_format(*stream);
+  if (!format) {
+    if (format.error().code != Error::Code::kUnsupported) return tl::unexpected(format.error());
+    const std::string_view what = stream->beginning().empty() ? "is empty" : "is not a navigation log";
+    return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, unread ? std::string_view(*unread) : what));
+  }
+  Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
+  if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
+    return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
+  }
+  if (!contents && kind_of(*format) == FormatKind::kTrajectory) {
+    return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a navigation log: 'map' and 'render' take it "
+                                                       "by --poses, 'locate' by --odometry",
+                                                       shown, description_of(*format)));
+  }
+  if (!contents) return tl::unexpected(contents.error());
+  return NavPart{name, *std::move(contents)};
+}
+
+/// Parts whose offsets are known as one log.
+Result<NavLog> joined(const std::vector<const NavPart*>& parts, NavClock clock) {
+  std::vector<NavSource> sources;
+  for (const NavPart* part : parts) {
+    const NavClock own = part->log().clock();
+    for (NavSource source : part->log().sources()) {
+      for (NavSample& sample : source.samples) sample.time_s += part->offset_s;
+      const auto same = std::ranges::find_if(
+          sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });
+      if (same == sources.end()) {
+        sources.push_back(std::move(source));
+        continue;
+      }
+      if (own == NavClock::kBoot && overlap(*same, source)) {
+        return fail(Error::Code::kUnsupported,
+                    fmt::format("{}: its times count from another start of the device than those of {}: {} ({}) has "
+                                "the same times in both",
+                                part->name, parts.front()->name, source.name, name_of(source.quantity)));
+      }
+      add_samples(source, *same);
+    }
+  }
+  return NavLog::make(std::move(sources), clock);
+}
+
+std::string names_of(const std::vector<const NavPart*>& parts) {
+  std::string names;
+  for (const NavPart* part : parts) names += (names.empty() ? "" : ", ") + part->name;
+  return names;
+}
+
+/// To add to the times of a log that counts from a start to get dates, by how the vehicle turned in it and in one of
+/// the logs with dates, the one that tells it best.
+Result<ClockOffset> date_offset(const std::vector<const NavPart*>& dated,
+                                const std::vector<const NavPart*>& from_start) {
+  Result<ClockOffset> best = fail(Error::Code::kUnsupported, "the vehicle turns too little");
+  for (const NavPart* with_dates : dated) {
+    const auto turns = yaw_changes(with_dates->log());
+    for (const NavPart* without : from_start) {
+      const Result<ClockOffset> offset =
+          turns.and_then([&](const std::vector<YawChange>& changes) { return clock_offset(changes, without->log()); });
+      if (!best || (offset && offset->deviation_s < best->deviation_s)) best = offset;
+    }
+  }
+  return best;
+}
+
+/// Finds the offsets of the parts on another clock than `clock`, of which there is a part.
+Result<void> align(std::vector<NavPart>& parts, NavClock clock) {
+  std::vector<const NavPart*> dated, from_start;
+  for (const NavPart& part : parts) {
+    if (part.log().clock() == NavClock::kUnix) dated.push_back(&part);
+    if (part.log().clock() == NavClock::kBoot) from_start.push_back(&part);
+  }
+  if (dated.empty() || from_start.empty()) return {};
+  const auto refuse = [](const Error& error, const std::vector<const NavPart*>& its,
+                         const std::vector<const NavPart*>& others) {
+    return fail(error.code, fmt::format("{}: the offset between its clock and that of {} cannot be found: {}",
+                                        names_of(its), names_of(others), error.message));
+  };
+  if (clock == NavClock::kBoot) {
+    const Result<ClockOffset> offset = date_offset(dated, from_start);
+    if (!offset) return refuse(offset.error(), dated, from_start);
+    for (NavPart& part : parts) {
+      if (part.log().clock() == NavClock::kUnix) part.offset_s = -offset->offset_s;
+    }
+    return {};
+  }
+  for (NavPart& part : parts) {  // each from a start of its own
+    if (part.log().clock() != NavClock::kBoot) continue;
+    const Result<ClockOffset> offset = date_offset(dated, {&part});
+    if (!offset) return refuse(offset.error(), {&part}, dated);
+    part.offset_s = offset->offset_s;
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
@@ -53,71 +163,27 @@ Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<con
 }
 
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields) {
+  std::vector<NavPart> parts;
   std::vector<BagTopicSummary> topics;
-  std::vector<NavSource> sources;
-  std::optional<NavClock> clock;
-  Result<std::vector<YawChange>> first_turns;
   std::size_t damaged = 0;
   for (const std::string& name : names) {
-    Result<ByteStream> stream = ByteStream::open(name);
-    if (!stream) return tl::unexpected(stream.error());
-    const std::string shown = stream->name();
-    const std::optional<std::string> unread = describe_unread_file(stream->beginning());
-    const Result<Format> format = identify_format(*stream);
-    if (!format) {
-      if (format.error().code != Error::Code::kUnsupported) return tl::unexpected(format.error());
-      const std::string_view what = stream->beginning().empty() ? "is empty" : "is not a navigation log";
-      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, unread ? std::string_view(*unread) : what));
-    }
-    const Result<BagContents> contents = read_contents(std::move(*stream), damage, fields);
-    if (!contents && unread && contents.error().code == Error::Code::kUnsupported) {
-      return fail(Error::Code::kUnsupported, fmt::format("{}: {}", shown, *unread));
-    }
-    if (!contents && kind_of(*format) == FormatKind::kTrajectory) {
-      return fail(Error::Code::kUnsupported, fmt::format("{}: is {}, not a navigation log: 'map' and 'render' take it "
-                                                         "by --poses, 'locate' by --odometry",
-                                                         shown, description_of(*format)));
-    }
-    if (!contents) return tl::unexpected(contents.error());
-    topics.insert(topics.end(), contents->topics.begin(), contents->topics.end());
-    const NavLog& log = contents->nav.log;
-    damaged += damaged_records(contents->nav);
-    const NavClock own = log.clock();
-    clock = clock.value_or(own);
-    double offset_s = 0.0;
-    if (own != *clock && own != NavClock::kUnknown && *clock != NavClock::kUnknown) {
-      const Result<ClockOffset> offset =
-          first_turns.and_then([&](const std::vector<YawChange>& turns) { return clock_offset(turns, log); });
-      if (!offset) {
-        return fail(offset.error().code,
-                    fmt::format("{}: the offset between its clock and that of {} cannot be found: {}", name,
-                                names.front(), offset.error().message));
-      }
-      offset_s = offset->offset_s;
-    }
-    if (names.size() > 1 && sources.empty()) first_turns = yaw_changes(log);
-    for (NavSource source : log.sources()) {
-      for (NavSample& sample : source.samples) sample.time_s += offset_s;
-      const auto same = std::ranges::find_if(
-          sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });
-      if (same == sources.end()) {
-        sources.push_back(std::move(source));
-        continue;
-      }
-      if (own == NavClock::kBoot && overlap(*same, source)) {
-        return fail(Error::Code::kUnsupported,
-                    fmt::format("{}: its times count from another start of the device than those of {}: {} ({}) has "
-                                "the same times in both",
-                                name, names.front(), source.name, name_of(source.quantity)));
-      }
-      add_samples(source, *same);
-    }
+    Result<NavPart> part = read_part(name, damage, fields);
+    if (!part) return tl::unexpected(part.error());
+    topics.insert(topics.end(), part->contents.topics.begin(), part->contents.topics.end());
+    damaged += damaged_records(part->contents.nav);
+    parts.push_back(*std::move(part));
   }
+  const auto known =
+      std::ranges::find_if(parts, [](const NavPart& part) { return part.log().clock() != NavClock::kUnknown; });
+  const NavClock clock = known == parts.end() ? NavClock::kUnknown : known->log().clock();
+  if (const auto aligned = align(parts, clock); !aligned) return tl::unexpected(aligned.error());
+  std::vector<const NavPart*> all;
+  for (const NavPart& part : parts) all.push_back(&part);
+  Result<NavLog> log = joined(all, clock);
+  if (!log) return tl::unexpected(log.error());
   const auto there = check_contents(fields, topics, fmt::format("{}", fmt::join(names, ", ")));
   if (!there) return tl::unexpected(there.error());
-  return NavLog::make(std::move(sources), clock.value_or(NavClock::kUnknown)).map([&](NavLog log) {
-    return NavFiles{std::move(log), damaged};
-  });
+  return NavFiles{*std::move(log), damaged};
 }
 
 Result<Water> water_of(const std::optional<WaterAround>& around, double salinity) {

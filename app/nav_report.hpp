@@ -17,13 +17,13 @@ namespace pingvox::app {
 /// How many were skipped.
 std::size_t damaged_records(const NavFile& nav);
 
-/// Navigation logs of one vehicle, put together on the clock of the first.
+/// Navigation logs of one vehicle, put together on the first clock that is known.
 struct NavFiles {
   NavLog log;               ///< sources of the same name and quantity are one
   std::size_t damaged = 0;  ///< records that could not be read
 };
-/// A log that counts from another start is aligned with the first by how the vehicle turned in both; kUnsupported when
-/// that cannot be told.
+/// Logs that count from the start of a device are aligned with those that have dates by how the vehicle turned in both;
+/// kUnsupported when that cannot be told.
 /// @param names   - is standard input; an empty log without any
 /// @param fields  of messages in ROS bags; if one of the logs is a bag, there must be messages of each
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 #include "io/date.hpp"
@@ -73,17 +74,26 @@ std::optional<double> date_in_name(std::string_view path) {
   return found;
 }
 
+std::vector<TimeZone> time_zones(const TimeSpan& local, const TimeSpan& utc) {
+  const double shorter_s = std::min(local.to_s - local.from_s, utc.to_s - utc.from_s);
+  std::vector<TimeZone> zones;
+  const auto add = [&](double hours) {
+    const double shift_s = hours * 3600.0;
+    const double both_s = std::min(local.to_s, utc.to_s + shift_s) - std::max(local.from_s, utc.from_s + shift_s);
+    if (both_s >= 0.0) zones.push_back({shift_s, shorter_s > 0.0 ? both_s / shorter_s : 1.0});
+  };
+  for (int hour = -12; hour <= 14; ++hour) add(hour);
+  for (const double hours : {-9.5, -3.5, -2.5, 3.5, 4.5, 5.5, 5.75, 6.5, 8.75, 9.5, 10.5, 12.75, 13.75}) add(hours);
+  std::ranges::stable_sort(zones, std::ranges::greater(), &TimeZone::share);
+  return zones;
+}
+
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc) {
-  constexpr int kWest = 12 * 4, kEast = 14 * 4;
-  constexpr double kQuarter_s = 900.0;
-  std::optional<double> found;
-  for (int quarter = -kWest; quarter <= kEast; ++quarter) {
-    const double shift_s = quarter * kQuarter_s;
-    if (utc.from_s + shift_s > local.to_s || utc.to_s + shift_s < local.from_s) continue;
-    if (found) return std::nullopt;
-    found = shift_s;
-  }
-  return found;
+  constexpr double kLeastShare = 0.9, kNextShare = 0.8;
+  const std::vector<TimeZone> zones = time_zones(local, utc);
+  if (zones.empty() || zones[0].share < kLeastShare) return std::nullopt;
+  if (zones.size() > 1 && zones[1].share > kNextShare * zones[0].share) return std::nullopt;
+  return zones[0].local_from_utc_s;
 }
 
 }  // namespace pingvox

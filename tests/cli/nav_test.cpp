@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -322,6 +323,73 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
       here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
   ASSERT_EQ(given.status, 0) << given.err;
   EXPECT_THAT(given.out, HasSubstr(R"("clock": {"offset_s": 0, "sd_s": null, "from": "--nav-offset"})"));
+}
+
+// Kills a zone that is one of several, or an offset of 0, where the logs leave open which zone the name is in.
+TEST(Nav, SeveralTimeZonesAreNamed) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "20260101-120010000.csv", "--turns", "2"}).status, 0);
+  // From 09:00 to 13:00 UTC.
+  std::string nav = "# clock: unix\ntime_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 4 * 360; ++i) {
+    nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", 1767258000 + i * 10);
+  }
+  here.write("nav.csv", nav);
+  const Outcome mapped = here.call({"map", "20260101-120010000.csv", "--nav", "nav.csv", "-o", "map.bt"});
+  expect_error(mapped, 1,
+               {"its name says 2026-01-01, --nav is of 2026-01-01: in UTC+0:00 --nav-offset -1767268810.000, "
+                "in UTC+1:00 --nav-offset -1767265210.000, in UTC+2:00 "});
+}
+
+// Kills a log on another clock that makes no path, but stretches its time until it overlaps anything.
+TEST(Nav, TheTimesOfThePathDecideAboutTheClock) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "20260101-120010000.csv", "--turns", "2"}).status, 0);
+  std::string nav = "# clock: unix\ntime_s,source,quantity,x,y,z\n", other = nav;
+  for (int i = 0; i <= 160; ++i) {
+    nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", 1767225600.0 + i * 0.25);
+    other += fmt::format("{},A50,velocity,0,0,0\n", 1.56e9 + i * 0.25);
+  }
+  here.write("nav.csv", nav);
+  here.write("other.csv", other);
+  const Outcome mapped =
+      here.call({"map", "20260101-120010000.csv", "--nav", "nav.csv", "--nav", "other.csv", "-o", "map.bt"});
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("the date in the name of the sonar log, in UTC+12:00"));
+}
+
+// Kills logs that are aligned only with the first one, or not at all behind one whose clock is not known.
+TEST(Nav, LogsAreAlignedInAnyOrder) {
+  const Workplace here;
+  here.simulate_tank();
+  const auto nav_of = [](const char* clock, const char* name, int from_s, int to_s, double zero_s) {
+    std::string nav = fmt::format("# clock: {}\ntime_s,source,quantity,x,y,z\n", clock);
+    for (double time_s = from_s; time_s <= to_s; time_s += 0.5) {
+      const double yaw_rad = 0.6 * std::sin(0.047 * time_s) + 0.2 * std::sin(0.171 * time_s + 1.0);
+      nav += fmt::format("{0},{1},attitude,0,0,{2}\n{0},{1},position,0,0,0\n", time_s - zero_s, name, yaw_rad);
+    }
+    return nav;
+  };
+  here.write("short.csv", nav_of("unix", "ahrs", 0, 22, 0.0));
+  here.write("long.csv", nav_of("unix", "ahrs", 22, 190, 0.0));
+  here.write("boot.csv", nav_of("boot", "ATT", 15, 180, 5.0));
+  here.write("apart.csv", nav_of("boot", "ATT", 400, 410, 5.0));
+  here.write("unknown.csv", "time_s,source,quantity,x,y,z\n0,bar,depth,1,,\n40,bar,depth,1,,\n");
+  const auto map = [&](const std::vector<std::string>& navs) {
+    std::vector<std::string> words = {"map", "tank.csv", "-o", "o.bt", "--nav-offset", "0"};
+    for (const std::string& nav : navs) words.insert(words.end(), {"--nav", nav});
+    return here.call(words);
+  };
+  std::vector<std::string> navs = {"boot.csv", "long.csv", "short.csv"};
+  int orders = 0;
+  do {
+    const Outcome mapped = map(navs);
+    EXPECT_EQ(mapped.status, 0) << navs[0] << ", " << navs[1] << ": " << mapped.err;
+    ++orders;
+  } while (std::ranges::next_permutation(navs).found);
+  EXPECT_EQ(orders, 6);
+  expect_error(map({"unknown.csv", "long.csv", "apart.csv"}), 1,
+               {"apart.csv: the offset between its clock and that of long.csv cannot be found"});
 }
 
 // Kills navigation that is joined to times made up for a log without any, whatever the offset is known from.

@@ -44,13 +44,37 @@ TEST(Clock, ADateMayStandAnywhereInTheName) {
   }
 }
 
-TEST(Clock, TheTimeZoneIsTheOnlyOneWithWhichTheLogsOverlap) {
-  EXPECT_THAT(local_from_utc_s({3600.0 - 100.0, 3600.0 + 200.0}, {0.0, 300.0}), Optional(3600.0));
+TEST(Clock, TheTimeZoneIsTheOneWithWhichTheLogsCoverEachOther) {
+  EXPECT_THAT(local_from_utc_s({3600.0 + 10.0, 3600.0 + 310.0}, {0.0, 300.0}), Optional(3600.0));
   EXPECT_THAT(local_from_utc_s({-12600.0, -12590.0}, {0.0, 300.0}), Optional(-12600.0)) << "Newfoundland";
-  EXPECT_EQ(local_from_utc_s({3600.0, 3700.0}, {0.0, 1000.0}), std::nullopt) << "an hour, and a quarter less";
   EXPECT_THAT(local_from_utc_s({14 * 3600.0, 14 * 3600.0 + 10.0}, {0.0, 300.0}), Optional(14 * 3600.0)) << "Kiribati";
+  EXPECT_THAT(local_from_utc_s({20700.0, 20700.0}, {0.0, 300.0}), Optional(20700.0)) << "a moment in Nepal";
   EXPECT_EQ(local_from_utc_s({-13 * 3600.0, -13 * 3600.0 + 10.0}, {0.0, 300.0}), std::nullopt) << "no zone";
   EXPECT_EQ(local_from_utc_s({400.0, 500.0}, {0.0, 300.0}), std::nullopt) << "neither";
+  EXPECT_EQ(local_from_utc_s({3600.0 + 200.0, 3600.0 + 500.0}, {0.0, 300.0}), std::nullopt) << "a third of both";
+}
+
+// Kills logs of two dives that are joined by a time that no clock shows.
+TEST(Clock, OnlyTimeZonesInUseCount) {
+  for (const double hours : {-7.75, -6.25, -0.25, 0.5, 5.25, 11.5, 14.25}) {
+    EXPECT_TRUE(time_zones({hours * 3600.0, hours * 3600.0 + 300.0}, {0.0, 300.0}).empty()) << hours;
+  }
+  for (const double hours : {-12.0, -9.5, -7.0, -2.5, 0.0, 5.75, 8.75, 12.75, 13.75, 14.0}) {
+    const auto zones = time_zones({hours * 3600.0, hours * 3600.0 + 300.0}, {0.0, 300.0});
+    ASSERT_EQ(zones.size(), 1U) << hours;
+    EXPECT_EQ(zones[0].local_from_utc_s, hours * 3600.0);
+    EXPECT_DOUBLE_EQ(zones[0].share, 1.0);
+  }
+}
+
+// Kills long dives without a zone because they overlap in several.
+TEST(Clock, ALongDiveHasTheTimeZoneOfTheGreatestOverlap) {
+  constexpr double kZone_s = -7 * 3600.0, kMinute_s = 60.0;
+  EXPECT_THAT(local_from_utc_s({kZone_s, kZone_s + 90 * kMinute_s}, {-5 * kMinute_s, 95 * kMinute_s}),
+              Optional(kZone_s));
+  const TimeSpan part = {kZone_s, kZone_s + 20 * kMinute_s}, day = {-120 * kMinute_s, 180 * kMinute_s};
+  EXPECT_EQ(local_from_utc_s(part, day), std::nullopt) << "whole in several zones";
+  EXPECT_EQ(time_zones(part, day).size(), 7U) << "-10:00, -9:30, -9:00 to -5:00";
 }
 
 // A Ping1D's log, named by its local time, and what the vehicle recorded of the same pings.

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace pingvox {
 
@@ -15,8 +16,17 @@ struct TimeSpan {
   double from_s = 0.0, to_s = 0.0;
 };
 
-/// Offset of local time from UTC: the multiple of a quarter of an hour, from -12 to +14 hours, with which the two spans
-/// overlap. nullopt: there is none, or several.
+/// An offset of local time from UTC that is in civil use.
+struct TimeZone {
+  double local_from_utc_s = 0.0;
+  double share = 0.0;  ///< how much of the shorter of the two spans lies in the other with it: 0 to 1
+};
+
+/// The time zones with which a span in local time and one in UTC overlap, the one with the greatest share first.
+std::vector<TimeZone> time_zones(const TimeSpan& local, const TimeSpan& utc);
+
+/// The zone of `time_zones` with which nine tenths of the shorter span lie in the other one, if the next one has at
+/// most four fifths of its share. nullopt: none can be told from the others.
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc);
 
 }  // namespace pingvox
