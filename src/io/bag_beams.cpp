@@ -304,7 +304,7 @@ class BagBeams final : public DeviceLog {
                 fmt::format("{}: {} ({}) lacks a field of {}, {}, {}{}", bag_->name(), topic.name, topic.type,
                             fields_->angle, fields_->length, fields_->intensities,
                             layout ? fmt::format(": it has {}", fields_text(*layout))
-                                         : std::string(" and cannot be read: its definition is not in the bag")));
+                                   : std::string(" and cannot be read: its definition is not in the bag")));
   }
 
   std::string why_none() const {
