@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <string>
+#include <utility>
 
 #include "io/date.hpp"
 
@@ -84,7 +84,9 @@ std::vector<TimeZone> time_zones(const TimeSpan& local, const TimeSpan& utc) {
   };
   for (int hour = -12; hour <= 14; ++hour) add(hour);
   for (const double hours : {-9.5, -3.5, -2.5, 3.5, 4.5, 5.5, 5.75, 6.5, 8.75, 9.5, 10.5, 12.75, 13.75}) add(hours);
-  std::ranges::stable_sort(zones, std::ranges::greater(), &TimeZone::share);
+  std::ranges::sort(zones, [](const TimeZone& a, const TimeZone& b) {
+    return std::pair(-a.share, a.local_from_utc_s) < std::pair(-b.share, b.local_from_utc_s);
+  });
   return zones;
 }
 
