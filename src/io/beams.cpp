@@ -41,6 +41,7 @@ Result<std::unique_ptr<BeamSource>> open_any_beams(ByteStream stream, Damage dam
   if (streamed == Format::kUdpCapture) return open_udp_capture(std::move(stream), damage);
   if (streamed == Format::kV4log) return open_v4log(std::move(stream), damage);
   if (streamed == Format::kDumplog) return open_dumplog(std::move(stream), damage);
+  if (streamed == Format::kIctineuBeams) return open_ictineu_beams(std::move(stream), damage);
   Result<FileBytes> whole = ByteStream::whole(std::move(stream));
   if (!whole) return tl::unexpected(whole.error());
   FileBytes& file = *whole;

@@ -50,6 +50,7 @@ constexpr std::array kFormats = {
     FormatFacts{Format::kRosBag, "bag", FormatKind::kBeams, "a ROS bag (.bag)"},
     FormatFacts{Format::kRosSqlite, "db3", FormatKind::kBeams, "a ROS bag (.db3)"},
     FormatFacts{Format::kMcap, "mcap", FormatKind::kBeams, "a ROS bag (.mcap)"},
+    FormatFacts{Format::kIctineuBeams, "ictineu-is", FormatKind::kBeams, "a log of beams (Ictineu)"},
     FormatFacts{Format::kBeamHits, "hits", FormatKind::kBeams, "a log of beams (bins that were hit)"},
     FormatFacts{Format::kScanGraph, "graph", FormatKind::kScans, "a log of point scans (.graph)"},
     FormatFacts{Format::kScanLog, "log", FormatKind::kScans, "a log of point scans (.log)"},
@@ -143,6 +144,7 @@ std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning
   if (looks_like_cut_ping_viewer(beginning)) return Format::kPingViewer;
   if (looks_like_sonarview(beginning)) return Format::kSonarView;
   if (looks_like_seanet_capture(beginning)) return Format::kSeanetCapture;
+  if (looks_like_ictineu_beams(beginning)) return Format::kIctineuBeams;
   return std::nullopt;
 }
 

@@ -44,6 +44,9 @@ Result<std::unique_ptr<BeamSource>> open_udp_capture(ByteStream stream, Damage d
 bool looks_like_v4log(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage);
 
+bool looks_like_ictineu_beams(std::span<const std::uint8_t> beginning);
+Result<std::unique_ptr<BeamSource>> open_ictineu_beams(ByteStream stream, Damage damage);
+
 bool looks_like_dumplog(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<BeamSource>> open_dumplog(ByteStream stream, Damage damage);
 

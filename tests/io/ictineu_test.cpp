@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <string>
@@ -43,6 +44,45 @@ constexpr const char* kDvl =
     "100.5 2007 3 16 13 0 56 0 0 0 1 100 0 5 1 1.8 1.8 1.8 140 140 140 100 60 -0.5 1.6 14 1540 12.8 0.5 1.5 0 0\n"
     "101 2007 3 16 13 0 56 0 0 0 1 32767 32767 32767 0 1 1 1 140 140 140 100 60 -0.5 1.6 14 1540 12.8 0.5 1.5 0 0\n"
     "102 2007 3\n";
+
+/// A line of the imaging sonar whose samples are those of `sample`.
+std::string sonar_line(double time_s, double angle_rad, const std::function<int(int)>& sample) {
+  std::string line = fmt::format("{:.3f}\t{:.0f} {:.7f}", time_s, std::fmod(time_s, 86400.0) * 1e3, angle_rad);
+  for (int i = 0; i < 500; ++i) line += " " + std::to_string(sample(i));
+  return line + " \r\n";
+}
+
+// Kills bearings in the other sense, samples that are shifted by a column, and lines that are read in part.
+TEST(Ictineu, TheBeamsOfItsImagingSonarHave500Bins) {
+  const auto ramp = [](int i) { return i % 256; };
+  const std::string log =
+      "% IS log: time, sensor time, angle, beam\n\n" + sonar_line(1093455224.578, 0.25 * std::numbers::pi, ramp) +
+      "1093455224.646 63224646 0.7 1 2 3\n" + sonar_line(1093455224.718, 0.0, [](int i) { return i == 9 ? 256 : 0; }) +
+      sonar_line(1093455224.786, 6.2517693, [](int) { return 0; });
+  const FileBytes file{"_040825_1735_IS.log", {log.begin(), log.end()}};
+  EXPECT_EQ(format_of(file.view()), Format::kIctineuBeams);
+  auto source = open_beams(file);
+  ASSERT_TRUE(source) << source.error().message;
+  const auto beams = read_all(**source);
+  ASSERT_TRUE(beams);
+  ASSERT_EQ(beams->size(), 2U);
+  EXPECT_EQ((*source)->skipped(), 2U);
+  EXPECT_EQ((*source)->clock(), BeamClock::kOwn);
+  ASSERT_NE((*source)->device(), nullptr);
+  EXPECT_EQ((*source)->device()->name, "miniking");
+  const Beam& first = beams->front();
+  EXPECT_EQ(first.time_s, 1093455224.578);
+  EXPECT_NEAR(first.bearing_rad, 1.75 * std::numbers::pi, 1e-6) << "45 degrees to the right";
+  EXPECT_EQ(first.bin_length_m, 0.1);
+  ASSERT_EQ(first.intensities.size(), 500U);
+  for (int i = 0; i < 500; ++i) EXPECT_EQ(first.intensities[static_cast<std::size_t>(i)], ramp(i));
+  const auto strict = open_beams(file, Damage::kFail);
+  ASSERT_TRUE(strict);
+  ASSERT_TRUE((*strict)->next());
+  const auto damaged = (*strict)->next();
+  ASSERT_FALSE(damaged);
+  EXPECT_THAT(damaged.error().message, testing::EndsWith(": has 3 samples, not 500"));
+}
 
 TEST(Ictineu, TheDvlIsTurnedIntoTheVehicleAndSaysWhenItHasNoBottom) {
   EXPECT_EQ(format_of(ictineu_file(kDvl).view()), Format::kIctineu);

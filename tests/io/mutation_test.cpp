@@ -68,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Reader{"xtf", fuzz::scans}, Reader{"xyz", fuzz::scans}, Reader{"mesh", fuzz::mesh},
                     Reader{"tum", fuzz::tum}, Reader{"tlog", fuzz::nav}, Reader{"dataflash", fuzz::nav},
                     Reader{"navcsv", fuzz::nav}, Reader{"a50", fuzz::nav}, Reader{"nmea", fuzz::nav},
-                    Reader{"ictineu", fuzz::nav}, Reader{"bt", fuzz::maps}, Reader{"ot", fuzz::maps},
-                    Reader{"pvx", fuzz::pvx}),
+                    Reader{"ictineu", fuzz::nav}, Reader{"ictineu_is", fuzz::beams}, Reader{"bt", fuzz::maps},
+                    Reader{"ot", fuzz::maps}, Reader{"pvx", fuzz::pvx}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -22,6 +22,7 @@ enum class Format {
   kRosBag,         ///< bag of ROS 1: beams, navigation, or both
   kRosSqlite,      ///< bag of ROS 2 as an SQLite database: the same
   kMcap,           ///< bag of ROS 2 as MCAP: the same
+  kIctineuBeams,   ///< log of the imaging sonar of the vehicle Ictineu, as text: beams
   kBeamHits,       ///< bins that were hit, as text, and the times of the beams in a file beside it: beams
   kScanGraph,      ///< OctoMap's binary scan graph: point scans
   kScanLog,        ///< OctoMap's scan graph as text, NODE x y z roll pitch yaw: point scans
