@@ -12,6 +12,7 @@
 #include "base/without_exceptions.hpp"
 #include "io/readers.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/io/frame_finder.hpp"
 #include "pingvox/sonar/beam_source_decorator.hpp"
 
 namespace pingvox {
@@ -142,6 +143,13 @@ Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::st
   if (skipped.count++ == 0) skipped.first = fmt::format("{}: {}", place, reason);
   if (damage == Damage::kSkip) return {};
   return fail(Error::Code::kCorrupt, fmt::format("{}: {}: {}", file, place, reason));
+}
+
+Result<void> handle_damage(Damage damage, std::vector<DamageKind>& kinds, std::string_view kind,
+                           const std::string& file, std::uint64_t at_byte, std::string_view reason) {
+  add_damage(kinds, kind, at_byte);
+  if (damage == Damage::kSkip) return {};
+  return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", file, at_byte, reason));
 }
 
 }  // namespace pingvox

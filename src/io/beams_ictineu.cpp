@@ -61,10 +61,9 @@ class IctineuBeams final : public BeamSource {
       if (is_comment_or_blank(**line)) continue;
       tl::expected<Beam, std::string> beam = ictineu_beam_in(**line);
       if (beam) return *std::move(beam);
-      add_damage(kinds_, reader_.line_has_end() ? "damaged line" : FrameFinder::kCutOff, at);
-      if (damage_ == Damage::kFail) {
-        return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", reader_.name(), at, beam.error()));
-      }
+      const std::string_view kind = reader_.line_has_end() ? "damaged line" : FrameFinder::kCutOff;
+      const auto counted = handle_damage(damage_, kinds_, kind, reader_.name(), at, beam.error());
+      if (!counted) return tl::unexpected(counted.error());
     }
   }
   std::vector<DamageKind> damage() const override { return kinds_; }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/byte_stream.hpp"
@@ -90,6 +92,9 @@ struct SkippedRecords {
 /// Handles a damaged record: counts it, or returns an error with Damage::kFail.
 Result<void> handle_damage(Damage damage, SkippedRecords& skipped, const std::string& file, const std::string& place,
                            const std::string& reason);
+/// The same of a log that is read as a stream, whose damage is counted by kind.
+Result<void> handle_damage(Damage damage, std::vector<DamageKind>& kinds, std::string_view kind,
+                           const std::string& file, std::uint64_t at_byte, std::string_view reason);
 
 /// Fraction read when `left` of `all` remain.
 inline double read_share(std::uint64_t left, std::uint64_t all) {

@@ -104,11 +104,9 @@ class DumpLog : public BeamSource {
         return std::move(read->beam);
       }
       const std::string_view kind = read ? kOtherHead : reader_.line_has_end() ? "damaged line" : FrameFinder::kCutOff;
-      add_damage(kinds_, kind, at);
-      if (damage_ == Damage::kFail) {
-        return fail(Error::Code::kCorrupt,
-                    fmt::format("{}: byte {}: {}", reader_.name(), at, read ? std::string(kOtherHead) : read.error()));
-      }
+      const std::string_view reason = read ? kOtherHead : std::string_view(read.error());
+      const auto counted = handle_damage(damage_, kinds_, kind, reader_.name(), at, reason);
+      if (!counted) return tl::unexpected(counted.error());
     }
   }
   std::vector<DamageKind> damage() const override { return kinds_; }

@@ -129,9 +129,7 @@ class V4Log final : public DeviceLog {
 
   /// Counts damage at the reader's position, or fails.
   Result<void> report_damage(std::string_view kind, std::string_view reason) {
-    add_damage(kinds_, kind, reader_.position());
-    if (damage_ == Damage::kSkip) return {};
-    return fail(Error::Code::kCorrupt, fmt::format("{}: byte {}: {}", reader_.name(), reader_.position(), reason));
+    return handle_damage(damage_, kinds_, kind, reader_.name(), reader_.position(), reason);
   }
 
   StreamReader reader_;

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <numbers>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -110,29 +112,28 @@ TEST(Mcap, LengthsAtTheDriversSpeedOfSoundAreThoseAtTheAssumedOne) {
   }
 }
 
-// Kills "has no beams in the topic /image, only in /image".
-TEST(Mcap, SaysWhyTheImagesOfASonarAreNotUsed) {
+/// A bag with a ProjectedSonarImage of one beam and two ranges.
+/// @param image  its last fields in hex: type of the samples, beams, samples
+std::vector<std::uint8_t> sonar_image(const std::string& image) {
   bags::Mcap mcap;
   mcap.topic(1, "/image", "marine_acoustic_msgs/msg/ProjectedSonarImage", "");
-  // Samples of 16 bits.
   mcap.message(1, 1'000'500'000'000U,
                from_hex("00010000e80300000065cd1d0200000073000000 001b3749 0080bb44 01000000f628dc3e 01000000295c0f3d "
                         "01000000 00000000 000000000000f03f00000000000000000000000000000000 02000000 0000003f 0000803f "
-                        "00000000 02000000 01000000 04000000 00ff00ff"));
+                        "00000000 " +
+                        image));
   mcap.end_chunk();
-  EXPECT_EQ(all_beams({"dive.mcap", mcap.closed()}).error,
+  return mcap.closed();
+}
+
+// Kills "has no beams in the topic /image, only in /image".
+TEST(Mcap, SaysWhyTheImagesOfASonarAreNotUsed) {
+  EXPECT_EQ(all_beams({"dive.mcap", sonar_image("02000000 01000000 04000000 00ff00ff")}).error,
             "dive.mcap: none of its messages can be used as a beam: 1 x samples that are not of 8 bits");
 }
 
 TEST(Mcap, GivesTheBeamsOfAnImagingSonar) {
-  bags::Mcap mcap;
-  mcap.topic(1, "/image", "marine_acoustic_msgs/msg/ProjectedSonarImage", "");
-  mcap.message(1, 1'000'500'000'000U,
-               from_hex("00010000e80300000065cd1d0200000073000000 001b3749 0080bb44 01000000f628dc3e 01000000295c0f3d "
-                        "01000000 00000000 000000000000f03f00000000000000000000000000000000 02000000 0000003f 0000803f "
-                        "00000000 00000000 01000000 02000000 00ff"));
-  mcap.end_chunk();
-  const auto read = all_beams({"dive.mcap", mcap.closed()});
+  const auto read = all_beams({"dive.mcap", sonar_image("00000000 01000000 02000000 00ff")});
   EXPECT_EQ(read.skipped, 0U);
   ASSERT_THAT(read.items, SizeIs(1));
   EXPECT_EQ(read.items[0].bin_length_m, 0.5);
