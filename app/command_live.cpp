@@ -207,13 +207,20 @@ class LiveRun {
 
   /// The state of a navigation device that was printed last.
   struct Reported {
-    bool recording_error = false, is_connected = false;
+    bool recording_error = false, is_connected = false, has_other_origin = false;
     std::string problem;
   };
 
   void report_changes(const NavDevice& device, Reported& last) {
     const NavDevice::Status status = device.status();
     report_recording_error(status.recording_error, last.recording_error);
+    if (status.has_other_origin && !std::exchange(last.has_other_origin, true)) {
+      bar_.clear();
+      console_.say(
+          fmt::format("{}: the autopilot was started anew: its positions are relative to another origin and "
+                      "are not used; start a new map",
+                      device.name()));
+    }
     if (device.listens() || (status.is_connected == last.is_connected && status.problem == last.problem)) return;
     bar_.clear();
     console_.say(status.is_connected

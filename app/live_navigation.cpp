@@ -50,6 +50,7 @@ NavDevice::Status NavDevice::status() const {
     status.messages = said.frames;
     status.damaged = said.damaged;
     status.recording_error = said.recording_error;
+    status.has_other_origin = has_other_origin_;
   }
   return status;
 }
@@ -63,8 +64,19 @@ Result<void> NavDevice::read(double now_s, LivePoses& poses) {
   }
   const auto reports = std::get<MavlinkReceiver>(receiver_).read(now_s);
   if (!reports) return tl::unexpected(reports.error());
-  for (const MavlinkNav::Report& report : *reports) poses.add(report.source, report.quantity, report.sample);
+  for (const MavlinkNav::Report& report : *reports) {
+    if (has_origin_of_the_map(report)) poses.add(report.source, report.quantity, report.sample);
+  }
   return {};
+}
+
+/// False for local positions of an autopilot that was started anew.
+bool NavDevice::has_origin_of_the_map(const MavlinkNav::Report& report) {
+  if (report.quantity != NavQuantity::kPosition || !report.sample.valid || !report.made) return true;
+  const auto [last, is_first] = positions_.try_emplace(report.source, report.made->time);
+  has_other_origin_ = has_other_origin_ || was_clock_set(last->second, report.made->time);
+  last->second = report.made->time;
+  return !has_other_origin_;
 }
 
 Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from, Recordings& recordings, double start_s,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "commands.hpp"
 #include "pingvox/device/a50_receiver.hpp"
 #include "pingvox/device/mavlink_receiver.hpp"
+#include "pingvox/nav/device_clock.hpp"
 #include "pingvox/nav/live_poses.hpp"
 #include "pingvox/result.hpp"
 #include "recordings.hpp"
@@ -24,7 +26,8 @@ class NavDevice {
     std::size_t messages = 0, damaged = 0;
     bool is_connected = true;  ///< as far as it can be told
     std::size_t connections = 0;
-    std::string problem;  ///< why not
+    std::string problem;            ///< why not
+    bool has_other_origin = false;  ///< it was started anew: its positions are relative to another origin, and not used
     std::optional<Error> recording_error;
   };
 
@@ -46,7 +49,11 @@ class NavDevice {
  private:
   using Receiver = std::variant<MavlinkReceiver, A50Receiver>;
   explicit NavDevice(Receiver receiver) : receiver_(std::move(receiver)) {}
+  bool has_origin_of_the_map(const MavlinkNav::Report& report);
+
   Receiver receiver_;
+  std::map<std::string, DeviceTime> positions_;  ///< when the last one of each source was made
+  bool has_other_origin_ = false;
 };
 
 /// Pose of the vehicle by all navigation devices.

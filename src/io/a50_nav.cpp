@@ -2,31 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "io/dvl_a50.hpp"
 #include "io/nav_sources.hpp"
+#include "pingvox/nav/device_clock.hpp"
 
 namespace pingvox {
 
 struct A50Nav::State {
-  /// Time at which a report was measured: it contains its delay. Positions do not, but they have a time of
-  /// the device: delays only add, so the smallest difference of the two clocks is the nearest; one that jumps means
-  /// that the device's clock was set.
+  /// Time at which a report was measured: that of a velocity contains its delay, that of a position is the device's.
   double time_of(const A50Report& report, double received_s) {
     if (report.kind != A50Report::Kind::kPosition || !report.made_s) return received_s - report.latency_s;
-    constexpr double kJump_s = 2.0;
-    const double start_s = received_s - *report.made_s;
-    const bool is_new = !start_s_ || std::fabs(start_s - *start_s_) > kJump_s;
-    start_s_ = is_new ? start_s : std::min(*start_s_, start_s);
-    return *start_s_ + *report.made_s;
+    return clock.add({received_s, *report.made_s});
   }
 
   DeadReckoningFrame frame;
-
- private:
-  std::optional<double> start_s_;  ///< of the device's clock
+  DeviceClock clock;  ///< of positions
 };
 
 A50Nav::A50Nav() : state_(std::make_unique<State>()) {}

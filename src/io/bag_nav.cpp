@@ -21,6 +21,7 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
+#include "pingvox/nav/device_clock.hpp"
 
 // The navigation in bags, by type and fields of the messages (docs/formats.md).
 namespace pingvox {
@@ -31,7 +32,7 @@ struct TopicState {
   DeadReckoningFrame frame;
   double altitude_m = 0.0;                 ///< the last one that a receiver knew
   std::optional<double> pressure_unit_pa;  ///< nullopt: there was no pressure yet
-  std::vector<A50Arrival> arrivals;        ///< of reports with a time of the device
+  std::vector<DeviceTime> report_times;    ///< of a DVL, where they have a time of the device
 };
 
 /// Unit of a pressure, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
@@ -59,7 +60,7 @@ class Samples {
   /// A report of a DVL in its own format, which contains the delay of the message.
   void add(const A50Report& report) {
     const double time_s = time_s_ - report.latency_s;
-    if (report.made_s) state_.arrivals.push_back({time_s, *report.made_s});
+    if (report.made_s) state_.report_times.push_back({time_s, *report.made_s});
     add_a50_report(sources_, name_, time_s, report, state_.frame);
   }
 
@@ -379,11 +380,11 @@ class BagSurvey {
   void set_times(std::span<NavSource> sources) const {
     std::map<std::string_view, std::map<double, double>> by_arrival;  // of each topic
     for (const Topic& topic : topics_) {
-      const std::vector<A50Arrival>& arrivals = topic.state.arrivals;
-      if (arrivals.empty()) continue;
+      const std::vector<DeviceTime>& times = topic.state.report_times;
+      if (times.empty()) continue;
       std::map<double, double>& times_s = by_arrival[summaries_[topic.summary].name];
-      const std::vector<double> found_s = times_of(arrivals);
-      for (std::size_t i = 0; i < arrivals.size(); ++i) times_s.try_emplace(arrivals[i].received_s, found_s[i]);
+      const std::vector<double> found_s = device_times_s(times);
+      for (std::size_t i = 0; i < times.size(); ++i) times_s.try_emplace(times[i].received_s, found_s[i]);
     }
     for (NavSource& source : sources) {
       const auto times_s = by_arrival.find(source.name);

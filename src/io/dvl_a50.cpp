@@ -233,33 +233,6 @@ A50Reading a50_serial_report(std::string_view line) {
   return A50Report{};
 }
 
-std::vector<double> times_of(std::span<const A50Arrival> arrivals) {
-  constexpr double kMinute_s = 60.0;
-  using Minute = std::pair<std::size_t, double>;  // times that the clock was set before it, and its number
-  std::map<Minute, double> smallest_s;
-  std::vector<Minute> minutes;
-  std::optional<double> last_s;
-  std::size_t times_set = 0;
-  for (const auto& [received_s, made_s] : arrivals) {
-    const double difference_s = received_s - made_s;
-    if (last_s && std::fabs(difference_s - *last_s) > kMinute_s) ++times_set;
-    last_s = difference_s;
-    minutes.emplace_back(times_set, std::floor(received_s / kMinute_s));
-    const auto [smallest, is_new] = smallest_s.try_emplace(minutes.back(), difference_s);
-    if (!is_new) smallest->second = std::min(smallest->second, difference_s);
-  }
-  std::vector<double> times_s;
-  for (std::size_t i = 0; i < arrivals.size(); ++i) {
-    double difference_s = smallest_s.at(minutes[i]);
-    for (const double beside : {-1.0, 1.0}) {
-      const auto other = smallest_s.find({minutes[i].first, minutes[i].second + beside});
-      if (other != smallest_s.end()) difference_s = std::min(difference_s, other->second);
-    }
-    times_s.push_back(arrivals[i].made_s + difference_s);
-  }
-  return times_s;
-}
-
 void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report,
                     DeadReckoningFrame& frame) {
   const auto add = [&](NavQuantity quantity, const Eigen::Vector3d& value, bool valid) {

@@ -44,17 +44,6 @@ A50Reading a50_report(const TextMembers& members);
 /// A line of the serial protocol.
 A50Reading a50_serial_report(std::string_view line);
 
-/// When a report was received, by the clock of who recorded it, less the delay that the report tells; and when it was
-/// true, by the device's clock.
-struct A50Arrival {
-  double received_s = 0.0, made_s = 0.0;
-};
-/// When reports were true, by the clock of who recorded them. Reports wait in queues behind the device, too, and delays
-/// only add: the smallest difference of the two clocks within a minute or two is the nearest. One that jumps by more
-/// than a minute means that the device's clock was set.
-/// @param arrivals  in the order of the recording
-std::vector<double> times_of(std::span<const A50Arrival> arrivals);
-
 /// Adds what a report says as samples of `name` at `time_s`.
 void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report,
                     DeadReckoningFrame& frame);

@@ -58,9 +58,8 @@ NavSample fix_of(std::int32_t latitude, std::int32_t longitude, double altitude_
 /// Reads one message.
 class Message {
  public:
-  /// @param starts_s  when the sender was started, the last one being the present one
-  Message(const MavlinkFrame& frame, double received_s, std::vector<double>& starts_s)
-      : starts_s_(starts_s), sender_(frame.system, frame.component), time_s_(received_s) {
+  Message(const MavlinkFrame& frame, double received_s, DeviceClock& clock)
+      : clock_(clock), sender_(frame.system, frame.component), received_s_(received_s), time_s_(received_s) {
     // The autopilot's own messages need no address behind their name.
     if (sender_ != MavlinkNav::Sender(1, 1)) address_ = fmt::format(" {}/{}", frame.system, frame.component);
     read(frame.message, Fields(frame));
@@ -72,19 +71,15 @@ class Message {
   void put(const std::string& name, NavQuantity quantity, const NavSample& sample) {
     if (!sample.value.allFinite()) return;
     Report report{name + address_, quantity, sample, made_};
-    report.sample.time_s = made_ ? starts_s_[made_->start] + made_->since_s : time_s_;
+    report.sample.time_s = time_s_;
     reports_.push_back(std::move(report));
   }
 
-  /// The message says itself when it was made; 0: it does not. Delays only add, so the smallest difference of the two
-  /// clocks is the nearest; a difference that jumps means that the device was started anew.
+  /// The message says itself when it was made; 0: it does not.
   void has_boot_time(std::uint32_t boot_ms) {
     if (boot_ms == 0) return;
-    constexpr double kNewStart_s = 2.0;
-    const double since_s = boot_ms * 1e-3, start_s = time_s_ - since_s;
-    if (starts_s_.empty() || std::fabs(start_s - starts_s_.back()) > kNewStart_s) starts_s_.push_back(start_s);
-    starts_s_.back() = std::min(starts_s_.back(), start_s);
-    made_ = MavlinkNav::SinceBoot{sender_, starts_s_.size() - 1, since_s};
+    made_ = MavlinkNav::Made{sender_, {received_s_, boot_ms * 1e-3}};
+    time_s_ = clock_.add(made_->time);
   }
 
   void read(std::uint32_t message, const Fields& fields) {
@@ -174,18 +169,18 @@ class Message {
     put("VISION_POSITION_DELTA", NavQuantity::kVelocity, sample_of(from_ned::body(fields.three<float>(28)) / step_s));
   }
 
-  std::vector<double>& starts_s_;
+  DeviceClock& clock_;
   MavlinkNav::Sender sender_;
-  double time_s_;
+  double received_s_, time_s_;
   std::string address_;
-  std::optional<MavlinkNav::SinceBoot> made_;
+  std::optional<MavlinkNav::Made> made_;
   std::vector<Report> reports_;
 };
 
 }  // namespace
 
 std::vector<Report> MavlinkNav::add(const MavlinkFrame& frame, double received_s) {
-  return Message(frame, received_s, starts_s_[{frame.system, frame.component}]).take();
+  return Message(frame, received_s, clocks_[{frame.system, frame.component}]).take();
 }
 
 }  // namespace pingvox

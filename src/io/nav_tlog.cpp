@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "io/nav_sources.hpp"
 #include "io/tlog.hpp"
 #include "pingvox/io/mavlink_nav.hpp"
+#include "pingvox/nav/device_clock.hpp"
 
 // The navigation in the telemetry log of a ground station.
 namespace pingvox {
@@ -19,26 +21,63 @@ class TlogNav {
   void add(const TlogRecord& record) {
     for (const MavlinkNav::Report& report : nav_.add(record.frame, static_cast<double>(record.time_us) * 1e-6)) {
       const bool is_taken = sources_.add(report.source, report.quantity, report.sample) != nullptr;
-      if (is_taken) made_[{report.source, report.quantity}].push_back(report.made);
+      if (is_taken) made_[{report.source, report.quantity}].push_back(made_of(report));
     }
   }
 
   /// Times are estimated from the whole log.
   std::vector<NavSource> finish() {
+    std::map<MavlinkNav::Sender, std::vector<double>> times_s;
+    for (const auto& [sender, times] : times_) times_s[sender] = device_times_s(times);
     std::vector<NavSource> sources = sources_.take();
     for (NavSource& source : sources) {
       const auto& made = made_.at({source.name, source.quantity});
       for (std::size_t i = 0; i < source.samples.size(); ++i) {
-        if (made[i]) source.samples[i].time_s = nav_.time_s(*made[i]);
+        if (made[i]) source.samples[i].time_s = times_s.at(made[i]->sender)[made[i]->place];
       }
+      if (source.quantity == NavQuantity::kPosition) keep_one_start(source, made);
     }
     return sources;
   }
 
  private:
+  /// Where the time of a message is in `times_`.
+  struct Made {
+    MavlinkNav::Sender sender;
+    std::size_t place;
+  };
+  using MadeOf = std::vector<std::optional<Made>>;  ///< of each sample
+
+  /// An autopilot that is started anew has another origin: only the positions of its longest time are valid.
+  void keep_one_start(NavSource& positions, const MadeOf& made) const {
+    std::vector<std::size_t> start_of, valid_of = {0};
+    std::optional<DeviceTime> last;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      if (made[i]) {
+        const DeviceTime& time = times_.at(made[i]->sender)[made[i]->place];
+        if (last && was_clock_set(*last, time)) valid_of.push_back(0);
+        last = time;
+      }
+      start_of.push_back(valid_of.size() - 1);
+      if (positions.samples[i].valid) ++valid_of.back();
+    }
+    const auto longest = static_cast<std::size_t>(std::ranges::max_element(valid_of) - valid_of.begin());
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      positions.samples[i].valid = positions.samples[i].valid && start_of[i] == longest;
+    }
+  }
+
+  std::optional<Made> made_of(const MavlinkNav::Report& report) {
+    if (!report.made) return std::nullopt;
+    std::vector<DeviceTime>& times = times_[report.made->sender];
+    times.push_back(report.made->time);
+    return Made{report.made->sender, times.size() - 1};
+  }
+
   MavlinkNav nav_;
   NavSources sources_;
-  std::map<std::pair<std::string, NavQuantity>, std::vector<std::optional<MavlinkNav::SinceBoot>>> made_;
+  std::map<MavlinkNav::Sender, std::vector<DeviceTime>> times_;
+  std::map<std::pair<std::string, NavQuantity>, MadeOf> made_;
 };
 
 }  // namespace

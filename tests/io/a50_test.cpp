@@ -46,23 +46,6 @@ std::string at_us(const std::string& made, const std::string& sent) {
   return ",\"time_of_validity\":" + made + ",\"time_of_transmission\":" + sent;
 }
 
-// Kills times that run back where reports waited in a queue, and those of a device whose clock was set.
-TEST(A50, ReportsInABagAreWhenTheyWereTrue) {
-  // True each 0.1 s; those of the first 5 s wait for 3 s, less and less, and the clock is set by a year at 100 s.
-  constexpr double kHost_s = 1.6e9, kDevice_s = 1.5e9, kYear_s = 3.2e7;
-  std::vector<A50Arrival> arrivals;
-  for (int i = 0; i < 2000; ++i) {
-    const double true_s = 0.1 * i, waited_s = std::max(0.02, 3.0 - 0.6 * true_s) + 0.01 * (i % 3);
-    arrivals.push_back({kHost_s + true_s + waited_s, kDevice_s + true_s + (i < 1000 ? 0.0 : kYear_s)});
-  }
-  const std::vector<double> times_s = times_of(arrivals);
-  ASSERT_EQ(times_s.size(), arrivals.size());
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    ASSERT_NEAR(times_s[i], kHost_s + 0.1 * static_cast<double>(i) + 0.02, 1e-5) << i;
-  }
-  EXPECT_TRUE(times_of({}).empty());
-}
-
 TEST(A50, ReadsJsonInOurFramesAndAtTheTimeOfValidity) {
   const std::string log = velocity(at_us("5000000", "5350000"), "true") +
                           R"({"response_to":"get_config","success":true,"format":"json_v3","type":"response"})"

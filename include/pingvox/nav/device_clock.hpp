@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace pingvox {
+
+/// When a message was received, and when it was made by the clock of its device [s].
+struct DeviceTime {
+  double received_s = 0.0, made_s = 0.0;
+};
+
+/// Whether the device's clock was set, or started anew, between two messages: it goes back by more than a second, or
+/// its difference to the receiver's jumps by more than a minute.
+bool was_clock_set(const DeviceTime& before, const DeviceTime& now);
+
+/// Puts times of a device's own clock on the clock of who receives its messages, as they arrive. Delays vary and only
+/// add, so the smallest difference of the two clocks is the nearest; that of the last minute or two, for clocks drift.
+class DeviceClock {
+ public:
+  /// @return when the message was made, on the receiver's clock
+  double add(const DeviceTime& time);
+
+ private:
+  std::optional<DeviceTime> last_;
+  double minute_ = 0.0;                                ///< of the receiver's clock, counted from its 0
+  double smallest_s_ = 0.0, smallest_before_s_ = 0.0;  ///< difference in this minute, and in the one before
+};
+
+/// The same of a whole recording, in which the minute after a message counts as well.
+/// @param times  in the order of the recording
+std::vector<double> device_times_s(std::span<const DeviceTime> times);
+
+}  // namespace pingvox

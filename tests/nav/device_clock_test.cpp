@@ -1,0 +1,89 @@
+#include "pingvox/nav/device_clock.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pingvox {
+namespace {
+
+constexpr double kHost_s = 1.6e9, kLeast_s = 0.02;
+
+/// Received at 10 Hz, with delays of 20 to 40 ms and more as told.
+template <class More, class Made>
+std::vector<DeviceTime> messages(int count, const More& more_s, const Made& made_s) {
+  std::vector<DeviceTime> times;
+  for (int i = 0; i < count; ++i) {
+    const double true_s = 0.1 * i;
+    times.push_back({kHost_s + true_s + kLeast_s + 0.01 * (i % 3) + more_s(true_s), made_s(true_s)});
+  }
+  return times;
+}
+
+std::vector<double> as_they_arrive(const std::vector<DeviceTime>& times) {
+  DeviceClock clock;
+  std::vector<double> times_s;
+  for (const DeviceTime& time : times) times_s.push_back(clock.add(time));
+  return times_s;
+}
+
+constexpr auto kNoMore = [](double) { return 0.0; };
+
+void expect_true_from(std::size_t first, const std::vector<double>& times_s, double tolerance_s) {
+  for (std::size_t i = first; i < times_s.size(); ++i) {
+    ASSERT_NEAR(times_s[i], kHost_s + 0.1 * static_cast<double>(i) + kLeast_s, tolerance_s) << i;
+  }
+}
+
+// Kills times that run back where messages waited in a queue, and those of a device whose clock was set.
+TEST(DeviceClock, OfARecordingKnowsWhatComesLater) {
+  // Those of the first 5 s wait for 3 s, less and less, and the clock is set by a year at 100 s.
+  constexpr double kDevice_s = 1.5e9, kYear_s = 3.2e7;
+  const auto waits = [](double true_s) { return std::max(0.0, 3.0 - 0.6 * true_s); };
+  const auto made = [](double true_s) { return kDevice_s + true_s + (true_s < 99.95 ? 0.0 : kYear_s); };
+  const std::vector<double> times_s = device_times_s(messages(2000, waits, made));
+  ASSERT_EQ(times_s.size(), 2000U);
+  expect_true_from(0, times_s, 1e-5);
+  EXPECT_TRUE(device_times_s({}).empty());
+}
+
+// Kills the smallest difference since the beginning: of a slow clock it is early by all that the clock lost since.
+TEST(DeviceClock, FollowsOneThatDrifts) {
+  for (const double drift : {-2e-4, 2e-4}) {
+    const auto times = messages(200'000, kNoMore, [&](double true_s) { return 100.0 + true_s * (1.0 + drift); });
+    constexpr double kLost_s = 120.0 * 2e-4;  // in two minutes
+    expect_true_from(2, as_they_arrive(times), kLost_s);
+    expect_true_from(0, device_times_s(times), kLost_s);
+  }
+}
+
+// Kills a new start for a delay, which puts all messages of the queue at the time when it was emptied.
+TEST(DeviceClock, IsNotSetByAQueueThatWaited) {
+  const auto waits = [](double true_s) { return true_s > 30.0 && true_s < 40.0 ? 40.0 - true_s : 0.0; };
+  const auto times = messages(1000, waits, [](double true_s) { return 100.0 + true_s; });
+  expect_true_from(2, as_they_arrive(times), 1e-5);
+  expect_true_from(0, device_times_s(times), 1e-5);
+}
+
+// Kills the old difference after a device was started anew: it was 50 s old, and is 3 s away for booting.
+TEST(DeviceClock, BeginsAgainWithADeviceThatWasStartedAnew) {
+  const auto times =
+      messages(1000, kNoMore, [](double true_s) { return true_s < 49.95 ? 10.0 + true_s : true_s - 47.0; });
+  const std::vector<double> arriving_s = as_they_arrive(times);
+  expect_true_from(502, arriving_s, 1e-5);
+  expect_true_from(2, std::vector<double>(arriving_s.begin(), arriving_s.begin() + 500), 1e-5);
+  expect_true_from(0, device_times_s(times), 1e-5);
+}
+
+// Kills a difference of long ago that counts after a pause.
+TEST(DeviceClock, ForgetsWhatWasBeforeAPause) {
+  DeviceClock clock;
+  EXPECT_EQ(clock.add({1000.0, 900.0}), 1000.0);
+  EXPECT_EQ(clock.add({1070.0, 969.5}), 1069.5);
+  EXPECT_EQ(clock.add({1200.0, 1098.0}), 1200.0);
+}
+
+}  // namespace
+}  // namespace pingvox
