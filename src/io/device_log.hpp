@@ -34,7 +34,15 @@ class FirstHead {
   std::size_t beams_ = 0;        ///< of the first head
   std::size_t other_beams_ = 0;  ///< of the other one in succession
 };
-inline constexpr std::string_view kOtherHead = "beam of another head";  ///< kind of damage
+
+// Kinds of damage.
+inline constexpr std::string_view kOtherHead = "beam of another head", kProfilingHead = "line of a profiling head",
+                                  kImpossibleValues = "impossible values";
+
+/// Kind of a beam that cannot be used.
+inline std::string_view damage_kind_of(std::string_view reason) {
+  return reason == kProfilingHead ? kProfilingHead : kImpossibleValues;
+}
 
 /// A log that names its head in its beams. It reads one beam ahead, so that device() is known before the first next().
 class DeviceLog : public BeamSource {

@@ -147,7 +147,7 @@ class FrameLog final : public DeviceLog {
       }
       auto beam = protocol_.beam_in(frame->bytes, places_.time_s(frame->end() - 1));
       if (!beam) {
-        add_damage(unusable_, "impossible values", places_.file_byte(frame->at));
+        add_damage(unusable_, damage_kind_of(beam.error()), places_.file_byte(frame->at));
         if (damage_ == Damage::kFail) return damage_error({beam.error(), 1, unusable_.front().first_byte});
       } else if (*beam && !is_of_first_head(protocol_.head_of(frame->bytes))) {
         add_damage(unusable_, kOtherHead, places_.file_byte(frame->at));

@@ -21,7 +21,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
-constexpr std::uint8_t kFooter = 2, kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kDataEnd = 15;
+constexpr std::uint8_t kFooter = 2, kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kLastKnown = 15;
 constexpr std::size_t kRecordHeader = 9;
 
 std::optional<std::string_view> read_text(ByteReader& reader) {
@@ -188,12 +188,9 @@ class Mcap final : public Bag {
     if (start->size() < kRecordHeader) return end_early(start->size());
     const std::uint8_t op = start->front();
     const auto length = value_from<std::uint64_t>(start->subspan(1), std::endian::little);
-    if (op == kDataEnd || op == kFooter) {
-      at_end_ = true;  // behind it are only copies and an index
-      return std::nullopt;
-    }
+    if (op == kFooter) return end_at_footer(length);
     // Records of the format that need not be read may be of any length, others are not longer than a chunk.
-    const bool is_known = op >= 1 && op <= kDataEnd;
+    const bool is_known = op >= 1 && op <= kLastKnown;
     if (!is_known && op < 0x80) return skip_damage();
     if (op != kSchema && op != kChannel && op != kMessage && op != kChunk) return pass_over(length);
     if (length > kMaxChunk) return skip_damage();
@@ -235,6 +232,23 @@ class Mcap final : public Bag {
     }
     rest_ = data;
     chunk_size_ = rest_.size();
+    return std::nullopt;
+  }
+
+  /// The file ends with its magic bytes behind the footer.
+  Result<std::optional<BagMessage>> end_at_footer(std::uint64_t length) {
+    constexpr std::size_t kLength = 20, kFooterSize = kRecordHeader + kLength, kEnd = kFooterSize + kMagic.size();
+    if (length != kLength) return skip_damage();
+    const auto bytes = reader_.peek(kEnd + 1);
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (bytes->size() < kEnd) {
+      add_damage(damage_, FrameFinder::kCutOff, reader_.position());
+    } else if (!looks_like_mcap(bytes->subspan(kFooterSize))) {
+      return skip_damage();
+    } else if (bytes->size() > kEnd) {
+      add_damage(damage_, "bytes behind the end", reader_.position() + kEnd);
+    }
+    at_end_ = true;
     return std::nullopt;
   }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/byte_reader.hpp"
+#include "io/device_log.hpp"
 #include "io/seanet_bearing.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
@@ -131,6 +132,9 @@ std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_bl
 
 tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s) {
   constexpr double kTick_s = 640e-9;
+  // Their data are times of echoes.
+  constexpr std::uint8_t kProfiler = 5, kProfilerDst = 20;
+  if (line.head_type == kProfiler || line.head_type == kProfilerDst) return tl::unexpected(std::string(kProfilingHead));
   if (const auto fault = seanet_fault(line.status)) return tl::unexpected(std::string(*fault));
   const std::optional<double> bearing_rad = seanet_bearing_rad(line.bearing);
   if (!bearing_rad) return tl::unexpected(fmt::format("bearing {} of 6400 a turn", line.bearing));

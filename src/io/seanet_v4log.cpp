@@ -97,7 +97,7 @@ class V4Log final : public DeviceLog {
         const bool is_other = beam && !is_of_first_head(record[kFrom]);
         if (is_other) beam = tl::unexpected(std::string(kOtherHead));
         if (!beam) {
-          const auto counted = report_damage(is_other ? kOtherHead : "impossible values", beam.error());
+          const auto counted = report_damage(is_other ? kOtherHead : damage_kind_of(beam.error()), beam.error());
           if (!counted) return tl::unexpected(counted.error());
         }
         reader_.skip(*size);

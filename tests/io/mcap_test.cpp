@@ -92,6 +92,26 @@ TEST(Mcap, NeedsNoEnd) {
   EXPECT_EQ(cut.skipped, 1U) << "it was not closed";
 }
 
+// Kills beams of a second file behind the first one that are lost without a word, and a record of the end that a wrong
+// bit made in the middle.
+TEST(Mcap, SaysWhatIsBehindItsEnd) {
+  const auto whole = echoes("lz4").closed();
+  auto twice = whole;
+  twice.insert(twice.end(), whole.begin(), whole.end());
+  const auto read = all_beams({"dive.mcap", twice});
+  EXPECT_THAT(read.items, SizeIs(30));
+  EXPECT_EQ(read.skipped, 1U);
+
+  const std::size_t second = echoes("lz4", 1).closed().size() - kBehindChunks;
+  for (const std::uint8_t end : {std::uint8_t{2}, std::uint8_t{15}}) {
+    auto wrong = whole;
+    ASSERT_EQ(wrong[second], 6) << "a chunk";
+    wrong[second] = end;
+    const auto damaged = all_beams({"dive.mcap", wrong});
+    EXPECT_GE(damaged.items.size(), 20U) << int{end};
+  }
+}
+
 // Kills ranges that are right at the driver's speed of sound, and scaled as if it were 1500 m/s.
 TEST(Mcap, LengthsAtTheDriversSpeedOfSoundAreThoseAtTheAssumedOne) {
   struct Case {

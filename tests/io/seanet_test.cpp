@@ -350,6 +350,20 @@ TEST(Seanet, AV4logSaysWhatItsHeaderGetsWrong) {
   EXPECT_EQ(with(0x28, 152).skipped, 1U);
 }
 
+// Kills times of echoes that are taken for a picture.
+TEST(Seanet, LinesOfAProfilingHeadAreCounted) {
+  for (const std::uint8_t type : {std::uint8_t{5}, std::uint8_t{20}}) {
+    auto profile = line_at(3300);
+    profile[15] = type;
+    const auto all = all_beams({"capture", joined({line_at(3200), profile, line_at(3216)})});
+    EXPECT_EQ(all.items.size(), 2U);
+    EXPECT_EQ(all.skipped, 1U);
+    const auto refused = all_beams({"capture", joined({profile, profile})});
+    EXPECT_EQ(refused.items.size(), 0U);
+    EXPECT_EQ(refused.skipped, 2U);
+  }
+}
+
 // Kills a log that lacks beams and does not say so.
 TEST(Seanet, LinesThatAreCutIntoPacketsAreCounted) {
   auto part = line_at(3300);
