@@ -37,12 +37,16 @@ FrameCheck check_frame(const FrameBytes& at, std::size_t max_payload) {
   const std::size_t payload = u16_at(bytes, 2);
   if (payload > max_payload) return {Verdict::kBroken, 4, "impossible length"};
   const std::size_t size = kHeader + payload + kChecksum;
+  if (bytes.size() < kHeader) return {Verdict::kIncomplete};
+  if (const std::size_t fixed = fixed_part(u16_at(bytes, 4)); fixed > 0) {
+    // Before the frame is whole: a live head would be silent until a damaged length is filled.
+    if (payload < fixed) return {Verdict::kBroken, kHeader, "impossible length"};
+    if (bytes.size() < kHeader + fixed) return {Verdict::kIncomplete};
+    const bool fits = payload - fixed == u16_at(bytes, kHeader + fixed - 2);
+    if (!fits) return {Verdict::kBroken, kHeader + fixed, "impossible length"};
+  }
   if (bytes.size() < size) return {Verdict::kIncomplete};
   if (at.sum(size - kChecksum) != u16_at(bytes, size - kChecksum)) return {Verdict::kBroken, size, "wrong checksum"};
-  if (const std::size_t fixed = fixed_part(u16_at(bytes, 4)); fixed > 0) {
-    const bool fits = payload >= fixed && payload - fixed == u16_at(bytes, kHeader + fixed - 2);
-    if (!fits) return {Verdict::kBroken, size, "impossible length"};
-  }
   return {Verdict::kFrame, size};
 }
 

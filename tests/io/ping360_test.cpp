@@ -134,15 +134,28 @@ TEST(PingFrames, AWrongBitALostAndADoubledByteCostOneFrameAndNoOther) {
 
 TEST(PingFrames, WhatFollowsAFrameThatBreaksOffIsNotLost) {
   const auto ping = from_hex(kPing);
-  const auto stream = joined({cut(ping, 0, 20), ping});
-  FrameFinder finder(check_ping_frame);
-  finder.push(stream);
-  const auto frame = finder.next();
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->at, 20U);
-  ASSERT_EQ(finder.damage().size(), 1U);
-  EXPECT_EQ(finder.damage()[0].what, "wrong checksum");
-  EXPECT_EQ(finder.damage()[0].first_byte, 0U);
+  for (const std::size_t left : {std::size_t{20}, ping.size() - 2}) {
+    FrameFinder finder(check_ping_frame);
+    finder.push(joined({cut(ping, 0, left), ping}));
+    const auto frame = finder.next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->at, left);
+    ASSERT_EQ(finder.damage().size(), 1U);
+    EXPECT_EQ(finder.damage()[0].what, left == 20 ? "impossible length" : "wrong checksum");
+    EXPECT_EQ(finder.damage()[0].first_byte, 0U);
+  }
+}
+
+// Kills a live head that is silent until a damaged length is filled: each answer is waited for.
+TEST(PingFrames, ADamagedLengthDelaysNoOther) {
+  const auto ping = from_hex(kPing);
+  for (int bit = 0; bit < 16; ++bit) {
+    auto damaged = ping;
+    damaged[static_cast<std::size_t>(2 + bit / 8)] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    FrameFinder finder(check_ping_frame);
+    finder.push(joined({damaged, ping}));
+    EXPECT_TRUE(finder.next()) << bit;
+  }
 }
 
 TEST(PingFrames, OneThatIsCutOffAtTheEndIsNoFrameAndTold) {
