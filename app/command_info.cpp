@@ -214,8 +214,8 @@ class BeamSurvey {
 
   std::string duration_text(BeamClock clock) const {
     if (clock == BeamClock::kNone) return "not known: the log has no times";
-    return fmt::format("{:.3f} s, from {:.3f} s{}", last_s_ - first_s_, first_s_,
-                       clock == BeamClock::kTimeOfDay ? " of the day" : "");
+    return fmt::format("{:.3f} s, from {:.3f} s{}{}", last_s_ - first_s_, first_s_,
+                       clock == BeamClock::kTimeOfDay ? " of the day" : "", date_text(first_s_));
   }
 
   void take(const std::optional<Sweep>& sweep) {
@@ -286,7 +286,8 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
   }
   if (first_s) {
     summary.json.add("duration_s", *last_s - *first_s);
-    summary.text += report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", *last_s - *first_s, *first_s));
+    summary.text += report_line(
+        "duration", fmt::format("{:.3f} s, from {:.3f} s{}", *last_s - *first_s, *first_s, date_text(*first_s)));
   }
   summary.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
   summary.text += report_line("bounds", bounds_text(bounds) + (first_s ? ", around the sensor" : ""));
@@ -362,7 +363,8 @@ Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
       .add("length_m", length_m)
       .add("bounds", bounds_json(bounds));
   summary.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
-                 report_line("duration", fmt::format("{:.3f} s, from {:.3f} s", duration_s, poses.front().time_s)) +
+                 report_line("duration", fmt::format("{:.3f} s, from {:.3f} s{}", duration_s, poses.front().time_s,
+                                                     date_text(poses.front().time_s))) +
                  report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
   return summary;
 }
@@ -424,12 +426,14 @@ std::string other_fields_text(const std::vector<BagTopicSummary>& topics) {
   return text.empty() ? text : "fields in the messages of other topics (for --fields):\n" + text;
 }
 
-/// A bag without beams.
-Summary summarize_contents(const BagContents& bag, const std::string& name, Format format) {
+/// A bag without beams. @param reason  why those of its topics cannot be used; "": none is of a sonar
+Summary summarize_contents(const BagContents& bag, const std::string& name, Format format, const std::string& reason) {
   Summary summary;
   summary.json.add("kind", "nav").add("format", name_of(format));
   add_nav(summary.json, bag.nav);
-  summary.text = headline(name, format) + nav_text(bag.nav);
+  summary.text = headline(name, format);
+  if (!reason.empty()) summary.text += report_line("no beams", on_one_line(reason));
+  summary.text += nav_text(bag.nav);
   add_damage(summary, bag.nav.damage);
   add_topics(summary, bag.topics);
   summary.text += other_fields_text(bag.topics);
@@ -451,13 +455,15 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
   const bool is_navigated = !bag->nav.log.sources().empty();
   using Use = BagTopicSummary::Use;
   const bool has_log = has(*bag, Use::kBeams) || has(*bag, Use::kScans);
-  if (!has_log && !command.bag.beams.fields) return summarize_contents(*bag, name, format);
+  if (!has_log && !command.bag.beams.fields) return summarize_contents(*bag, name, format, "");
   Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
   // Messages of a sonar's type may hold nothing.
-  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported && is_navigated;
+  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported;
   // Of several topics with scans none is chosen.
   const bool has_only_scans = !summary && !has(*bag, Use::kBeams) && command.damage == Damage::kSkip;
-  if ((has_none || has_only_scans) && command.bag.beams.name.empty()) return summarize_contents(*bag, name, format);
+  if ((has_none || has_only_scans) && command.bag.beams.name.empty()) {
+    return summarize_contents(*bag, name, format, has_only_scans ? "" : summary.error().message);
+  }
   if (!summary) return summary;
   add_topics(*summary, bag->topics);
   if (is_navigated) {

@@ -1,8 +1,9 @@
 #include "map_report.hpp"
 
-#include <fmt/core.h>
+#include <fmt/chrono.h>
 
 #include <cmath>
+#include <ctime>
 
 #include "console.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -53,6 +54,12 @@ std::string empty_map_text(const std::string& output) {
       "{}: the map is empty: no echoes and no free space in range (see --min-range, --max-range, "
       "--threshold and --silent)",
       output);
+}
+
+std::string date_text(double time_s) {
+  constexpr double kYear2000_s = 946'684'800.0, kYear2100_s = 4'102'444'800.0;
+  if (!(time_s >= kYear2000_s && time_s < kYear2100_s)) return "";
+  return fmt::format(", {:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(time_s)));
 }
 
 std::string report_line(std::string_view label, std::string_view value) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -221,9 +222,26 @@ void add_nav(JsonObject& json, const NavFile& nav) {
       .add("skipped", damaged_records(nav));
 }
 
+namespace {
+
+/// ": from 2023-05-04 17:22:21 to 2023-05-04 17:55:02 UTC" where the clock has dates.
+std::string dates_text(const NavLog& log) {
+  if (log.clock() != NavClock::kUnix || log.sources().empty()) return "";
+  double from_s = std::numeric_limits<double>::infinity(), to_s = -from_s;
+  for (const NavSource& source : log.sources()) {
+    if (source.samples.empty()) continue;
+    from_s = std::min(from_s, source.samples.front().time_s);
+    to_s = std::max(to_s, source.samples.back().time_s);
+  }
+  const std::string from = date_text(from_s), to = date_text(to_s);
+  return from.empty() || to.empty() ? "" : fmt::format("{} to{} UTC", from, to.substr(1));
+}
+
+}  // namespace
+
 std::string nav_text(const NavFile& nav) {
   std::string text = report_line("records", fmt::format("{}", nav.records)) +
-                     report_line("clock", std::string(name_of(nav.log.clock())));
+                     report_line("clock", std::string(name_of(nav.log.clock())) + dates_text(nav.log));
   std::size_t widest = 6;
   for (const NavSource& source : nav.log.sources()) widest = std::max(widest, on_one_line(source.name).size());
   text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8} {:>5} {:>17} {:>17}\n", "source", widest, "quantity",
