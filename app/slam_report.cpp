@@ -124,6 +124,11 @@ std::string velocity_text(const SlamReport& report) {
                      report.velocities, report.velocities_clipped, report.longest_gap_s, by_sonar, check);
 }
 
+/// Rounded, and 0 instead of -0.
+double hundredths(double value) {
+  return std::round(value * 100.0) / 100.0 + 0.0;
+}
+
 std::string sensors_text(const SlamSolution& solution) {
   const SlamCalibration& c = solution.calibration;
   std::string text;
@@ -132,7 +137,19 @@ std::string sensors_text(const SlamSolution& solution) {
                        1.0 + c.velocity_scale.value, c.velocity_scale.deviation);
   }
   return text + fmt::format("sonar moved by {:.2f} {:.2f} m; wall at {:.2f} in its echo (-1: first bin, 1: last)",
-                            c.sonar_x_m.value, c.sonar_y_m.value, c.wall_in_echo.value);
+                            hundredths(c.sonar_x_m.value), hundredths(c.sonar_y_m.value),
+                            hundredths(c.wall_in_echo.value));
+}
+
+/// The harmonics of a heading are one name: "sin1 of heading IMU" and so on are its deviation.
+std::string not_known_text(const std::vector<std::string>& names) {
+  std::vector<std::string> shown;
+  for (const std::string& name : names) {
+    const bool is_harmonic = name.starts_with("sin") || name.starts_with("cos");
+    std::string text = is_harmonic ? "deviation" + name.substr(name.find(' ')) : name;
+    if (std::ranges::find(shown, text) == shown.end()) shown.push_back(std::move(text));
+  }
+  return on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(shown, ", ")));
 }
 
 }  // namespace
@@ -253,9 +270,7 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
                     all->greatest.across_m, to_degrees(all->greatest_yaw_rad)));
   }
   if (!report.not_observable.empty()) {
-    text +=
-        report_line("not known",
-                    on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(report.not_observable, ", "))));
+    text += report_line("not known", not_known_text(report.not_observable));
   }
   return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
                                                    recorded_s(solution) / seconds.total));

@@ -44,6 +44,13 @@ const NavSource* source_of(const NavLog& log, std::string_view name, NavQuantity
   return nullptr;
 }
 
+/// @param at_s  in units of 2^20 us after 2023-05-04
+std::vector<std::uint8_t> record_at(std::uint8_t at_s, const std::vector<std::uint8_t>& frame) {
+  std::vector<std::uint8_t> record = {0x00, 0x05, 0xfa, 0xe1, 0, static_cast<std::uint8_t>(at_s << 4U), 0, 0};
+  record.insert(record.end(), frame.begin(), frame.end());
+  return record;
+}
+
 /// A record with a DISTANCE_SENSOR of 1.5 m. @param boot_ms  0: the sender does not know its time
 std::vector<std::uint8_t> distance_record(std::uint8_t at_s, std::uint16_t boot_ms, std::uint8_t id) {
   const std::vector<std::uint8_t> payload = {static_cast<std::uint8_t>(boot_ms & 0xffU),
@@ -60,11 +67,7 @@ std::vector<std::uint8_t> distance_record(std::uint8_t at_s, std::uint16_t boot_
                                              id,
                                              25,
                                              0};
-  const std::vector<std::uint8_t> frame = make_mavlink_frame(132, payload, {0, 1, 194});
-  // at_s * 2^20 us after 2023-05-04
-  std::vector<std::uint8_t> record = {0x00, 0x05, 0xfa, 0xe1, 0, static_cast<std::uint8_t>(at_s << 4U), 0, 0};
-  record.insert(record.end(), frame.begin(), frame.end());
-  return record;
+  return record_at(at_s, make_mavlink_frame(132, payload, {0, 1, 194}));
 }
 
 // Kills times that repeat the first one because the sender does not know its own.
@@ -85,7 +88,7 @@ TEST(Tlog, AMessageWithoutItsTimeIsOfTheTimeWhenItCame) {
   }
 }
 
-/// A record with a LOCAL_POSITION_NED. @param at_s  of about a second
+/// A record with a LOCAL_POSITION_NED.
 std::vector<std::uint8_t> position_record(std::uint8_t at_s, std::uint16_t boot_ms, float north_m) {
   std::vector<std::uint8_t> payload(28, 0);
   payload[0] = static_cast<std::uint8_t>(boot_ms & 0xffU);
@@ -93,10 +96,7 @@ std::vector<std::uint8_t> position_record(std::uint8_t at_s, std::uint16_t boot_
   for (unsigned i = 0; i < 4; ++i) {
     payload[4 + i] = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(north_m) >> 8U * i);
   }
-  const std::vector<std::uint8_t> frame = make_mavlink_frame(32, payload, {0, 1, 1});
-  std::vector<std::uint8_t> record = {0x00, 0x05, 0xfa, 0xe1, 0, static_cast<std::uint8_t>(at_s << 4U), 0, 0};
-  record.insert(record.end(), frame.begin(), frame.end());
-  return record;
+  return record_at(at_s, make_mavlink_frame(32, payload, {0, 1, 1}));
 }
 
 // Kills two paths in one: an autopilot that is started anew is at another origin.
