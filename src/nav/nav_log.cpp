@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "base/median.hpp"
@@ -43,8 +44,16 @@ std::optional<double> usual_value(const NavSource& source) {
   return median(std::move(values));
 }
 
-bool is_earlier(const NavSample& a, const NavSample& b) {
-  return a.time_s < b.time_s;
+/// Samples of one time stay in their order. (std::stable_sort uses what libstdc++ itself has deprecated.)
+void sort_by_time(std::vector<NavSample>& samples) {
+  if (std::ranges::is_sorted(samples, {}, &NavSample::time_s)) return;
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(samples[i].time_s, i); });
+  std::vector<NavSample> sorted;
+  sorted.reserve(samples.size());
+  for (const std::size_t i : order) sorted.push_back(samples[i]);
+  samples = std::move(sorted);
 }
 
 /// Where the clock of samples, in the order in which they came, was set back by most.
@@ -115,15 +124,14 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
                                                      name_of(source.quantity), source.name, i));
     }
     if (const auto step = step_back_in(source.samples)) source.step_back = step;
-    std::stable_sort(source.samples.begin(), source.samples.end(), is_earlier);
+    sort_by_time(source.samples);
   }
   return NavLog(std::move(sources), clock);
 }
 
 void add_samples(const NavSource& from, NavSource& to) {
-  const auto before = static_cast<std::ptrdiff_t>(to.samples.size());
   to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
-  std::inplace_merge(to.samples.begin(), to.samples.begin() + before, to.samples.end(), is_earlier);
+  sort_by_time(to.samples);
   if (!to.step_back) to.step_back = from.step_back;
 }
 
