@@ -214,8 +214,9 @@ class BeamSurvey {
 
   std::string duration_text(BeamClock clock) const {
     if (clock == BeamClock::kNone) return "not known: the log has no times";
-    return fmt::format("{:.3f} s, from {:.3f} s{}{}", last_s_ - first_s_, first_s_,
-                       clock == BeamClock::kTimeOfDay ? " of the day" : "", date_text(first_s_));
+    const std::string date = date_text(first_s_);
+    return fmt::format("{:.3f} s, from {:.3f} s{}{}{}", last_s_ - first_s_, first_s_,
+                       clock == BeamClock::kTimeOfDay ? " of the day" : "", date, date.empty() ? "" : " by its clock");
   }
 
   void take(const std::optional<Sweep>& sweep) {
@@ -432,7 +433,10 @@ Summary summarize_contents(const BagContents& bag, const std::string& name, Form
   summary.json.add("kind", "nav").add("format", name_of(format));
   add_nav(summary.json, bag.nav);
   summary.text = headline(name, format);
-  if (!reason.empty()) summary.text += report_line("no beams", on_one_line(reason));
+  if (!reason.empty()) {
+    summary.json.add("no_beams", reason);
+    summary.text += report_line("no beams", on_one_line(reason));
+  }
   summary.text += nav_text(bag.nav);
   add_damage(summary, bag.nav.damage);
   add_topics(summary, bag.topics);
@@ -458,7 +462,7 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
   if (!has_log && !command.bag.beams.fields) return summarize_contents(*bag, name, format, "");
   Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
   // Messages of a sonar's type may hold nothing.
-  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported;
+  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported && is_navigated;
   // Of several topics with scans none is chosen.
   const bool has_only_scans = !summary && !has(*bag, Use::kBeams) && command.damage == Damage::kSkip;
   if ((has_none || has_only_scans) && command.bag.beams.name.empty()) {

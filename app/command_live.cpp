@@ -207,19 +207,20 @@ class LiveRun {
 
   /// The state of a navigation device that was printed last.
   struct Reported {
-    bool recording_error = false, is_connected = false, has_other_origin = false;
+    bool recording_error = false, is_connected = false, was_started_anew = false;
     std::string problem;
   };
 
   void report_changes(const NavDevice& device, Reported& last) {
     const NavDevice::Status status = device.status();
     report_recording_error(status.recording_error, last.recording_error);
-    if (status.has_other_origin && !std::exchange(last.has_other_origin, true)) {
+    const std::string& position = nav_->poses().position();
+    if (device.was_started_anew(position) && !std::exchange(last.was_started_anew, true)) {
       bar_.clear();
       console_.say(
-          fmt::format("{}: the autopilot was started anew: its positions are relative to another origin and "
-                      "are not used; start a new map",
-                      device.name()));
+          fmt::format("{}: the sender of {} was started anew: its positions are relative to another origin "
+                      "now; start a new map",
+                      device.name(), on_one_line(position)));
     }
     if (device.listens() || (status.is_connected == last.is_connected && status.problem == last.problem)) return;
     bar_.clear();

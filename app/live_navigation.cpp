@@ -50,7 +50,6 @@ NavDevice::Status NavDevice::status() const {
     status.messages = said.frames;
     status.damaged = said.damaged;
     status.recording_error = said.recording_error;
-    status.has_other_origin = has_other_origin_;
   }
   return status;
 }
@@ -65,18 +64,17 @@ Result<void> NavDevice::read(double now_s, LivePoses& poses) {
   const auto reports = std::get<MavlinkReceiver>(receiver_).read(now_s);
   if (!reports) return tl::unexpected(reports.error());
   for (const MavlinkNav::Report& report : *reports) {
-    if (has_origin_of_the_map(report)) poses.add(report.source, report.quantity, report.sample);
+    note_start(report);
+    poses.add(report.source, report.quantity, report.sample);
   }
   return {};
 }
 
-/// False for local positions of an autopilot that was started anew.
-bool NavDevice::has_origin_of_the_map(const MavlinkNav::Report& report) {
-  if (report.quantity != NavQuantity::kPosition || !report.sample.valid || !report.made) return true;
+void NavDevice::note_start(const MavlinkNav::Report& report) {
+  if (report.quantity != NavQuantity::kPosition || !report.sample.valid || !report.made) return;
   const auto [last, is_first] = positions_.try_emplace(report.source, report.made->time);
-  has_other_origin_ = has_other_origin_ || was_clock_set(last->second, report.made->time);
+  if (pingvox::was_started_anew(last->second, report.made->time)) started_anew_.insert(report.source);
   last->second = report.made->time;
-  return !has_other_origin_;
 }
 
 Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from, Recordings& recordings, double start_s,

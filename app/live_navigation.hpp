@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -26,8 +27,7 @@ class NavDevice {
     std::size_t messages = 0, damaged = 0;
     bool is_connected = true;  ///< as far as it can be told
     std::size_t connections = 0;
-    std::string problem;            ///< why not
-    bool has_other_origin = false;  ///< it was started anew: its positions are relative to another origin, and not used
+    std::string problem;  ///< why not
     std::optional<Error> recording_error;
   };
 
@@ -43,17 +43,20 @@ class NavDevice {
   int descriptor() const;  ///< for poll()
   Status status() const;
 
+  /// Whether the sender of these positions was started anew: they are relative to another origin since then.
+  bool was_started_anew(const std::string& position) const { return started_anew_.contains(position); }
+
   /// Adds the samples that have arrived. @param now_s  on the beams' clock
   Result<void> read(double now_s, LivePoses& poses);
 
  private:
   using Receiver = std::variant<MavlinkReceiver, A50Receiver>;
   explicit NavDevice(Receiver receiver) : receiver_(std::move(receiver)) {}
-  bool has_origin_of_the_map(const MavlinkNav::Report& report);
+  void note_start(const MavlinkNav::Report& report);
 
   Receiver receiver_;
   std::map<std::string, DeviceTime> positions_;  ///< when the last one of each source was made
-  bool has_other_origin_ = false;
+  std::set<std::string> started_anew_;           ///< sources of positions
 };
 
 /// Pose of the vehicle by all navigation devices.

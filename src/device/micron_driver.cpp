@@ -88,7 +88,7 @@ void MicronDriver::take(std::span<const std::uint8_t> frame) {
   }
   if (message == SeanetMessage::kHeadData && state_ == State::kScanning) {
     constexpr std::uint8_t kNoPower = 1, kLostStep = 2;
-    const std::optional<SeanetLine> line = seanet_line(frame);
+    const auto line = seanet_line(frame);
     if (line && (line->status & (kNoPower | kLostStep)) != 0) return enter(State::kConfiguring);
     unanswered_in_a_row_ = 0;
     if (lines_left_ > 0 && --lines_left_ == 0) is_waiting_ = false;

@@ -19,7 +19,7 @@ const DeviceProfile* ping_device_of(std::span<const std::uint8_t>) {
 }
 
 const DeviceProfile* seanet_device_of(std::span<const std::uint8_t> frame) {
-  const std::optional<SeanetLine> line = seanet_line(frame);
+  const auto line = seanet_line(frame);
   return line ? device_of(*line) : nullptr;
 }
 

@@ -35,7 +35,6 @@ class TlogNav {
       for (std::size_t i = 0; i < source.samples.size(); ++i) {
         if (made[i]) source.samples[i].time_s = times_s.at(made[i]->sender)[made[i]->place];
       }
-      if (source.quantity == NavQuantity::kPosition) keep_one_start(source, made);
     }
     return sources;
   }
@@ -46,26 +45,6 @@ class TlogNav {
     MavlinkNav::Sender sender;
     std::size_t place;
   };
-  using MadeOf = std::vector<std::optional<Made>>;  ///< of each sample
-
-  /// An autopilot that is started anew has another origin: only the positions of its longest time are valid.
-  void keep_one_start(NavSource& positions, const MadeOf& made) const {
-    std::vector<std::size_t> start_of, valid_of = {0};
-    std::optional<DeviceTime> last;
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      if (made[i]) {
-        const DeviceTime& time = times_.at(made[i]->sender)[made[i]->place];
-        if (last && was_clock_set(*last, time)) valid_of.push_back(0);
-        last = time;
-      }
-      start_of.push_back(valid_of.size() - 1);
-      if (positions.samples[i].valid) ++valid_of.back();
-    }
-    const auto longest = static_cast<std::size_t>(std::ranges::max_element(valid_of) - valid_of.begin());
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      positions.samples[i].valid = positions.samples[i].valid && start_of[i] == longest;
-    }
-  }
 
   std::optional<Made> made_of(const MavlinkNav::Report& report) {
     if (!report.made) return std::nullopt;
@@ -77,7 +56,7 @@ class TlogNav {
   MavlinkNav nav_;
   NavSources sources_;
   std::map<MavlinkNav::Sender, std::vector<DeviceTime>> times_;
-  std::map<std::pair<std::string, NavQuantity>, MadeOf> made_;
+  std::map<std::pair<std::string, NavQuantity>, std::vector<std::optional<Made>>> made_;  ///< of each sample
 };
 
 }  // namespace

@@ -36,6 +36,11 @@ int hex_digit(std::uint8_t c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
+/// Whether a device block is that of a profiling head, which holds times of echoes in place of samples.
+bool is_of_profiling_head(std::span<const std::uint8_t> device_block) {
+  return !device_block.empty() && (device_block[0] == 5 || device_block[0] == 20);
+}
+
 /// Whether the frame has the length of its message, if that is known.
 bool fits_message(std::span<const std::uint8_t> frame) {
   const std::uint8_t id = frame[10];
@@ -45,6 +50,7 @@ bool fits_message(std::span<const std::uint8_t> frame) {
   // Parts of a split message have no fixed length.
   if (id != kHeadData || frame[11] != kSinglePacket) return true;
   if (frame.size() < kAroundSamples) return false;
+  if (is_of_profiling_head(frame.subspan(kDeviceBlock))) return frame.size() == u16_at(frame, 13) + 14U;
   const std::size_t around = u16_at(frame, 42) + kAroundSamples;
   const bool has_message = (frame[16] & kMessageBehind) != 0;
   return has_message ? frame.size() >= around : frame.size() == around && frame.size() == u16_at(frame, 13) + 14U;
@@ -108,13 +114,15 @@ std::vector<std::uint8_t> make_seanet_frame(SeanetMessage message, SeanetSender 
   return frame;
 }
 
-std::optional<SeanetLine> seanet_line(std::span<const std::uint8_t> frame) {
-  if (frame[10] != kHeadData || frame[11] != kSinglePacket) return std::nullopt;
+tl::expected<SeanetLine, std::string> seanet_line(std::span<const std::uint8_t> frame) {
+  if (frame[10] != kHeadData) return tl::unexpected(std::string("another message"));
+  if (frame[11] != kSinglePacket) return tl::unexpected(std::string("part of a line that is cut into packets"));
   return seanet_line_in(frame.subspan(kDeviceBlock, frame.size() - kDeviceBlock - 1));
 }
 
-std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_block) {
-  if (device_block.size() < kBlockHeader) return std::nullopt;
+tl::expected<SeanetLine, std::string> seanet_line_in(std::span<const std::uint8_t> device_block) {
+  if (is_of_profiling_head(device_block)) return tl::unexpected(std::string(kProfilingHead));
+  if (device_block.size() < kBlockHeader) return tl::unexpected(std::string("shorter than its header"));
   SeanetLine line;
   line.head_type = device_block[0];
   line.status = device_block[1];
@@ -125,16 +133,15 @@ std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_bl
   line.interval_640ns = u16_at(device_block, 18);
   line.bearing = u16_at(device_block, 25);
   const std::size_t samples = u16_at(device_block, 27);
-  if (device_block.size() - kBlockHeader < samples) return std::nullopt;
+  if (device_block.size() - kBlockHeader < samples) {
+    return tl::unexpected(std::string("more samples than it has room for"));
+  }
   line.data = device_block.subspan(kBlockHeader, samples);
   return line;
 }
 
 tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s) {
   constexpr double kTick_s = 640e-9;
-  // Their data are times of echoes.
-  constexpr std::uint8_t kProfiler = 5, kProfilerDst = 20;
-  if (line.head_type == kProfiler || line.head_type == kProfilerDst) return tl::unexpected(std::string(kProfilingHead));
   if (const auto fault = seanet_fault(line.status)) return tl::unexpected(std::string(*fault));
   const std::optional<double> bearing_rad = seanet_bearing_rad(line.bearing);
   if (!bearing_rad) return tl::unexpected(fmt::format("bearing {} of 6400 a turn", line.bearing));
@@ -166,9 +173,9 @@ const DeviceProfile* device_of(const SeanetLine& line) {
 }
 
 tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s) {
-  const std::optional<SeanetLine> line = seanet_line(frame);
-  if (!line && frame[10] == kHeadData) return tl::unexpected(std::string("part of a line that is cut into packets"));
-  if (!line) return std::nullopt;
+  if (frame[10] != kHeadData) return std::nullopt;
+  const tl::expected<SeanetLine, std::string> line = seanet_line(frame);
+  if (!line) return tl::unexpected(line.error());
   return beam_of(*line, time_s);
 }
 

@@ -16,11 +16,19 @@ double difference_s(const DeviceTime& time) {
   return time.received_s - time.made_s;
 }
 
-}  // namespace
+/// Messages may overtake each other.
+constexpr double kBack_s = 1.0;
 
 bool was_clock_set(const DeviceTime& before, const DeviceTime& now) {
-  constexpr double kBack_s = 1.0, kJump_s = 60.0;
+  constexpr double kJump_s = 60.0;
   return now.made_s < before.made_s - kBack_s || std::fabs(difference_s(now) - difference_s(before)) > kJump_s;
+}
+
+}  // namespace
+
+bool was_started_anew(const DeviceTime& before, const DeviceTime& now) {
+  constexpr double kDelay_s = 10.0;
+  return now.made_s < before.made_s - kBack_s && now.made_s <= now.received_s - before.received_s + kDelay_s;
 }
 
 double DeviceClock::add(const DeviceTime& time) {

@@ -84,28 +84,10 @@ TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   ASSERT_EQ(info.status, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr(R"("kind": "nav")"));
   EXPECT_THAT(info.out, HasSubstr(R"("name": "/depth", "quantity": "depth", "samples": 1)"));
+  EXPECT_THAT(info.out, HasSubstr(R"("no_beams": "lidar.mcap: )"));
   expect_error(here.call({"info", "lidar.mcap", "--topic", "/scan"}), 1,
                {"lidar.mcap: has no beams or scans in the topic /scan"});
   expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
-}
-
-// Kills a report of a recording without its topics, and a reason that is kept back.
-TEST(Bags, InfoOfBeamsThatCannotBeUsedSaysWhyAndListsTheTopics) {
-  const Workplace here;
-  bags::Mcap mcap;
-  mcap.topic(1, "/scan", "lab_msgs/msg/LaserScan",
-             "float64 angle_min\nfloat64 angle_max\nfloat64 range_max\nfloat64[] intensities\n");
-  bags::Bytes scan = {0, 1, 0, 0};
-  for (const double number : {-1.0, 1.0, 30.0}) bags::put(scan, number);
-  bags::put(scan, std::uint64_t{0});
-  mcap.message(1, 1'700'000'000'000'000'000U, scan);
-  mcap.end_chunk();
-  const bags::Bytes file = mcap.closed();
-  here.write("sonar.mcap", std::string(file.begin(), file.end()));
-  const Outcome info = here.call({"info", "sonar.mcap"});
-  ASSERT_EQ(info.status, 0) << info.err;
-  EXPECT_THAT(info.out, HasSubstr("  no beams    sonar.mcap: "));
-  EXPECT_THAT(info.out, HasSubstr("lab_msgs/msg/LaserScan"));
 }
 
 /// The beginning of a message in CDR, with an empty frame.

@@ -54,7 +54,8 @@ TEST(Nav, InfoSaysDatesWhereTheClockHasThem) {
   here.write("nav.csv", "# clock: unix\ntime_s,source,quantity,x\n1767225600.5,bar,depth,5\n1767225661,bar,depth,5\n");
   EXPECT_THAT(here.call({"info", "nav.csv"}).out, HasSubstr("unix, 2026-01-01 00:00:00 to 2026-01-01 00:01:01 UTC\n"));
   here.write("beams.csv", "time_s,bearing_deg,bin_length_m,intensities\n1767225600.5,0,0.1,1,2,3\n");
-  EXPECT_THAT(here.call({"info", "beams.csv"}).out, HasSubstr("from 1767225600.500 s, 2026-01-01 00:00:00\n"));
+  EXPECT_THAT(here.call({"info", "beams.csv"}).out,
+              HasSubstr("from 1767225600.500 s, 2026-01-01 00:00:00 by its clock\n"));
   here.write("beams.csv", "time_s,bearing_deg,bin_length_m,intensities\n12.5,0,0.1,1,2,3\n");
   EXPECT_THAT(here.call({"info", "beams.csv"}).out, HasSubstr("from 12.500 s\n"));
 }

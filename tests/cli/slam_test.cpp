@@ -65,6 +65,16 @@ TEST(Slam, WritesTrajectoryMapAndCalibration) {
   EXPECT_THAT(here.read("out.toml"), HasSubstr("[[heading]]\nsource = \"compass\"\nconstant-deg = "));
 }
 
+// Kills names of coefficients that mean nothing to a user, and "-0.00".
+TEST(Slam, OfAVehicleThatStandsStillNamesWhatIsNotKnown) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "--turns", "3", "-o", "log.csv", "--nav", "nav.csv", "--quiet"}).status, 0);
+  const Outcome outcome = here.call({"slam", "log.csv", "--nav", "nav.csv", "-o", "out.tum"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("constant of heading IMU, deviation of heading IMU: the recording hardly tells"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("-0.00 ")));
+}
+
 // The DVL of the basin is turned and its compass deviates: kills a calibration that is read and not used.
 TEST(Slam, CalibrationIsReadBackByMapRenderLocateAndSlam) {
   PINGVOX_SKIP_UNDER_SANITIZERS();

@@ -350,18 +350,56 @@ TEST(Seanet, AV4logSaysWhatItsHeaderGetsWrong) {
   EXPECT_EQ(with(0x28, 152).skipped, 1U);
 }
 
-// Kills times of echoes that are taken for a picture.
-TEST(Seanet, LinesOfAProfilingHeadAreCounted) {
-  for (const std::uint8_t type : {std::uint8_t{5}, std::uint8_t{20}}) {
-    auto profile = line_at(3300);
-    profile[15] = type;
-    const auto all = all_beams({"capture", joined({line_at(3200), profile, line_at(3216)})});
-    EXPECT_EQ(all.items.size(), 2U);
-    EXPECT_EQ(all.skipped, 1U);
-    const auto refused = all_beams({"capture", joined({profile, profile})});
-    EXPECT_EQ(refused.items.size(), 0U);
-    EXPECT_EQ(refused.skipped, 2U);
+/// A line of a profiling head: limits, step, scan time and count, then times, all of 16 bits.
+std::vector<std::uint8_t> profile_line(std::uint8_t type) {
+  std::vector<std::uint8_t> frame = from_hex(kLine);
+  frame.resize(31);
+  frame[15] = type;
+  for (const unsigned value : {2400U, 4000U, 16U + (50U << 8U), 3U, 1200U, 1210U, 1220U}) {
+    frame.push_back(static_cast<std::uint8_t>(value & 0xffU));
+    frame.push_back(static_cast<std::uint8_t>(value >> 8U));
   }
+  while (frame.size() < 51 + 2 * 3 - 1) frame.push_back(0);
+  frame.push_back('\n');
+  const std::string length = fmt::format("{:04X}", frame.size() - 6);
+  std::copy(length.begin(), length.end(), frame.begin() + 1);
+  frame[5] = static_cast<std::uint8_t>(frame.size() - 6);
+  frame[13] = static_cast<std::uint8_t>(frame.size() - 14);
+  return frame;
+}
+
+// Kills times of echoes that are taken for a picture, and frames that are called damaged though they are whole.
+TEST(Seanet, LinesOfAProfilingHeadAreCountedAsSuch) {
+  for (const std::uint8_t type : {std::uint8_t{5}, std::uint8_t{20}}) {
+    const auto source = open_beams({"capture", joined({line_at(3200), profile_line(type), line_at(3216)})});
+    ASSERT_TRUE(source);
+    EXPECT_EQ(read_all(**source)->size(), 2U);
+    ASSERT_EQ((*source)->damage().size(), 1U);
+    EXPECT_EQ((*source)->damage()[0].what, "line of a profiling head");
+  }
+}
+
+// Kills a device that is taken from a line which is not read.
+TEST(Seanet, AV4logWithAProfilingHeadIsOfTheOtherOne) {
+  auto log = v4log({3200, 3216, 3232});
+  const std::size_t first = log[0x28] + log[0x29] * 256U;
+  log[first + 17] = 20;
+  const auto source = open_beams({"a.V4LOG", log});
+  ASSERT_TRUE(source);
+  EXPECT_EQ(read_all(**source)->size(), 2U);
+  ASSERT_EQ((*source)->damage().size(), 1U);
+  EXPECT_EQ((*source)->damage()[0].what, "line of a profiling head");
+  ASSERT_NE((*source)->device(), nullptr);
+  EXPECT_EQ((*source)->device()->name, "micron");
+}
+
+// A hub of several heads. Kills a sonar's port that is that of the profiler.
+TEST(Seanet, PacketsOfAProfilingHeadAreNotTheSonars) {
+  const std::string at = "2017.11.02 08.58.46.723;10.3.0.40;";
+  const auto all = all_beams({"hub.csv", bytes_of(at + "4001;" + hex_of(profile_line(20)) + "\r\n" + at + "4002;" +
+                                                  hex_of(line_at(3200)) + "\r\n")});
+  EXPECT_EQ(all.error, "");
+  EXPECT_EQ(all.items.size(), 1U);
 }
 
 // Kills a log that lacks beams and does not say so.

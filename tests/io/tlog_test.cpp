@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -86,42 +85,6 @@ TEST(Tlog, AMessageWithoutItsTimeIsOfTheTimeWhenItCame) {
     const double since_first_s = range->samples[i].time_s - range->samples[0].time_s;
     EXPECT_NEAR(since_first_s, static_cast<double>(i) * 1.048576, 1e-3) << i;
   }
-}
-
-/// A record with a LOCAL_POSITION_NED.
-std::vector<std::uint8_t> position_record(std::uint8_t at_s, std::uint16_t boot_ms, float north_m) {
-  std::vector<std::uint8_t> payload(28, 0);
-  payload[0] = static_cast<std::uint8_t>(boot_ms & 0xffU);
-  payload[1] = static_cast<std::uint8_t>(boot_ms >> 8U);
-  for (unsigned i = 0; i < 4; ++i) {
-    payload[4 + i] = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(north_m) >> 8U * i);
-  }
-  return record_at(at_s, make_mavlink_frame(32, payload, {0, 1, 1}));
-}
-
-// Kills two paths in one: an autopilot that is started anew is at another origin.
-TEST(Tlog, PositionsOfTheLongestStartAreValid) {
-  struct Position {
-    std::uint8_t at_s;
-    std::uint16_t boot_ms;
-    float north_m;
-    bool valid;
-  };
-  // On deck first; and a filter that knows no position, which is at 0.
-  const std::vector<Position> positions = {{1, 9000, 5.0F, false},  {2, 10048, 6.0F, false}, {5, 3000, 1.0F, true},
-                                           {6, 4048, 2.0F, true},   {7, 5097, 3.0F, true},   {9, 2000, 0.0F, false},
-                                           {10, 3048, 0.0F, false}, {11, 4097, 0.0F, false}, {12, 5146, 0.0F, false}};
-  std::vector<std::uint8_t> log;
-  for (const Position& position : positions) {
-    const auto record = position_record(position.at_s, position.boot_ms, position.north_m);
-    log.insert(log.end(), record.begin(), record.end());
-  }
-  const auto nav = read_as_tlog(log);
-  ASSERT_TRUE(nav) << nav.error().message;
-  const NavSource* source = source_of(nav->log, "LOCAL_POSITION_NED", NavQuantity::kPosition);
-  ASSERT_NE(source, nullptr);
-  ASSERT_EQ(source->samples.size(), positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) EXPECT_EQ(source->samples[i].valid, positions[i].valid) << i;
 }
 
 // Kills rangefinders that look ahead and down and are taken for one.

@@ -77,6 +77,18 @@ TEST(DeviceClock, BeginsAgainWithADeviceThatWasStartedAnew) {
   expect_true_from(0, device_times_s(times), 1e-5);
 }
 
+// Kills a new start that is told of a queue, of a receiver that was stopped or whose clock was set, and of messages
+// that come by two ways.
+TEST(DeviceClock, ADeviceWasStartedAnewWhenItIsUpForLessThanThePause) {
+  EXPECT_TRUE(was_started_anew({1000.0, 600.0}, {1020.0, 5.0}));
+  EXPECT_TRUE(was_started_anew({1000.0, 600.0}, {1300.0, 280.0}));
+  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1090.1, 600.1})) << "it waited";
+  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1000.1, 690.0})) << "what came before waited";
+  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1075.1, 600.1})) << "the receiver's clock was set";
+  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1.7e9, 600.1})) << "to the date";
+  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1000.1, 598.5})) << "by a slower way";
+}
+
 // Kills a difference of long ago that counts after a pause.
 TEST(DeviceClock, ForgetsWhatWasBeforeAPause) {
   DeviceClock clock;

@@ -54,18 +54,19 @@ struct SeanetLine {
   std::span<const std::uint8_t> data;  ///< one sample per byte, or two, the nearer in the high bits
 };
 
-/// nullopt: another message, or part of one. REQUIRES a valid frame.
-std::optional<SeanetLine> seanet_line(std::span<const std::uint8_t> frame);
+/// The error is why there is none: another message, part of a line, a profiling head's. REQUIRES a valid frame.
+tl::expected<SeanetLine, std::string> seanet_line(std::span<const std::uint8_t> frame);
 
-/// Parses the device block of mtHeadData, from its device type on, which V4LOG files hold too. nullopt: too short.
-std::optional<SeanetLine> seanet_line_in(std::span<const std::uint8_t> device_block);
+/// Parses the device block of mtHeadData, from its device type on, which V4LOG files hold too. The error is why it is
+/// no line: too short, or of a profiling head.
+tl::expected<SeanetLine, std::string> seanet_line_in(std::span<const std::uint8_t> device_block);
 
 /// Converts to a beam in the sensor frame, assuming kAssumedSoundSpeed_m_s; the error is the reason why it is invalid.
 /// Samples of 4 bits are scaled to 0..255.
 tl::expected<Beam, std::string> beam_of(const SeanetLine& line, double time_s);
 
 /// The beam of a frame; nullopt: another message; the error is the reason why there is none: values that are
-/// impossible, or a line that is cut into several packets. REQUIRES a valid frame.
+/// impossible, a line that is cut into several packets, a profiling head. REQUIRES a valid frame.
 tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s);
 
 /// The head by type and frequency of a line; nullptr if unknown.
