@@ -188,7 +188,7 @@ class BeamSurvey {
                       report_line("bin length", lengths_text(lengths)) +
                       report_line("range", fmt::format("{:.6g} m", longest_m_)) +
                       report_line("sector", fmt::format("{:.6g} degrees", sector)) +
-                      report_line("duration", duration_text(source.clock())) +
+                      report_line("duration", beam_duration_text(source.clock())) +
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
     if (const DeviceProfile* device = source.device()) {
@@ -212,11 +212,11 @@ class BeamSurvey {
     return fmt::format("{}, complete: {}", sweeps_, numbers_text(complete_));
   }
 
-  std::string duration_text(BeamClock clock) const {
+  std::string beam_duration_text(BeamClock clock) const {
     if (clock == BeamClock::kNone) return "not known: the log has no times";
-    const std::string date = date_text(first_s_);
-    return fmt::format("{:.3f} s, from {:.3f} s{}{}{}", last_s_ - first_s_, first_s_,
-                       clock == BeamClock::kTimeOfDay ? " of the day" : "", date, date.empty() ? "" : " by its clock");
+    const std::string text = duration_text(first_s_, last_s_);
+    if (clock == BeamClock::kTimeOfDay) return text + " of the day";
+    return date_text(first_s_).empty() ? text : text + " by its clock";
   }
 
   void take(const std::optional<Sweep>& sweep) {
@@ -287,8 +287,7 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
   }
   if (first_s) {
     summary.json.add("duration_s", *last_s - *first_s);
-    summary.text += report_line(
-        "duration", fmt::format("{:.3f} s, from {:.3f} s{}", *last_s - *first_s, *first_s, date_text(*first_s)));
+    summary.text += report_line("duration", duration_text(*first_s, *last_s));
   }
   summary.json.add("bounds", bounds_json(bounds)).add("skipped", source.skipped());
   summary.text += report_line("bounds", bounds_text(bounds) + (first_s ? ", around the sensor" : ""));
@@ -364,8 +363,7 @@ Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
       .add("length_m", length_m)
       .add("bounds", bounds_json(bounds));
   summary.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
-                 report_line("duration", fmt::format("{:.3f} s, from {:.3f} s{}", duration_s, poses.front().time_s,
-                                                     date_text(poses.front().time_s))) +
+                 report_line("duration", duration_text(poses.front().time_s, poses.back().time_s)) +
                  report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
   return summary;
 }

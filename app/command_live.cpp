@@ -207,7 +207,7 @@ class LiveRun {
 
   /// The state of a navigation device that was printed last.
   struct Reported {
-    bool recording_error = false, is_connected = false, was_started_anew = false;
+    bool recording_error = false, is_connected = false, has_other_origin = false;
     std::string problem;
   };
 
@@ -215,7 +215,7 @@ class LiveRun {
     const NavDevice::Status status = device.status();
     report_recording_error(status.recording_error, last.recording_error);
     const std::string& position = nav_->poses().position();
-    if (device.was_started_anew(position) && !std::exchange(last.was_started_anew, true)) {
+    if (device.has_other_origin(position) && !std::exchange(last.has_other_origin, true)) {
       bar_.clear();
       console_.say(
           fmt::format("{}: the sender of {} was started anew: its positions are relative to another origin "

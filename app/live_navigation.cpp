@@ -72,9 +72,15 @@ Result<void> NavDevice::read(double now_s, LivePoses& poses) {
 
 void NavDevice::note_start(const MavlinkNav::Report& report) {
   if (report.quantity != NavQuantity::kPosition || !report.sample.valid || !report.made) return;
-  const auto [last, is_first] = positions_.try_emplace(report.source, report.made->time);
-  if (pingvox::was_started_anew(last->second, report.made->time)) started_anew_.insert(report.source);
-  last->second = report.made->time;
+  const DeviceTime& now = report.made->time;
+  Positions& positions = positions_.try_emplace(report.source, Positions{now}).first->second;
+  positions.has_other_origin = positions.has_other_origin || was_started_anew(positions.last, now);
+  positions.last = now;
+}
+
+bool NavDevice::has_other_origin(const std::string& position) const {
+  const auto positions = positions_.find(position);
+  return positions != positions_.end() && positions->second.has_other_origin;
 }
 
 Result<Navigation> Navigation::open(const std::vector<LiveNavigation>& from, Recordings& recordings, double start_s,

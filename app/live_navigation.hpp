@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -44,7 +43,7 @@ class NavDevice {
   Status status() const;
 
   /// Whether the sender of these positions was started anew: they are relative to another origin since then.
-  bool was_started_anew(const std::string& position) const { return started_anew_.contains(position); }
+  bool has_other_origin(const std::string& position) const;
 
   /// Adds the samples that have arrived. @param now_s  on the beams' clock
   Result<void> read(double now_s, LivePoses& poses);
@@ -55,8 +54,11 @@ class NavDevice {
   void note_start(const MavlinkNav::Report& report);
 
   Receiver receiver_;
-  std::map<std::string, DeviceTime> positions_;  ///< when the last one of each source was made
-  std::set<std::string> started_anew_;           ///< sources of positions
+  struct Positions {
+    DeviceTime last;  ///< when it was made
+    bool has_other_origin = false;
+  };
+  std::map<std::string, Positions> positions_;  ///< of each source
 };
 
 /// Pose of the vehicle by all navigation devices.

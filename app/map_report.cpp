@@ -59,7 +59,12 @@ std::string empty_map_text(const std::string& output) {
 std::string date_text(double time_s) {
   constexpr double kYear2000_s = 946'684'800.0, kYear2100_s = 4'102'444'800.0;
   if (!(time_s >= kYear2000_s && time_s < kYear2100_s)) return "";
-  return fmt::format(", {:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(time_s)));
+  return fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(time_s)));
+}
+
+std::string duration_text(double from_s, double to_s) {
+  const std::string date = date_text(from_s);
+  return fmt::format("{:.3f} s, from {:.3f} s{}", to_s - from_s, from_s, date.empty() ? "" : ", " + date);
 }
 
 std::string report_line(std::string_view label, std::string_view value) {

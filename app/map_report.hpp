@@ -31,8 +31,10 @@ std::string damage_text(std::size_t records, std::string_view first);
 
 /// What is said of an empty map.
 std::string empty_map_text(const std::string& output);
-/// ", 2023-05-04 17:22:21" for seconds since 1970; "" for the times of clocks that do not count from there.
+/// "2023-05-04 17:22:21" of seconds since 1970; "" of the times of clocks that do not count from there.
 std::string date_text(double time_s);
+/// "12.500 s, from 3.000 s", with the date where the time has one.
+std::string duration_text(double from_s, double to_s);
 /// A line of a report, with the values aligned.
 std::string report_line(std::string_view label, std::string_view value);
 

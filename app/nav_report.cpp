@@ -224,17 +224,16 @@ void add_nav(JsonObject& json, const NavFile& nav) {
 
 namespace {
 
-/// ": from 2023-05-04 17:22:21 to 2023-05-04 17:55:02 UTC" where the clock has dates.
+/// ", 2023-05-04 17:22:21 to 2023-05-04 17:55:02 UTC" where the clock has dates.
 std::string dates_text(const NavLog& log) {
-  if (log.clock() != NavClock::kUnix || log.sources().empty()) return "";
+  if (log.clock() != NavClock::kUnix) return "";
   double from_s = std::numeric_limits<double>::infinity(), to_s = -from_s;
   for (const NavSource& source : log.sources()) {
-    if (source.samples.empty()) continue;
     from_s = std::min(from_s, source.samples.front().time_s);
     to_s = std::max(to_s, source.samples.back().time_s);
   }
   const std::string from = date_text(from_s), to = date_text(to_s);
-  return from.empty() || to.empty() ? "" : fmt::format("{} to{} UTC", from, to.substr(1));
+  return from.empty() || to.empty() ? "" : fmt::format(", {} to {} UTC", from, to);
 }
 
 }  // namespace

@@ -26,6 +26,10 @@ constexpr std::size_t kBlockHeader = 29;  ///< bytes of the device block before 
 constexpr std::uint8_t kHeadData = 2, kSinglePacket = 0x80;
 constexpr std::uint8_t kMessageBehind = 0x80;  ///< of the head's status
 
+/// Why there is no line.
+constexpr std::string_view kOtherMessage = "another message", kPartOfLine = "part of a line that is cut into packets",
+                           kShort = "shorter than its header", kTooManySamples = "more samples than it has room for";
+
 /// Messages of fixed length.
 constexpr std::array kFrameSizes = {std::pair{1, 25},  std::pair{4, 22},  std::pair{16, 14},
                                     std::pair{23, 14}, std::pair{24, 14}, std::pair{25, 18}};
@@ -114,15 +118,15 @@ std::vector<std::uint8_t> make_seanet_frame(SeanetMessage message, SeanetSender 
   return frame;
 }
 
-tl::expected<SeanetLine, std::string> seanet_line(std::span<const std::uint8_t> frame) {
-  if (frame[10] != kHeadData) return tl::unexpected(std::string("another message"));
-  if (frame[11] != kSinglePacket) return tl::unexpected(std::string("part of a line that is cut into packets"));
+tl::expected<SeanetLine, std::string_view> seanet_line(std::span<const std::uint8_t> frame) {
+  if (frame[10] != kHeadData) return tl::unexpected(kOtherMessage);
+  if (frame[11] != kSinglePacket) return tl::unexpected(kPartOfLine);
   return seanet_line_in(frame.subspan(kDeviceBlock, frame.size() - kDeviceBlock - 1));
 }
 
-tl::expected<SeanetLine, std::string> seanet_line_in(std::span<const std::uint8_t> device_block) {
-  if (is_of_profiling_head(device_block)) return tl::unexpected(std::string(kProfilingHead));
-  if (device_block.size() < kBlockHeader) return tl::unexpected(std::string("shorter than its header"));
+tl::expected<SeanetLine, std::string_view> seanet_line_in(std::span<const std::uint8_t> device_block) {
+  if (is_of_profiling_head(device_block)) return tl::unexpected(kProfilingHead);
+  if (device_block.size() < kBlockHeader) return tl::unexpected(kShort);
   SeanetLine line;
   line.head_type = device_block[0];
   line.status = device_block[1];
@@ -133,9 +137,7 @@ tl::expected<SeanetLine, std::string> seanet_line_in(std::span<const std::uint8_
   line.interval_640ns = u16_at(device_block, 18);
   line.bearing = u16_at(device_block, 25);
   const std::size_t samples = u16_at(device_block, 27);
-  if (device_block.size() - kBlockHeader < samples) {
-    return tl::unexpected(std::string("more samples than it has room for"));
-  }
+  if (device_block.size() - kBlockHeader < samples) return tl::unexpected(kTooManySamples);
   line.data = device_block.subspan(kBlockHeader, samples);
   return line;
 }
@@ -174,8 +176,8 @@ const DeviceProfile* device_of(const SeanetLine& line) {
 
 tl::expected<std::optional<Beam>, std::string> seanet_beam_in(std::span<const std::uint8_t> frame, double time_s) {
   if (frame[10] != kHeadData) return std::nullopt;
-  const tl::expected<SeanetLine, std::string> line = seanet_line(frame);
-  if (!line) return tl::unexpected(line.error());
+  const auto line = seanet_line(frame);
+  if (!line) return tl::unexpected(std::string(line.error()));
   return beam_of(*line, time_s);
 }
 

@@ -121,8 +121,8 @@ class V4Log final : public DeviceLog {
   }
 
   tl::expected<Beam, std::string> beam_in(Bytes record) {
-    const tl::expected<SeanetLine, std::string> line = seanet_line_in(record.subspan(kDeviceBlock));
-    if (!line) return tl::unexpected(line.error());
+    const auto line = seanet_line_in(record.subspan(kDeviceBlock));
+    if (!line) return tl::unexpected(std::string(line.error()));
     if (device_ == nullptr) device_ = device_of(*line);
     return beam_of(*line, *time_s_of(value_at<double>(record, kTime)));
   }

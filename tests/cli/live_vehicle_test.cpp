@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -187,34 +188,54 @@ TEST(Live, MapsAlongTheWayThatAnEmulatedDvlTells) {
   EXPECT_GT(std::stod((*json)["same"]), 0.5 * std::stod((*json)["cells"])) << compared.out;
 }
 
-/// A UDP socket on a free port of this host; -1: there is none.
-/// @param address  of it
-int bound_socket(std::string& address) {
-  const int bound = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
-  sockaddr_in own = {};
-  own.sin_family = AF_INET;
-  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof own;
-  if (::bind(bound, reinterpret_cast<const sockaddr*>(&own), size) != 0 ||
-      ::getsockname(bound, reinterpret_cast<sockaddr*>(&own), &size) != 0) {
-    return -1;
+/// An autopilot on a free port of this host.
+class Autopilot {
+ public:
+  Autopilot() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
+    sockaddr_in own = {};
+    own.sin_family = AF_INET;
+    own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof own;
+    const bool is_bound = ::bind(socket_, reinterpret_cast<const sockaddr*>(&own), size) == 0 &&
+                          ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size) == 0;
+    if (!is_bound) ADD_FAILURE() << "no free port";
+    address_ = "udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
   }
-  address = "udp://127.0.0.1:" + std::to_string(ntohs(own.sin_port));
-  return bound;
-}
+  Autopilot(const Autopilot&) = delete;
+  Autopilot& operator=(const Autopilot&) = delete;
+  ~Autopilot() { ::close(socket_); }
+
+  const std::string& address() const { return address_; }
+
+  /// The next frame that has come. @return its size; at most 0: there is none
+  ssize_t take(std::span<std::uint8_t> frame) const { return ::recv(socket_, frame.data(), frame.size(), 0); }
+  bool is_told() const {
+    std::array<std::uint8_t, 300> frame = {};
+    return take(frame) > 0;
+  }
+  /// Waits until nothing comes for a second.
+  bool is_told_no_more() const {
+    return wait_until([&] {
+      while (is_told()) continue;
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+      return !is_told();
+    });
+  }
+
+ private:
+  int socket_;
+  std::string address_;
+};
 
 TEST(Live, TellsTheAutopilotWhatIsNear) {
   const Head head({}, "100");
   const Workplace here;
-  std::string address;
-  const int autopilot = bound_socket(address);
-  ASSERT_GE(autopilot, 0);
-  const Outcome outcome = here.call(live(head.address(), {"--beams", "100", "--obstacles", address}));
+  const Autopilot autopilot;
+  const Outcome outcome = here.call(live(head.address(), {"--beams", "100", "--obstacles", autopilot.address()}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::array<std::uint8_t, 300> frame = {};
   int frames = 0;
-  while (::recv(autopilot, frame.data(), frame.size(), 0) == 179) ++frames;
-  ::close(autopilot);
+  while (autopilot.take(frame) == 179) ++frames;
   EXPECT_GE(frames, 3);
   EXPECT_EQ(frame[7] | frame[8] << 8, 330);
   int near = 0;
@@ -226,53 +247,35 @@ TEST(Live, TellsTheAutopilotWhatIsNear) {
 TEST(Live, TellsNoObstaclesWhereTheVehicleFellSilent) {
   const Head head({}, "40");
   const Workplace here;
-  std::string address;
-  const int autopilot = bound_socket(address);
-  ASSERT_GE(autopilot, 0);
+  const Autopilot autopilot;
   const pid_t child = here.start({"live", head.address(), "--nav", "mavlink:udp://127.0.0.1:0", "-o", "live.bt",
-                                  "--range", "4", "--step", "18", "--vote", "beam", "--obstacles", address},
+                                  "--range", "4", "--step", "18", "--vote", "beam", "--obstacles", autopilot.address()},
                                  {.err_path = here.path("notes")});
   const std::uint16_t port = listening_port(here);
-  std::array<std::uint8_t, 300> frame = {};
-  const auto is_told = [&] { return ::recv(autopilot, frame.data(), frame.size(), 0) > 0; };
   {
     const Vehicle vehicle(port);
-    EXPECT_TRUE(wait_until(is_told));
+    EXPECT_TRUE(wait_until([&] { return autopilot.is_told(); }));
   }
-  EXPECT_TRUE(wait_until([&] {
-    while (is_told()) continue;
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    return !is_told();
-  }));
+  EXPECT_TRUE(autopilot.is_told_no_more());
   EXPECT_TRUE(wait_until([&] { return here.read("notes").find("no pose for 5 s") != std::string::npos; }));
   ::kill(child, SIGTERM);
   EXPECT_EQ(status_of(child), 0) << here.read("notes");
-  ::close(autopilot);
 }
 
 // Kills sectors that are said to be free by a sonar that is off.
 TEST(Live, TellsNoObstaclesWhenTheHeadFellSilent) {
   const Workplace here;
-  std::string address;
-  const int autopilot = bound_socket(address);
-  ASSERT_GE(autopilot, 0);
-  std::array<std::uint8_t, 300> frame = {};
-  const auto is_told = [&] { return ::recv(autopilot, frame.data(), frame.size(), 0) > 0; };
+  const Autopilot autopilot;
   pid_t child = -1;
   {
     const Head head({}, "100");
-    child =
-        here.start({"live", head.address(), "-o", "live.bt", "--range", "4", "--step", "18", "--obstacles", address});
-    EXPECT_TRUE(wait_until(is_told));
+    child = here.start(
+        {"live", head.address(), "-o", "live.bt", "--range", "4", "--step", "18", "--obstacles", autopilot.address()});
+    EXPECT_TRUE(wait_until([&] { return autopilot.is_told(); }));
   }
-  EXPECT_TRUE(wait_until([&] {
-    while (is_told()) continue;
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    return !is_told();
-  }));
+  EXPECT_TRUE(autopilot.is_told_no_more());
   ::kill(child, SIGTERM);
   EXPECT_EQ(status_of(child), 0);
-  ::close(autopilot);
 }
 
 TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
@@ -291,13 +294,11 @@ TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
 // Recordings that a failed call left behind were in the way of the next one.
 TEST(Live, LeavesNoRecordingsOfARunThatDidNotBegin) {
   const Workplace here;
-  std::string address;
-  const int other = bound_socket(address);
-  ASSERT_GE(other, 0);
-  const std::string taken = "mavlink:" + address;
   const std::string head = "ping360:udp://127.0.0.1:1";
-  expect_error(here.call(live(head, {"--nav", taken})), 1, {taken.substr(8), "in use"});
-  ::close(other);
+  {
+    const Autopilot other;
+    expect_error(here.call(live(head, {"--nav", "mavlink:" + other.address()})), 1, {other.address(), "in use"});
+  }
   EXPECT_THAT(here.files(), ElementsAre());
 
   here.write("dive.tlog", "of an earlier dive");

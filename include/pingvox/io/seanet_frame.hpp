@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 #include <vector>
 
@@ -55,11 +56,11 @@ struct SeanetLine {
 };
 
 /// The error is why there is none: another message, part of a line, a profiling head's. REQUIRES a valid frame.
-tl::expected<SeanetLine, std::string> seanet_line(std::span<const std::uint8_t> frame);
+tl::expected<SeanetLine, std::string_view> seanet_line(std::span<const std::uint8_t> frame);
 
 /// Parses the device block of mtHeadData, from its device type on, which V4LOG files hold too. The error is why it is
 /// no line: too short, or of a profiling head.
-tl::expected<SeanetLine, std::string> seanet_line_in(std::span<const std::uint8_t> device_block);
+tl::expected<SeanetLine, std::string_view> seanet_line_in(std::span<const std::uint8_t> device_block);
 
 /// Converts to a beam in the sensor frame, assuming kAssumedSoundSpeed_m_s; the error is the reason why it is invalid.
 /// Samples of 4 bits are scaled to 0..255.
