@@ -91,7 +91,7 @@ Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command
   if (!source) return tl::unexpected(source.error());
   if (command.background_m) {
     Result<Background> background =
-        learn_background(command.input, *command.background_m, command.damage, command.bag.beams);
+        learn_background({&command.input, 1}, *command.background_m, command.damage, command.bag.beams);
     if (!background) return tl::unexpected(background.error());
     *source = subtract_background(std::move(*source), *std::move(background));
   }

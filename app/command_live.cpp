@@ -122,7 +122,11 @@ class LiveRun {
     return until_s && nav_->now_s() - *until_s <= kOldest_s ? nav_->poses().at(*until_s) : std::nullopt;
   }
 
-  std::size_t not_mapped() const { return unmapped_ + mapper_.report().skipped; }
+  /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep.
+  std::size_t not_mapped() const {
+    const BuildReport& report = mapper_.report();
+    return unmapped_ + without_pose_ + report.skipped - report.no_pose.count;
+  }
 
   /// The oldest beams are dropped when too many wait: the record has them.
   void queue_arrived(double now_s) {
@@ -144,6 +148,7 @@ class LiveRun {
       return;
     }
     const std::optional<Pose> pose = nav_ ? nav_->poses().at(beam.time_s) : Pose::Identity();
+    if (!pose) ++without_pose_;
     if (const auto added = mapper_.add(std::move(beam), pose); !added) {
       cannot_map_ = true;
       note(added.error());
@@ -320,7 +325,7 @@ class LiveRun {
     JsonObject json;
     json.add("attitude", navigation.poses().attitude())
         .add("position", navigation.poses().position())
-        .add("without_pose", mapper_.report().no_pose.count)
+        .add("without_pose", without_pose_)
         .add("devices", devices);
     return json;
   }
@@ -335,7 +340,7 @@ class LiveRun {
                                         counted(status.connections, "connection")));
     if (nav_) {
       text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->messages(),
-                                             nav_->damaged(), report.no_pose.count));
+                                             nav_->damaged(), without_pose_));
     }
     return has_mapped() ? text + map_text(map_, map_.counts()) : text;
   }
@@ -351,7 +356,8 @@ class LiveRun {
   ProgressBar bar_;
   std::vector<Beam> arrived_;
   std::deque<Waiting> waiting_;
-  std::size_t beams_ = 0, unmapped_ = 0;
+  std::size_t beams_ = 0, without_pose_ = 0;
+  std::size_t unmapped_ = 0;  ///< dropped under load, or after an error of the map
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_reported_ = false;

@@ -247,10 +247,7 @@ class LogMapper {
     if (!log) return tl::unexpected(log.error());
     add_kinds(*log, *format);
     if (const auto used = check_options_used(); !used) return used;
-    if (const auto done = subtract_background(*log, file, command_.background_m, command_.damage, command_.bag.beams);
-        !done) {
-      return done;
-    }
+    if (const auto done = subtract_background_from(*log); !done) return done;
     totals_.report.seconds.read += read.seconds();
 
     WatchedBeams* const watched = watch_turns(*log);
@@ -299,6 +296,20 @@ class LogMapper {
     return check_limited(command_.limited, kinds_).map_error([](const Error& error) {
       return Error{error.code, fmt::format("map: {}", error.message)};
     });
+  }
+
+  /// The background is learned from all logs, as each of them may be short.
+  Result<void> subtract_background_from(Log& log) {
+    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+    if (beams == nullptr || !command_.background_m) return {};
+    if (!background_) {
+      Result<Background> background =
+          learn_background(command_.logs, *command_.background_m, command_.damage, command_.bag.beams);
+      if (!background) return tl::unexpected(background.error());
+      background_ = *std::move(background);
+    }
+    *beams = subtract_background(std::move(*beams), *background_);
+    return {};
   }
 
   void draw(std::optional<double> share, std::size_t beams) {
@@ -350,6 +361,7 @@ class LogMapper {
   Totals& totals_;
   Console& console_;
   ProgressBar bar_;
+  std::optional<Background> background_;  ///< of all logs, once one has beams
   Stopwatch total_;
   std::size_t opened_ = 0;
   std::vector<std::string> kinds_;    ///< of the logs

@@ -201,15 +201,10 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
   of_head.build = panel.head.apply_to(panel.build, (*source)->device());
   if (panel.background_m) {
     Result<Background> background =
-        learn_background(panel.input, *panel.background_m, command.damage, command.bag.beams);
+        learn_background({&panel.input, 1}, *panel.background_m, command.damage, command.bag.beams);
     if (!background) return tl::unexpected(background.error());
     if (panel.image == ShownImage::kBackground) {
-      std::vector<Beam> beams = background->beams();
-      if (beams.empty()) {
-        return fail(Error::Code::kUnsupported,
-                    fmt::format("{}: --show background: needs {} beams of one direction", name, Background::kMinBeams));
-      }
-      *source = std::make_unique<BeamsInMemory>(std::move(beams));
+      *source = std::make_unique<BeamsInMemory>(background->beams());
       of_head.marks = EchoMarks::kOff;
     } else {
       *source = subtract_background(std::move(*source), *std::move(background));
@@ -248,9 +243,11 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const
   const std::string name = file.name;
   Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
-  if (const auto done = subtract_background(*log, panel.input, panel.background_m, command.damage, command.bag.beams);
-      !done) {
-    return tl::unexpected(done.error());
+  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log); beams != nullptr && panel.background_m) {
+    Result<Background> background =
+        learn_background({&panel.input, 1}, *panel.background_m, command.damage, command.bag.beams);
+    if (!background) return tl::unexpected(background.error());
+    *beams = subtract_background(std::move(*beams), *std::move(background));
   }
   BuildOptions build = panel.build;
   if (panel.nav_salinity) {

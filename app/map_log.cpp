@@ -98,9 +98,10 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::s
   // A damaged trajectory may look like points as text.
   const std::optional<Format> format = format_of(file->view());
   if (!format || *format == Format::kTum || *format == Format::kXyz) return trajectory;
-  return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a trajectory{}", file->name, description_of(*format),
-                          kind_of(*format) == FormatKind::kNav ? fmt::format(": {}", nav_advice) : ""));
+  return fail(
+      Error::Code::kUnsupported,
+      fmt::format("{}: is {}, not a trajectory{}", file->name, description_of(*format),
+                  kind_of(*format) == FormatKind::kNav || is_bag(*format) ? fmt::format(": {}", nav_advice) : ""));
 }
 
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, const BagArgs& bag, Damage damage) {

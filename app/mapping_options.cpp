@@ -270,8 +270,7 @@ OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
               echo.cfar.noise),
        {"--background", 0, "M",
         "subtract echoes up to M that are the same in all sweeps: those of the vehicle itself, and all others if it "
-        "stands "
-        "still; reads the log twice",
+        "stands still; reads the logs twice",
         "off",
         within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, store_optional(args.background_m))}}};
   for (Option& option : group.options) {

@@ -241,10 +241,14 @@ std::string dates_text(const NavLog& log) {
 std::string nav_text(const NavFile& nav) {
   std::string text = report_line("records", fmt::format("{}", nav.records)) +
                      report_line("clock", std::string(name_of(nav.log.clock())) + dates_text(nav.log));
+  const bool is_empty = nav.log.sources().empty();
+  if (is_empty) text += report_line("samples", "none: no record is of a kind that is read");
   std::size_t widest = 6;
   for (const NavSource& source : nav.log.sources()) widest = std::max(widest, on_one_line(source.name).size());
-  text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8} {:>5} {:>17} {:>17}\n", "source", widest, "quantity",
-                      "samples", "invalid", "rate Hz", "gaps", "from s", "to s");
+  if (!is_empty) {
+    text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8} {:>5} {:>17} {:>17}\n", "source", widest, "quantity",
+                        "samples", "invalid", "rate Hz", "gaps", "from s", "to s");
+  }
   for (const NavSource& source : nav.log.sources()) {
     const NavSummary summary = summary_of(source);
     text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8.2f} {:>5} {:>17.3f} {:>17.3f}\n", on_one_line(source.name),

@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
 #include <utility>
+#include <variant>
 
+#include "console.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "option_values.hpp"
@@ -18,6 +23,44 @@ namespace {
 tl::unexpected<Error> unknown_file(const std::string& name, std::span<const std::uint8_t> bytes) {
   return fail(Error::Code::kUnsupported, fmt::format("{}: {}", name, describe_unknown_file(bytes)));
 }
+
+/// The beams of several logs, one after another; those of points have none.
+class BeamsOfLogs final : public BeamSource {
+ public:
+  BeamsOfLogs(std::span<const std::string> paths, Damage damage, const BeamTopic& topic)
+      : paths_(paths), damage_(damage), topic_(topic) {}
+
+  Result<std::optional<Beam>> next() override {
+    for (;;) {
+      if (source_ != nullptr) {
+        Result<std::optional<Beam>> beam = source_->next();
+        if (!beam || *beam) return beam;
+      }
+      if (paths_.empty()) return std::nullopt;
+      Result<std::unique_ptr<BeamSource>> source = open(paths_.front());
+      if (!source) return tl::unexpected(source.error());
+      source_ = *std::move(source);
+      paths_ = paths_.subspan(1);
+    }
+  }
+
+ private:
+  /// nullptr: holds no beams.
+  Result<std::unique_ptr<BeamSource>> open(const std::string& path) const {
+    Result<ByteStream> stream = ByteStream::open(path);
+    if (!stream) return tl::unexpected(stream.error());
+    if (stream->beginning().empty()) return nullptr;
+    return open_log(*std::move(stream), damage_, std::nullopt, topic_).map([](Log log) {
+      auto* const beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+      return beams == nullptr ? nullptr : std::move(*beams);
+    });
+  }
+
+  std::span<const std::string> paths_;
+  Damage damage_;
+  const BeamTopic& topic_;
+  std::unique_ptr<BeamSource> source_;
+};
 
 }  // namespace
 
@@ -105,21 +148,17 @@ Result<std::unique_ptr<BeamSource>> only_beams(Log log, const std::string& name)
   return fail(Error::Code::kUnsupported, fmt::format("{}: holds scans of points, not beams of a sonar", name));
 }
 
-Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic) {
-  if (path == "-") return usage_error("--background: reads the log twice, and standard input can be read only once");
-  return ByteStream::open(path)
-      .and_then([&](ByteStream stream) { return open_beams(std::move(stream), damage, topic); })
-      .and_then([&](std::unique_ptr<BeamSource> source) { return Background::learn(*source, {.range_m = range_m}); });
-}
-
-Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage,
-                                 const BeamTopic& topic) {
-  auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
-  if (beams == nullptr || !range_m) return {};
-  Result<Background> background = learn_background(path, *range_m, damage, topic);
-  if (!background) return tl::unexpected(background.error());
-  *beams = subtract_background(std::move(*beams), *std::move(background));
-  return {};
+Result<Background> learn_background(std::span<const std::string> paths, double range_m, Damage damage,
+                                    const BeamTopic& topic) {
+  if (std::ranges::find(paths, "-") != paths.end()) {
+    return usage_error("--background: reads the log twice, and standard input can be read only once");
+  }
+  BeamsOfLogs beams(paths, damage, topic);
+  Result<Background> background = Background::learn(beams, {.range_m = range_m});
+  if (!background || !background->empty()) return background;
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: --background: needs {} beams of one direction",
+                          paths.size() == 1 ? name_of_input(paths.front()) : "the logs", Background::kMinBeams));
 }
 
 }  // namespace pingvox::app

@@ -43,12 +43,9 @@ Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<co
 /// Whether it has messages that are read as `use`.
 bool has(const BagContents& bag, BagTopicSummary::Use use);
 
-/// What each direction of the log at a path always hears nearer than `range_m`.
-/// @return kBadOption for standard input, which cannot be read once more
-Result<Background> learn_background(const std::string& path, double range_m, Damage damage, const BeamTopic& topic);
-
-/// Subtracts it from the beams of a log; nullopt or a log of points: nothing is done.
-Result<void> subtract_background(Log& log, const std::string& path, std::optional<double> range_m, Damage damage,
-                                 const BeamTopic& topic);
+/// What each direction of a dive's logs always hears nearer than `range_m`. Logs of points are passed over.
+/// @return kBadOption for standard input, which cannot be read once more; kUnsupported when there are too few beams
+Result<Background> learn_background(std::span<const std::string> paths, double range_m, Damage damage,
+                                    const BeamTopic& topic);
 
 }  // namespace pingvox::app

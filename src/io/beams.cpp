@@ -19,9 +19,9 @@ namespace pingvox {
 namespace {
 
 tl::unexpected<Error> wrong_format(const std::string& name, std::string_view wanted, std::optional<Format> format) {
-  return fail(Error::Code::kUnsupported,
-              format ? fmt::format("{}: not {} (it is {})", name, wanted, description_of(*format))
-                     : fmt::format("{}: not {} that we know", name, wanted));
+  return fail(Error::Code::kUnsupported, format
+                                             ? fmt::format("{}: is {}, not {}", name, description_of(*format), wanted)
+                                             : fmt::format("{}: not {} that we know", name, wanted));
 }
 
 Result<std::unique_ptr<BeamSource>> open_bag_beams(ByteStream stream, Damage damage, const BeamTopic& topic) {

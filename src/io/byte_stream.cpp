@@ -70,18 +70,29 @@ ByteStream::~ByteStream() = default;
 
 namespace {
 
-/// The bag in a folder of ROS 2.
+/// The bag in a folder of ROS 2. Without metadata.yaml it must be the only file: a folder of logs is no bag.
 Result<std::string> bag_in(const std::string& folder) {
   std::vector<std::string> bags;
+  bool has_metadata = false, has_others = false;
   std::error_code error;
   // Not by a range: its increment throws.
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::filesystem::path& path = entry->path();
-    if (path.extension() == ".db3" || path.extension() == ".mcap") bags.push_back(path.string());
+    const std::string file = path.filename().string(), suffix = path.extension().string();
+    if (suffix == ".db3" || suffix == ".mcap") {
+      bags.push_back(path.string());
+    } else if (file == "metadata.yaml") {
+      has_metadata = true;
+    } else if (!file.starts_with('.') && !suffix.starts_with(".db3-")) {  // of SQLite beside its file
+      has_others = true;
+    }
   }
   if (error) return os_error(folder, error.value());
   if (bags.empty()) {
-    return fail(Error::Code::kIo, fmt::format("{}: is a folder without a ROS bag: name the files in it", folder));
+    return fail(Error::Code::kIo, fmt::format("{}: is a folder without a bag of ROS 2: name the files in it", folder));
+  }
+  if (bags.size() == 1 && has_others && !has_metadata) {
+    return fail(Error::Code::kIo, fmt::format("{}: is a folder of a bag and other files: name them", folder));
   }
   if (bags.size() == 1) return bags.front();
   return fail(Error::Code::kIo, fmt::format("{}: is a folder of {} bags: name them one by one", folder, bags.size()));

@@ -1,6 +1,7 @@
 #include "pingvox/io/record_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,6 +19,9 @@ double recorded_time_s(std::uint64_t time_ms) {
 
 Result<RecordFile> RecordFile::create(const std::string& path) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
+  if (!file.valid() && errno == EEXIST) {
+    return fail(Error::Code::kIo, fmt::format("{}: exists, and a recording is never overwritten", path));
+  }
   if (!file.valid()) return os_error(path, errno);
   return RecordFile(path, std::move(file));
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -29,16 +31,42 @@ std::size_t cell_of(const Beam& beam, std::size_t bin) {
   return static_cast<std::size_t>((static_cast<double>(bin) + 0.5) * beam.bin_length_m / Background::kCell_m);
 }
 
-std::size_t beams_in(const Histogram& counts) {
-  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-}
-
-std::uint8_t median_of(const Histogram& counts) {
-  const std::size_t total = beams_in(counts);
-  if (total < Background::kMinBeams) return 0;
+/// Median intensity of the beams of a cell; nullopt: too few.
+std::optional<std::uint8_t> median_of(const Histogram& counts) {
+  const std::size_t total = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+  if (total < Background::kMinBeams) return std::nullopt;
   std::size_t below = 0, step = 0;
   while (2 * (below + counts[step]) < total) below += counts[step++];
   return static_cast<std::uint8_t>(step * kStep);
+}
+
+using Medians = std::vector<std::optional<std::uint8_t>>;
+
+/// What nine of ten directions hear at least at a range: ringing and reverberation. 0 where few directions were heard,
+/// as all of them might point at the same thing.
+/// @param medians  of all directions, `cells` of each
+std::uint8_t common_level(const Medians& medians, std::size_t cells, std::size_t cell) {
+  constexpr std::size_t kMinDirections = 32;
+  std::vector<std::uint8_t> heard;
+  for (std::size_t i = cell; i < medians.size(); i += cells) {
+    if (medians[i]) heard.push_back(*medians[i]);
+  }
+  if (heard.size() < kMinDirections) return 0;
+  const auto low = heard.begin() + static_cast<std::ptrdiff_t>(heard.size() / 10);
+  std::ranges::nth_element(heard, low);
+  return *low;
+}
+
+/// The intensity at the far end of what was heard of a direction.
+std::uint8_t level_at_end(std::span<const std::optional<std::uint8_t>> direction) {
+  constexpr std::size_t kCells = 5;
+  std::uint8_t level = 0;
+  std::size_t end = direction.size();
+  while (end > 0 && !direction[end - 1]) --end;
+  for (std::size_t cell = end - std::min(end, kCells); cell < end; ++cell) {
+    level = std::max(level, direction[cell].value_or(0));
+  }
+  return level;
 }
 
 class BackgroundSubtractor final : public BeamSourceDecorator {
@@ -86,20 +114,32 @@ Result<Background> Background::learn(BeamSource& source, const BackgroundOptions
       count = static_cast<std::uint16_t>(std::min(count + 1, 0xffff));
     }
   }
-  std::vector<std::uint8_t> medians(histograms.size());
+  Medians medians(histograms.size());
   std::ranges::transform(histograms, medians.begin(), median_of);
-  std::vector<bool> heard(histograms.size());
-  for (std::size_t i = 0; i < heard.size(); ++i) heard[i] = beams_in(histograms[i]) >= kMinBeams;
-  return Background(cells, std::move(medians), std::move(heard));
+  std::vector<std::uint8_t> common(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) common[cell] = common_level(medians, cells, cell);
+  for (auto direction = medians.begin(); direction != medians.end(); direction += static_cast<std::ptrdiff_t>(cells)) {
+    // Without a step at the end, which would be the rise of an echo.
+    const std::uint8_t end = level_at_end({direction, cells});
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      std::optional<std::uint8_t>& intensity = direction[static_cast<std::ptrdiff_t>(cell)];
+      if (intensity) *intensity -= std::min(*intensity, std::max(end, common[cell]));
+    }
+  }
+  return Background(cells, std::move(medians));
 }
 
 void Background::subtract_from(Beam& beam) const {
-  const std::uint8_t* const row = intensities_.data() + direction_of(beam.bearing_rad, kDirections) * cells_;
+  const auto* const direction = intensities_.data() + direction_of(beam.bearing_rad, kDirections) * cells_;
   for (std::size_t bin = 0; bin < beam.intensities.size(); ++bin) {
     const std::size_t cell = cell_of(beam, bin);
     if (cell >= cells_) return;
-    beam.intensities[bin] -= std::min(beam.intensities[bin], row[cell]);
+    beam.intensities[bin] -= std::min(beam.intensities[bin], direction[cell].value_or(0));
   }
+}
+
+bool Background::empty() const {
+  return std::ranges::none_of(intensities_, [](const auto& intensity) { return intensity.has_value(); });
 }
 
 std::vector<Beam> Background::beams() const {
@@ -108,9 +148,10 @@ std::vector<Beam> Background::beams() const {
     std::vector<std::uint8_t> intensities;
     for (std::size_t cell = 0, next = 0; cell < cells_; ++cell) {
       // A bin longer than a cell was heard in the cell of its middle, and lies around it.
-      if (!heard_[n * cells_ + cell]) continue;
+      const std::optional<std::uint8_t>& intensity = intensities_[n * cells_ + cell];
+      if (!intensity) continue;
       if (next > 0) intensities.resize(next + (cell - next) / 2, intensities.back());
-      intensities.resize(cell + 1, intensities_[n * cells_ + cell]);
+      intensities.resize(cell + 1, *intensity);
       next = cell + 1;
     }
     if (intensities.empty()) continue;

@@ -142,10 +142,10 @@ TEST(FirstUse, ALongLogWithNearEchoesSaysHowToEnlargeThem) {
 }
 
 /// A wall at 4 m, and the vehicle's own frame at 1 m ahead of the head.
-std::string framed_csv() {
+std::string framed_csv(int turns = 6) {
   std::ostringstream csv;
   csv << "time_s,bearing_cw_deg,bin_length_m,intensities\n";
-  for (int i = 0; i < 240; ++i) {
+  for (int i = 0; i < 40 * turns; ++i) {
     csv << i << "," << (i % 40) * 9 << ",0.1";
     for (int bin = 0; bin < 100; ++bin) {
       const bool is_frame = i % 40 < 3 && bin >= 10 && bin < 12, is_wall = bin >= 40 && bin < 50;
@@ -182,6 +182,25 @@ TEST(FirstUse, TheVehicleIsTakenOutOfItsOwnPicture) {
   EXPECT_EQ(here.call({"render", "a.csv", "-o", "a.png", "--background", "2", "--show", "background"}).status, 0);
   expect_error(here.call({"render", "a.csv", "-o", "a.png", "--show", "background"}), 2, {"--background M"});
   expect_error(here.call({"map", "-", "-o", "c.bt", "--background", "2"}, {.in = framed_csv()}), 2, {"read only once"});
+}
+
+// Kills a background that has no effect on short logs, and does not say so.
+TEST(FirstUse, TheVehicleIsLearnedFromAllLogs) {
+  const Workplace here;
+  here.write("a.csv", framed_csv(3));
+  here.write("b.csv", framed_csv(3));
+  const std::vector<std::string> options = {"-o", "a.bt", "--beam", "ray", "--background", "2"};
+  const auto mapped = [&](std::vector<std::string> words) {
+    words.insert(words.end(), options.begin(), options.end());
+    return here.call(words);
+  };
+  expect_error(mapped({"map", "a.csv"}), 1, {"a.csv: --background: needs 5 beams of one direction"});
+  expect_error(here.call({"render", "a.csv", "-o", "a.png", "--background", "2"}), 1, {"needs 5 beams"});
+  expect_error(here.call({"convert", "a.csv", "-o", "b.csv", "--background", "2", "--echoes"}), 1, {"needs 5 beams"});
+  EXPECT_EQ(mapped({"map", "a.csv", "b.csv"}).status, 0);
+  EXPECT_EQ(here.call({"map", "a.csv", "b.csv", "-o", "with.bt", "--beam", "ray"}).status, 0);
+  EXPECT_NE(here.read("a.bt").substr(here.read("a.bt").find("data")),
+            here.read("with.bt").substr(here.read("with.bt").find("data")));
 }
 
 // Kills a salinity that is taken for a temperature, and a speed that goes the wrong way.

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -289,6 +290,25 @@ TEST(Live, LeavesBeamsOutWhoseVehicleSaysNothing) {
   EXPECT_THAT(outcome.out, HasSubstr(R"("messages": 0, "damaged": 0, "recording_failed": false)"));
   EXPECT_THAT(outcome.err, HasSubstr("live.bt: not written: no beam was mapped"));
   EXPECT_EQ(here.files(), (std::vector<std::string>{"dive-2.tlog", "dive.bin", "dive.tlog"}));
+}
+
+// Kills a status that counts them with the turn of the head only, when all of it is lost.
+TEST(Live, CountsBeamsWithoutAPoseAtOnce) {
+  const Head head({}, "50");
+  const Workplace here;
+  const Outcome outcome = here.call({"live", head.address(), "--nav", "mavlink:udp://127.0.0.1:0", "-o", "live.bt",
+                                     "--range", "4", "--step", "0.9", "--beams", "200", "--json"});
+  std::istringstream objects(outcome.out);
+  bool is_counted = false;
+  for (std::string object; std::getline(objects, object);) {
+    const bool is_last = object.find(R"("done": true)") != std::string::npos;
+    const bool counts = object.find(R"("without_pose": 0)") == std::string::npos &&
+                        object.find(R"("not_mapped": 0)") == std::string::npos;
+    is_counted = is_counted || (counts && !is_last);
+  }
+  EXPECT_TRUE(is_counted) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr(R"("without_pose": 200)")) << "each of them once";
+  EXPECT_THAT(outcome.out, HasSubstr(R"("not_mapped": 200)"));
 }
 
 // Recordings that a failed call left behind were in the way of the next one.

@@ -296,6 +296,9 @@ TEST(Nav, AConversionSaysWhatItLacks) {
   expect_error(here.call({"convert", "remote.txt", "-o", "z.csv"}), 1,
                {"remote.txt: has no samples of navigation in 1 record, 0 damaged"});
   EXPECT_FALSE(std::filesystem::exists(here.path("z.csv")));
+  const Outcome info = here.call({"info", "remote.txt"});
+  EXPECT_THAT(info.out, HasSubstr("samples     none: no record is of a kind that is read"));
+  EXPECT_THAT(info.out, Not(HasSubstr("rate Hz")));
   here.write("one.csv", "time_s,source,quantity,x,y,z\n0,DVL,velocity,0.1,0,0\n1,DVL,velocity,0.1,0\n");
   EXPECT_THAT(here.call({"convert", "one.csv", "-o", "z.csv"}).out, HasSubstr("; 1 damaged record skipped\n"));
 }

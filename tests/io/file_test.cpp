@@ -122,8 +122,18 @@ TEST_F(Files, ThatCannotBeReadSayWhy) {
     return file ? "" : file.error().message;
   };
   EXPECT_EQ(error_of(path("none")), path("none") + ": No such file or directory");
-  EXPECT_EQ(error_of(folder_.string()), folder_.string() + ": is a folder without a ROS bag: name the files in it");
+  EXPECT_EQ(error_of(folder_.string()),
+            folder_.string() + ": is a folder without a bag of ROS 2: name the files in it");
   EXPECT_EQ(error_of(""), ": No such file or directory");
+  // Kills a folder of logs of which one is mapped, and the others are not named.
+  put("dive.db3", "x");
+  EXPECT_TRUE(read_file(folder_.string()));
+  put("dive.db3-wal", "x");
+  EXPECT_TRUE(read_file(folder_.string())) << "SQLite's";
+  put("dive.bin", "x");
+  EXPECT_EQ(error_of(folder_.string()), folder_.string() + ": is a folder of a bag and other files: name them");
+  put("metadata.yaml", "x");
+  EXPECT_TRUE(read_file(folder_.string())) << "ROS 2's";
   put("secret", "x");
   fs::permissions(path("secret"), fs::perms::none);
   fs::permissions(folder_, fs::perms::all);

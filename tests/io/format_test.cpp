@@ -170,9 +170,9 @@ TEST(Open, SaysWhatAFileIsInstead) {
   const auto beams = open_beams({"tank.mat", bytes_of("# Octomap OcTree binary file\n")});
   ASSERT_FALSE(beams);
   EXPECT_EQ(beams.error().code, Error::Code::kUnsupported);
-  EXPECT_EQ(beams.error().message, "tank.mat: not a log of beams (it is a map (.bt))");
+  EXPECT_EQ(beams.error().message, "tank.mat: is a map (.bt), not a log of beams");
   EXPECT_EQ(open_scans({"a", bytes_of("1 0 0 0 0 0 0 1\n")}).error().message,
-            "a: not a log of scans (it is a trajectory (.tum))");
+            "a: is a trajectory (.tum), not a log of scans");
   EXPECT_EQ(open_beams({"a", bytes_of("GIF89a")}).error().message, "a: not a log of beams that we know");
   EXPECT_EQ(open_beams({"a", {}}).error().message, "a: is empty");
   EXPECT_EQ(open_scans({"a", {}}).error().message, "a: is empty");

@@ -44,5 +44,15 @@ TEST(RecordFile, GoesOnBehindTheLastWholeRecordAfterAFullDisk) {
   std::filesystem::remove(path);
 }
 
+TEST(RecordFile, IsNeverOverwritten) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("pingvox-recorded-" + std::to_string(::getpid()))).string();
+  ASSERT_TRUE(RecordFile::create(path));
+  const Result<RecordFile> again = RecordFile::create(path);
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().message, path + ": exists, and a recording is never overwritten");
+  std::filesystem::remove(path);
+}
+
 }  // namespace
 }  // namespace pingvox

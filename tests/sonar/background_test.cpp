@@ -10,6 +10,7 @@
 #include <span>
 
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/sonar/blanking.hpp"
 #include "support/tank_recording.hpp"
 
 namespace pingvox {
@@ -106,6 +107,52 @@ TEST(Background, DoesNotDependOnTheLengthOfBins) {
   EXPECT_GE(fine.intensities[static_cast<std::size_t>(0.70 / 0.00125)], 110);
 }
 
+/// Five turns of a head that rings, in water whose reverberation falls with the range and differs by direction, on a
+/// vehicle that answers between 10 and 30 degrees.
+std::vector<Beam> beams_in_reverberation() {
+  std::vector<Beam> beams;
+  for (int n = 0; n < 5 * 200; ++n) {
+    const double bearing_deg = std::fmod(1.8 * n, 360.0);
+    Beam beam{.time_s = 0.1 * n,
+              .bearing_rad = bearing_deg * kDegree_rad,
+              .bin_length_m = kBin_m,
+              .intensities = std::vector<std::uint8_t>(400)};
+    for (std::size_t bin = 0; bin < 400; ++bin) {
+      const double range_m = (static_cast<double>(bin) + 0.5) * kBin_m;
+      const double reverberation = (120.0 + 50.0 * std::sin(bearing_deg * kDegree_rad)) * std::exp(-0.5 * range_m);
+      const bool is_vehicle = bearing_deg > 10.0 && bearing_deg < 30.0 && range_m > 0.8 && range_m < 0.9;
+      beam.intensities[bin] = range_m < 0.4 ? 250 : is_vehicle ? 220 : static_cast<std::uint8_t>(reverberation);
+    }
+    beams.push_back(std::move(beam));
+  }
+  return beams;
+}
+
+// Kills a step at the end of the range: an echo in each beam, in front of the true ones.
+TEST(Background, EndsWithoutARise) {
+  const Background background = learned(beams_in_reverberation(), 1.5);
+  for (Beam beam : beams_in_reverberation()) {
+    background.subtract_from(beam);
+    const std::span<const std::uint8_t> bins(beam.intensities);
+    const auto lowest = *std::ranges::min_element(bins.subspan(40, 80));
+    const auto loudest_behind = *std::ranges::max_element(bins.subspan(120));
+    EXPECT_LE(loudest_behind, lowest + 8) << beam.bearing_rad / kDegree_rad;
+  }
+}
+
+// Kills ringing that is subtracted: what is left of it is no longer known as ringing, and mapped.
+TEST(Background, LeavesTheRingingToTheBlankingRange) {
+  const Background background = learned(beams_in_reverberation(), 1.5);
+  std::vector<Beam> turn = beams_in_reverberation();
+  turn.resize(200);
+  const Sweep before{.extent = Sweep::Extent::kTurn, .beams = turn};
+  for (Beam& beam : turn) background.subtract_from(beam);
+  const Sweep after{.extent = Sweep::Extent::kTurn, .beams = turn};
+  EXPECT_GE(blanking_range_m(PolarImage(before), before), 0.4);
+  EXPECT_GE(blanking_range_m(PolarImage(after), after), 0.4);
+  EXPECT_LE(after.beams[10].intensities[68], 130) << "the vehicle, at 18 degrees";
+}
+
 // Kills silent beams in directions, and beyond ranges, that were never heard: black stripes in pictures.
 TEST(Background, IsShownAsASweepOfWhatWasHeard) {
   const Background background = learned(beams_of_a_vehicle(12), 10.0);
@@ -127,11 +174,12 @@ TEST(Background, IsShownAsASweepOfWhatWasHeard) {
 
 // Kills black rings where bins are longer than the cells of the background.
 TEST(Background, LongBinsAreShownWithoutGaps) {
-  std::vector<Beam> beams(5, Beam{.bin_length_m = 0.06, .intensities = {40, 80, 120, 160}});
+  std::vector<Beam> beams(5, Beam{.bin_length_m = 0.06, .intensities = {40, 80, 120, 160, 0, 0}});
   for (std::size_t i = 0; i < beams.size(); ++i) beams[i].time_s = static_cast<double>(i);
   const std::vector<Beam> shown = learned(beams, 1.0).beams();
   ASSERT_EQ(shown.size(), 1U);
-  EXPECT_THAT(shown[0].intensities, testing::ElementsAre(40, 40, 40, 80, 80, 80, 120, 120, 120, 160, 160));
+  EXPECT_THAT(shown[0].intensities,
+              testing::ElementsAre(40, 40, 40, 80, 80, 80, 120, 120, 120, 160, 160, 160, 0, 0, 0, 0, 0));
 }
 
 TEST(Background, RefusesARangeThatIsNone) {

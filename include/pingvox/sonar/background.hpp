@@ -22,12 +22,17 @@ struct BackgroundOptions {
 };
 
 /// Echoes of the sonar's own vehicle, by direction and range: the median intensity of all beams of a log, in directions
-/// of one degree and cells of kCell_m. Directions with fewer than kMinBeams beams have none.
+/// of one degree and cells of kCell_m, above what nine of ten directions hear at that range (the ringing of the
+/// transducer, reverberation) and above what the direction hears at the end of the range. Cells with fewer than
+/// kMinBeams beams have none.
 class Background {
  public:
   /// Learns from the rest of a log.
   /// @return kBadOption when the options do not validate, else the error of the source
   static Result<Background> learn(BeamSource& source, const BackgroundOptions& options);
+
+  /// No direction was heard by kMinBeams beams: nothing is subtracted.
+  bool empty() const;
 
   /// Lowers the beam's intensities by the background, down to 0. Bins are taken by their middle.
   void subtract_from(Beam& beam) const;
@@ -41,12 +46,12 @@ class Background {
 
  private:
   static constexpr std::size_t kDirections = 360;
-  Background(std::size_t cells, std::vector<std::uint8_t> intensities, std::vector<bool> heard)
-      : cells_(cells), intensities_(std::move(intensities)), heard_(std::move(heard)) {}
+  Background(std::size_t cells, std::vector<std::optional<std::uint8_t>> intensities)
+      : cells_(cells), intensities_(std::move(intensities)) {}
 
-  std::size_t cells_;                      ///< of each direction
-  std::vector<std::uint8_t> intensities_;  ///< kDirections * cells_
-  std::vector<bool> heard_;                ///< of each: kMinBeams beams had the middle of a bin there
+  std::size_t cells_;  ///< of each direction
+  /// kDirections * cells_. nullopt: fewer than kMinBeams beams had the middle of a bin there.
+  std::vector<std::optional<std::uint8_t>> intensities_;
 };
 
 /// A source without the background of its beams.
