@@ -94,8 +94,13 @@ JsonObject json_of(const SlamSeconds& seconds) {
       .add("total", round_to_us(seconds.total));
 }
 
+/// Rounded, and 0 instead of -0.
+double hundredths(double value) {
+  return std::round(value * 100.0) / 100.0 + 0.0;
+}
+
 std::string degrees_text(const Estimate& estimate) {
-  return fmt::format("{:.2f} +- {:.2f}", to_degrees(estimate.value), to_degrees(estimate.deviation));
+  return fmt::format("{:.2f} +- {:.2f}", hundredths(to_degrees(estimate.value)), to_degrees(estimate.deviation));
 }
 
 std::string title_of(const SlamCommand& command) {
@@ -122,11 +127,6 @@ std::string velocity_text(const SlamReport& report) {
                                    : std::string();
   return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s{}; {}", on_one_line(report.velocity),
                      report.velocities, report.velocities_clipped, report.longest_gap_s, by_sonar, check);
-}
-
-/// Rounded, and 0 instead of -0.
-double hundredths(double value) {
-  return std::round(value * 100.0) / 100.0 + 0.0;
 }
 
 std::string sensors_text(const SlamSolution& solution) {

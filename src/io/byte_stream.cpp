@@ -92,7 +92,7 @@ Result<std::string> bag_in(const std::string& folder) {
     return fail(Error::Code::kIo, fmt::format("{}: is a folder without a bag of ROS 2: name the files in it", folder));
   }
   if (bags.size() == 1 && has_others && !has_metadata) {
-    return fail(Error::Code::kIo, fmt::format("{}: is a folder of a bag and other files: name them", folder));
+    return fail(Error::Code::kIo, fmt::format("{}: is a folder of a bag and other files: name those to read", folder));
   }
   if (bags.size() == 1) return bags.front();
   return fail(Error::Code::kIo, fmt::format("{}: is a folder of {} bags: name them one by one", folder, bags.size()));

@@ -131,7 +131,8 @@ TEST_F(Files, ThatCannotBeReadSayWhy) {
   put("dive.db3-wal", "x");
   EXPECT_TRUE(read_file(folder_.string())) << "SQLite's";
   put("dive.bin", "x");
-  EXPECT_EQ(error_of(folder_.string()), folder_.string() + ": is a folder of a bag and other files: name them");
+  EXPECT_EQ(error_of(folder_.string()),
+            folder_.string() + ": is a folder of a bag and other files: name those to read");
   put("metadata.yaml", "x");
   EXPECT_TRUE(read_file(folder_.string())) << "ROS 2's";
   put("secret", "x");
