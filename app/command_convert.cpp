@@ -87,14 +87,12 @@ Result<std::string> write_echoes(BeamSource& source, const ConvertCommand& comma
 
 /// Writes the beams of a log, or their echoes. @return what was written
 Result<std::string> convert_log(ByteStream stream, const ConvertCommand& command) {
-  Result<std::unique_ptr<BeamSource>> source = open_beams(std::move(stream), command.damage, command.bag.beams);
+  const BeamTopic& topic = command.bag.beams;
+  const Result<std::unique_ptr<BeamSource>> source =
+      open_beams(std::move(stream), command.damage, topic).and_then([&](std::unique_ptr<BeamSource> beams) {
+        return subtract_own_background(std::move(beams), command.input, command.background_m, command.damage, topic);
+      });
   if (!source) return tl::unexpected(source.error());
-  if (command.background_m) {
-    Result<Background> background =
-        learn_background({&command.input, 1}, *command.background_m, command.damage, command.bag.beams);
-    if (!background) return tl::unexpected(background.error());
-    *source = subtract_background(std::move(*source), *std::move(background));
-  }
   std::string what;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
     Result<std::string> done = command.echoes ? write_echoes(**source, command, out) : write_beams(**source, out);

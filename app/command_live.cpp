@@ -125,7 +125,7 @@ class LiveRun {
   /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep.
   std::size_t not_mapped() const {
     const BuildReport& report = mapper_.report();
-    return unmapped_ + without_pose_ + report.skipped - report.no_pose.count;
+    return dropped_ + without_pose_ + report.blocked.count + report.outside.count;
   }
 
   /// The oldest beams are dropped when too many wait: the record has them.
@@ -137,14 +137,14 @@ class LiveRun {
       waiting_.push_back({std::move(beam), now_s});
     }
     arrived_.clear();
-    for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++unmapped_;
+    for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++dropped_;
   }
 
   void map_one(const Stopwatch& watch) {
     auto [beam, arrived_s] = std::move(waiting_.front());
     waiting_.pop_front();
     if (cannot_map_) {
-      ++unmapped_;
+      ++dropped_;
       return;
     }
     const std::optional<Pose> pose = nav_ ? nav_->poses().at(beam.time_s) : Pose::Identity();
@@ -357,7 +357,7 @@ class LiveRun {
   std::vector<Beam> arrived_;
   std::deque<Waiting> waiting_;
   std::size_t beams_ = 0, without_pose_ = 0;
-  std::size_t unmapped_ = 0;  ///< dropped under load, or after an error of the map
+  std::size_t dropped_ = 0;  ///< dropped under load, or after an error of the map
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_reported_ = false;

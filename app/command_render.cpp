@@ -199,16 +199,16 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
   if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;
   of_head.build = panel.head.apply_to(panel.build, (*source)->device());
-  if (panel.background_m) {
-    Result<Background> background =
+  if (panel.background_m && panel.image == ShownImage::kBackground) {
+    const Result<Background> background =
         learn_background({&panel.input, 1}, *panel.background_m, command.damage, command.bag.beams);
     if (!background) return tl::unexpected(background.error());
-    if (panel.image == ShownImage::kBackground) {
-      *source = std::make_unique<BeamsInMemory>(background->beams());
-      of_head.marks = EchoMarks::kOff;
-    } else {
-      *source = subtract_background(std::move(*source), *std::move(background));
-    }
+    source = std::make_unique<BeamsInMemory>(background->beams());
+    of_head.marks = EchoMarks::kOff;
+  } else {
+    source =
+        subtract_own_background(*std::move(source), panel.input, panel.background_m, command.damage, command.bag.beams);
+    if (!source) return tl::unexpected(source.error());
   }
   Gatherer gatherer(of_head);
   SweepAssembler assembler;
@@ -243,11 +243,11 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const
   const std::string name = file.name;
   Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
-  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log); beams != nullptr && panel.background_m) {
-    Result<Background> background =
-        learn_background({&panel.input, 1}, *panel.background_m, command.damage, command.bag.beams);
-    if (!background) return tl::unexpected(background.error());
-    *beams = subtract_background(std::move(*beams), *std::move(background));
+  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) {
+    Result<std::unique_ptr<BeamSource>> source =
+        subtract_own_background(std::move(*beams), panel.input, panel.background_m, command.damage, command.bag.beams);
+    if (!source) return tl::unexpected(source.error());
+    *beams = *std::move(source);
   }
   BuildOptions build = panel.build;
   if (panel.nav_salinity) {

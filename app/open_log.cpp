@@ -161,4 +161,13 @@ Result<Background> learn_background(std::span<const std::string> paths, double r
                           paths.size() == 1 ? name_of_input(paths.front()) : "the logs", Background::kMinBeams));
 }
 
+Result<std::unique_ptr<BeamSource>> subtract_own_background(std::unique_ptr<BeamSource> beams, const std::string& path,
+                                                            std::optional<double> range_m, Damage damage,
+                                                            const BeamTopic& topic) {
+  if (!range_m) return beams;
+  return learn_background({&path, 1}, *range_m, damage, topic).map([&](Background background) {
+    return subtract_background(std::move(beams), std::move(background));
+  });
+}
+
 }  // namespace pingvox::app

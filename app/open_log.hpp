@@ -48,4 +48,10 @@ bool has(const BagContents& bag, BagTopicSummary::Use use);
 Result<Background> learn_background(std::span<const std::string> paths, double range_m, Damage damage,
                                     const BeamTopic& topic);
 
+/// The beams of the log at `path` less its own background nearer than `range_m`. nullopt: as they are.
+/// @return as for learn_background
+Result<std::unique_ptr<BeamSource>> subtract_own_background(std::unique_ptr<BeamSource> beams, const std::string& path,
+                                                            std::optional<double> range_m, Damage damage,
+                                                            const BeamTopic& topic);
+
 }  // namespace pingvox::app
