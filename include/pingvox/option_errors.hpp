@@ -15,6 +15,11 @@ class OptionErrors {
  public:
   void add(std::string_view text) { texts_ += texts_.empty() ? fmt::format(" {}", text) : fmt::format("; {}", text); }
 
+  /// What is wrong with options that are a part of these, if anything is.
+  void add(const Result<void>& part) {
+    if (!part) add(part.error().message);
+  }
+
   /// "NAME must be RULE, is VALUE", unless it holds.
   template <class Value>
   void require(bool holds, std::string_view name, std::string_view rule, const Value& value) {

@@ -92,7 +92,7 @@ std::vector<std::uint8_t> MicronEmulator::alive(double now_s) const {
                          kConfigured = 1U << 7U;
   const bool is_ready = command_ && now_s >= ready_s_;
   std::vector<std::uint8_t> payload = {static_cast<std::uint8_t>(is_ready ? 0 : kWants)};
-  put_u32(payload, static_cast<std::uint32_t>(now_s * 1000.0));
+  put_u32(payload, static_cast<std::uint32_t>(static_cast<std::uint64_t>(now_s * 1000.0)));
   put_u16(payload, static_cast<std::uint16_t>(bearing_));
   payload.push_back(
       static_cast<std::uint8_t>(kCentred | kMotorOn | (command_ ? kConfigured : 0) | (is_ready ? 0 : kNoParameters)));

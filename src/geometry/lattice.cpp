@@ -2,16 +2,20 @@
 
 #include <fmt/core.h>
 
+#include <string>
+
 namespace pingvox {
 
 Result<Lattice> Lattice::make(double resolution_m, int depth) {
   // The inverse must be finite too: with a subnormal resolution it is not, and every point would be outside.
+  std::string bad;
   if (!(resolution_m > 0.0) || !std::isfinite(resolution_m) || !std::isfinite(1.0 / resolution_m)) {
-    return fail(Error::Code::kBadOption, fmt::format("resolution must be a length > 0 m, is {}", resolution_m));
+    bad = fmt::format("resolution must be a length > 0 m, is {}", resolution_m);
   }
   if (depth < 1 || depth > kMaxDepth) {
-    return fail(Error::Code::kBadOption, fmt::format("depth must be in 1..{} levels, is {}", kMaxDepth, depth));
+    bad += fmt::format("{}depth must be in 1..{} levels, is {}", bad.empty() ? "" : "; ", kMaxDepth, depth);
   }
+  if (!bad.empty()) return fail(Error::Code::kBadOption, bad);
   if (!std::isfinite(std::ldexp(resolution_m, depth))) {
     return fail(Error::Code::kBadOption,
                 fmt::format("{} levels of cells of {} m are larger than any number", depth, resolution_m));

@@ -35,7 +35,8 @@ class BeamMapper::Stages {
   /// After an error, when the waiting beams are incomplete.
   void restart() {
     stream_ = empty_stream_;
-    mapper_.restart();
+    sweeps_ = 0;
+    mapper_.restart(report_);
     poses_.clear();
     beams_ = 0;
   }
@@ -46,7 +47,8 @@ class BeamMapper::Stages {
  private:
   /// Maps the beams whose echoes are final.
   Result<void> take(const std::vector<EchoStream::BeamWithEcho>& final_echoes) {
-    const detail::EchoBeams heard = detail::echo_beams(final_echoes, 0, stream_.complete_sweeps());
+    const std::size_t sweeps_before = std::exchange(sweeps_, stream_.complete_sweeps());
+    const detail::EchoBeams heard = detail::echo_beams(final_echoes, 0, sweeps_ - sweeps_before);
     watch_.lap(report_.seconds.detect);
     std::vector<std::optional<Pose>> map_from_body;
     map_from_body.reserve(heard.beams.size());
@@ -57,6 +59,7 @@ class BeamMapper::Stages {
   double sound_speed_ratio_;
   EchoStream empty_stream_;  ///< to restart without an allocation
   EchoStream stream_;
+  std::size_t sweeps_ = 0;  ///< complete ones of the stream, so far
   detail::EchoMapper mapper_;
   std::map<std::uint64_t, std::optional<Pose>> poses_;  ///< map_from_body of the beams that wait, by their numbers
   std::uint64_t beams_ = 0;                             ///< passed to the stream so far

@@ -21,9 +21,9 @@ double farthest_corner_m(const Lattice& lattice, const WideKey& key, const Eigen
 }  // namespace
 
 EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
-                     std::size_t complete_sweeps) {
+                     std::size_t ended_sweeps) {
   EchoBeams out;
-  out.complete_sweeps = complete_sweeps;
+  out.ended_sweeps = ended_sweeps;
   out.beams.reserve(heard.size());
   out.numbers.reserve(heard.size());
   for (const EchoStream::BeamWithEcho& one : heard) {
@@ -57,17 +57,16 @@ Result<void> EchoMapper::add(const EchoBeams& heard, std::span<const std::option
   Result<void> mapped =
       options_.vote == Vote::kPerSweep ? map_as_one_scan(*placed, report) : map_one_by_one(*placed, report);
   if (!mapped) return mapped;
-  if (heard.complete_sweeps > sweeps_) {
-    if (report.no_pose.count == no_pose_before_) report.sweeps += heard.complete_sweeps - sweeps_;
+  if (heard.ended_sweeps > 0) {
+    if (report.no_pose.count == no_pose_before_) report.sweeps += heard.ended_sweeps;
     no_pose_before_ = report.no_pose.count;
   }
-  sweeps_ = heard.complete_sweeps;
   report.skipped = report.no_pose.count + report.outside.count + report.blocked.count;
   return {};
 }
 
-void EchoMapper::restart() {
-  sweeps_ = 0;
+void EchoMapper::restart(const BuildReport& report) {
+  no_pose_before_ = report.no_pose.count;
   scan_.clear();
 }
 

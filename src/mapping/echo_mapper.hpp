@@ -28,12 +28,11 @@ struct EchoBeam {
 struct EchoBeams {
   std::vector<EchoBeam> beams;
   std::vector<std::uint64_t> numbers;  ///< of the beams, in the order in which they came
-  std::size_t complete_sweeps = 0;     ///< of the stream up to here
+  std::size_t ended_sweeps = 0;        ///< complete ones, since the beams before these
 };
 
 /// @param first  number of the stream's first beam
-EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
-                     std::size_t complete_sweeps);
+EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first, std::size_t ended_sweeps);
 
 /// The stream that finds the echoes of beams for a map.
 EchoStream echo_stream(const BuildOptions& options);
@@ -48,8 +47,9 @@ class EchoMapper {
   /// @return kLimit when the map or a beam would grow too large; the map keeps what it had got. Throws std::bad_alloc.
   Result<void> add(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body, BuildReport& report);
 
-  /// After an error, and when the stream of echoes begins anew.
-  void restart();
+  /// After an error: the next beam begins a sweep.
+  /// @param report  of the beams so far
+  void restart(const BuildReport& report);
 
  private:
   /// Beams that are to be mapped.
@@ -71,7 +71,6 @@ class EchoMapper {
   std::vector<BeamTracer> tracers_;  ///< one for each thread
   ScanUpdate scan_;
   ScanParts parts_;
-  std::size_t sweeps_ = 0;          ///< complete ones that were counted
   std::size_t no_pose_before_ = 0;  ///< beams left out before this sweep
   Stopwatch watch_;
 };

@@ -21,11 +21,13 @@ constexpr double kSector_rad = kTurn_rad / static_cast<double>(ObstacleSectors::
 template <class Visitor>
 void for_each_near_column(const Leaf& leaf, double cell_m, const Eigen::Vector2d& here, double reach_m, Visitor visit) {
   const Eigen::Vector2d corner_m = leaf.centre_m().head<2>().array() - 0.5 * leaf.edge_m();
-  const auto last = std::lround(leaf.edge_m() / cell_m) - 1;
+  // Leaves of deep maps have more cells than integers count.
+  const auto whole = [](double cells) { return std::lround(std::clamp(cells, -0x1p60, 0x1p60)); };
+  const auto last = whole(leaf.edge_m() / cell_m) - 1;
   const Eigen::Array2d inside = (here - corner_m).array();
   const bool is_within = (inside > 0.0).all() && (inside < leaf.edge_m()).all();
-  const auto first_near = [&](double from_m) { return std::clamp(std::lround((from_m - reach_m) / cell_m), 0L, last); };
-  const auto last_near = [&](double from_m) { return std::clamp(std::lround((from_m + reach_m) / cell_m), 0L, last); };
+  const auto first_near = [&](double from_m) { return std::clamp(whole((from_m - reach_m) / cell_m), 0L, last); };
+  const auto last_near = [&](double from_m) { return std::clamp(whole((from_m + reach_m) / cell_m), 0L, last); };
   for (long x = first_near(inside.x()); x <= last_near(inside.x()); ++x) {
     const bool is_side = is_within || x == 0 || x == last;
     for (long y = first_near(inside.y()); y <= last_near(inside.y()); ++y) {

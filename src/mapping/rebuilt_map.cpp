@@ -39,7 +39,7 @@ class MapBuild {
       for (const std::uint64_t number : heard.numbers) map_from_body_.push_back(poses[number].map_from_body);
       return mapper_.add(heard, map_from_body_, report_);
     });
-    if (!added) mapper_.restart();
+    if (!added) mapper_.restart(report_);
     return added;
   }
 
@@ -180,20 +180,19 @@ class RebuiltMap::State {
     if (done) return done;
     stream_ = empty_stream_;
     first_ = poses_.size();
-    sweeps_before_ = sweeps();
+    sweeps_ = 0;
     return done;
   }
 
   Result<void> take(const std::vector<EchoStream::BeamWithEcho>& final_echoes) {
-    detail::EchoBeams heard = detail::echo_beams(final_echoes, first_, sweeps_before_ + stream_.complete_sweeps());
-    if (heard.beams.empty() && heard.complete_sweeps == sweeps()) return {};
+    const std::size_t sweeps_before = std::exchange(sweeps_, stream_.complete_sweeps());
+    detail::EchoBeams heard = detail::echo_beams(final_echoes, first_, sweeps_ - sweeps_before);
+    if (heard.beams.empty() && heard.ended_sweeps == 0) return {};
     heard_.push_back(std::make_shared<const detail::EchoBeams>(std::move(heard)));
     Result<void> added = made_->add(*heard_.back(), poses_);
     if (!added) heard_.pop_back();  // or no rebuilt map would come about either
     return added;
   }
-
-  std::size_t sweeps() const { return heard_.empty() ? 0 : heard_.back()->complete_sweeps; }
 
   /// The rebuilt map gets the beams that came meanwhile and takes the place of the old one.
   Result<void> swap() {
@@ -221,9 +220,9 @@ class RebuiltMap::State {
   MapOptions map_;
   EchoStream empty_stream_;  ///< to restart without an allocation
   EchoStream stream_;
-  std::uint64_t first_ = 0;        ///< number of the stream's first beam
-  std::size_t sweeps_before_ = 0;  ///< complete ones before the stream's
-  std::vector<BeamPose> poses_;    ///< of all beams
+  std::uint64_t first_ = 0;      ///< number of the stream's first beam
+  std::size_t sweeps_ = 0;       ///< complete ones of the stream, so far
+  std::vector<BeamPose> poses_;  ///< of all beams
   std::vector<Heard> heard_;
   std::unique_ptr<MapBuild> made_;
   bool is_outdated_ = false;  ///< poses were corrected since the rebuild began

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <exception>
-#include <new>
 #include <thread>
 #include <vector>
 
@@ -22,14 +20,14 @@ class ScanParts {
   explicit ScanParts(std::size_t threads) : threads_(threads) {}
 
   /// Calls trace(part, first, last, scan) for each part of 0..count, parts numbered from 0 on; the calling thread takes
-  /// the first part, and those whose thread does not start. Throws std::bad_alloc: the scan then holds some marks.
+  /// the first part, and those whose thread does not start. Throws what `trace` throws: the scan then holds some marks.
   template <class Trace>
   void run(std::size_t count, ScanUpdate& scan, const Trace& trace) {
     const std::size_t parts = std::clamp<std::size_t>(count / kMinPerThread, 1, threads_);
     while (others_.size() + 1 < parts) others_.emplace_back(scan.lattice(), scan.miss());
     for (ScanUpdate& other : others_) other.clear();
     const auto begin_of = [&](std::size_t part) { return count * part / parts; };
-    std::atomic<bool> has_failed = false;
+    std::vector<std::exception_ptr> thrown(parts);
     {
       std::vector<std::jthread> threads;
       threads.reserve(parts);
@@ -37,7 +35,7 @@ class ScanParts {
         try {
           trace(part, begin_of(part), begin_of(part + 1), others_[part - 1]);
         } catch (const std::exception&) {
-          has_failed = true;
+          thrown[part] = std::current_exception();
         }
       };
       std::size_t started = 1;
@@ -49,7 +47,9 @@ class ScanParts {
       trace(std::size_t{0}, begin_of(0), begin_of(1), scan);
       for (std::size_t part = started; part < parts; ++part) trace_part(part);
     }
-    if (has_failed) throw std::bad_alloc();
+    for (const std::exception_ptr& one : thrown) {
+      if (one) std::rethrow_exception(one);
+    }
     for (std::size_t part = 1; part < parts; ++part) scan.add(others_[part - 1]);
   }
 

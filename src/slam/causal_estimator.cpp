@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <span>
 #include <utility>
 
@@ -92,16 +91,19 @@ Result<void> CausalEstimator::solve() {
   return sweeps_.empty() ? Result<void>() : solve_until(sweeps_.back().to_s);
 }
 
-std::vector<NavSource> CausalEstimator::sources_of_window(double nav_until_s) {
+MotionSources CausalEstimator::sources_of_window(double nav_until_s) {
   const double from_s = window_.times_s.empty() ? -kInfinity : window_.times_s.front();
-  std::vector<NavSource> sources = sources_within(sources_, from_s, nav_until_s, kBefore_s);
+  MotionSources sources{sources_within(sources_, from_s, nav_until_s, kBefore_s)};
   if (options_.motion == MotionSource::kVelocity) return sources;
-  std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });
-  const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
+  const Result<NavLog> log = NavLog::make(sources.measured, NavClock::kUnknown);
   if (!log) return sources;
   const std::vector<HeadingSource> headings = headings_of(*log, options_);
   odometry_.extend(sweeps_, sonar_mount(options_.body_from_sonar), headings.empty() ? nullptr : &headings.front());
-  if (odometry_.tells()) std::ranges::move(odometry_.sources(), std::back_inserter(sources));
+  if (odometry_.tells()) {
+    sources.by_sonar = odometry_.sources();
+  } else {
+    std::erase_if(sources.measured, [](const NavSource& s) { return s.quantity == NavQuantity::kVelocity; });
+  }
   return sources;
 }
 
@@ -120,14 +122,14 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
     if (!times_s) missing_ = times_s.error();
     return {};
   }
-  window_.steps.push_back(times_s->size() - std::max<std::size_t>(window_.times_s.size(), 1));
-  SlamProblem problem(*times_s, recording->navigation.velocity, recording->navigation.headings, options_.calibration);
+  SlamProblem problem(*std::move(times_s), recording->navigation.velocity, recording->navigation.headings,
+                      options_.calibration);
   const bool is_first = !solver_;
   const Unknowns start = is_first ? problem.dead_reckoning() : window_.continue_in(problem);
   Before before{window_.first_sweep, window_.prior_in(problem, start), &window_.held};
-  window_.times_s = *std::move(times_s);
   SlamSolver solver = solver_of(std::move(problem), *recording, options_, start, std::move(before));
-  add_poses(solver, *recording);
+  std::vector<StampedPose> poses = new_poses(solver, *recording);
+  SweepLoops found;
   if (options_.matching == Matching::kPairs) {
     bool determined = !is_first || solver.step(std::nullopt);
     std::optional<SweepLoops> loops;
@@ -135,18 +137,18 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
     determined = determined && loops;
     const double widest_m = kGateOfReach * solver.reach_m();
     for (const double gate_m : kSweepGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
-    if (!determined) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
-    loops_.found += loops->found;
-    loops_.kept += loops->kept;
+    if (!determined) return not_determined();
+    found = *loops;
   }
-  if (!poses_.empty() && !window_.prior && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
-    frame_ = frame_ * align(solver.unknowns().knots, start.knots);
-  window_.echoes = solver.echoes();
-  window_.largest.knots = std::max(window_.largest.knots, solver.problem().knots());
-  window_.largest.echoes = std::max(window_.largest.echoes, solver.echoes() + solver.held_echoes());
-  window_.largest.pairs = std::max(window_.largest.pairs, solver.pairs().pairs.size());
+  const bool settles = !window_.prior;
   const auto left = window_.keep(solver, sweeps_, options_.causal_sweeps);
-  if (!left) return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
+  if (!left) return not_determined();
+  // Nothing of a solution that fails is kept: the next one begins where the last one ended.
+  poses_.insert(poses_.end(), poses.begin(), poses.end());
+  loops_.found += found.found;
+  loops_.kept += found.kept;
+  if (settles && !poses_.empty() && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
+    frame_ = frame_ * align(solver.unknowns().knots, start.knots);
   sweeps_.erase(sweeps_.begin(), sweeps_.begin() + static_cast<std::ptrdiff_t>(*left));
   solver_.emplace(std::move(solver));
   forget();
@@ -164,13 +166,18 @@ void CausalEstimator::fill_gaps(Navigation& navigation) {
   }
 }
 
-void CausalEstimator::add_poses(const SlamSolver& solver, const Recording& recording) {
+std::vector<StampedPose> CausalEstimator::new_poses(const SlamSolver& solver, const Recording& recording) const {
   const double after_s = poses_.empty() ? -kInfinity : poses_.back().time_s;
   const auto first = std::ranges::upper_bound(recording.beam_times_s, after_s);
-  for (const StampedPose& pose : poses_at({first, recording.beam_times_s.end()}, solver.problem(), solver.unknowns(),
-                                          recording.navigation.depth, options_)) {
-    poses_.push_back({pose.time_s, in_frame(pose.map_from_body)});
-  }
+  std::vector<StampedPose> poses = poses_at({first, recording.beam_times_s.end()}, solver.problem(), solver.unknowns(),
+                                            recording.navigation.depth, options_);
+  for (StampedPose& pose : poses) pose.map_from_body = in_frame(pose.map_from_body);
+  return poses;
+}
+
+Result<void> CausalEstimator::not_determined() {
+  missing_ = {Error::Code::kUnsupported, "the recording does not determine the trajectory"};
+  return tl::unexpected(missing_);
 }
 
 bool CausalEstimator::tells_enough() const {
@@ -195,11 +202,8 @@ std::optional<StampedPose> CausalEstimator::pose() const {
   if (!solver_ || poses_.empty()) return std::nullopt;
   if (odometry_.tells() && !(odometry_.tells_now() && tells_enough())) return std::nullopt;
   const double from_s = window_.times_s.back();
-  std::vector<NavSource> sources = sources_within(sources_, from_s, kInfinity, 0.0);
-  if (odometry_.tells()) {
-    std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });
-    std::ranges::move(odometry_.sources(), std::back_inserter(sources));
-  }
+  MotionSources sources{sources_within(sources_, from_s, kInfinity, 0.0)};
+  if (odometry_.tells()) sources.by_sonar = odometry_.sources();
   Result<Navigation> navigation = navigation_of(std::move(sources), options_);
   if (!navigation) return std::nullopt;
   // The window's last error of the heading is that of its main one.
@@ -235,7 +239,7 @@ Result<SlamSolution> CausalEstimator::finish() {
     if (const auto solved = solve_until(kInfinity); !solved) return tl::unexpected(solved.error());
   }
   if (!solver_) {
-    Error missing = *std::move(missing_);
+    Error missing = missing_;
     if (options_.motion == MotionSource::kSonar)
       missing.message += ", and the sonar does not tell how the vehicle moved";
     return tl::unexpected(std::move(missing));

@@ -34,7 +34,8 @@ class CausalEstimator {
   Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample);
 
   /// Solves with the sweeps until now, and navigation until the end of the last one. What is missing may come later.
-  /// @return kUnsupported when the recording does not determine the poses; kCorrupt when times jump
+  /// @return kUnsupported when the recording does not determine the poses, which are as before then: these sweeps are
+  ///         solved with the next ones; kCorrupt when times jump
   Result<void> solve();
   /// @see CausalSlam::pose
   std::optional<StampedPose> pose() const;
@@ -45,10 +46,12 @@ class CausalEstimator {
   Result<void> solve_until(double nav_until_s);
   /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
   /// moved.
-  std::vector<NavSource> sources_of_window(double nav_until_s);
+  MotionSources sources_of_window(double nav_until_s);
   /// Puts what the sonar tells where the velocity is missing, once there is a trajectory until its end as well.
   void fill_gaps(Navigation& navigation);
-  void add_poses(const SlamSolver& solver, const Recording& recording);
+  /// Of the beams since the last solution, by what a new one begins with.
+  std::vector<StampedPose> new_poses(const SlamSolver& solver, const Recording& recording) const;
+  Result<void> not_determined();
   void forget();
   /// Whether enough of all sweeps match, where the vehicle moves by its sonar.
   bool tells_enough() const;
@@ -66,7 +69,7 @@ class CausalEstimator {
   CausalWindow window_;
   SweepLoops loops_;                                     ///< that moved the poses, of all solutions
   std::optional<SlamSolver> solver_;                     ///< of the last solution
-  std::optional<Error> missing_;                         ///< why there is no later one
+  Error missing_{};                                      ///< why there is no later one
   double filled_s_ = 0.0, filled_until_s_ = -kInfinity;  ///< where the velocity was missing and the sonar told it
   std::vector<StampedPose> poses_;
   /// Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of

@@ -10,19 +10,29 @@ namespace pingvox {
 std::optional<std::size_t> CausalWindow::keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps,
                                               std::size_t longest) {
   const SlamProblem& problem = solver.problem();
+  std::deque<std::size_t> all_steps = steps;
+  all_steps.push_back(problem.knots() - std::max<std::size_t>(times_s.size(), 1));
+  std::size_t leaving = 0;
+  while (all_steps.size() * kSweepsOfStep > longest) {
+    leaving += all_steps.front();
+    all_steps.pop_front();
+  }
+  const auto next_prior = leaving > 0 ? solver.prior_at(leaving) : solver.before().prior;
+  if (leaving > 0 && !next_prior) return std::nullopt;
+
+  steps = std::move(all_steps);
+  times_s = problem.knot_times_s();
+  echoes = solver.echoes();
+  largest.knots = std::max(largest.knots, problem.knots());
+  largest.echoes = std::max(largest.echoes, solver.echoes() + solver.held_echoes());
+  largest.pairs = std::max(largest.pairs, solver.pairs().pairs.size());
   const auto yaw_rad = [&](std::size_t knot) { return problem.main_yaw_rad(times_s[knot]); };
   poses = solver.unknowns().knots;
   for (std::size_t k = 0; k < poses.size(); ++k) poses[k].z() += yaw_rad(k);
   globals = solver.unknowns().globals;
   headings.clear();
   for (const HeadingSource& heading : problem.headings()) headings.push_back(heading.name);
-  std::size_t leaving = 0;
-  while (steps.size() * kSweepsOfStep > longest) {
-    leaving += steps.front();
-    steps.pop_front();
-  }
-  prior = leaving > 0 ? solver.prior_at(leaving) : solver.before().prior;
-  if (leaving > 0 && !prior) return std::nullopt;
+  prior = next_prior;
   if (prior) prior->knot.z() += yaw_rad(leaving);
   if (leaving == 0) return 0;
   std::size_t ended = 0;

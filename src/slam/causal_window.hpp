@@ -26,7 +26,7 @@ struct CausalWindow {
   /// Keeps what a solution says, and lets knots and sweeps older than the window leave.
   /// @param sweeps  of the solution
   /// @param longest  the most sweeps that stay
-  /// @return how many sweeps left; nullopt: the solution is not determined
+  /// @return how many sweeps left; nullopt: the solution is not determined, and the window is as before
   std::optional<std::size_t> keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps, std::size_t longest);
   /// What the window says of a problem that goes on longer; dead reckoning after its end. REQUIRES poses.
   Unknowns continue_in(const SlamProblem& problem) const;

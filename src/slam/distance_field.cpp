@@ -255,7 +255,9 @@ double DistanceField::clear_m(const Eigen::Vector2d& point_m) const {
 }
 
 std::vector<Eigen::Vector2d> DistanceField::places(double step_m, double reach_m) const {
-  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(step_m * cells_per_m_)));
+  // No step leads out of the box by more.
+  const double most = std::max(size_x_, size_y_);
+  const auto step = static_cast<std::size_t>(std::clamp(std::round(step_m * cells_per_m_), 1.0, most));
   const auto is_near_free = [&](const Eigen::Vector2d& place) {
     constexpr int kDirections = 16;
     for (int i = 0; i < kDirections; ++i) {

@@ -87,16 +87,15 @@ Result<void> LocalizerOptions::validate() const {
   OptionErrors errors;
   errors.require_within("min_particles", static_cast<double>(min_particles), 10.0, 1e6);
   errors.require_within("max_particles", static_cast<double>(max_particles), static_cast<double>(min_particles), 1e6);
-  if (const auto valid = errors.result("localizer"); !valid) return valid;
-  if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
-    return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
-  }
-  if (!body_from_sonar.matrix().allFinite()) return fail(Error::Code::kBadOption, "body_from_sonar: must be finite");
-  if (const auto valid = beam.validate(); !valid) return valid;
-  if (const auto valid = noise.validate(); !valid) return valid;
-  if (const auto valid = without.validate(); !valid) return valid;
-  if (const auto valid = filter.validate(); !valid) return valid;
-  return echo.validate();
+  errors.require(sound_speed_ratio > 0.0 && std::isfinite(sound_speed_ratio), "sound_speed_ratio", "finite and above 0",
+                 sound_speed_ratio);
+  if (!body_from_sonar.matrix().allFinite()) errors.add("body_from_sonar must be finite");
+  errors.add(beam.validate());
+  errors.add(noise.validate());
+  if (const auto valid = without.validate(); !valid) errors.add("without odometry: " + valid.error().message);
+  errors.add(filter.validate());
+  errors.add(echo.validate());
+  return errors.result("localizer");
 }
 
 struct Localizer::State {

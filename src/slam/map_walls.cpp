@@ -9,7 +9,10 @@
 namespace pingvox {
 namespace {
 
+/// Squares of this size, or of a cell where that is larger: what is looked for near a column is some cells away.
 constexpr double kSquare_m = 0.5;
+/// What is farther away from the origin is counted to the squares at the border.
+constexpr double kMaxSquares = 1 << 30;
 /// Columns of a line are within so many cells, and the first of these at least; where they form none, as in walls that
 /// are thick, within the second.
 constexpr double kLineCells = 3.0;
@@ -17,15 +20,15 @@ constexpr std::array<double, 2> kLines_m = {0.25, 0.5};
 /// An outline is seen from where the cosine of the angle between its normal and the way to the sonar is more.
 constexpr double kSeen = 0.2;
 
-std::int32_t square_at(double m) {
-  return static_cast<std::int32_t>(std::floor(m / kSquare_m));
-}
-
 std::uint64_t square_key(std::int32_t x, std::int32_t y) {
   return std::uint64_t{static_cast<std::uint32_t>(x)} << 32U | static_cast<std::uint32_t>(y);
 }
 
 }  // namespace
+
+std::int32_t MapWalls::Columns::square_at(double m) const {
+  return static_cast<std::int32_t>(std::clamp(std::floor(m / square_m_), -kMaxSquares, kMaxSquares));
+}
 
 void MapWalls::Columns::add(const Eigen::Vector2d& place_m) {
   const auto index = static_cast<std::uint32_t>(places_m.size());
@@ -47,7 +50,8 @@ void MapWalls::Columns::visit_near(const Eigen::Vector2d& point_m, double reach_
   }
 }
 
-MapWalls::MapWalls(const DistanceField& field) : cell_m_(field.cell_m()) {
+MapWalls::MapWalls(const DistanceField& field)
+    : cell_m_(field.cell_m()), all_(std::max(kSquare_m, cell_m_)), outlines_(std::max(kSquare_m, cell_m_)) {
   const auto is_occupied = [&](const Eigen::Vector2d& place_m) {
     return field.classify(place_m) == Occupancy::kOccupied;
   };
@@ -87,9 +91,7 @@ MapWalls::MapWalls(const DistanceField& field) : cell_m_(field.cell_m()) {
 
 std::optional<MapWalls::Line> MapWalls::nearest(const Eigen::Vector2d& point_m, const Eigen::Vector2d& ray,
                                                 double reach_m) const {
-  // Beyond it squares have no number.
-  constexpr double kFarthest_m = 1e8;
-  if (!(point_m.cwiseAbs().array() < kFarthest_m).all()) return std::nullopt;
+  if (!point_m.allFinite()) return std::nullopt;
   const auto nearest_of = [&](const Columns& columns, const auto& counts) {
     std::optional<std::uint32_t> best;
     double best_square = reach_m * reach_m;

@@ -30,6 +30,7 @@ class MapWalls {
   /// Columns with their lines, of which the normal is zero where there is none.
   class Columns {
    public:
+    explicit Columns(double square_m) : square_m_(square_m) {}
     void add(const Eigen::Vector2d& place_m);
     /// Calls visit(index of a column) for those within `reach_m` of a point.
     template <class Visit>
@@ -39,6 +40,9 @@ class MapWalls {
     std::vector<Line> lines;
 
    private:
+    std::int32_t square_at(double m) const;
+
+    double square_m_;
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> squares_;
   };
 

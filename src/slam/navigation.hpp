@@ -56,6 +56,7 @@ struct HeadingSource {
   TimeSeries yaw_rad;
   std::optional<TimeSeries> roll_rad, pitch_rad;  ///< of a source of attitude
   bool drifts = false;                            ///< tells how the body turned, from 0 at the beginning
+  bool by_sonar = false;                          ///< by matching sweeps
 };
 
 /// Adds a yaw as the angle that is nearest to the one before: without a jump at the half turn.

@@ -102,20 +102,20 @@ Result<void> add_sample(std::string_view source, NavQuantity quantity, const Nav
 std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options) {
   const NavSource* fastest = log.best(NavQuantity::kVelocity);
   if (fastest == nullptr) return std::nullopt;
-  if (fastest->name == kSonarSource) return sonar_velocity(*fastest);
   const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
   return velocity_source(*fastest, mount_of(options.body_from_source, fastest->name), window);
 }
 
-std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options) {
+std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options, const NavSource* by_sonar) {
   std::vector<HeadingSource> headings, turns;
+  if (auto heading = by_sonar != nullptr ? heading_source(*by_sonar, Pose::Identity()) : std::nullopt) {
+    heading->drifts = heading->by_sonar = true;
+    headings.push_back(*std::move(heading));
+  }
   for (const NavSource& source : log.sources()) {
     const Pose mount = mount_of(options.body_from_source, source.name);
     if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
-      auto heading = heading_source(source, mount);
-      if (!heading) continue;
-      heading->drifts = source.name == kSonarSource;
-      headings.push_back(*std::move(heading));
+      if (auto heading = heading_source(source, mount)) headings.push_back(*std::move(heading));
     } else if (source.quantity == NavQuantity::kTurnRate) {
       if (auto heading = turned_heading(source, mount)) turns.push_back(*std::move(heading));
     }
@@ -127,13 +127,15 @@ std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& opt
   return headings;
 }
 
-Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptions& options) {
-  const Result<NavLog> made = NavLog::make(std::move(sources), NavClock::kUnknown);
+Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options) {
+  const Result<NavLog> made = NavLog::make(std::move(sources.measured), NavClock::kUnknown);
   if (!made) return tl::unexpected(made.error());
   const NavLog& log = *made;
   if (const auto known = check_mounts(log, options.body_from_source); !known) return tl::unexpected(known.error());
-  std::optional<VelocitySource> velocity = velocity_of(log, options);
-  std::vector<HeadingSource> headings = headings_of(log, options);
+  const std::optional<SonarSources>& by_sonar = sources.by_sonar;
+  std::optional<VelocitySource> velocity = by_sonar ? sonar_velocity(by_sonar->velocity) : velocity_of(log, options);
+  std::vector<HeadingSource> headings =
+      headings_of(log, options, by_sonar && by_sonar->heading ? &*by_sonar->heading : nullptr);
   if (!velocity || headings.empty()) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
@@ -176,7 +178,7 @@ Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<c
 }
 
 Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
-                               std::vector<NavSource> sources, const SlamOptions& options) {
+                               MotionSources sources, const SlamOptions& options) {
   Result<Navigation> navigation = navigation_of(std::move(sources), options);
   if (!navigation) return tl::unexpected(navigation.error());
   return recording_of(beam_times_s, sweeps, *std::move(navigation));

@@ -15,6 +15,7 @@
 #include "pingvox/sonar/sweep.hpp"
 #include "slam/navigation.hpp"
 #include "slam/slam_solver.hpp"
+#include "slam/sonar_odometry.hpp"
 
 /// What was recorded, prepared for the least-squares problem.
 namespace pingvox {
@@ -40,6 +41,13 @@ NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, Nav
 Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
                         std::vector<NavSource>& sources);
 
+/// What a trajectory is reckoned from.
+struct MotionSources {
+  std::vector<NavSource> measured;
+  /// How the sonar tells the motion, in place of a measured velocity, which then does not count.
+  std::optional<SonarSources> by_sonar = std::nullopt;
+};
+
 /// What is used of the navigation, the heading with most samples first.
 struct Navigation {
   VelocitySource velocity;
@@ -50,10 +58,12 @@ struct Navigation {
 /// nullopt: no valid samples.
 std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options);
 /// All headings, the one with the most samples first. Without any, how the turn rates turn.
-std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options);
+/// @param by_sonar  one more heading; nullptr: none
+std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options,
+                                       const NavSource* by_sonar = nullptr);
 /// @return kUnsupported without a velocity or a heading, or when the velocity is that of no vehicle; kBadOption when a
 /// mounted source is not there, or the calibration is of another velocity
-Result<Navigation> navigation_of(std::vector<NavSource> sources, const SlamOptions& options);
+Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options);
 
 /// A stretch of time.
 struct Span {
@@ -75,7 +85,7 @@ Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<c
                                Navigation navigation);
 /// @return as navigation_of, too
 Result<Recording> recording_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
-                               std::vector<NavSource> sources, const SlamOptions& options);
+                               MotionSources sources, const SlamOptions& options);
 
 /// Some four knots in the time of a sweep, both ends included.
 /// @param beams  in this time: bounds how many knots there may be

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/without_exceptions.hpp"
+#include "pingvox/option_errors.hpp"
 #include "slam/causal_estimator.hpp"
 #include "slam/level_head.hpp"
 #include "slam/map_solution.hpp"
@@ -41,25 +42,22 @@ PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance) {
 }
 
 Result<void> SlamOptions::validate() const {
-  if (!std::isfinite(nav_offset_s)) return fail(Error::Code::kBadOption, "nav_offset_s: must be finite");
+  OptionErrors errors;
+  errors.require(std::isfinite(nav_offset_s), "nav_offset_s", "finite", nav_offset_s);
   if (!is_level(body_from_sonar)) {
-    return fail(
-        Error::Code::kBadOption,
-        "body_from_sonar, the mount of the sonar: must be finite and level within 45 degrees, upside down or not");
+    errors.add(
+        "body_from_sonar, the mount of the sonar, must be finite and level within 45 degrees, upside down or not");
   }
-  if (!(sound_speed_ratio > 0.0) || !std::isfinite(sound_speed_ratio)) {
-    return fail(Error::Code::kBadOption, "sound_speed_ratio: must be finite and above 0");
-  }
+  errors.require(sound_speed_ratio > 0.0 && std::isfinite(sound_speed_ratio), "sound_speed_ratio", "finite and above 0",
+                 sound_speed_ratio);
   if (calibration) {
-    if (const auto valid = calibration->validate(); !valid) {
-      return fail(valid.error().code, "calibration: " + valid.error().message);
-    }
+    if (const auto valid = calibration->validate(); !valid) errors.add("calibration: " + valid.error().message);
   }
-  if (causal_sweeps < kSweepsOfStep) {
-    return fail(Error::Code::kBadOption, fmt::format("causal_sweeps: must be {} or more", kSweepsOfStep));
-  }
-  if (const auto valid = filter.validate(); !valid) return valid;
-  return echo.validate();
+  errors.require(causal_sweeps >= kSweepsOfStep, "causal_sweeps", fmt::format("{} or more", kSweepsOfStep),
+                 causal_sweeps);
+  errors.add(filter.validate());
+  errors.add(echo.validate());
+  return errors.result("slam");
 }
 
 struct SlamSmoother::State {
@@ -228,11 +226,13 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
 }
 
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
-Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> sources, std::span<const HeardSweep> sweeps,
-                                                   const SlamOptions& options) {
+Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::span<const HeardSweep> sweeps,
+                                          const SlamOptions& options) {
   const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
-  if (options.motion == MotionSource::kVelocity && velocity_of(*log, options)) return sources;
+  if (options.motion == MotionSource::kVelocity && velocity_of(*log, options)) {
+    return MotionSources{std::move(sources)};
+  }
   if (sweeps.size() < 2) {
     return fail(Error::Code::kUnsupported,
                 "there is no valid velocity over ground, and there is only one sweep: nothing to match it with");
@@ -253,11 +253,9 @@ Result<std::vector<NavSource>> with_sonar_odometry(std::vector<NavSource> source
                             headings.empty() ? " and no heading" : "", odometry.matched, sweeps.size() - 1,
                             are_too_few ? fmt::format(" (without a heading, {} have to)", kMatchesAlone) : ""));
   }
-  // One without a valid sample would be in its way.
-  std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kVelocity; });
-  sources.push_back(std::move(odometry.velocity));
-  if (headings.empty()) sources.push_back(std::move(odometry.heading));
-  return sources;
+  SonarSources by_sonar{std::move(odometry.velocity), std::nullopt};
+  if (headings.empty()) by_sonar.heading = std::move(odometry.heading);
+  return MotionSources{std::move(sources), std::move(by_sonar)};
 }
 
 /// All that was recorded, as it came.
@@ -310,7 +308,7 @@ Result<SlamSolution> SlamSmoother::solve_in(const DistanceField& map, const Traj
     const SlamOptions& options = state_->options;
     const Result<std::vector<HeardSweep>> sweeps = state_->all_sweeps();
     if (!sweeps) return tl::unexpected(sweeps.error());
-    const Result<Recording> recording = recording_of(state_->beam_times_s, *sweeps, state_->sources, options);
+    const Result<Recording> recording = recording_of(state_->beam_times_s, *sweeps, {state_->sources}, options);
     if (!recording) return tl::unexpected(recording.error());
     const Result<NavLog> log = NavLog::make(state_->sources, NavClock::kUnknown);
     if (!log) return tl::unexpected(log.error());
@@ -328,9 +326,9 @@ Result<SlamSolution> SlamSmoother::solve() const {
     if (options.estimation == Estimation::kCausal) {
       return solve_causal(times_s, sweeps, state_->sources, state_->turns, options);
     }
-    const Result<std::vector<NavSource>> sources = with_sonar_odometry(state_->sources, sweeps, options);
+    Result<MotionSources> sources = with_sonar_odometry(state_->sources, sweeps, options);
     if (!sources) return tl::unexpected(sources.error());
-    Result<Recording> recording = recording_of(times_s, sweeps, *sources, options);
+    Result<Recording> recording = recording_of(times_s, sweeps, *std::move(sources), options);
     if (!recording) return tl::unexpected(recording.error());
     const Navigation& navigation = recording->navigation;
     const SonarChecks checks =

@@ -27,7 +27,7 @@ SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& headi
                       PictureTurns turns, const SlamOptions& options) {
   if (options.matching == Matching::kNone) return {};
   SonarChecks checks{velocity_check(velocity, heading, sweeps, options), std::nullopt};
-  if (heading.name == kSonarSource) return checks;
+  if (heading.by_sonar) return checks;
   const std::vector<YawChange> changes = turns.finish();
   checks.clock = clock_error(changes, turns.pauses(), heading.yaw_rad);
   return checks;

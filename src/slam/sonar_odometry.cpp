@@ -348,12 +348,12 @@ std::size_t GrowingOdometry::min_matched(std::size_t steps) const {
   return least_matched(steps, has_heading_);
 }
 
-std::vector<NavSource> GrowingOdometry::sources() const {
-  std::vector<NavSource> sources = {velocity_};
-  sources.front().samples.push_back(last_velocity_);
+SonarSources GrowingOdometry::sources() const {
+  SonarSources sources{velocity_, std::nullopt};
+  sources.velocity.samples.push_back(last_velocity_);
   if (has_heading_) return sources;
-  sources.push_back(heading_);
-  sources.back().samples.push_back(last_heading_);
+  sources.heading = heading_;
+  sources.heading->samples.push_back(last_heading_);
   return sources;
 }
 

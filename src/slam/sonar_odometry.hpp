@@ -23,8 +23,14 @@ inline constexpr std::size_t kMatchesAlone = 5;
 /// not match the vehicle may have stopped or turned.
 inline constexpr double kMaxStep_sweeps = 1.6;
 
-/// The name of the sources that are made here.
+/// The name of the sources that are made here, for reports. One of the navigation may have it, too.
 inline constexpr std::string_view kSonarSource = "sonar odometry";
+
+/// How the vehicle moved as the sonar tells it, for dead reckoning.
+struct SonarSources {
+  NavSource velocity;                ///< has a sample
+  std::optional<NavSource> heading;  ///< nullopt: another source tells it
+};
 
 struct SonarOdometry {
   NavSource velocity;       ///< in the frame of the body, in the middle between sweeps that match
@@ -73,7 +79,7 @@ class GrowingOdometry {
   std::size_t min_matched(std::size_t steps) const;
   /// The velocity, and what the vehicle turned where its heading is not known; until the end of the last sweep as at
   /// the last match. REQUIRES that it tells.
-  std::vector<NavSource> sources() const;
+  SonarSources sources() const;
 
  private:
   NavSource velocity_{std::string(kSonarSource), NavQuantity::kVelocity, {}};

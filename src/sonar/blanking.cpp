@@ -64,7 +64,8 @@ double blanking_range_m(const PolarImage& image, const Sweep& sweep) {
 
   // The decay ends where the median beam stops falling, or is down to a sixteenth.
   const int nothing = *strongest / 16;
-  const std::size_t ahead = std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(0.05 / bin_length_m)));
+  const double most = std::max(2.0, static_cast<double>(bins));
+  const auto ahead = static_cast<std::size_t>(std::clamp(std::ceil(0.05 / bin_length_m), 2.0, most));
   while (i + ahead < farthest && profile.median[i] > nothing && profile.median[i + ahead] < profile.median[i]) ++i;
   return static_cast<double>(i) * bin_length_m;
 }

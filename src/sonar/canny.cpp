@@ -143,9 +143,9 @@ std::vector<std::optional<std::size_t>> first_edges(const PolarImage& image, con
         if (edges.counts(margin + n, i)) first[n] = i;
       }
     }
-  } catch (const cv::Exception&) {
-    // With valid arguments OpenCV throws only when memory runs out.
-    throw std::bad_alloc();
+  } catch (const cv::Exception& thrown) {
+    if (thrown.code == cv::Error::StsNoMem) throw std::bad_alloc();
+    throw;
   }
   return first;
 }

@@ -106,9 +106,9 @@ PolarImage apply_filter(const PolarImage& image, const FilterOptions& options) {
   if (options.filter == Filter::kNone || image.rows() == 0 || image.columns() == 0 || !fits) return image;
   try {
     return smooth(image, options);
-  } catch (const cv::Exception&) {
-    // With valid arguments OpenCV throws only when memory runs out.
-    throw std::bad_alloc();
+  } catch (const cv::Exception& thrown) {
+    if (thrown.code == cv::Error::StsNoMem) throw std::bad_alloc();
+    throw;
   }
 }
 

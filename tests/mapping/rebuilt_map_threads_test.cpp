@@ -173,5 +173,28 @@ TEST(RebuiltMapThreads, AMapThatCannotBeRebuiltStays) {
   expect_same(*map, small);
 }
 
+// Kills complete sweeps that are counted again after an error.
+TEST(RebuiltMapThreads, CountsTheSweepsBeforeAndAfterAnError) {
+  const std::vector<Beam> beams = room(6 * 60 + 2);
+  const auto stays = trajectory_of(beams, 1, 0.0).poses().front().map_from_body;
+  const Batch small = batch(beams, Trajectory::still(stays), cones());
+  auto map =
+      RebuiltMap::make(cones(), {.resolution_m = 0.04, .memory_limit_bytes = small.map.memory_bytes() + 200'000});
+  ASSERT_TRUE(map);
+  std::size_t refused = 0;
+  for (std::size_t n = 0; n < beams.size(); ++n) {
+    // The beams of the fourth sweep are so far apart that the map would grow too large.
+    const bool is_apart = n >= 180 && n < 240;
+    const Pose pose = is_apart ? pose_from_rpy({0.5 * static_cast<double>(n), 0.0, 0.0}, 0.0, 0.0, 0.0) : stays;
+    if (!map->add(beams[n], pose)) ++refused;
+  }
+  EXPECT_EQ(refused, 1U);
+  // Three, and the one that begins after the beam that was lost with the error.
+  EXPECT_EQ(map->report().sweeps, 4U);
+  ASSERT_TRUE(map->correct(Trajectory::still(stays)));
+  ASSERT_TRUE(map->wait());
+  EXPECT_EQ(map->report().sweeps, 4U);
+}
+
 }  // namespace
 }  // namespace pingvox

@@ -195,6 +195,67 @@ TEST(CausalSlam, NeedsAVelocityOfItsTimeToBegin) {
   EXPECT_THAT(finished.error().message, HasSubstr("do not overlap in time"));
 }
 
+/// What is believed of one number is so narrow that no computer can weigh it.
+SlamCalibration beyond_numbers() {
+  SlamCalibration calibration;
+  calibration.velocity = "dvl";
+  for (Estimate* estimate : {&calibration.velocity_yaw_rad, &calibration.velocity_scale, &calibration.wall_in_echo,
+                             &calibration.sonar_x_m, &calibration.sonar_y_m}) {
+    *estimate = {0.0, 0.1};
+  }
+  calibration.sonar_x_m.deviation = 1e-200;
+  return calibration;
+}
+
+// Kills an error that is told without a reason, or not at all, where the first solution failed and navigation ended.
+TEST(CausalSlam, SaysThatTheFirstSolutionFailedAlsoAtTheEnd) {
+  const Basin basin{.duration_s = 60.0};
+  for (const double nav_until_s : {15.0, 19.9, 25.0, 60.0}) {
+    SCOPED_TRACE(nav_until_s);
+    SlamOptions options = options_of(basin);
+    options.calibration = beyond_numbers();
+    CausalSlam slam(options);
+    for (const NavSource& source : basin.sources()) {
+      for (const NavSample& sample : source.samples) {
+        if (sample.time_s > nav_until_s) continue;
+        ASSERT_TRUE(slam.add(source.name, source.quantity, sample));
+      }
+    }
+    std::size_t refused = 0;
+    for (const Beam& beam : basin.beams()) {
+      if (slam.add(beam)) continue;
+      ++refused;
+      EXPECT_FALSE(slam.pose());
+    }
+    EXPECT_GE(refused, 1U);
+    const auto finished = slam.finish();
+    ASSERT_FALSE(finished);
+    EXPECT_EQ(finished.error().code, Error::Code::kUnsupported);
+    EXPECT_THAT(finished.error().message, HasSubstr("does not determine the trajectory"));
+  }
+}
+
+// Kills a source of the navigation that is taken for odometry by the sonar, as it has its name.
+TEST(CausalSlam, ASourceMayHaveTheNameOfOdometryByTheSonar) {
+  const Basin basin{.duration_s = 100.0};
+  const auto told_with_names = [&](const std::string& velocity, const std::string& heading) {
+    CausalSlam slam(options_of(basin));
+    for (const NavSource& source : basin.sources()) {
+      const bool is_velocity = source.quantity == NavQuantity::kVelocity;
+      const std::string& name = is_velocity ? velocity : source.name == "compass" ? heading : source.name;
+      for (const NavSample& sample : source.samples) EXPECT_TRUE(slam.add(name, source.quantity, sample));
+    }
+    for (const Beam& beam : basin.beams()) EXPECT_TRUE(slam.add(beam));
+    return slam.finish();
+  };
+  const auto usual = told_with_names("dvl", "compass");
+  const auto other = told_with_names("sonar odometry", "sonar odometry");
+  ASSERT_TRUE(usual && other);
+  expect_same(usual->trajectory, other->trajectory);
+  EXPECT_FALSE(other->report.by_sonar);
+  EXPECT_EQ(other->report.velocity, "sonar odometry");
+}
+
 TEST(CausalSlam, RefusesBeamsThatGoBackInTime) {
   const Basin basin{.duration_s = 1.0};
   const std::vector<Beam> beams = basin.beams();

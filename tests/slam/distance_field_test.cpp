@@ -114,6 +114,20 @@ TEST(DistanceField, OffersPlacesInTheWaterOnly) {
   EXPECT_NEAR(field->free_area_m2(), 23.0, 0.5);
 }
 
+// Kills a step of more cells than integers count.
+TEST(DistanceField, OffersPlacesInTheSmallestCells) {
+  OccupancyMap map({.resolution_m = 1e-21});
+  auto editor = map.edit();
+  const auto key = map.lattice().key_of(Eigen::Vector3d::Zero());
+  editor.update(*key, LogOdds(1.0F));
+  editor.update(*map.lattice().key_of(Eigen::Vector3d(1.5e-21, 0.0, 0.0)), LogOdds(-1.0F));
+  editor.synchronize();
+  const auto field = DistanceField::make(map, {});
+  ASSERT_TRUE(field) << field.error().message;
+  EXPECT_LE(field->places(0.1, 0.0).size(), 1U);
+  EXPECT_EQ(field->places(1e-21, 0.0).size(), 1U);
+}
+
 // Kills a table of all tiles between two far ends that fills the memory.
 TEST(DistanceField, RefusesWhatIsEmptyOrTooLarge) {
   const auto nothing = DistanceField::make(OccupancyMap(), {});

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "pingvox/map/occupancy_map.hpp"
 #include "slam/room.hpp"
@@ -70,6 +71,44 @@ TEST(MapWalls, AreNotWhereNoMapReaches) {
     EXPECT_FALSE(walls.nearest({far, 0.0}, {1.0, 0.0}, 10.0));
     EXPECT_FALSE(walls.nearest({0.0, -far}, {1.0, 0.0}, 10.0));
   }
+}
+
+/// A wall along y of 21 cells, each of an edge, around a place.
+DistanceField wall_at(const Eigen::Vector2d& place_m, double edge_m) {
+  OccupancyMap map({.resolution_m = edge_m, .depth = 62});
+  auto editor = map.edit();
+  for (int n = -10; n <= 10; ++n) {
+    const auto key = map.lattice().key_of<WideWord>(Eigen::Vector3d(place_m.x(), place_m.y() + n * edge_m, 0.0));
+    editor.update(*key, LogOdds(2.0F));
+  }
+  editor.synchronize();
+  return *DistanceField::make(map, {});
+}
+
+// Kills squares without a number: those beyond 32 bits.
+TEST(MapWalls, AreFoundAsFarFromTheOriginAsMapsReach) {
+  for (const double far_m : {0.0, 1e3, 3e9, -3e9, 1e12}) {
+    SCOPED_TRACE(far_m);
+    const Eigen::Vector2d place(far_m + 0.0625, -far_m + 0.0625);
+    const MapWalls walls(wall_at(place, 0.125));
+    const auto wall = walls.nearest(place + Eigen::Vector2d(-0.3, 0.0), {1.0, 0.0}, 0.5);
+    ASSERT_TRUE(wall);
+    EXPECT_NEAR(std::abs(wall->normal.x()), 1.0, 1e-6);
+    EXPECT_NEAR(wall->place_m.x(), place.x(), 1e-3);
+    EXPECT_FALSE(walls.nearest(place + Eigen::Vector2d(-0.6, 0.0), {1.0, 0.0}, 0.5));
+  }
+  const MapWalls walls(wall_at({0.0, 0.0}, 0.125));
+  for (const double no_place : {1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    EXPECT_FALSE(walls.nearest({no_place, 0.0}, {1.0, 0.0}, 0.5)) << no_place;
+  }
+}
+
+// Kills squares that are so much smaller than cells that to look through them never ends.
+TEST(MapWalls, MayHaveCellsOfAnySize) {
+  const MapWalls walls(wall_at({0.0, 0.0}, 1e4));
+  const auto wall = walls.nearest({-1e4, 0.0}, {1.0, 0.0}, 2e4);
+  ASSERT_TRUE(wall);
+  EXPECT_NEAR(std::abs(wall->normal.x()), 1.0, 1e-6);
 }
 
 }  // namespace

@@ -318,6 +318,23 @@ TEST(SlamSmoother, CausalPosesComeBackFromBeyondTheReachOfPairs) {
   EXPECT_GT(solved->report.submap_loops_kept, 0U);
 }
 
+// Kills a source of the navigation that is taken for odometry by the sonar, as it has its name.
+TEST(SlamSmoother, ASourceMayHaveTheNameOfOdometryByTheSonar) {
+  const Basin basin{.duration_s = 200.0};
+  const NavSource compass = basin.sources()[1];
+  NavSource other = compass;
+  other.name = "sonar odometry";
+  const auto usual = solve_without_velocity(basin, {}, compass), renamed = solve_without_velocity(basin, {}, other);
+  ASSERT_TRUE(usual && renamed);
+  EXPECT_TRUE(renamed->report.by_sonar);
+  EXPECT_EQ(renamed->report.clock_check.has_value(), usual->report.clock_check.has_value());
+  ASSERT_EQ(renamed->trajectory.poses().size(), usual->trajectory.poses().size());
+  for (std::size_t i = 0; i < usual->trajectory.poses().size(); ++i) {
+    ASSERT_EQ(renamed->trajectory.poses()[i].map_from_body.matrix(),
+              usual->trajectory.poses()[i].map_from_body.matrix());
+  }
+}
+
 TEST(SlamSmoother, RefusesAWindowOfNoSweep) {
   SlamOptions options;
   options.causal_sweeps = 1;

@@ -34,7 +34,7 @@ class SlamSolverCeres : public testing::Test {
     sources.push_back(sources[1]);
     sources.back().name = "other compass";
     for (NavSample& sample : sources.back().samples) sample.value.x() += 0.05 * std::sin(2.0 * sample.value.x());
-    recording_.emplace(recording_of(times_s_, sweeps_, std::move(sources), options_).value());
+    recording_.emplace(recording_of(times_s_, sweeps_, {std::move(sources)}, options_).value());
     const auto knots = knot_times(recording_->span, sweeps_, times_s_.size());
     problem_.emplace(knots.value(), recording_->navigation.velocity, recording_->navigation.headings);
     for (std::size_t s = 0; s < sweeps_.size(); ++s) {

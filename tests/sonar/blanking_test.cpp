@@ -43,6 +43,19 @@ TEST(BlankingRange, IsFoundAtTheEndOfWhatIsInEveryBeam) {
   }
 }
 
+// Kills bins so short that more of them than integers count are in five centimetres.
+TEST(BlankingRange, IsFoundInBinsOfAnyLength) {
+  for (const double bin_length_m : {1e-300, 1e-30, 1e-9, 1e-3, 10.0}) {
+    SCOPED_TRACE(bin_length_m);
+    std::mt19937_64 random(3);
+    Sweep sweep = ringing_turn(random, 20, 80);
+    for (Beam& beam : sweep.beams) beam.bin_length_m = bin_length_m;
+    const double bins = blanking_range_m(PolarImage(sweep), sweep) / bin_length_m;
+    EXPECT_GE(bins, 20.0 - 1e-9);
+    EXPECT_LE(bins, 100.0 + 1e-9);
+  }
+}
+
 // Kills ringing that is taken for none because it is not loud.
 TEST(BlankingRange, IsFoundOfFaintRinging) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
