@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -65,7 +65,7 @@ class LiveRun {
         }
       }
       queue_arrived(watch.seconds());
-      if (can_map_one()) map_one(watch);
+      map_some(watch);
       report_changes();
       const double now_s = watch.seconds();
       if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map_, pose_for_obstacles(now_s), now_s);
@@ -85,6 +85,7 @@ class LiveRun {
 
  private:
   static constexpr double kReport_s = 1.0, kLong_s = 5.0;
+  static constexpr double kMapping_s = 0.01;  ///< between two looks at the lines, or one beam
 
   struct Waiting {
     Beam beam;
@@ -122,11 +123,15 @@ class LiveRun {
     return until_s && nav_->now_s() - *until_s <= kOldest_s ? nav_->poses().at(*until_s) : std::nullopt;
   }
 
-  /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep.
+  /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep. Those that
+  /// reach out of the map are mapped in part.
   std::size_t not_mapped() const {
     const BuildReport& report = mapper_.report();
-    return dropped_ + without_pose_ + report.blocked.count + report.outside.count;
+    return dropped_ + without_pose_ + report.blocked.count + report.too_long.count;
   }
+
+  /// Beams that are not yet mapped.
+  std::size_t waiting() const { return beams_ - mapper_.report().beams - not_mapped(); }
 
   /// The oldest beams are dropped when too many wait: the record has them.
   void queue_arrived(double now_s) {
@@ -140,6 +145,20 @@ class LiveRun {
     for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++dropped_;
   }
 
+  void map_some(const Stopwatch& watch) {
+    for (const double until_s = watch.seconds() + kMapping_s; can_map_one();) {
+      map_one(watch);
+      if (watch.seconds() >= until_s) return;
+    }
+  }
+
+  /// Beams that the mapper held are lost with an error.
+  void give_up_mapping(const Error& error) {
+    cannot_map_ = true;
+    dropped_ += waiting() - waiting_.size();
+    note(error);
+  }
+
   void map_one(const Stopwatch& watch) {
     auto [beam, arrived_s] = std::move(waiting_.front());
     waiting_.pop_front();
@@ -149,10 +168,7 @@ class LiveRun {
     }
     const std::optional<Pose> pose = nav_ ? nav_->poses().at(beam.time_s) : Pose::Identity();
     if (!pose) ++without_pose_;
-    if (const auto added = mapper_.add(std::move(beam), pose); !added) {
-      cannot_map_ = true;
-      note(added.error());
-    }
+    if (const auto added = mapper_.add(std::move(beam), pose); !added) give_up_mapping(added.error());
     recent_.latency_s = std::max(recent_.latency_s, watch.seconds() - arrived_s);
   }
 
@@ -161,7 +177,7 @@ class LiveRun {
     queue_arrived(watch.seconds());
     while (!waiting_.empty()) map_one(watch);
     if (!cannot_map_) {
-      if (const auto finished = mapper_.finish(); !finished) note(finished.error());
+      if (const auto finished = mapper_.finish(); !finished) give_up_mapping(finished.error());
     }
     report_changes();
     if (has_mapped()) {
@@ -174,20 +190,32 @@ class LiveRun {
     const auto printed = command_.output_options.report == Report::kJson
                              ? console_.print(json_of(watch.seconds(), true).text() + "\n")
                              : console_.summarise(text_of(status), command_.output);
-    if (!printed) return tl::unexpected(printed.error());
+    if (!printed) note(printed.error());
     if (has_mapped() && map_.empty()) console_.say(empty_map_text(command_.output));
     return has_failed_ ? 1 : 0;
   }
 
   void note(const Error& error) {
     bar_.clear();
-    print_error(error.message);
+    console_.say_error(error.message);
     has_failed_ = true;
   }
 
   void report_changes() {
     const LiveStatus status = source_->status();
     report_recording_error(status.recording_error, was_recording_error_reported_);
+    if (status.unexpected > 0 && !std::exchange(was_unexpected_reported_, true)) {
+      bar_.clear();
+      console_.say(fmt::format("{}: a beam that was not asked for: {}; such beams are recorded and not mapped",
+                               command_.device.text, status.first_unexpected));
+    }
+    if (obstacles_ && obstacles_->problem() != last_obstacle_problem_) {
+      last_obstacle_problem_ = obstacles_->problem();
+      bar_.clear();
+      console_.say(last_obstacle_problem_.empty()
+                       ? fmt::format("obstacles: {} is known now", *command_.obstacles)
+                       : fmt::format("obstacles: not sent ({}); trying again", last_obstacle_problem_));
+    }
     if (nav_) {
       for (std::size_t i = 0; i < reported_.size(); ++i) report_changes(nav_->devices()[i], reported_[i]);
       report_sources();
@@ -207,18 +235,37 @@ class LiveRun {
   void report_recording_error(const std::optional<Error>& error, bool& was_reported) {
     if (!error || was_reported) return;
     was_reported = true;
-    note({error->code, fmt::format("{}: the recording ended; mapping goes on", error->message)});
+    note({error->code, fmt::format("{}; mapping goes on", error->message)});
   }
 
   /// The state of a navigation device that was printed last.
   struct Reported {
     bool recording_error = false, is_connected = false, has_other_origin = false;
     std::string problem;
+    std::size_t vehicles = 0, others = 0;
   };
+
+  /// Prints who is followed, where several send.
+  void report_senders(const NavDevice& device, const NavDevice::Status& status, Reported& last) {
+    if (status.vehicles > last.vehicles && last.vehicles > 0) {
+      bar_.clear();
+      console_.say(
+          fmt::format("{}: follows {} now: who was followed before fell silent; if it is another vehicle, start a "
+                      "new map",
+                      device.name(), status.vehicle));
+    }
+    last.vehicles = status.vehicles;
+    for (; last.others < status.others.size(); ++last.others) {
+      bar_.clear();
+      console_.say(
+          fmt::format("{}: ignores {}, as it follows {}", device.name(), status.others[last.others], status.vehicle));
+    }
+  }
 
   void report_changes(const NavDevice& device, Reported& last) {
     const NavDevice::Status status = device.status();
     report_recording_error(status.recording_error, last.recording_error);
+    report_senders(device, status, last);
     const std::string& position = nav_->poses().position();
     if (device.has_other_origin(position) && !std::exchange(last.has_other_origin, true)) {
       bar_.clear();
@@ -272,10 +319,8 @@ class LiveRun {
   void report(double now_s) {
     const double beams_per_s = static_cast<double>(beams_ - recent_.first_beam) / (now_s - recent_.since_s);
     // A reader that has gone, or has stopped reading, ends nothing.
-    if (command_.output_options.report == Report::kJson && can_take_more(STDOUT_FILENO)) {
-      static_cast<void>(console_.print(json_of(now_s, false).text() + "\n"));
-    }
-    if (can_take_more(STDERR_FILENO)) bar_.draw(std::nullopt, status_line(beams_per_s));
+    if (command_.output_options.report == Report::kJson) console_.offer(json_of(now_s, false).text() + "\n");
+    bar_.draw(std::nullopt, status_line(beams_per_s));
     recent_ = {now_s, beams_, 0.0};
   }
 
@@ -283,7 +328,7 @@ class LiveRun {
     const LiveStatus status = source_->status();
     return fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, {:.0f} ms late, map {}",
                        status.is_connected ? "" : "not connected, ", beams_, beams_per_s, mapper_.report().echoes,
-                       status.unanswered + status.damaged, not_mapped(), 1e3 * recent_.latency_s,
+                       status.unanswered + status.damaged + status.unexpected, not_mapped(), 1e3 * recent_.latency_s,
                        bytes_text(map_.memory_bytes()));
   }
 
@@ -298,9 +343,11 @@ class LiveRun {
         .add("mapped", mapper_.report().beams)
         .add("echoes", mapper_.report().echoes)
         .add("not_mapped", not_mapped())
+        .add("waiting", waiting())
         .add("latency_ms", round_to_us(1e3 * recent_.latency_s))
         .add("unanswered", status.unanswered)
         .add("damaged", status.damaged)
+        .add("unexpected", status.unexpected)
         .add_truth("recording_failed", status.recording_error.has_value())
         .add("memory_bytes", map_.memory_bytes());
     if (nav_) {
@@ -317,6 +364,10 @@ class LiveRun {
       const NavDevice::Status status = device.status();
       JsonObject json;
       if (!device.listens()) json.add_truth("connected", status.is_connected).add("connections", status.connections);
+      if (device.listens())
+        json.add("vehicle", status.vehicle)
+            .add("ignored", status.ignored)
+            .add("others", fmt::format("{}", fmt::join(status.others, ", ")));
       json.add("messages", status.messages)
           .add("damaged", status.damaged)
           .add_truth("recording_failed", status.recording_error.has_value());
@@ -336,8 +387,8 @@ class LiveRun {
         (has_mapped() ? on_one_line(command_.output) : "no map") + "\n" +
         report_line("heard",
                     fmt::format("{}; {} not mapped", beams_text(beams_, report.sweeps, report.echoes), not_mapped())) +
-        report_line("line", fmt::format("{} unanswered, {} damaged, {}", status.unanswered, status.damaged,
-                                        counted(status.connections, "connection")));
+        report_line("line", fmt::format("{} unanswered, {} damaged, {} not as asked for, {}", status.unanswered,
+                                        status.damaged, status.unexpected, counted(status.connections, "connection")));
     if (nav_) {
       text += report_line("nav", fmt::format("{} messages, {} damaged; {} beams without a pose", nav_->messages(),
                                              nav_->damaged(), without_pose_));
@@ -360,10 +411,10 @@ class LiveRun {
   std::size_t dropped_ = 0;  ///< dropped under load, or after an error of the map
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
-  bool was_connected_ = false, was_recording_error_reported_ = false;
+  bool was_connected_ = false, was_recording_error_reported_ = false, was_unexpected_reported_ = false;
   bool were_sources_reported_ = false, was_silence_reported_ = false, has_no_pose_ = false;
   std::optional<double> last_beam_s_;  ///< when it arrived
-  std::string last_problem_;
+  std::string last_problem_, last_obstacle_problem_;
   std::vector<Reported> reported_;  ///< of the devices of navigation
 };
 
@@ -398,10 +449,10 @@ Result<int> run(const LiveCommand& command, Console& console) {
   if (!mapper) return tl::unexpected(mapper.error());
   std::optional<ObstacleSender> obstacles;
   if (command.obstacles) {
-    Result<ObstacleSender> opened = ObstacleSender::open(*command.obstacles, {.max_range_m = command.ping360.range_m});
-    if (!opened) return tl::unexpected(opened.error());
-    obstacles = *std::move(opened);
+    obstacles.emplace(*command.obstacles, ObstacleOptions{.max_range_m = command.ping360.range_m});
   }
+  // A terminal that is stopped must not stop the head.
+  console.never_wait();
   for (const std::filesystem::path& file : recordings.keep()) console.say("recording to " + file.string());
   return LiveRun(command, console, std::move(*source), std::move(nav), std::move(obstacles), std::move(*mapper), *map)
       .run(*signals, watch);

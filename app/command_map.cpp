@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -73,6 +73,7 @@ struct Totals {
     report.skipped += log.skipped;
     report.no_pose.count += log.no_pose.count;
     report.blocked.count += log.blocked.count;
+    report.too_long.count += log.too_long.count;
     report.outside.count += log.outside.count;
     report.cells_freed += log.cells_freed;
     report.cells_hit += log.cells_hit;
@@ -128,6 +129,7 @@ JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& c
       .add("velocity", path.nav->velocity)
       .add("clock", json_of(path.nav->offset))
       .add("frame", frame_text(*path.nav));
+  if (!path.notes.empty()) json.add("notes", fmt::format("{}", fmt::join(path.notes, "; ")));
   return clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
 }
 
@@ -159,6 +161,7 @@ std::string report_json(const Totals& totals, const VehiclePath& path, const Occ
   skipped_for.add("damage", totals.damaged)
       .add("no_pose", report.no_pose.count)
       .add("blocked", report.blocked.count)
+      .add("too_long", report.too_long.count)
       .add("outside_map", report.outside.count);
   json.add("beams", report.beams)
       .add("sweeps", report.sweeps)
@@ -377,6 +380,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   const SonarLog first{command.logs.front(), command.bag.beams, command.build.body_from_sensor};
   const Result<VehiclePath> path = vehicle_path(command.path, first, command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
+  for (const std::string& note : path->notes) console.say(note);
   BuildOptions build = command.build;
   Totals totals;
   if (command.nav_salinity) {

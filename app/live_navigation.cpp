@@ -49,6 +49,10 @@ NavDevice::Status NavDevice::status() const {
     const MavlinkReceiver::Status& said = std::get<MavlinkReceiver>(receiver_).status();
     status.messages = said.frames;
     status.damaged = said.damaged;
+    status.vehicle = said.vehicle;
+    status.vehicles = said.vehicles;
+    status.ignored = said.ignored;
+    status.others = said.others;
     status.recording_error = said.recording_error;
   }
   return status;

@@ -28,6 +28,10 @@ class NavDevice {
     std::size_t connections = 0;
     std::string problem;  ///< why not
     std::optional<Error> recording_error;
+    /// Of one that listens, as those of MavlinkReceiver::Status.
+    std::string vehicle = {};
+    std::size_t vehicles = 0, ignored = 0;
+    std::vector<std::string> others = {};
   };
 
   /// @param record        name of the record, less its suffix; nullopt: nothing is recorded

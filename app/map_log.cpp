@@ -61,9 +61,9 @@ bool tells_path(const NavLog& nav) {
 std::string text_of_skipped(const MappedLog& mapped, std::string_view unit, const VehiclePath& path,
                             const Lattice& lattice) {
   std::string text;
-  const auto& [no_pose, blocked, outside] =
-      std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.outside);
-  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count;
+  const auto& [no_pose, blocked, too_long, outside] =
+      std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.too_long, mapped.report.outside);
+  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count + too_long.count;
   const auto add = [&text, all, unit](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
     if (left_out.count == 0) return;
     text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit, reason);
@@ -77,6 +77,8 @@ std::string text_of_skipped(const MappedLog& mapped, std::string_view unit, cons
       path.advice);
   add(blocked, "towards an obstacle of the map that is nearer than --min-range",
       "they would record its second echo, or what lies around it");
+  add(too_long, "with ten times the range of the others, or of too many cells",
+      "their range may be damaged; a shorter --max-range or a larger --resolution may do");
   add(outside,
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
@@ -127,6 +129,10 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
     return error;
   };
+  const auto with_notes = [&](VehiclePath made) {
+    made.notes = nav->notes;
+    return made;
+  };
   if (!has_position(nav->log)) {
     OdometryOptions options{.body_from_source = {}, .offset_s = offset->offset_s};
     Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();
@@ -142,6 +148,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
               VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water, std::nullopt},
               sonar_moved_m, VehiclePath::kNavMustCover};
         })
+        .map(with_notes)
         .map_error(name_files);
   }
   if (path.calibration) {
@@ -156,6 +163,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
             VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water, made.origin_fix},
             Eigen::Vector3d::Zero(), VehiclePath::kNavMustCover};
       })
+      .map(with_notes)
       .map_error(name_files);
 }
 

@@ -37,6 +37,7 @@ struct VehiclePath {
   std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
   std::string_view advice = kPosesMustCover;                ///< where beams have no pose
+  std::vector<std::string> notes = {};                      ///< those of NavFiles
   static constexpr std::string_view kPosesMustCover =
       "--poses must cover the log, with times in seconds of the same clock";
   static constexpr std::string_view kNavMustCover = "--nav must cover the log; --nav-offset corrects its clock";

@@ -167,11 +167,13 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   std::vector<NavPart> parts;
   std::vector<BagTopicSummary> topics;
   std::size_t damaged = 0;
+  std::vector<std::string> notes;
   for (const std::string& name : names) {
     Result<NavPart> part = read_part(name, damage, fields);
     if (!part) return tl::unexpected(part.error());
     topics.insert(topics.end(), part->contents.topics.begin(), part->contents.topics.end());
     damaged += damaged_records(part->contents.nav);
+    for (const std::string& note : part->contents.nav.notes) notes.push_back(fmt::format("{}: {}", name, note));
     parts.push_back(*std::move(part));
   }
   const auto known =
@@ -184,7 +186,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   if (!log) return tl::unexpected(log.error());
   const auto there = check_contents(fields, topics, fmt::format("{}", fmt::join(names, ", ")));
   if (!there) return tl::unexpected(there.error());
-  return NavFiles{*std::move(log), damaged};
+  return NavFiles{*std::move(log), damaged, std::move(notes)};
 }
 
 Result<Water> water_of(const std::optional<WaterAround>& around, double salinity) {
@@ -220,6 +222,7 @@ void add_nav(JsonObject& json, const NavFile& nav) {
       .add("records", nav.records)
       .add("sources", sources)
       .add("skipped", damaged_records(nav));
+  if (!nav.notes.empty()) json.add("notes", fmt::format("{}", fmt::join(nav.notes, "; ")));
 }
 
 namespace {
@@ -263,6 +266,7 @@ std::string nav_text(const NavFile& nav) {
                                     on_one_line(source.name), step_from_s - step_to_s, step_from_s, step_to_s,
                                     counted(late, "sample")));
   }
+  for (const std::string& note : nav.notes) text += report_line("note", note);
   if (damaged_records(nav) > 0) text += report_line("skipped", counted(damaged_records(nav), "damaged record"));
   return text;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "pingvox/io/mavlink.hpp"
 #include "pingvox/io/mavlink_obstacles.hpp"
@@ -28,19 +29,35 @@ ObstacleDistance message_of(const ObstacleSectors& obstacles, const ObstacleOpti
 
 }  // namespace
 
-Result<ObstacleSender> ObstacleSender::open(const std::string& address, const ObstacleOptions& options) {
-  return Link::open(address).map([&](Link link) { return ObstacleSender(std::move(link), options); });
+ObstacleSender::ObstacleSender(const std::string& address, const ObstacleOptions& options)
+    : address_(address), opening_(address), options_(options) {}
+
+void ObstacleSender::open(double now_s) {
+  constexpr double kDelay_s = 5.0;
+  if (!opening_ && now_s < open_at_s_) return;
+  if (!opening_) opening_.emplace(address_);
+  std::optional<Result<Link>> link = opening_->take();
+  if (!link) return;
+  opening_.reset();
+  if (*link) {
+    link_ = *std::move(*link);
+    problem_.clear();
+  } else {
+    problem_ = link->error().message;
+    open_at_s_ = now_s + kDelay_s;
+  }
 }
 
 void ObstacleSender::send(const OccupancyMap& map, const std::optional<Pose>& map_from_body, double now_s) {
   constexpr double kEvery_s = 0.2;
   constexpr std::uint8_t kObstacleAvoidance = 196;  // a component
   due_s_ = now_s + kEvery_s;
-  if (!map_from_body) return;
+  if (!link_) open(now_s);
+  if (!link_ || !map_from_body) return;
   const ObstacleDistance message = message_of(nearest_obstacles(map, *map_from_body, options_), options_);
   const MavlinkSender sender = {.sequence = sequence_++, .component = kObstacleAvoidance};
   // An autopilot that is not there is sent the next one.
-  static_cast<void>(link_.write(make_mavlink_frame(kObstacleDistance, payload_of(message), sender)));
+  static_cast<void>(link_->write(make_mavlink_frame(kObstacleDistance, payload_of(message), sender)));
 }
 
 }  // namespace pingvox::app

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "pingvox/device/link.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -16,17 +15,25 @@ namespace pingvox::app {
 /// Sends the nearest obstacles to an autopilot, five times a second.
 class ObstacleSender {
  public:
-  static Result<ObstacleSender> open(const std::string& address, const ObstacleOptions& options);
+  /// @param address  of a host, which is looked up in the background
+  ObstacleSender(const std::string& address, const ObstacleOptions& options);
 
   double due_s() const { return due_s_; }
 
   /// @param map_from_body  nullopt: not known, and nothing is sent
   void send(const OccupancyMap& map, const std::optional<Pose>& map_from_body, double now_s);
 
- private:
-  ObstacleSender(Link link, const ObstacleOptions& options) : link_(std::move(link)), options_(options) {}
+  /// Why nothing can be sent; empty: as far as known it can.
+  const std::string& problem() const { return problem_; }
 
-  Link link_;
+ private:
+  void open(double now_s);
+
+  std::string address_;
+  std::optional<LinkOpening> opening_;
+  std::optional<Link> link_;
+  std::string problem_;
+  double open_at_s_ = 0.0;  ///< where the last try has failed
   ObstacleOptions options_;
   double due_s_ = 0.0;
   std::uint8_t sequence_ = 0;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "command_files.hpp"
 #include "map_log.hpp"
@@ -159,6 +161,15 @@ OptionTable::Group without(OptionTable::Group group, std::initializer_list<std::
   return group;
 }
 
+/// A pipe or a terminal without a reader would hold the run up, and no map can be renamed into its place. /dev/null is
+/// for those who want none.
+Result<void> check_is_file(const std::string& path) {
+  std::error_code error;
+  if (path == "/dev/null" || !std::filesystem::is_other(std::filesystem::status(path, error))) return {};
+  return usage_error(
+      fmt::format("-o {}: is a pipe or a device: the map is written again and again: name a file", path));
+}
+
 /// What is typed, where it is not in the command as such.
 struct LiveArgs {
   BuildArgs build;
@@ -220,6 +231,7 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
   files.write("--record", typed.record);
   if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
   if (const auto folder = check_folder_of(typed.output); !folder) return tl::unexpected(folder.error());
+  if (const auto file = check_is_file(typed.output); !file) return tl::unexpected(file.error());
   command.made_by = "pingvox " PINGVOX_VERSION " live";
   for (const std::string& word : args) {
     command.made_by += ' ';

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace pingvox::app {
@@ -46,15 +45,14 @@ void ProgressBar::draw(std::optional<double> share, std::string_view text) {
                        std::floor(clamped * 100.0));
   }
   line = on_one_line((line + std::string(text)).substr(0, kWidth));
-  fmt::print(stderr, "\r\x1b[K{}", line);
-  std::fflush(stderr);
+  // Left out where it cannot be written: no work depends on it.
+  write_what_fits(STDERR_FILENO, "\r\x1b[K" + line);
 }
 
 void ProgressBar::clear() {
   if (!drawn_) return;
   drawn_ = false;
-  std::fputs("\r\x1b[K", stderr);
-  std::fflush(stderr);
+  write_what_fits(STDERR_FILENO, "\r\x1b[K");
 }
 
 }  // namespace pingvox::app

@@ -36,6 +36,12 @@ void end_by(int signal) {
   ::kill(::getpid(), signal);
 }
 
+/// As nohup leaves SIGHUP.
+bool is_ignored(int signal) {
+  struct sigaction action = {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 struct StopSignals::Files {
@@ -52,7 +58,9 @@ struct StopSignals::Files {
       signalfd_siginfo signal = {};
       if (::read(signals.get(), &signal, sizeof signal) != sizeof signal) continue;
       // GNU timeout signals a process and then its group: what comes within a second means the same.
-      if (first && Clock::now() - *first >= std::chrono::seconds(1)) end_by(static_cast<int>(signal.ssi_signo));
+      // A terminal that is closed may signal several times, by its shell and by the system: that says nothing new.
+      const bool is_repeated = first && Clock::now() - *first >= std::chrono::seconds(1);
+      if (is_repeated && signal.ssi_signo != SIGHUP) end_by(static_cast<int>(signal.ssi_signo));
       if (!first) first = Clock::now();
       set_event(arrived);
     }
@@ -64,6 +72,7 @@ Result<StopSignals> StopSignals::make() {
   ::sigemptyset(&signals);
   ::sigaddset(&signals, SIGINT);
   ::sigaddset(&signals, SIGTERM);
+  if (!is_ignored(SIGHUP)) ::sigaddset(&signals, SIGHUP);
   auto files = std::make_unique<Files>(Files{Descriptor(::signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC)),
                                              Descriptor(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
                                              Descriptor(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))});

@@ -7,9 +7,9 @@
 
 namespace pingvox::app {
 
-/// SIGINT and SIGTERM as something to wait for, so that a command ends in good order. Another one, at least a second
-/// after the first, ends the process at once, also where the command waits for something else. Threads are started
-/// after it.
+/// SIGINT, SIGTERM, and SIGHUP unless it is ignored (nohup), as something to wait for, so that a command ends in good
+/// order. Another SIGINT or SIGTERM, at least a second after the first signal, ends the process at once, also where the
+/// command waits for something else. Threads are started after it.
 class StopSignals {
  public:
   /// Blocks the signals, and starts a thread that waits for them.

@@ -8,6 +8,8 @@
 #include <iterator>
 #include <utility>
 
+#include "device/read_limit.hpp"
+
 namespace pingvox {
 
 Result<A50Receiver> A50Receiver::make(const std::string& address, std::optional<RecordFile> recorder,
@@ -22,15 +24,14 @@ A50Receiver::A50Receiver(std::string address, std::optional<RecordFile> recorder
     : address_(std::move(address)), recorder_(std::move(recorder)), since_1970_s_(since_1970_s) {}
 
 std::vector<NavSource> A50Receiver::read(double now_s) {
-  // Bounded, so that a sender that never falls silent leaves time for the rest.
-  constexpr int kMaxReads = 64;
   // The DVL reports at least twice a second.
   constexpr double kSilence_s = 5.0;
   std::vector<NavSource> samples;
   if (!link_ && (!open_at_s_ || now_s >= *open_at_s_)) open(now_s);
   std::array<std::uint8_t, 65536> bytes;
-  for (int i = 0; i < kMaxReads && link_; ++i) {
+  for (ReadLimit limit; link_ && limit.allows_more();) {
     const Result<std::size_t> got = link_->read(bytes);
+    limit.count(got.value_or(0));
     if (!got) {
       close(got.error().message, now_s);
     } else if (*got == 0) {
@@ -40,14 +41,18 @@ std::vector<NavSource> A50Receiver::read(double now_s) {
     }
   }
   if (link_ && now_s - heard_s_ > kSilence_s) close(fmt::format("{}: silent", address_), now_s);
-  if (recorder_) recorder_->sync_if_due(now_s);
+  recorder_.sync_if_due(now_s);
+  status_.recording_error = recorder_.error();
   return samples;
 }
 
 void A50Receiver::open(double now_s) {
-  Result<Link> link = Link::open(address_);
-  if (!link) return close(link.error().message, now_s);
-  link_ = std::move(*link);
+  if (!opening_) opening_.emplace(address_);
+  std::optional<Result<Link>> link = opening_->take();
+  if (!link) return;
+  opening_.reset();
+  if (!*link) return close(link->error().message, now_s);
+  link_ = *std::move(*link);
   heard_s_ = now_s;
 }
 
@@ -74,14 +79,8 @@ void A50Receiver::take(std::span<const std::uint8_t> bytes, double now_s, std::v
 }
 
 void A50Receiver::take_line(const std::string& line, double now_s, std::vector<NavSource>& samples) {
-  if (recorder_) {
-    const std::string record = with_timestamp(line, since_1970_s_ + now_s) + "\n";
-    const std::vector<std::uint8_t> bytes(record.begin(), record.end());
-    if (const auto recorded = recorder_->append(bytes); !recorded) {
-      status_.recording_error = recorded.error();
-      recorder_.reset();
-    }
-  }
+  const std::string record = with_timestamp(line, since_1970_s_ + now_s) + "\n";
+  recorder_.append(std::vector<std::uint8_t>(record.begin(), record.end()));
   std::optional<std::vector<NavSource>> said = nav_.add(line, now_s);
   if (!said) {
     ++status_.damaged;

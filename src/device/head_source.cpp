@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "device/read_limit.hpp"
+#include "pingvox/device/guarded_recorder.hpp"
 #include "pingvox/device/link.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/io/frame_finder.hpp"
@@ -16,6 +18,8 @@ namespace pingvox {
 namespace {
 
 constexpr double kFirstDelay_s = 0.5, kMaxDelay_s = 10.0, kRest_s = 0.1;
+/// From one look at a name that is being looked up to the next.
+constexpr double kLookUp_s = 0.05;
 
 /// Properties of a head that HeadSource needs.
 struct Ping360Head {
@@ -57,16 +61,13 @@ class HeadSource final : public LiveSource {
 
   int descriptor() const override { return link_ ? link_->descriptor() : -1; }
 
-  double due_s() const override {
-    const double due_s = link_ ? driver_.due_s() : open_at_s_;
-    return recorder_ ? std::min(due_s, recorder_->sync_due_s()) : due_s;
-  }
+  double due_s() const override { return std::min(link_ ? driver_.due_s() : open_at_s_, recorder_.sync_due_s()); }
 
   Result<bool> step(double now_s, std::vector<Beam>& beams) override {
     if (!link_ && now_s >= open_at_s_) open(now_s);
     if (link_) read(now_s, beams);
     if (link_) send(now_s);
-    if (recorder_) recorder_->sync_if_due(now_s);
+    recorder_.sync_if_due(now_s);
     return true;
   }
 
@@ -82,6 +83,7 @@ class HeadSource final : public LiveSource {
     status.is_connected = link_ && driver_.is_connected();
     status.unanswered = driver_.unanswered();
     status.damaged += damage_count(finder_.damage()) + unusable_;
+    status.recording_error = recorder_.error();
     return status;
   }
 
@@ -89,9 +91,15 @@ class HeadSource final : public LiveSource {
 
  private:
   void open(double now_s) {
-    Result<Link> link = Link::open(address_);
-    if (!link) return close(link.error().message, now_s);
-    link_ = std::move(*link);
+    if (!opening_) opening_.emplace(address_);
+    std::optional<Result<Link>> link = opening_->take();
+    if (!link) {
+      open_at_s_ = now_s + kLookUp_s;
+      return;
+    }
+    opening_.reset();
+    if (!*link) return close(link->error().message, now_s);
+    link_ = *std::move(*link);
     driver_.connect();
   }
 
@@ -103,11 +111,10 @@ class HeadSource final : public LiveSource {
   }
 
   void read(double now_s, std::vector<Beam>& beams) {
-    // Bounded, so that a line that never falls silent leaves time for the rest.
-    constexpr int kMaxReads = 64;
     std::array<std::uint8_t, 65536> bytes;
-    for (int i = 0; i < kMaxReads; ++i) {
+    for (ReadLimit limit; limit.allows_more();) {
       const Result<std::size_t> got = link_->read(bytes);
+      limit.count(got.value_or(0));
       if (!got) return close(got.error().message, now_s);
       if (*got == 0) return;
       take(std::span(bytes).first(*got), now_s, beams);
@@ -123,12 +130,7 @@ class HeadSource final : public LiveSource {
 
   void take(std::span<const std::uint8_t> bytes, double now_s, std::vector<Beam>& beams) {
     const auto time_ms = static_cast<std::uint64_t>((now_s - start_s_) * 1000.0);
-    if (recorder_) {
-      if (const auto recorded = recorder_->append(time_ms, bytes); !recorded) {
-        status_.recording_error = recorded.error();
-        recorder_.reset();
-      }
-    }
+    recorder_.append(time_ms, bytes);
     received_ += bytes.size();
     pieces_.push_back({received_, recorded_time_s(time_ms)});
     finder_.push(bytes);
@@ -154,13 +156,21 @@ class HeadSource final : public LiveSource {
     bool has_frame = false;
     while (const std::optional<FrameFinder::Frame> frame = finder_.next()) {
       has_frame = true;
+      // Before the driver goes on to its next request.
+      const std::optional<std::string> contradiction = driver_.contradiction(frame->bytes);
       const bool was_connected = driver_.is_connected();
       driver_.take(frame->bytes);
       if (driver_.is_connected() && !was_connected) ++status_.connections;
       tl::expected<std::optional<Beam>, std::string> beam = Head::kBeamIn(frame->bytes, time_of(*frame));
       if (beam && !*beam) continue;
       delay_s_ = kFirstDelay_s;
-      beam ? beams.push_back(*std::move(*beam)) : void(++unusable_);
+      if (!beam) {
+        ++unusable_;
+      } else if (contradiction) {
+        if (status_.unexpected++ == 0) status_.first_unexpected = *contradiction;
+      } else {
+        beams.push_back(*std::move(*beam));
+      }
     }
     while (pieces_.size() > 1 && pieces_.front().end <= finder_.position()) pieces_.pop_front();
     return has_frame;
@@ -179,7 +189,8 @@ class HeadSource final : public LiveSource {
 
   std::string address_;
   typename Head::Driver driver_;
-  std::optional<typename Head::Recorder> recorder_;
+  GuardedRecorder<typename Head::Recorder> recorder_;
+  std::optional<LinkOpening> opening_;
   std::optional<Link> link_;
   FrameFinder finder_;
   std::deque<Piece> pieces_;  ///< that unprocessed bytes came with

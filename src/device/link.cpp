@@ -12,9 +12,14 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
 
 namespace pingvox {
 namespace {
@@ -117,22 +122,58 @@ const addrinfo* preferred(const addrinfo* found) {
   return found;
 }
 
+/// "HOST:PORT" of a socket address; empty: it has none.
+std::string text_of(const sockaddr* address, socklen_t size) {
+  std::array<char, NI_MAXHOST> host = {};
+  std::array<char, NI_MAXSERV> port = {};
+  if (::getnameinfo(address, size, host.data(), host.size(), port.data(), port.size(),
+                    NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return {};
+  }
+  const bool is_v6 = address->sa_family == AF_INET6;
+  return fmt::format("{}{}{}:{}", is_v6 ? "[" : "", host.data(), is_v6 ? "]" : "", port.data());
+}
+
 /// "udp://HOST:PORT" of a socket.
 std::string address_of(int socket, std::string_view protocol) {
   sockaddr_storage own = {};
   socklen_t size = sizeof own;
-  std::array<char, NI_MAXHOST> host = {};
-  std::array<char, NI_MAXSERV> port = {};
   auto* address = reinterpret_cast<sockaddr*>(&own);
-  if (::getsockname(socket, address, &size) != 0 || ::getnameinfo(address, size, host.data(), host.size(), port.data(),
-                                                                  port.size(), NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
-    return {};
-  }
-  const bool is_v6 = own.ss_family == AF_INET6;
-  return fmt::format("{}{}{}{}:{}", protocol, is_v6 ? "[" : "", host.data(), is_v6 ? "]" : "", port.data());
+  if (::getsockname(socket, address, &size) != 0) return {};
+  const std::string text = text_of(address, size);
+  return text.empty() ? text : std::string(protocol) + text;
+}
+
+tl::unexpected<Error> look_up_error(const std::string& address, int error) {
+  return fail(Error::Code::kIo, fmt::format("{}: {}", address, ::gai_strerror(error)));
 }
 
 }  // namespace
+
+/// A host's, as far as it is known.
+struct Link::SocketAddress {
+  sockaddr_storage bytes = {};
+  socklen_t size = 0;
+
+  /// Looks a host up, which may take long where it is a name.
+  /// @param socket_type, flags  for getaddrinfo
+  /// @return its error, or 0
+  int look_up(const HostAndPort& parts, int socket_type, int flags) {
+    addrinfo wanted = {};
+    wanted.ai_family = AF_UNSPEC;
+    wanted.ai_socktype = socket_type;
+    wanted.ai_flags = AI_NUMERICSERV | flags;
+    addrinfo* all = nullptr;
+    const char* const host = parts.host.empty() ? nullptr : parts.host.c_str();
+    if (const int error = ::getaddrinfo(host, parts.port.c_str(), &wanted, &all)) return error;
+    const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(all, &::freeaddrinfo);
+    const addrinfo* const found = preferred(all);
+    size = found->ai_addrlen;
+    std::memcpy(&bytes, found->ai_addr, size);
+    return 0;
+  }
+  const sockaddr* address() const { return reinterpret_cast<const sockaddr*>(&bytes); }
+};
 
 Result<Link> Link::open(const std::string& address) {
   if (address.starts_with(kUdp)) return open_socket(address, Kind::kSocket);
@@ -164,19 +205,18 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   if (!parts || (parts->host.empty() && !listens)) {
     return fail(Error::Code::kBadOption, fmt::format("'{}': must be {}HOST:PORT", address, protocol));
   }
-  addrinfo wanted = {};
-  wanted.ai_family = AF_UNSPEC;
-  wanted.ai_socktype = is_stream ? SOCK_STREAM : SOCK_DGRAM;
-  wanted.ai_flags = AI_NUMERICSERV | AI_PASSIVE;
-  addrinfo* all = nullptr;
-  if (const int error =
-          ::getaddrinfo(parts->host.empty() ? nullptr : parts->host.c_str(), parts->port.c_str(), &wanted, &all)) {
-    return fail(Error::Code::kIo, fmt::format("{}: {}", address, ::gai_strerror(error)));
+  SocketAddress host;
+  if (const int error = host.look_up(*parts, is_stream ? SOCK_STREAM : SOCK_DGRAM, AI_PASSIVE)) {
+    return look_up_error(address, error);
   }
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(all, &::freeaddrinfo);
-  const addrinfo* const found = preferred(all);
+  return open_socket_at(host, address, kind);
+}
 
-  Descriptor socket(::socket(found->ai_family, wanted.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+Result<Link> Link::open_socket_at(const SocketAddress& host, const std::string& address, Kind kind) {
+  const bool listens = kind == Kind::kListeningSocket || kind == Kind::kListeningStream;
+  const bool is_stream = kind == Kind::kStream || kind == Kind::kListeningStream;
+  const int type = (is_stream ? SOCK_STREAM : SOCK_DGRAM) | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  Descriptor socket(::socket(host.bytes.ss_family, type, 0));
   if (!socket.valid()) return os_error(address, errno);
   // Room for what comes while a sweep is mapped; the system may allow less.
   constexpr int kBuffer_bytes = 4 << 20;
@@ -186,12 +226,12 @@ Result<Link> Link::open_socket(const std::string& address, Kind kind) {
   if (kind == Kind::kListeningStream) {
     static_cast<void>(::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &kYes, sizeof kYes));
   }
-  const int status = listens ? ::bind(socket.get(), found->ai_addr, found->ai_addrlen)
-                             : ::connect(socket.get(), found->ai_addr, found->ai_addrlen);
+  const int status =
+      listens ? ::bind(socket.get(), host.address(), host.size) : ::connect(socket.get(), host.address(), host.size);
   const bool is_connecting = kind == Kind::kStream && errno == EINPROGRESS;
   if (status != 0 && !is_connecting) return os_error(address, errno);
   if (kind == Kind::kListeningStream && ::listen(socket.get(), 1) != 0) return os_error(address, errno);
-  const std::string own = listens ? address_of(socket.get(), protocol) : address;
+  const std::string own = listens ? address_of(socket.get(), is_stream ? kTcp : kUdp) : address;
   return Link(kind, own, std::move(socket));
 }
 
@@ -218,6 +258,11 @@ Result<Link> Link::open_pseudo_terminal() {
   Link link(Kind::kTerminal, path.data(), std::move(device));
   link.other_end_ = std::move(host);
   return link;
+}
+
+std::string Link::sender_text() const {
+  if (host_.empty()) return {};
+  return text_of(reinterpret_cast<const sockaddr*>(host_.data()), static_cast<socklen_t>(host_.size()));
 }
 
 /// Of the listening TCP end: the next connection waits until this one ends.
@@ -266,6 +311,54 @@ Result<void> Link::write(std::span<const std::uint8_t> bytes) {
   const bool is_full = errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
   if (sent < 0 && !is_full) return os_error(address_, errno);
   return {};
+}
+
+struct LinkOpening::LookUp {
+  std::mutex mutex;
+  bool has_ended = false;
+  int error = 0;
+  Link::SocketAddress host;
+};
+
+LinkOpening::LinkOpening(const std::string& address) : address_(address) {
+  const bool is_stream = address.starts_with(kTcp);
+  if (!is_stream && !address.starts_with(kUdp)) {
+    opened_ = Link::open(address);
+    return;
+  }
+  Result<HostAndPort> parts = remote_in(address, is_stream ? kTcp : kUdp);
+  if (!parts) {
+    opened_ = tl::unexpected(parts.error());
+    return;
+  }
+  const int type = is_stream ? SOCK_STREAM : SOCK_DGRAM;
+  if (Link::SocketAddress host; host.look_up(*parts, type, AI_NUMERICHOST) == 0) {
+    opened_ = Link::open_socket_at(host, address, is_stream ? Link::Kind::kStream : Link::Kind::kSocket);
+    return;
+  }
+  look_up_ = std::make_shared<LookUp>();
+  try {
+    std::thread([look_up = look_up_, parts = *std::move(parts), type] {
+      Link::SocketAddress host;
+      const int error = host.look_up(parts, type, 0);
+      const std::scoped_lock lock(look_up->mutex);
+      look_up->host = host;
+      look_up->error = error;
+      look_up->has_ended = true;
+    }).detach();
+  } catch (const std::system_error& error) {
+    look_up_.reset();
+    opened_ = fail(Error::Code::kIo, fmt::format("{}: no thread to look it up: {}", address, error.what()));
+  }
+}
+
+std::optional<Result<Link>> LinkOpening::take() {
+  if (!look_up_) return std::exchange(opened_, std::nullopt);
+  const std::scoped_lock lock(look_up_->mutex);
+  if (!look_up_->has_ended) return std::nullopt;
+  if (look_up_->error != 0) return look_up_error(address_, look_up_->error);
+  return Link::open_socket_at(look_up_->host, address_,
+                              address_.starts_with(kTcp) ? Link::Kind::kStream : Link::Kind::kSocket);
 }
 
 }  // namespace pingvox

@@ -1,5 +1,7 @@
 #include "pingvox/device/micron_driver.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -8,6 +10,7 @@
 #include "device/micron_command.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 #include "pingvox/option_errors.hpp"
+#include "pingvox/sonar/beam.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {
@@ -22,6 +25,13 @@ std::vector<std::uint8_t> ask(SeanetMessage message) {
 std::vector<std::uint8_t> ask_for_line() {
   // The host's time, which heads do not use.
   return make_seanet_frame(SeanetMessage::kSendData, SeanetSender::kHost, std::array<std::uint8_t, 4>{});
+}
+
+/// A head may go a step beyond the ends, or stand there.
+bool is_in_sector(const MicronSettings::Sector& sector, int step, int bearing) {
+  const auto clockwise = [](int from, int to) { return ((to - from) % kMicronTurn + kMicronTurn) % kMicronTurn; };
+  const int width = clockwise(sector.left, sector.right);
+  return clockwise(sector.left - step, bearing) <= width + 2 * step;
 }
 
 }  // namespace
@@ -93,6 +103,30 @@ void MicronDriver::take(std::span<const std::uint8_t> frame) {
     unanswered_in_a_row_ = 0;
     if (lines_left_ > 0 && --lines_left_ == 0) is_waiting_ = false;
   }
+}
+
+std::optional<std::string> MicronDriver::contradiction(std::span<const std::uint8_t> frame) const {
+  constexpr double kTolerance = 0.1;
+  if (seanet_sender(frame) == SeanetSender::kHost) return std::nullopt;
+  const auto line = seanet_line(frame);
+  if (!line) return std::nullopt;
+  const tl::expected<Beam, std::string> beam = beam_of(*line, 0.0);
+  if (!beam) return std::nullopt;
+  const auto differs = [](double is, double asked) { return std::abs(is - asked) > kTolerance * asked; };
+  const MicronSampling asked = micron_sampling(settings_.range_m);
+  const auto bins = beam->intensities.size();
+  if (differs(static_cast<double>(bins), asked.bins)) {
+    return fmt::format("{} bins where {} were asked for", bins, asked.bins);
+  }
+  const double range_m = static_cast<double>(bins) * beam->bin_length_m;
+  if (differs(range_m, settings_.range_m)) {
+    return fmt::format("a range of {:.4g} m where {:.4g} m were asked for", range_m, settings_.range_m);
+  }
+  if (settings_.sector && !is_in_sector(*settings_.sector, settings_.step, line->bearing)) {
+    return fmt::format("bearing {} where {} to {} was asked for", line->bearing, settings_.sector->left,
+                       settings_.sector->right);
+  }
+  return std::nullopt;
 }
 
 void MicronDriver::expect_rest(double until_s) {

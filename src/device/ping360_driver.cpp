@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "device/ping_fields.hpp"
 #include "pingvox/io/ping_frame.hpp"
@@ -15,6 +17,8 @@
 
 namespace pingvox {
 namespace {
+
+constexpr std::uint16_t kFrequency_khz = 750;
 
 /// What a head says of a message that it refuses: the message's number, then text.
 std::string text_of_nack(std::span<const std::uint8_t> payload) {
@@ -96,6 +100,30 @@ void Ping360Driver::take(std::span<const std::uint8_t> frame) {
   }
 }
 
+std::optional<std::string> Ping360Driver::contradiction(std::span<const std::uint8_t> frame) const {
+  const std::optional<Ping360Ping> ping = ping360_ping(frame);
+  if (!ping) return std::nullopt;
+  if (ping_message(frame) != PingMessage::kDeviceData) return "a ping that another host asked for";
+  if (ping->angle_grad != asked_grad_ && ping->angle_grad != asked_before_grad_) {
+    return asked_grad_ ? fmt::format("angle {} where {} was asked for", ping->angle_grad, *asked_grad_)
+                       : std::string("a ping that was not asked for");
+  }
+  struct Value {
+    std::string_view name;
+    std::size_t is, asked;
+  };
+  for (const Value& value : {Value{"gain", ping->gain, static_cast<std::size_t>(settings_.gain)},
+                             Value{"sample_period", ping->period_25ns, sampling_.period_25ns},
+                             Value{"transmit_frequency", ping->frequency_khz, kFrequency_khz},
+                             Value{"number_of_samples", ping->samples, sampling_.samples},
+                             Value{"data_length", ping->data.size(), sampling_.samples}}) {
+    if (value.is != value.asked) {
+      return fmt::format("{} {} where {} was asked for", value.name, value.is, value.asked);
+    }
+  }
+  return std::nullopt;
+}
+
 void Ping360Driver::expect_rest(double until_s) {
   rest_until_s_ = until_s;
 }
@@ -109,7 +137,10 @@ std::optional<std::vector<std::uint8_t>> Ping360Driver::message(double now_s) {
   is_waiting_ = true;
   deadline_s_ = now_s + settings_.timeout_s;
   rest_until_s_ = std::numeric_limits<double>::infinity();
-  if (is_known_) return ping();
+  if (is_known_) {
+    if (asked_grad_ != angle_grad_) asked_before_grad_ = std::exchange(asked_grad_, angle_grad_);
+    return ping();
+  }
   std::vector<std::uint8_t> wanted;
   put_u16(wanted, static_cast<std::uint16_t>(PingMessage::kDeviceInformation));
   // Another host may have left the head scanning (auto_transmit), which only this ends.
@@ -138,7 +169,6 @@ void Ping360Driver::turn() {
 
 std::vector<std::uint8_t> Ping360Driver::ping() const {
   constexpr std::uint8_t kMode = 1;
-  constexpr std::uint16_t kFrequency_khz = 750;
   std::vector<std::uint8_t> payload = {kMode, static_cast<std::uint8_t>(settings_.gain)};
   put_u16(payload, static_cast<std::uint16_t>(angle_grad_));
   put_u16(payload, sampling_.transmit_us);

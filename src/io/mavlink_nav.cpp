@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -15,6 +16,9 @@ namespace pingvox {
 namespace {
 
 using Report = MavlinkNav::Report;
+
+/// Messages that `Message::read` knows.
+constexpr std::array<std::uint32_t, 14> kConverted = {24, 29, 30, 31, 32, 33, 74, 102, 132, 137, 143, 178, 232, 11011};
 
 /// Fields of a payload, by their offset.
 class Fields {
@@ -178,6 +182,15 @@ class Message {
 };
 
 }  // namespace
+
+bool MavlinkNav::is_ground_station(const MavlinkFrame& frame) {
+  constexpr std::uint8_t kFirst = 250;
+  return frame.system >= kFirst;
+}
+
+bool MavlinkNav::is_of_vehicle(const MavlinkFrame& frame) {
+  return !is_ground_station(frame) && std::ranges::find(kConverted, frame.message) != kConverted.end();
+}
 
 std::vector<Report> MavlinkNav::add(const MavlinkFrame& frame, double received_s) {
   return Message(frame, received_s, clocks_[{frame.system, frame.component}]).take();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pingvox/io/nav.hpp"
@@ -15,6 +16,7 @@ struct NavReading {
   NavClock clock = NavClock::kUnknown;
   std::size_t records = 0;
   std::vector<DamageKind> damage;  ///< in the order in which the kinds were met
+  std::vector<std::string> notes;  ///< as those of NavFile
 };
 
 bool looks_like_tlog(std::span<const std::uint8_t> bytes);

@@ -2,11 +2,24 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 
 namespace pingvox {
+namespace {
+
+/// The name of a new file is part of its folder, which the system would write some seconds later. File systems without
+/// this are no error.
+void sync_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.valid()) static_cast<void>(::fsync(opened.get()));
+}
+
+}  // namespace
 
 double recorded_time_s(std::uint64_t time_ms) {
   // Added as readers do, to the last bit.
@@ -23,6 +36,7 @@ Result<RecordFile> RecordFile::create(const std::string& path) {
     return fail(Error::Code::kIo, fmt::format("{}: exists, and a recording is never overwritten", path));
   }
   if (!file.valid()) return os_error(path, errno);
+  sync_folder_of(path);
   return RecordFile(path, std::move(file));
 }
 
@@ -42,12 +56,25 @@ Result<void> RecordFile::append(std::span<const std::uint8_t> record) {
   return {};
 }
 
-void RecordFile::sync_if_due(double now_s) {
+Result<void> RecordFile::sync_if_due(double now_s) {
   constexpr double kInterval_s = 1.0;
-  if (now_s < sync_due_s_) return;
+  if (now_s < sync_due_s_) return {};
   sync_due_s_ = now_s + kInterval_s;
   // It may fail where the file is not on a disk; the operating system writes everything in time anyway.
   static_cast<void>(::sync_file_range(file_.get(), 0, 0, SYNC_FILE_RANGE_WRITE));
+  return check_place();
+}
+
+Result<void> RecordFile::check_place() const {
+  struct stat open = {}, named = {};
+  if (::fstat(file_.get(), &open) != 0) return os_error(path_, errno);
+  if (open.st_nlink == 0) {
+    return fail(Error::Code::kIo, fmt::format("{}: was removed: the recording is lost", path_));
+  }
+  const bool is_there =
+      ::stat(path_.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+  if (is_there) return {};
+  return fail(Error::Code::kIo, fmt::format("{}: was moved or replaced: the recording goes on where it is now", path_));
 }
 
 }  // namespace pingvox

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -16,6 +17,29 @@ namespace {
 double farthest_corner_m(const Lattice& lattice, const WideKey& key, const Eigen::Vector3d& from_m) {
   const double half_m = 0.5 * lattice.resolution_m();
   return ((lattice.centre_of(key) - from_m).cwiseAbs().array() + half_m).matrix().norm();
+}
+
+double range_of(const EchoBeam& beam) {
+  return static_cast<double>(beam.bins) * beam.bin_length_m;
+}
+
+double freed_range_m(const EchoBeam& beam) {
+  return beam.echo ? beam.echo->range_m : range_of(beam);
+}
+
+/// Ranges beyond are out of all proportion to the others of the sweep: those of damaged numbers. Infinity: all are
+/// plausible, as those after the range was set anew.
+double longest_range_m(std::span<const EchoBeam> beams) {
+  constexpr double kPlausible = 10.0, kNone = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kFewBeams = 10;
+  if (beams.size() < kFewBeams) return kNone;
+  std::vector<double> ranges_m;
+  std::ranges::transform(beams, std::back_inserter(ranges_m), range_of);
+  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
+  std::ranges::nth_element(ranges_m, middle);
+  const double longest_m = kPlausible * *middle;
+  const auto beyond = std::ranges::count_if(ranges_m, [&](double range_m) { return range_m > longest_m; });
+  return static_cast<std::size_t>(beyond) * kFewBeams <= beams.size() ? longest_m : kNone;
 }
 
 }  // namespace
@@ -61,7 +85,7 @@ Result<void> EchoMapper::add(const EchoBeams& heard, std::span<const std::option
     if (report.no_pose.count == no_pose_before_) report.sweeps += heard.ended_sweeps;
     no_pose_before_ = report.no_pose.count;
   }
-  report.skipped = report.no_pose.count + report.outside.count + report.blocked.count;
+  report.skipped = report.no_pose.count + report.outside.count + report.blocked.count + report.too_long.count;
   return {};
 }
 
@@ -76,6 +100,7 @@ Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<c
   Placed placed;
   placed.beams.reserve(heard.beams.size());
   placed.heard.reserve(heard.beams.size());
+  const double longest_m = longest_range_m(heard.beams);
   for (std::size_t n = 0; n < heard.beams.size(); ++n) {
     const EchoBeam& one = heard.beams[n];
     if (!map_from_body[n]) {
@@ -88,7 +113,14 @@ Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<c
       report.blocked.add(one.time_s);
       continue;
     }
-    if (const auto fits = check_size(one); !fits) return tl::unexpected(fits.error());
+    if (range_of(one) > longest_m || cells_of(one) > kMaxCellsInBeam) {
+      report.too_long.add(one.time_s);
+      // One damaged number costs its beam; where no beam fits, the map is at fault.
+      constexpr std::size_t kFew = 20;
+      const bool fits_none = report.beams == 0 && placed.beams.empty() && report.too_long.count > kFew;
+      if (fits_none) return too_many_cells(one);
+      continue;
+    }
     placed.beams.push_back(beam);
     placed.heard.push_back(&one);
   }
@@ -116,17 +148,18 @@ bool EchoMapper::is_blocked(const PlacedBeam& beam) const {
   return end.what == Occupancy::kOccupied && farthest_corner_m(map_->lattice(), end.key, origin_m) <= blanking_m;
 }
 
-/// Refuses cells so small that a single beam would take all memory.
-Result<void> EchoMapper::check_size(const EchoBeam& beam) const {
-  const double range_m = beam.echo ? beam.echo->range_m : static_cast<double>(beam.bins) * beam.bin_length_m;
-  const double resolution_m = map_->lattice().resolution_m();
-  const double cells = cells_in_beam(options_.model, std::min(range_m, options_.echo.max_range_m), resolution_m);
-  if (cells <= kMaxCellsInBeam) return {};
+/// Number of cells that a beam would free.
+double EchoMapper::cells_of(const EchoBeam& beam) const {
+  return cells_in_beam(options_.model, std::min(freed_range_m(beam), options_.echo.max_range_m),
+                       map_->lattice().resolution_m());
+}
+
+tl::unexpected<Error> EchoMapper::too_many_cells(const EchoBeam& beam) const {
   return fail(
       Error::Code::kLimit,
       fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
                   "a shorter maximum range or a thinner beam would do",
-                  range_m, beam.time_s, cells, resolution_m, kMaxCellsInBeam));
+                  freed_range_m(beam), beam.time_s, cells_of(beam), map_->lattice().resolution_m(), kMaxCellsInBeam));
 }
 
 /// All beams in one scan.

@@ -44,7 +44,8 @@ class EchoMapper {
   EchoMapper(const BuildOptions& options, OccupancyMap& map);
 
   /// @param map_from_body  of each beam; nullopt: not known, and the beam is left out and counted
-  /// @return kLimit when the map or a beam would grow too large; the map keeps what it had got. Throws std::bad_alloc.
+  /// @return kLimit when the map would grow too large, or each of the first beams; the map keeps what it had got.
+  /// Throws std::bad_alloc.
   Result<void> add(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body, BuildReport& report);
 
   /// After an error: the next beam begins a sweep.
@@ -61,7 +62,8 @@ class EchoMapper {
   Result<Placed> place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
                        BuildReport& report) const;
   bool is_blocked(const PlacedBeam& beam) const;
-  Result<void> check_size(const EchoBeam& beam) const;
+  double cells_of(const EchoBeam& beam) const;
+  tl::unexpected<Error> too_many_cells(const EchoBeam& beam) const;
   Result<void> map_as_one_scan(const Placed& placed, BuildReport& report);
   Result<void> map_one_by_one(const Placed& placed, BuildReport& report);
   Result<void> apply(BuildReport& report);

@@ -76,6 +76,8 @@ pid_t Workplace::start(const std::vector<std::string>& words, const Streams& str
     const rlimit limit{*streams.file_bytes, *streams.file_bytes};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(125);
   }
+  // The tests themselves may run under nohup.
+  std::signal(SIGHUP, streams.ignores_hangup ? SIG_IGN : SIG_DFL);
   if (::chdir(folder_.c_str()) != 0) ::_exit(125);
   ::execv(argv.front(), argv.data());
   ::_exit(126);

@@ -23,6 +23,7 @@ struct Streams {
   bool out_is_broken_pipe = false;                       ///< standard output is a pipe that nobody reads
   bool out_is_closed = false;                            ///< there is no standard output
   std::optional<std::size_t> file_bytes = std::nullopt;  ///< no file may grow beyond
+  bool ignores_hangup = false;                           ///< as under nohup
 };
 
 /// A folder of its own for one test, in which the program is called. Gone when the test is over.

@@ -39,6 +39,21 @@ class Head {
   std::string address_;
 };
 
+/// A named pipe that is full and that nobody reads.
+class FullPipe {
+ public:
+  explicit FullPipe(const std::string& path);
+  FullPipe(const FullPipe&) = delete;
+  FullPipe& operator=(const FullPipe&) = delete;
+  ~FullPipe();
+
+ private:
+  int file_;
+};
+
+/// Exit status of a program, or 128 + signal; one that does not end within a minute is killed.
+int status_in_time(pid_t child);
+
 /// A `live` with a small and quick picture: 20 beams a turn.
 std::vector<std::string> live(const std::string& device, std::vector<std::string> options);
 

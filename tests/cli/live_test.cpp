@@ -95,8 +95,8 @@ TEST(Live, ASecondSignalRightAfterTheFirstSaysTheSame) {
 TEST(Live, ALaterSignalEndsAtOnce) {
   const Head head;
   const Workplace here;
-  ASSERT_EQ(::mkfifo(here.path("live.bt").c_str(), 0600), 0);  // that nobody reads: the map is never written
-  const pid_t child = here.start(live(head.address(), {"--quiet"}));
+  const FullPipe status(here.path("status"));  // for whose reader the last object waits
+  const pid_t child = here.start(live(head.address(), {"--quiet", "--json"}), {.out_path = here.path("status")});
   EXPECT_TRUE(wait_until([&] { return here.has("dive.bin") && here.read("dive.bin").size() > 40'000; }));
   int status = 0;
   EXPECT_TRUE(wait_until([&] {

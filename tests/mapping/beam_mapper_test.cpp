@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "pingvox/analysis/compare.hpp"
@@ -224,6 +227,58 @@ TEST(BeamMapper, CountsTheSweepAfterAnError) {
   ASSERT_LT(last_refused, 450U);
   EXPECT_EQ(mapper->report().no_pose.count, 10U);
   EXPECT_EQ(mapper->report().sweeps, 1 + (beams.size() - last_refused - 2) / 200);
+}
+
+// One damaged number ended the run, or freed the world up to the horizon.
+TEST(BeamMapper, ABeamOutOfAllProportionCostsThatBeam) {
+  const BuildOptions options = options_of(BeamShape::kRay, Vote::kPerSweep);
+  std::vector<Beam> beams = room(450);
+  std::vector<std::optional<Pose>> poses(beams.size(), Pose::Identity());
+  beams[260].bin_length_m *= 50.0;
+  beams[300].bin_length_m *= 50.0;
+  const auto mapped = [&](const auto& poses_of_beams) {
+    OccupancyMap map;
+    auto mapper = BeamMapper::make(options, map);
+    EXPECT_TRUE(mapper);
+    for (std::size_t i = 0; i < beams.size(); ++i) EXPECT_TRUE(mapper->add(beams[i], poses_of_beams[i]));
+    EXPECT_TRUE(mapper->finish());
+    return std::pair(std::move(map), mapper->report());
+  };
+  const auto [map, report] = mapped(poses);
+  EXPECT_EQ(report.too_long.count, 2U);
+  EXPECT_EQ(report.too_long.first_s, beams[260].time_s);
+  EXPECT_EQ(report.beams, 448U);
+  EXPECT_EQ(report.skipped, 2U);
+  poses[260].reset();
+  poses[300].reset();
+  expect_same(map, mapped(poses).first);
+}
+
+TEST(BeamMapper, ABeamOfTooManyCellsCostsThatBeamAlsoOneByOne) {
+  BuildOptions options = options_of(BeamShape::kCone, Vote::kPerBeam);
+  options.timing = Timing::kByBeam;
+  options.echo.max_range_m = 10'000.0;
+  std::vector<Beam> beams = room(450);
+  for (const std::size_t i : {0U, 100U, 101U, 260U}) beams[i].bin_length_m *= 500.0;
+  OccupancyMap map;
+  auto mapper = BeamMapper::make(options, map);
+  ASSERT_TRUE(mapper);
+  add_all(*mapper, beams);
+  EXPECT_EQ(mapper->report().too_long.count, 4U);
+  EXPECT_EQ(mapper->report().beams, 446U);
+}
+
+// Kills a range that is set anew and is taken for a fault.
+TEST(BeamMapper, ALongerRangeFromNowOnIsNoFault) {
+  const BuildOptions options = options_of(BeamShape::kRay, Vote::kPerSweep);
+  std::vector<Beam> beams = room(1000);
+  for (std::size_t i = 300; i < beams.size(); ++i) beams[i].bin_length_m *= 12.0;
+  OccupancyMap map;
+  auto mapper = BeamMapper::make(options, map);
+  ASSERT_TRUE(mapper);
+  add_all(*mapper, beams);
+  EXPECT_EQ(mapper->report().too_long.count, 0U);
+  EXPECT_EQ(mapper->report().beams, 1000U);
 }
 
 TEST(BeamMapper, RefusesOneUpdatePerSweepFromSingleBeams) {

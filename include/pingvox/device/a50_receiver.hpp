@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pingvox/device/guarded_recorder.hpp"
 #include "pingvox/device/link.hpp"
 #include "pingvox/io/a50_nav.hpp"
 #include "pingvox/io/record_file.hpp"
@@ -24,7 +25,7 @@ class A50Receiver {
     std::string problem;                   ///< why it is not connected, or not any more
     std::size_t reports = 0;               ///< whole lines of JSON, of all kinds
     std::size_t damaged = 0;               ///< other lines
-    std::optional<Error> recording_error;  ///< why the recording ended; the navigation goes on
+    std::optional<Error> recording_error;  ///< what is wrong with the recording; the navigation goes on
   };
 
   /// @param address       "tcp://HOST:PORT"
@@ -53,8 +54,9 @@ class A50Receiver {
 
   static constexpr double kFirstDelay_s = 0.5;
   std::string address_;
-  std::optional<RecordFile> recorder_;
+  GuardedRecorder<RecordFile> recorder_;
   double since_1970_s_;
+  std::optional<LinkOpening> opening_;
   std::optional<Link> link_;
   std::string line_;  ///< the part that has arrived
   A50Nav nav_;

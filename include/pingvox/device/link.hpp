@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,7 +14,8 @@
 
 namespace pingvox {
 
-/// A connection to a device, or the end of the device. Only opening it may block, to look up a host's name.
+/// A connection to a device, or the end of the device. Only opening it may block, to look up a host's name; see
+/// LinkOpening.
 class Link {
  public:
   /// Opens the host's end.
@@ -30,6 +33,10 @@ class Link {
 
   /// Address to open the other end: with the port that was chosen, or the path of the terminal.
   const std::string& address() const { return address_; }
+  /// Of a listening UDP end: socket address of the last datagram's sender; empty: nothing came so far.
+  const std::vector<std::uint8_t>& sender() const { return host_; }
+  /// The same as "192.168.2.2:14550".
+  std::string sender_text() const;
   /// For poll().
   int descriptor() const {
     return kind_ == Kind::kListeningStream && other_end_.valid() ? other_end_.get() : file_.get();
@@ -43,10 +50,13 @@ class Link {
   Result<void> write(std::span<const std::uint8_t> bytes);
 
  private:
+  friend class LinkOpening;
+  struct SocketAddress;
   enum class Kind { kSocket, kListeningSocket, kStream, kListeningStream, kTerminal };
   Link(Kind kind, std::string address, Descriptor file)
       : kind_(kind), address_(std::move(address)), file_(std::move(file)) {}
   static Result<Link> open_socket(const std::string& address, Kind kind);
+  static Result<Link> open_socket_at(const SocketAddress& host, const std::string& address, Kind kind);
   static Result<Link> open_serial_port(const std::string& address);
   static Result<Link> open_pseudo_terminal();
   Result<std::size_t> read_connection(std::span<std::uint8_t> to);
@@ -57,6 +67,24 @@ class Link {
   /// Of a pseudo terminal, which hangs up when nobody has it open; of a listening TCP end the connection.
   Descriptor other_end_{-1};
   std::vector<std::uint8_t> host_ = {};  ///< socket address of the last datagram's sender
+};
+
+/// Opens the host's end of a connection without waiting for a name server: a host's name is looked up by a thread of
+/// its own, which outlives this value where no server answers.
+class LinkOpening {
+ public:
+  /// Begins to open what `Link::open` opens.
+  explicit LinkOpening(const std::string& address);
+
+  /// What `Link::open` returns, once; nullopt: the name is still being looked up.
+  std::optional<Result<Link>> take();
+
+ private:
+  struct LookUp;
+
+  std::string address_;
+  std::optional<Result<Link>> opened_;  ///< of an address without a name
+  std::shared_ptr<LookUp> look_up_;     ///< shared with its thread; nullptr: none
 };
 
 }  // namespace pingvox

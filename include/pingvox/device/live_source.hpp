@@ -19,11 +19,14 @@ namespace pingvox {
 /// State of a live source.
 struct LiveStatus {
   bool is_connected = false;
-  std::size_t connections = 0;           ///< how often it was connected
-  std::string problem;                   ///< why it is not connected, or not any more
-  std::size_t unanswered = 0;            ///< requests without an answer
-  std::size_t damaged = 0;               ///< damaged frames, and runs of bytes between frames
-  std::optional<Error> recording_error;  ///< why the recording ended; the beams go on
+  std::size_t connections = 0;  ///< how often it was connected
+  std::string problem;          ///< why it is not connected, or not any more
+  std::size_t unanswered = 0;   ///< requests without an answer
+  std::size_t damaged = 0;      ///< damaged frames, and runs of bytes between frames
+  /// Beams that do not fit the request that they answer, as of another range: they are recorded and left out.
+  std::size_t unexpected = 0;
+  std::string first_unexpected;          ///< why the first one does not fit
+  std::optional<Error> recording_error;  ///< what is wrong with the recording; the beams go on
 };
 
 /// A non-blocking source of beams: the caller polls it. It has no clock of its own.
@@ -48,7 +51,7 @@ class LiveSource {
 
 /// A Ping360 at a line that `Link::open` opens. A line that fails or falls silent is opened again after half a second,
 /// then at growing intervals up to ten seconds. Bytes are recorded before they are parsed; reading the recording gives
-/// the same beams, with times from its date on where it has one.
+/// the same beams and those that did not fit their requests, with times from its date on where it has one.
 /// REQUIRES valid settings.
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pingvox/device/guarded_recorder.hpp"
 #include "pingvox/device/link.hpp"
 #include "pingvox/io/mavlink_nav.hpp"
 #include "pingvox/io/tlog_recorder.hpp"
@@ -14,17 +16,25 @@
 
 namespace pingvox {
 
-/// Navigation that a vehicle sends by MAVLink to this host over UDP, as to a ground station. It never blocks and
-/// has no clock of its own: the caller polls it, at least once a second. Bytes are recorded before they are parsed.
+/// Navigation that a vehicle sends by MAVLink to this host over UDP, as to a ground station. Anybody may send to the
+/// port, and most vehicles are system 1. So the first sender that tells of navigation is followed, by its address and
+/// system; what others tell is neither read nor recorded, but for ground stations at the same address (a router's).
+/// After five seconds without navigation from it, a sender that was not heard beside it is followed in its place, as an
+/// autopilot that was started anew at another port. It never blocks and has no clock of its own: the caller polls it,
+/// at least once a second. Bytes are recorded before they are parsed.
 class MavlinkReceiver {
  public:
   struct Status {
-    std::size_t frames = 0;                ///< whose checksum is right
+    std::size_t frames = 0;                ///< whose checksum is right, of the vehicle that is followed
     std::size_t damaged = 0;               ///< datagrams with other bytes
-    std::optional<Error> recording_error;  ///< why the recording ended; the navigation goes on
+    std::string vehicle;                   ///< who is followed, as "192.168.2.2:14550 (system 1)"; empty: nobody yet
+    std::size_t vehicles = 0;              ///< that were followed, one after the other
+    std::size_t ignored = 0;               ///< frames of others
+    std::vector<std::string> others;       ///< who they are: the first ones that tell of navigation
+    std::optional<Error> recording_error;  ///< what is wrong with the recording; the navigation goes on
   };
 
-  /// @param address        "udp://:PORT" or "udp://ADDRESS:PORT", of this host
+  /// @param address        "udp://:PORT" at all addresses of this host, or "udp://ADDRESS:PORT" at one of them
   /// @param since_1970_s   time of the recording at 0 of the clock of now_s
   /// @return kBadOption for another address, kIo when it cannot be opened
   static Result<MavlinkReceiver> listen(const std::string& address, std::optional<TlogRecorder> recorder,
@@ -45,13 +55,24 @@ class MavlinkReceiver {
  private:
   MavlinkReceiver(Link link, std::optional<TlogRecorder> recorder, double since_1970_s)
       : link_(std::move(link)), recorder_(std::move(recorder)), since_1970_s_(since_1970_s) {}
+  /// One of those that send.
+  struct Sender {
+    std::vector<std::uint8_t> address;
+    std::uint8_t system = 0;
+    double first_s = 0.0, last_s = 0.0;  ///< when it told of navigation
+  };
+
   void take(std::span<const std::uint8_t> datagram, double now_s, std::vector<MavlinkNav::Report>& reports);
-  void record(std::span<const std::uint8_t> frame, double now_s);
+  bool is_followed(const MavlinkFrame& frame, double now_s);
+  Sender* other(const MavlinkFrame& frame, double now_s);
+  std::string sender_text(std::uint8_t system) const;
 
   Link link_;
-  std::optional<TlogRecorder> recorder_;
+  GuardedRecorder<TlogRecorder> recorder_;
   double since_1970_s_;
   MavlinkNav nav_;
+  std::optional<Sender> vehicle_;
+  std::vector<Sender> others_;  ///< that told of navigation and are not followed
   Status status_;
 };
 

@@ -51,6 +51,9 @@ class MicronDriver {
 
   /// Begins the dialogue on a new connection.
   void connect();
+  /// Why a valid frame of the SeaNet protocol is a line that is not as it was asked for, with the two values that
+  /// differ; nullopt: it is, or no line at all. Range and number of bins may be a tenth off: heads round them.
+  std::optional<std::string> contradiction(std::span<const std::uint8_t> frame) const;
   /// Takes a valid frame of the SeaNet protocol from the line.
   void take(std::span<const std::uint8_t> frame);
   /// Of an answer that has begun: what is missing comes by then, or was lost.

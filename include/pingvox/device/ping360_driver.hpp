@@ -52,6 +52,9 @@ class Ping360Driver {
 
   /// Begins the dialogue on a new line; the head goes on turning from where it was.
   void connect();
+  /// Why a valid frame of the Ping protocol is a ping that was not asked for, or is not as it was asked for, with the
+  /// two values that differ; nullopt: it is, or no ping at all. An answer to the request before the last may be late.
+  std::optional<std::string> contradiction(std::span<const std::uint8_t> frame) const;
   /// Takes a valid frame of the Ping protocol from the line.
   void take(std::span<const std::uint8_t> frame);
   /// Of an answer that has begun: what is missing comes by then, or was lost.
@@ -82,8 +85,9 @@ class Ping360Driver {
   Ping360Settings settings_;
   Ping360Sampling sampling_;
   int angle_grad_;
-  int place_grad_ = 0;  ///< in the sector
-  int sense_ = 1;       ///< of turning in the sector: 1 clockwise, -1 counter-clockwise
+  std::optional<int> asked_grad_, asked_before_grad_;  ///< angles of the last request for a ping and of the one before
+  int place_grad_ = 0;                                 ///< in the sector
+  int sense_ = 1;                                      ///< of turning in the sector: 1 clockwise, -1 counter-clockwise
   bool is_known_ = false, is_waiting_ = false;
   double deadline_s_ = 0.0;
   double rest_until_s_ = 0.0;  ///< for the rest of an answer that has begun

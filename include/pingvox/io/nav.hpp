@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include "pingvox/io/beams.hpp"
@@ -16,8 +17,9 @@ namespace pingvox {
 /// Contents of a navigation log.
 struct NavFile {
   NavLog log;
-  std::size_t records = 0;         ///< frames, records or lines that were read, with or without navigation
-  std::vector<DamageKind> damage;  ///< in the order in which the kinds were met
+  std::size_t records = 0;              ///< frames, records or lines that were read, with or without navigation
+  std::vector<DamageKind> damage;       ///< in the order in which the kinds were met
+  std::vector<std::string> notes = {};  ///< what was left out though it is not damaged: what other vehicles sent
 };
 
 /// Reads any navigation log; the format is recognised by content. Units and frames are converted to those

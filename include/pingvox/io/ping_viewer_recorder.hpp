@@ -25,7 +25,7 @@ class PingViewerRecorder {
   Result<void> append(std::uint64_t time_ms, std::span<const std::uint8_t> bytes);
 
   /// As those of RecordFile.
-  void sync_if_due(double now_s) { file_.sync_if_due(now_s); }
+  Result<void> sync_if_due(double now_s) { return file_.sync_if_due(now_s); }
   double sync_due_s() const { return file_.sync_due_s(); }
 
  private:

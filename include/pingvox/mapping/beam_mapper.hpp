@@ -32,7 +32,8 @@ class BeamMapper {
   /// Takes the next beam, which must be valid, and maps those that are due.
   /// @param map_from_body  pose of the vehicle at its time; nullopt: not known. Such a beam is left out and
   ///        counted, but still used for the echoes of its neighbours.
-  /// @return kLimit when the map or a beam would grow too large, kNoMemory when memory ran out. The map keeps the
+  /// @return kLimit when the map would grow too large, or each of the first beams, kNoMemory when memory ran out. The
+  /// map keeps the
   ///         beams before; the waiting ones are lost, and the next one begins a new sweep.
   Result<void> add(Beam beam, const std::optional<Pose>& map_from_body);
 

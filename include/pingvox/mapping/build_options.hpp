@@ -56,10 +56,11 @@ struct BuildReport {
   std::size_t beams = 0;    ///< mapped, those of incomplete sweeps included
   std::size_t sweeps = 0;   ///< complete ones whose beams were all mapped (or point scans)
   std::size_t echoes = 0;   ///< within max_range_m; of point scans all points
-  std::size_t skipped = 0;  ///< damaged, without a pose, blocked, or outside
+  std::size_t skipped = 0;  ///< damaged, without a pose, blocked, too long, or outside
   LeftOut no_pose;          ///< of those skipped, those at times without a pose
   LeftOut blocked;          ///< of those skipped, those with an obstacle of the map nearer than the blanking range
-  LeftOut outside;          ///< of those skipped, those that are partly outside of the lattice
+  LeftOut too_long;  ///< of those skipped, those of ten times the usual range of their sweep, or of too many cells
+  LeftOut outside;   ///< of those skipped, those that are partly outside of the lattice; they count as mapped too
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
   std::optional<double> first_s, last_s;            ///< least and greatest time of a beam, mapped or not
   std::uint64_t cells_freed = 0, cells_hit = 0;     ///< cell updates, summed over scans
