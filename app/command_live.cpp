@@ -59,10 +59,9 @@ class LiveRun {
       if (!goes_on) note(goes_on.error());
       has_ended = !goes_on || !*goes_on;
       if (nav_) {
-        if (const auto read = nav_->step(watch.seconds()); !read) {
-          note(read.error());
-          has_ended = true;
-        }
+        // The recording of the sonar goes on.
+        const auto read = nav_->step(watch.seconds());
+        if (!read && !std::exchange(was_nav_error_reported_, true)) note(read.error());
       }
       queue_arrived(watch.seconds());
       map_some(watch);
@@ -255,6 +254,7 @@ class LiveRun {
                       device.name(), status.vehicle));
     }
     last.vehicles = status.vehicles;
+    last.others = std::min(last.others, status.others.size());
     for (; last.others < status.others.size(); ++last.others) {
       bar_.clear();
       console_.say(
@@ -412,6 +412,7 @@ class LiveRun {
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_reported_ = false, was_unexpected_reported_ = false;
+  bool was_nav_error_reported_ = false;
   bool were_sources_reported_ = false, was_silence_reported_ = false, has_no_pose_ = false;
   std::optional<double> last_beam_s_;  ///< when it arrived
   std::string last_problem_, last_obstacle_problem_;

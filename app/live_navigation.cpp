@@ -123,10 +123,11 @@ std::size_t Navigation::damaged() const {
 
 Result<void> Navigation::step(double now_s) {
   now_s_ = now_s - start_s_;
+  Result<void> all;
   for (NavDevice& device : devices_) {
-    if (const auto read = device.read(now_s_, poses_); !read) return read;
+    if (auto read = device.read(now_s_, poses_); !read && all) all = std::move(read);
   }
-  return {};
+  return all;
 }
 
 bool Navigation::may_come(double beam_s) const {

@@ -79,7 +79,7 @@ class Navigation {
   std::size_t damaged() const;
   const LivePoses& poses() const { return poses_; }
 
-  /// Reads what has arrived at all devices.
+  /// Reads what has arrived at all devices. @return the first error, after which it may be called again
   Result<void> step(double now_s);
 
   /// On the beams' clock.

@@ -273,8 +273,8 @@ Result<Command> live_command(const Args& args) {
   OptionTable table{
       "live",
       "Maps with a scanning sonar while it runs: drives the head, records its bytes, and writes the map periodically.\n"
-      "SIGINT (Ctrl-C) or SIGTERM finish the recording and the map; another one, at least a second later,\n"
-      "ends at once.",
+      "SIGINT (Ctrl-C), SIGTERM or a closed terminal (SIGHUP) finish the recording and the map; another SIGINT or\n"
+      "SIGTERM, at least a second later, ends at once.",
       {{"DEVICE", Positional::Count::kOne,
         "ping360:udp://HOST:PORT, ping360:/dev/ttyUSB0[@BAUD], micron:/dev/ttyUSB0[@BAUD], micron:tcp://HOST:PORT or "
         "micron:udp://HOST:PORT (a SeaNet head: Micron, MiniKing), or replay:FILE[@SPEED], a log at the pace of its "
@@ -309,8 +309,10 @@ Result<Command> live_command(const Args& args) {
           within({0.01, 60.0}, store_optional(typed.timeout_s))}}},
        {"Navigation",
         {{"--nav", 0, "NAV",
-          "where the vehicle is: mavlink:udp://:PORT, by what its autopilot sends to this port by MAVLink, or "
-          "a50:tcp://HOST[:PORT], by the dead reckoning of a Water Linked DVL; recorded beside --record as .tlog or "
+          "where the vehicle is: mavlink:udp://:PORT or mavlink:udp://ADDRESS:PORT, by what its autopilot sends by "
+          "MAVLink "
+          "to this port (at all addresses of this host, or at one), or a50:tcp://HOST[:PORT], by the dead reckoning of "
+          "a Water Linked DVL; recorded beside --record as .tlog or "
           ".jsonl; several may be given",
           "the vehicle stands still", nav, Repeats::kEachCounts},
          {"--obstacles", 0, "udp://HOST:PORT",

@@ -42,6 +42,7 @@ Args map_keys() {
           "skipped_for.damage",
           "skipped_for.no_pose",
           "skipped_for.blocked",
+          "skipped_for.too_long",
           "skipped_for.outside_map",
           "sound_speed_m_s",
           "beam.shape",

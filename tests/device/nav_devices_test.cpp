@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -26,13 +27,20 @@
 
 namespace {
 
-int syncs = 0;
+int syncs = 0, folder_syncs = 0;
 
 }  // namespace
 
 /// In place of the system's, so that its calls can be counted.
 extern "C" int sync_file_range(int /*file*/, off64_t /*from*/, off64_t /*bytes*/, unsigned /*flags*/) {
   ++syncs;
+  return 0;
+}
+
+/// The same of folders.
+extern "C" int fsync(int file) {
+  struct stat status = {};
+  if (::fstat(file, &status) == 0 && S_ISDIR(status.st_mode)) ++folder_syncs;
   return 0;
 }
 
@@ -225,6 +233,7 @@ TEST(A50Receiver, GivesUpALineThatIsSilentAndOneThatIsNotThere) {
 TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
   std::string folder = (std::filesystem::temp_directory_path() / "pingvox-sync-XXXXXX").string();
   ASSERT_TRUE(::mkdtemp(folder.data()));
+  const int folder_syncs_before = folder_syncs;
   Result<TlogRecorder> tlog = TlogRecorder::create(folder + "/dive.tlog");
   ASSERT_TRUE(tlog);
   Result<MavlinkReceiver> autopilot = MavlinkReceiver::listen("udp://127.0.0.1:0", *std::move(tlog), 0.0);
@@ -236,6 +245,8 @@ TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
   Result<PingViewerRecorder> log = PingViewerRecorder::create(folder + "/dive.bin");
   ASSERT_TRUE(log);
   const std::unique_ptr<LiveSource> head = ping360_source("udp://127.0.0.1:1", {}, *std::move(log), 0.0);
+  // After a power cut in the first seconds there was no file.
+  EXPECT_EQ(folder_syncs - folder_syncs_before, 3);
   const auto syncs_of = [](const auto& read) {
     const int before = syncs;
     for (double now_s = 0.0; now_s < 9.75; now_s += 0.25) read(now_s);
@@ -249,7 +260,16 @@ TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
               EXPECT_LE(head->due_s(), now_s + 1.0);
             }),
             10);
+  // Kills a recording that is lost without a word.
+  EXPECT_FALSE(autopilot->status().recording_error);
   std::filesystem::remove_all(folder);
+  EXPECT_TRUE(autopilot->read(20.0));
+  ASSERT_TRUE(autopilot->status().recording_error);
+  EXPECT_THAT(autopilot->status().recording_error->message, HasSubstr("dive.tlog: was removed"));
+  dvl->read(20.0);
+  EXPECT_TRUE(dvl->status().recording_error);
+  EXPECT_TRUE(head->step(20.0, beams));
+  EXPECT_TRUE(head->status().recording_error);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -97,6 +98,89 @@ TEST(Tlog, RangefindersOfOneSenderAreSourcesOfTheirOwn) {
   EXPECT_EQ(nav->log.sources().size(), 2U);
   EXPECT_NE(source_of(nav->log, "DISTANCE_SENSOR 1/194", NavQuantity::kRange), nullptr);
   EXPECT_NE(source_of(nav->log, "DISTANCE_SENSOR[2] 1/194", NavQuantity::kRange), nullptr);
+}
+
+/// Appends a record with a LOCAL_POSITION_NED.
+/// @param received_ms  after 2023-05-04
+void add_position(std::vector<std::uint8_t>& log, std::uint64_t received_ms, std::uint8_t system, std::uint32_t boot_ms,
+                  float north_m) {
+  constexpr std::uint64_t kStart_us = 0x0005fae100000000;
+  const std::uint64_t time_us = kStart_us + received_ms * 1000;
+  for (unsigned shift = 64; shift > 0; shift -= 8) {
+    log.push_back(static_cast<std::uint8_t>((time_us >> (shift - 8)) & 0xffU));
+  }
+  std::vector<std::uint8_t> payload;
+  for (const std::uint32_t word : {boot_ms, std::bit_cast<std::uint32_t>(north_m), std::bit_cast<std::uint32_t>(1.0F),
+                                   std::bit_cast<std::uint32_t>(1.0F), 0U, 0U, 0U}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      payload.push_back(static_cast<std::uint8_t>((word >> shift) & 0xffU));
+    }
+  }
+  const auto frame = make_mavlink_frame(32, payload, {0, system, 1});
+  log.insert(log.end(), frame.begin(), frame.end());
+}
+
+/// Of the one source of positions: how many are there, all of them beyond a place to the north or to the south of it.
+void expect_positions(const NavFile& nav, std::size_t count, double north_m) {
+  ASSERT_EQ(nav.log.sources().size(), 1U);
+  const NavSource& source = nav.log.sources().front();
+  EXPECT_EQ(source.samples.size(), count);
+  for (const NavSample& sample : source.samples) EXPECT_NEAR(sample.value.y(), north_m, 1.0);
+}
+
+// The attitude of one vehicle was taken with the position of another one.
+TEST(Tlog, OfSeveralVehiclesOneIsReadAndTheOthersAreNamed) {
+  std::vector<std::uint8_t> log;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    if (i % 3 == 0) add_position(log, 1000 + 100 * i, 1, 5000 + 100 * i, 200.0F);
+    add_position(log, 1050 + 100 * i, 2, 50'000 + 100 * i, 10.0F);
+  }
+  const auto nav = read_as_tlog(log, Damage::kFail);
+  ASSERT_TRUE(nav) << nav.error().message;
+  expect_positions(*nav, 60, 10.0);
+  EXPECT_EQ(nav->records, 80U);
+  ASSERT_EQ(nav->notes.size(), 1U);
+  EXPECT_EQ(nav->notes.front(),
+            "holds several vehicles: system 2 (60 messages) is read, left out: system 1 (20 messages)");
+}
+
+// Two vehicles that are both system 1 gave walls 100 m apart, without a word.
+TEST(Tlog, OfVehiclesWithTheSameAddressOneIsRead) {
+  std::vector<std::uint8_t> log;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    add_position(log, 1000 + 100 * i, 1, 500'000 + 100 * i, 200.0F);
+    if (i % 2 == 0) add_position(log, 1050 + 100 * i, 1, 50'000 + 100 * i, 100.0F);
+  }
+  const auto nav = read_as_tlog(log, Damage::kFail);
+  ASSERT_TRUE(nav) << nav.error().message;
+  expect_positions(*nav, 60, 200.0);
+  ASSERT_EQ(nav->notes.size(), 1U);
+  EXPECT_THAT(nav->notes.front(), testing::HasSubstr("same address, system 1"));
+  EXPECT_THAT(nav->notes.front(), testing::HasSubstr("60 messages of one are read, left out: 30 of others"));
+}
+
+// Kills an autopilot that is started anew and taken for two.
+TEST(Tlog, AVehicleThatIsStartedAnewIsOne) {
+  std::vector<std::uint8_t> log;
+  for (std::uint32_t i = 0; i < 60; ++i) add_position(log, 1000 + 100 * i, 1, 500'000 + 100 * i, 10.0F);
+  for (std::uint32_t i = 0; i < 60; ++i) add_position(log, 20'000 + 100 * i, 1, 2000 + 100 * i, 10.0F);
+  const auto nav = read_as_tlog(log, Damage::kFail);
+  ASSERT_TRUE(nav) << nav.error().message;
+  expect_positions(*nav, 120, 10.0);
+  EXPECT_TRUE(nav->notes.empty());
+}
+
+// Kills navigation of a companion computer that is taken for another vehicle's.
+TEST(Tlog, AGroundStationIsNoVehicle) {
+  std::vector<std::uint8_t> log;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    add_position(log, 1000 + 100 * i, 1, 5000 + 100 * i, 10.0F);
+    add_position(log, 1050 + 100 * i, 255, 5000 + 100 * i, 11.0F);
+  }
+  const auto nav = read_as_tlog(log, Damage::kFail);
+  ASSERT_TRUE(nav) << nav.error().message;
+  EXPECT_EQ(nav->log.sources().size(), 2U);
+  EXPECT_TRUE(nav->notes.empty());
 }
 
 TEST(Tlog, TurnsWhatAVehicleSaidIntoOurFrames) {

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "pingvox/geometry/degree.hpp"
 
@@ -115,6 +119,87 @@ TEST(ObstacleSectors, AreClearOnlyWhereAllIsFreeUpToTheRange) {
   EXPECT_EQ(found.sectors[0].what, What::kClear);
   EXPECT_EQ(found.sectors[54].what, What::kUnknown) << "left: free up to 9 m";
   EXPECT_EQ(found.sectors[36].what, What::kUnknown);
+}
+
+/// Sectors of a kind.
+std::vector<std::size_t> sectors_that_are(What what, const ObstacleSectors& found) {
+  std::vector<std::size_t> sectors;
+  for (std::size_t i = 0; i < found.sectors.size(); ++i) {
+    if (found.sectors[i].what == what) sectors.push_back(i);
+  }
+  return sectors;
+}
+
+// Kills sectors that are said to be clear on the wrong side of the vehicle, or of the map.
+TEST(ObstacleSectors, AreClearOnTheSideWhereAllIsFree) {
+  for (const double yaw_rad : {0.0, 0.4, 1.7, 3.0, -2.2, -0.9}) {
+    SCOPED_TRACE(yaw_rad);
+    const Pose pose = pose_from_rpy({3.04, -7.03, 1.02}, 0.0, 0.0, yaw_rad);
+    OccupancyMap map = empty_map();
+    // Free from 5 to 80 degrees and from 215 to 225 degrees, an obstacle at 300: nothing is alike left and right.
+    for (double clockwise_deg = 0.0; clockwise_deg < 230.0; clockwise_deg += 0.25) {
+      if (clockwise_deg > 85.0 && clockwise_deg < 210.0) continue;
+      for (double range_m = 0.5; range_m < 5.3; range_m += 0.03) {
+        set(map, around(pose, range_m, clockwise_deg), -1.0F);
+      }
+    }
+    set(map, around(pose, 3.0, 300.0), 2.0F);
+    const ObstacleSectors found = nearest_obstacles(map, pose, {.max_range_m = 5.0});
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 1; i <= 16; ++i) expected.push_back(i);
+    for (std::size_t i = 43; i <= 45; ++i) expected.push_back(i);
+    std::vector<std::size_t> clear = sectors_that_are(What::kClear, found);
+    // At the edges of what is free a cell decides.
+    std::erase_if(clear, [](std::size_t i) { return i == 0 || i == 17 || i == 42 || i == 46; });
+    EXPECT_EQ(clear, expected);
+    EXPECT_EQ(sectors_that_are(What::kObstacle, found), (std::vector<std::size_t>{60}));
+  }
+}
+
+// Kills cells that are as wide as their side where they show their corner.
+TEST(ObstacleSectors, ACellReachesIntoSectorsWithItsCorners) {
+  const Pose pose = pose_from_rpy({0.05, 0.05, 0.05}, 0.0, 0.0, 0.0);  // in the middle of a cell
+  for (const std::size_t middle : {0U, 18U, 36U, 54U}) {
+    SCOPED_TRACE(middle);
+    OccupancyMap map = empty_map();
+    // The circle around it is 8.1 degrees to either side, its side would be 5.7.
+    set(map, around(pose, 0.5, 5.0 * static_cast<double>(middle)), 2.0F);
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 0; i < 5; ++i) expected.push_back((middle + 70 + i) % 72);
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(sectors_that_are(What::kObstacle, nearest_obstacles(map, pose, {})), expected);
+  }
+  // Seen from aside: from 49.8 to 58.6 degrees, by its side from 51.1 on.
+  OccupancyMap map = empty_map();
+  set(map, {0.65, -0.75, 0.05}, 2.0F);
+  const ObstacleSectors found = nearest_obstacles(map, pose, {});
+  for (const std::size_t i : sectors_that_are(What::kObstacle, found)) {
+    EXPECT_TRUE(i >= 10 && i <= 12) << i;
+    EXPECT_NEAR(found.sectors[i].range_m, 1.0, 1e-9);
+  }
+  EXPECT_EQ(sectors_that_are(What::kObstacle, found).size(), 3U);
+}
+
+// Kills left and right, or ahead and behind, that are swapped for some headings only.
+TEST(ObstacleSectors, FourWallsAreEachWhereTheVehicleHasThem) {
+  struct Wall {
+    std::size_t sector;
+    double range_m;
+  };
+  constexpr std::array kWalls = {Wall{0, 4.0}, Wall{18, 2.0}, Wall{36, 6.0},
+                                 Wall{54, 3.0}};  // ahead, right, behind, left
+  for (int heading = 0; heading < 360; heading += 15) {
+    SCOPED_TRACE(heading);
+    const Pose pose = pose_from_rpy({-1.0, 12.0, -3.0}, 0.0, 0.0, heading * kDegree_rad);
+    OccupancyMap map = empty_map();
+    for (const Wall& wall : kWalls) set(map, around(pose, wall.range_m, 5.0 * static_cast<double>(wall.sector)), 2.0F);
+    const ObstacleSectors found = nearest_obstacles(map, pose, {});
+    for (const Wall& wall : kWalls) {
+      EXPECT_EQ(found.sectors[wall.sector].what, What::kObstacle) << wall.sector;
+      EXPECT_NEAR(found.sectors[wall.sector].range_m, wall.range_m, 0.1) << wall.sector;
+    }
+    for (const std::size_t between : {9U, 27U, 45U, 63U}) EXPECT_EQ(found.sectors[between].what, What::kUnknown);
+  }
 }
 
 TEST(ObstacleOptions, NameEachBrokenField) {
