@@ -28,6 +28,7 @@
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "step_report.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -129,7 +130,7 @@ Result<std::string> convert_scans(ByteStream stream, const ConvertCommand& comma
   return what;
 }
 
-Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command) {
+Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command, Console& console) {
   const Result<BagContents> contents = read_nav_log(std::move(stream), command.damage, command.bag.nav);
   if (!contents) return tl::unexpected(contents.error());
   const NavFile& nav = contents->nav;
@@ -137,6 +138,9 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: has no samples of navigation in {}, {} damaged", name_of_input(command.input),
                             counted(nav.records, "record"), damaged_records(nav)));
+  }
+  for (const std::string& step : step_texts(nav.log)) {
+    console.say(fmt::format("{}: {}: not valid in {}", name_of_input(command.input), step, command.output));
   }
   std::size_t samples = 0;
   const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
@@ -156,9 +160,10 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
 }
 
 /// Writes the poses of a navigation log. @return what was written
-Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command) {
+Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command, Console& console) {
   const Result<VehiclePath> path = vehicle_positions(std::move(stream), command.damage, command.bag.nav);
   if (!path) return tl::unexpected(path.error());
+  for (const std::string& warning : path->warnings) console.say(warning);
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
   if (!written) return tl::unexpected(written.error());
@@ -232,25 +237,25 @@ Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
   return fmt::format("{} occupied and {} free cells", counts.occupied_cells, counts.free_cells);
 }
 
-Result<std::string> convert(ByteStream stream, Format format, const ConvertCommand& command) {
+Result<std::string> convert(ByteStream stream, Format format, const ConvertCommand& command, Console& console) {
   const FormatKind from = kind_of(format), to = kind_of(command.format);
   std::vector<std::string> kinds = {kind_text(from)};
   if (command.echoes) kinds.emplace_back(kEchoTables);
   if (const auto used = check_limited(command.limited, kinds); !used) {
     return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
   }
-  if (is_bag(format) && to == FormatKind::kTrajectory) return convert_nav_to_poses(std::move(stream), command);
+  if (is_bag(format) && to == FormatKind::kTrajectory) return convert_nav_to_poses(std::move(stream), command, console);
   if (is_bag(format) && to == FormatKind::kBeams) {
     const Result<BagContents> bag = bag_contents(stream, command.damage, command.bag.nav);
     if (!bag) return tl::unexpected(bag.error());
     const bool is_for_beams = has(*bag, BagTopicSummary::Use::kBeams) || !command.bag.beams.name.empty();
-    if (!is_for_beams && !bag->nav.log.sources().empty()) return convert_nav(std::move(stream), command);
+    if (!is_for_beams && !bag->nav.log.sources().empty()) return convert_nav(std::move(stream), command, console);
   }
   if (from == FormatKind::kBeams && to == FormatKind::kBeams) return convert_log(std::move(stream), command);
   if (from == FormatKind::kScans && to == FormatKind::kCloud) return convert_scans(std::move(stream), command);
-  if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command);
+  if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command, console);
   if (from == FormatKind::kNav && to == FormatKind::kTrajectory)
-    return convert_nav_to_poses(std::move(stream), command);
+    return convert_nav_to_poses(std::move(stream), command, console);
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
   if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return conversion_error(stream.name(), format, command.format);
   if (const auto used = command.occupancy.check(format); !used) {
@@ -271,7 +276,7 @@ Result<int> run(const ConvertCommand& command, Console& console) {
   const Result<Format> format = identify_format(*stream);
   if (!format) return tl::unexpected(format.error());
 
-  const Result<std::string> what = convert(std::move(*stream), *format, command);
+  const Result<std::string> what = convert(std::move(*stream), *format, command, console);
   if (!what) return tl::unexpected(what.error());
   const auto summary = console.summarise(fmt::format("{}: {}\n", on_one_line(command.output), *what), command.output);
   if (!summary) return tl::unexpected(summary.error());

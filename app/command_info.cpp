@@ -26,6 +26,7 @@
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "step_report.hpp"
 #include "threshold_range.hpp"
 
 namespace pingvox::app {
@@ -355,16 +356,20 @@ Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
     bounds = {bounds.min.cwiseMin(position), bounds.max.cwiseMax(position)};
   }
   const double duration_s = poses.back().time_s - poses.front().time_s;
+  const CutTrajectory cut = cut_at_steps(*trajectory);
   Summary summary;
   summary.json.add("kind", "trajectory")
       .add("format", name_of(format))
       .add("poses", poses.size())
       .add("duration_s", duration_s)
       .add("length_m", length_m)
-      .add("bounds", bounds_json(bounds));
+      .add("bounds", bounds_json(bounds))
+      .add("left_out", left_out(cut.steps))
+      .add("steps", steps_json(cut.steps));
   summary.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
                  report_line("duration", duration_text(poses.front().time_s, poses.back().time_s)) +
                  report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
+  for (const std::string& step : step_texts(cut)) summary.text += report_line("step", step);
   return summary;
 }
 

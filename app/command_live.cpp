@@ -25,6 +25,7 @@
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "progress.hpp"
 #include "recordings.hpp"
+#include "step_report.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"
 
@@ -218,6 +219,7 @@ class LiveRun {
     if (nav_) {
       for (std::size_t i = 0; i < reported_.size(); ++i) report_changes(nav_->devices()[i], reported_[i]);
       report_sources();
+      report_new_frames();
     }
     if (status.is_connected == was_connected_ && status.problem == last_problem_) return;
     bar_.clear();
@@ -305,6 +307,17 @@ class LiveRun {
                              on_one_line(poses.position())));
   }
 
+  /// Prints when the origin of a source was set anew: what is mapped from then on does not fit to what was.
+  void report_new_frames() {
+    constexpr std::size_t kMaxReported = 20;  // who sends nonsense shall not fill the screen
+    for (const LivePoses::NewFrame& frame : nav_->take_new_frames()) {
+      if (++new_frames_ > kMaxReported) continue;
+      bar_.clear();
+      console_.say(fmt::format("{}: {} of {} {}: it is in another frame now; start a new map", nav_->names(),
+                               name_of(frame.quantity), on_one_line(frame.source), step_text(frame.step)));
+    }
+  }
+
   /// Prints when the poses end, and when they come again.
   void report_silence(const LivePoses& poses) {
     const std::optional<double> until_s = poses.known_until_s();
@@ -377,6 +390,8 @@ class LiveRun {
     json.add("attitude", navigation.poses().attitude())
         .add("position", navigation.poses().position())
         .add("without_pose", without_pose_)
+        .add("outliers", navigation.poses().outliers())
+        .add("new_origins", new_frames_)
         .add("devices", devices);
     return json;
   }
@@ -408,7 +423,8 @@ class LiveRun {
   std::vector<Beam> arrived_;
   std::deque<Waiting> waiting_;
   std::size_t beams_ = 0, without_pose_ = 0;
-  std::size_t dropped_ = 0;  ///< dropped under load, or after an error of the map
+  std::size_t new_frames_ = 0;  ///< of positions, depths and attitudes, by which the map does not fit any more
+  std::size_t dropped_ = 0;     ///< dropped under load, or after an error of the map
   Recent recent_;
   bool cannot_map_ = false, has_failed_ = false;
   bool was_connected_ = false, was_recording_error_reported_ = false, was_unexpected_reported_ = false;

@@ -96,6 +96,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
   if (const auto inside = check_start(command, *map); !inside) return tl::unexpected(inside.error());
   Result<LocateMotion> motion = read_motion(command);
   if (!motion) return tl::unexpected(motion.error());
+  for (const std::string& warning : motion->warnings) console.say(warning);
   LocateInputs inputs{.motion = *std::move(motion)};
   inputs.skipped = inputs.motion.skipped;
   Result<std::vector<Beam>> beams = read_beams(command, inputs.skipped);

@@ -129,7 +129,7 @@ JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& c
       .add("velocity", path.nav->velocity)
       .add("clock", json_of(path.nav->offset))
       .add("frame", frame_text(*path.nav));
-  if (!path.notes.empty()) json.add("notes", fmt::format("{}", fmt::join(path.notes, "; ")));
+  if (!path.warnings.empty()) json.add("warnings", fmt::format("{}", fmt::join(path.warnings, "; ")));
   return clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
 }
 
@@ -380,7 +380,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   const SonarLog first{command.logs.front(), command.bag.beams, command.build.body_from_sensor};
   const Result<VehiclePath> path = vehicle_path(command.path, first, command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
-  for (const std::string& note : path->notes) console.say(note);
+  for (const std::string& warning : path->warnings) console.say(warning);
   BuildOptions build = command.build;
   Totals totals;
   if (command.nav_salinity) {

@@ -234,12 +234,14 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
               fmt::format("render: {}: there is no sweep {}, only {}", name, panel.sweep.value_or(0), sweeps));
 }
 
-Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
+Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
+                                Console& console) {
   Result<OccupancyMap> map = OccupancyMap::make(panel.map);
   if (!map) return map;
   const SonarLog sonar{panel.input, command.bag.beams, panel.build.body_from_sensor};
   const Result<VehiclePath> path = vehicle_path(panel.path, sonar, command.bag, command.damage);
   if (!path) return tl::unexpected(path.error());
+  for (const std::string& warning : path->warnings) console.say(warning);
   const std::string name = file.name;
   Result<Log> log = open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
@@ -294,7 +296,7 @@ void add_kinds(const PanelCommand& panel, FormatKind kind, std::vector<std::stri
 
 /// Prepares a panel: draws a picture, or returns a map to be drawn with those that it is compared with.
 Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const PanelCommand& panel,
-                                                     const RenderCommand& command) {
+                                                     const RenderCommand& command, Console& console) {
   using Prepared = std::variant<Drawn, MapToDraw>;
   const Result<Format> format = identify_format(file);
   if (!format) return tl::unexpected(format.error());
@@ -335,7 +337,7 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
     }
     return read_map(file).and_then([&](MapFile read) { return to_draw(std::move(read.map)); });
   }
-  return map_of_log(std::move(file), panel, command).and_then(to_draw);
+  return map_of_log(std::move(file), panel, command, console).and_then(to_draw);
 }
 
 Result<std::vector<MapPath>> read_paths(const std::vector<std::string>& files) {
@@ -365,7 +367,7 @@ Box around(const std::optional<Box>& a, const Box& b) {
 
 /// Draws all panels, side by side if there are several. A file is read once; maps of one file and viewpoint show the
 /// same box, for comparison.
-Result<Drawn> draw(const RenderCommand& command) {
+Result<Drawn> draw(const RenderCommand& command, Console& console) {
   std::map<std::string, FileBytes> files;
   std::map<std::pair<std::string, MapView>, std::optional<Box>> parts;
   std::vector<std::variant<Drawn, MapToDraw>> works;
@@ -386,7 +388,7 @@ Result<Drawn> draw(const RenderCommand& command) {
   }
   std::vector<MapPictureOptions> pictures;
   for (const PanelCommand& panel : command.panels) {
-    auto work = prepare_panel(files.at(panel.input), panel, command);
+    auto work = prepare_panel(files.at(panel.input), panel, command, console);
     if (!work) return tl::unexpected(work.error());
     MapPictureOptions& picture = pictures.emplace_back(panel.map_picture);
     if (const auto* shown = std::get_if<MapToDraw>(&*work)) {
@@ -424,7 +426,7 @@ Result<Drawn> draw(const RenderCommand& command) {
 }  // namespace
 
 Result<int> run(const RenderCommand& command, Console& console) {
-  const Result<Drawn> drawn = draw(command);
+  const Result<Drawn> drawn = draw(command, console);
   if (!drawn) return tl::unexpected(drawn.error());
 
   const Picture& picture = drawn->picture;

@@ -122,7 +122,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Stopwatch read;
   const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
   if (!nav) return tl::unexpected(nav.error());
-  for (const std::string& note : nav->notes) console.say(note);
+  for (const std::string& warning : nav->warnings) console.say(warning);
   Result<NavOffset> offset =
       nav_offset(command.nav_offset_s, nav->log,
                  {command.logs.front(), command.bag.beams, command.slam.body_from_sonar}, command.damage);

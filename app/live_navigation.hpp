@@ -78,6 +78,7 @@ class Navigation {
   std::size_t messages() const;
   std::size_t damaged() const;
   const LivePoses& poses() const { return poses_; }
+  std::vector<LivePoses::NewFrame> take_new_frames() { return poses_.take_new_frames(); }
 
   /// Reads what has arrived at all devices. @return the first error, after which it may be called again
   Result<void> step(double now_s);

@@ -16,6 +16,7 @@
 #include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
+#include "step_report.hpp"
 
 namespace pingvox::app {
 
@@ -25,13 +26,19 @@ Result<LocateMotion> read_motion(const LocateCommand& command) {
     Result<Trajectory> odometry = trajectory_of(command.odometry);
     if (!odometry) return tl::unexpected(odometry.error());
     motion.text = fmt::format("{} of {}", counted(odometry->poses().size(), "pose"), on_one_line(*command.odometry));
-    motion.recorded.odometry_from_body = *std::move(odometry);
+    // Only the way counts, and a step is none.
+    const CutTrajectory cut = cut_at_steps(*odometry);
+    for (const std::string& step : step_texts(cut)) {
+      motion.warnings.push_back(fmt::format("{}: {}", *command.odometry, step));
+    }
+    motion.recorded.odometry_from_body = join_at_cuts(cut.trajectory);
     return motion;
   }
   if (command.navs.empty()) return motion;
   const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
   if (!nav) return tl::unexpected(nav.error());
   motion.skipped = nav->damaged;
+  motion.warnings = nav->warnings;
   if (command.nav_salinity) {
     const Result<Water> water = water_of(water_around(nav->log), *command.nav_salinity);
     if (!water) return tl::unexpected(water.error());

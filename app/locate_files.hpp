@@ -25,6 +25,7 @@ struct LocateMotion {
   std::optional<Water> water;  ///< by the navigation log, where it was asked
   std::size_t skipped = 0;
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
+  std::vector<std::string> warnings = {};                   ///< each begins with the name of a file
 };
 
 Result<LocateMotion> read_motion(const LocateCommand& command);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <filesystem>
@@ -23,6 +24,7 @@
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/slam/odometry.hpp"
 #include "shell_words.hpp"
+#include "step_report.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -89,6 +91,11 @@ std::string text_of_skipped(const MappedLog& mapped, std::string_view unit, cons
   return text;
 }
 
+void add_warnings(const std::vector<std::string>& texts, const std::string& file, VehiclePath& path) {
+  for (const std::string& text : texts) path.warnings.push_back(fmt::format("{}: {}", file, text));
+  if (!texts.empty()) path.advice = VehiclePath::kLeftOut;
+}
+
 }  // namespace
 
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::string_view nav_advice) {
@@ -108,8 +115,11 @@ Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::s
 
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, const BagArgs& bag, Damage damage) {
   if (path.navs.empty()) {
-    return trajectory_of(path.poses, "give it with --nav").map([](Trajectory trajectory) {
-      return VehiclePath{std::move(trajectory), std::nullopt};
+    return trajectory_of(path.poses, "give it with --nav").map([&](const Trajectory& trajectory) {
+      const CutTrajectory cut = cut_at_steps(trajectory);
+      VehiclePath made{cut.trajectory, std::nullopt};
+      if (path.poses) add_warnings(step_texts(cut), *path.poses, made);
+      return made;
     });
   }
   const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav);
@@ -129,8 +139,11 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
     return error;
   };
-  const auto with_notes = [&](VehiclePath made) {
-    made.notes = nav->notes;
+  const auto with_warnings = [&](VehiclePath made) {
+    made.warnings = nav->warnings;
+    if (std::ranges::any_of(nav->log.sources(), [](const NavSource& source) { return !source.steps.empty(); })) {
+      made.advice = VehiclePath::kLeftOut;
+    }
     return made;
   };
   if (!has_position(nav->log)) {
@@ -148,7 +161,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
               VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water, std::nullopt},
               sonar_moved_m, VehiclePath::kNavMustCover};
         })
-        .map(with_notes)
+        .map(with_warnings)
         .map_error(name_files);
   }
   if (path.calibration) {
@@ -163,7 +176,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
             VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water, made.origin_fix},
             Eigen::Vector3d::Zero(), VehiclePath::kNavMustCover};
       })
-      .map(with_notes)
+      .map(with_warnings)
       .map_error(name_files);
 }
 
@@ -181,9 +194,11 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<c
         fmt::format("{}: {}{}", name, made.error().message,
                     can_reckon ? " ('pingvox slam --matching none' reckons them from velocity and heading)" : ""));
   }
-  return VehiclePath{
+  VehiclePath path{
       std::move(made->trajectory),
       VehiclePath::Nav{made->attitude, made->position, "", damaged_records(read), {}, {}, made->origin_fix}};
+  add_warnings(step_texts(read.log), name, path);
+  return path;
 }
 
 std::string nav_text(const VehiclePath& path) {

@@ -18,7 +18,7 @@
 
 namespace pingvox::app {
 
-/// The trajectory in a file of TUM lines; without one the vehicle stays at the origin.
+/// The trajectory in a file of TUM lines, as it is; without one the vehicle stays at the origin.
 /// @param nav_advice  what to do with a file of navigation
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses,
                                  std::string_view nav_advice = "'pingvox convert' makes one of positions");
@@ -37,10 +37,11 @@ struct VehiclePath {
   std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
   std::string_view advice = kPosesMustCover;                ///< where beams have no pose
-  std::vector<std::string> notes = {};                      ///< those of NavFiles
+  std::vector<std::string> warnings = {};                   ///< each begins with the name of a file
   static constexpr std::string_view kPosesMustCover =
       "--poses must cover the log, with times in seconds of the same clock";
   static constexpr std::string_view kNavMustCover = "--nav must cover the log; --nav-offset corrects its clock";
+  static constexpr std::string_view kLeftOut = "what lies behind a jump is left out";
 };
 /// Without a file the vehicle stays at the origin. Navigation without a position, but with a velocity, is dead
 /// reckoning.

@@ -14,6 +14,7 @@
 #include "open_log.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/slam/clock_offset.hpp"
+#include "step_report.hpp"
 #include "unknown_file.hpp"
 
 namespace pingvox::app {
@@ -82,7 +83,7 @@ Result<NavLog> joined(const std::vector<const NavPart*>& parts, NavClock clock) 
   for (const NavPart* part : parts) {
     const NavClock own = part->log().clock();
     for (NavSource source : part->log().sources()) {
-      for (NavSample& sample : source.samples) sample.time_s += part->offset_s;
+      shift_times(source, part->offset_s);
       const auto same = std::ranges::find_if(
           sources, [&](const NavSource& s) { return s.name == source.name && s.quantity == source.quantity; });
       if (same == sources.end()) {
@@ -167,13 +168,13 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   std::vector<NavPart> parts;
   std::vector<BagTopicSummary> topics;
   std::size_t damaged = 0;
-  std::vector<std::string> notes;
+  std::vector<std::string> warnings;
   for (const std::string& name : names) {
     Result<NavPart> part = read_part(name, damage, fields);
     if (!part) return tl::unexpected(part.error());
     topics.insert(topics.end(), part->contents.topics.begin(), part->contents.topics.end());
     damaged += damaged_records(part->contents.nav);
-    for (const std::string& note : part->contents.nav.notes) notes.push_back(fmt::format("{}: {}", name, note));
+    for (const std::string& note : part->contents.nav.notes) warnings.push_back(fmt::format("{}: {}", name, note));
     parts.push_back(*std::move(part));
   }
   const auto known =
@@ -184,9 +185,10 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   for (const NavPart& part : parts) all.push_back(&part);
   Result<NavLog> log = joined(all, clock);
   if (!log) return tl::unexpected(log.error());
-  const auto there = check_contents(fields, topics, fmt::format("{}", fmt::join(names, ", ")));
-  if (!there) return tl::unexpected(there.error());
-  return NavFiles{*std::move(log), damaged, std::move(notes)};
+  const std::string files = fmt::format("{}", fmt::join(names, ", "));
+  if (const auto there = check_contents(fields, topics, files); !there) return tl::unexpected(there.error());
+  for (const std::string& step : step_texts(*log)) warnings.push_back(fmt::format("{}: {}", files, step));
+  return NavFiles{*std::move(log), damaged, std::move(warnings)};
 }
 
 Result<Water> water_of(const std::optional<WaterAround>& around, double salinity) {
@@ -216,7 +218,9 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("gaps", summary.gaps)
         .add("from_s", summary.from_s)
         .add("to_s", summary.to_s)
-        .add("late", source.step_back ? source.step_back->late : 0);
+        .add("late", source.step_back ? source.step_back->late : 0)
+        .add("left_out", left_out(source.steps))
+        .add("steps", steps_json(source.steps));
   }
   json.add("clock", name_of(nav.log.clock()))
       .add("records", nav.records)
@@ -267,6 +271,7 @@ std::string nav_text(const NavFile& nav) {
                                     counted(late, "sample")));
   }
   for (const std::string& note : nav.notes) text += report_line("note", note);
+  for (const std::string& step : step_texts(nav.log)) text += report_line("step", step);
   if (damaged_records(nav) > 0) text += report_line("skipped", counted(damaged_records(nav), "damaged record"));
   return text;
 }

@@ -19,9 +19,9 @@ std::size_t damaged_records(const NavFile& nav);
 
 /// Navigation logs of one vehicle, put together on the first clock that is known.
 struct NavFiles {
-  NavLog log;                      ///< sources of the same name and quantity are one
-  std::size_t damaged = 0;         ///< records that could not be read
-  std::vector<std::string> notes;  ///< those of the files, each with the file's name
+  NavLog log;                         ///< sources of the same name and quantity are one
+  std::size_t damaged = 0;            ///< records that could not be read
+  std::vector<std::string> warnings;  ///< what is left out and why; each begins with the names of files
 };
 /// Logs that count from the start of a device are aligned with those that have dates by how the vehicle turned in both;
 /// kUnsupported when that cannot be told.

@@ -15,7 +15,6 @@ struct A50Nav::State {
     return clock.add({received_s, *report.made_s});
   }
 
-  DeadReckoningFrame frame;
   DeviceClock clock;  ///< of positions
 };
 
@@ -31,7 +30,7 @@ std::optional<std::vector<NavSource>> A50Nav::add(std::string_view line, double 
   if (!report) return std::nullopt;
   NavSources sources;
   if (report->kind != A50Report::Kind::kOther) {
-    add_a50_report(sources, "A50", state_->time_of(*report, received_s), *report, state_->frame);
+    add_a50_report(sources, "A50", state_->time_of(*report, received_s), *report);
   }
   return sources.take();
 }

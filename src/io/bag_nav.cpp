@@ -29,7 +29,6 @@ namespace {
 
 /// What the messages of a topic so far say about later ones.
 struct TopicState {
-  DeadReckoningFrame frame;
   double altitude_m = 0.0;                 ///< the last one that a receiver knew
   std::optional<double> pressure_unit_pa;  ///< nullopt: there was no pressure yet
   std::vector<DeviceTime> report_times;    ///< of a DVL, where they have a time of the device
@@ -49,19 +48,17 @@ class Samples {
   Samples(NavSources& sources, const std::string& name, double time_s, TopicState& state)
       : sources_(sources), name_(name), time_s_(time_s), state_(state) {}
 
-  /// Adds a position by dead reckoning and its attitude. They are not valid after a reset, because they are in another
-  /// frame then.
+  /// Adds a position by dead reckoning and its attitude.
   void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
-    const bool valid = state_.frame.holds(time_s_, position_m);
-    add(NavQuantity::kPosition, position_m, valid);
-    add(NavQuantity::kAttitude, attitude, valid);
+    add(NavQuantity::kPosition, position_m, true);
+    add(NavQuantity::kAttitude, attitude, true);
   }
 
   /// A report of a DVL in its own format, which contains the delay of the message.
   void add(const A50Report& report) {
     const double time_s = time_s_ - report.latency_s;
     if (report.made_s) state_.report_times.push_back({time_s, *report.made_s});
-    add_a50_report(sources_, name_, time_s, report, state_.frame);
+    add_a50_report(sources_, name_, time_s, report);
   }
 
   /// Degrees; NaN for an altitude that is not known. The last one is taken then, so that the height does not jump.

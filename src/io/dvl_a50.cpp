@@ -233,8 +233,7 @@ A50Reading a50_serial_report(std::string_view line) {
   return A50Report{};
 }
 
-void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report,
-                    DeadReckoningFrame& frame) {
+void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report) {
   const auto add = [&](NavQuantity quantity, const Eigen::Vector3d& value, bool valid) {
     NavSample sample;
     sample.time_s = time_s;
@@ -248,10 +247,9 @@ void add_a50_report(NavSources& sources, const std::string& name, double time_s,
     add(NavQuantity::kRange, {report.altitude_m, 0.0, 0.0}, report.valid && report.altitude_m > 0.0);
   }
   if (report.kind == A50Report::Kind::kPosition) {
-    const bool valid = report.valid && frame.holds(time_s, report.position_m);
-    NavSample* const position = add(NavQuantity::kPosition, from_ned::world(report.position_m), valid);
+    NavSample* const position = add(NavQuantity::kPosition, from_ned::world(report.position_m), report.valid);
     if (position != nullptr) position->deviation.setConstant(report.deviation);
-    add(NavQuantity::kAttitude, from_ned::attitude(report.rpy_rad), valid);
+    add(NavQuantity::kAttitude, from_ned::attitude(report.rpy_rad), report.valid);
   }
 }
 

@@ -45,7 +45,6 @@ A50Reading a50_report(const TextMembers& members);
 A50Reading a50_serial_report(std::string_view line);
 
 /// Adds what a report says as samples of `name` at `time_s`.
-void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report,
-                    DeadReckoningFrame& frame);
+void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report);
 
 }  // namespace pingvox

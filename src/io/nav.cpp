@@ -25,21 +25,6 @@ NavSample* NavSources::add(const std::string& name, NavQuantity quantity, const 
   return &samples.back();
 }
 
-bool DeadReckoningFrame::holds(double time_s, const Eigen::Vector3d& position_m) {
-  constexpr double kMaxSpeed_m_s = 10.0, kShortestStep_s = 0.1;
-  // A device that starts anew is silent for some seconds, and then at its origin.
-  constexpr double kPause_s = 1.0, kAtOrigin_m = 0.1, kAway_m = 1.0;
-  if (last_) {
-    const double step_s = std::max(time_s - last_->time_s, kShortestStep_s);
-    const bool is_new_start =
-        step_s >= kPause_s && position_m.norm() <= kAtOrigin_m && last_->position_m.norm() >= kAway_m;
-    const bool is_too_fast = (position_m - last_->position_m).norm() > kMaxSpeed_m_s * step_s;
-    was_reset_ = was_reset_ || is_new_start || is_too_fast;
-  }
-  last_ = Last{time_s, position_m};
-  return !was_reset_;
-}
-
 double angle_of_degrees_minutes(double number) {
   const double degrees = std::trunc(number / 100.0);
   return (degrees + (number - 100.0 * degrees) / 60.0) * kDegree_rad;

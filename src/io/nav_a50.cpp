@@ -148,8 +148,7 @@ NavReading read_a50(std::span<const std::uint8_t> bytes) {
   leave_out_deprecated(reports);
   NavSources sources;
   ReportTimes times(reports);
-  DeadReckoningFrame frame;
-  for (const A50Report& report : reports) add_a50_report(sources, kName, times.time_of(report), report, frame);
+  for (const A50Report& report : reports) add_a50_report(sources, kName, times.time_of(report), report);
   reading.sources = sources.take();
   return reading;
 }

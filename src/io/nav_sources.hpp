@@ -25,22 +25,6 @@ class NavSources {
   std::map<std::pair<std::string, NavQuantity>, std::size_t> places_;
 };
 
-/// Detects when a dead reckoning was reset to zero during the recording: later positions are in another frame.
-class DeadReckoningFrame {
- public:
-  /// Whether the next position is still in the frame of the first one: no step was faster than 10 m/s, and none led to
-  /// the origin after a pause.
-  bool holds(double time_s, const Eigen::Vector3d& position_m);
-
- private:
-  struct Last {
-    double time_s;
-    Eigen::Vector3d position_m;
-  };
-  std::optional<Last> last_;
-  bool was_reset_ = false;
-};
-
 /// An angle whose degrees and minutes are one number, dddmm.mmm [rad].
 double angle_of_degrees_minutes(double number);
 

@@ -100,13 +100,15 @@ Result<Trajectory> read_tum(const FileBytes& file) {
       poses.push_back(*pose);
     }
     if (poses.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: holds no poses", file.name));
+    if (poses.size() == 1) return Trajectory::still(poses.front().map_from_body, poses.front().time_s);
     return Trajectory::make(std::move(poses), longest_step_in(text_of(file.view())));
   });
 }
 
 Result<void> write_tum(const Trajectory& trajectory, std::ostream& out) {
   out << "# timestamp tx ty tz qx qy qz qw\n";
-  if (trajectory.gaps() > 0) out << fmt::format("{}{}{}\n", kGapBegin, trajectory.longest_step_s(), kGapEnd);
+  if (trajectory.gaps() > trajectory.cuts().size())
+    out << fmt::format("{}{}{}\n", kGapBegin, trajectory.longest_step_s(), kGapEnd);
   for (const StampedPose& pose : trajectory.poses()) {
     const Eigen::Vector3d at = pose.map_from_body.translation();
     const Eigen::Quaterniond q = Eigen::Quaterniond(pose.map_from_body.linear()).normalized();

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/median.hpp"
+#include "nav/source_steps.hpp"
 
 namespace pingvox {
 namespace {
@@ -126,13 +127,33 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
     if (const auto step = step_back_in(source.samples)) source.step_back = step;
     sort_by_time(source.samples);
   }
+  leave_out_other_frames(sources);
   return NavLog(std::move(sources), clock);
 }
 
 void add_samples(const NavSource& from, NavSource& to) {
   to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
+  restore_other_frames(to);
   sort_by_time(to.samples);
   if (!to.step_back) to.step_back = from.step_back;
+}
+
+std::size_t few_left_out(const NavSource& source) {
+  constexpr std::size_t kOfSamples = 20;
+  const auto left_out =
+      static_cast<std::size_t>(std::ranges::count(source.samples, true, &NavSample::is_in_other_frame));
+  return left_out * kOfSamples <= source.samples.size() ? left_out : 0;
+}
+
+void shift_times(NavSource& source, double offset_s) {
+  for (NavSample& sample : source.samples) sample.time_s += offset_s;
+  if (source.step_back) {
+    source.step_back->from_s += offset_s;
+    source.step_back->to_s += offset_s;
+  }
+  for (SourceStep& step : source.steps) {
+    for (double* time_s : {&step.from_s, &step.to_s, &step.left_from_s, &step.left_to_s}) *time_s += offset_s;
+  }
 }
 
 Result<void> check_clock(const NavSource& source) {
@@ -164,7 +185,7 @@ const NavSource* NavLog::best(NavQuantity quantity) const {
   std::size_t most = 0;
   for (const NavSource& source : sources_) {
     if (source.quantity != quantity) continue;
-    const std::size_t valid = valid_samples(source);
+    const std::size_t valid = valid_samples(source) + few_left_out(source);
     if (valid <= most) continue;
     best = &source;
     most = valid;

@@ -154,6 +154,7 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
   }
   const std::vector<double> times_s = times_of(samples);
   HeadingSource heading{source.name, TimeSeries(times_s, std::move(yaw)), std::nullopt, std::nullopt};
+  heading.left_out = few_left_out(source);
   if (is_attitude) {
     heading.roll_rad.emplace(times_s, std::move(roll));
     heading.pitch_rad.emplace(times_s, std::move(pitch));
@@ -226,7 +227,7 @@ std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std:
   for (const NavSource& source : log.sources()) {
     if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
     auto heading = heading_source(source, mount_of(body_from_source, source.name));
-    if (heading && (!best || heading->yaw_rad.size() > best->yaw_rad.size())) best = *std::move(heading);
+    if (heading && (!best || heading->samples() > best->samples())) best = *std::move(heading);
   }
   return best;
 }

@@ -57,6 +57,10 @@ struct HeadingSource {
   std::optional<TimeSeries> roll_rad, pitch_rad;  ///< of a source of attitude
   bool drifts = false;                            ///< tells how the body turned, from 0 at the beginning
   bool by_sonar = false;                          ///< by matching sweeps
+  std::size_t left_out = 0;                       ///< few_left_out of its source
+
+  /// By which sources are compared.
+  std::size_t samples() const { return yaw_rad.size() + left_out; }
 };
 
 /// Adds a yaw as the angle that is nearest to the one before: without a jump at the half turn.
@@ -76,7 +80,7 @@ std::optional<HeadingSource> gyro_heading(const NavSource& rate, const Pose& bod
 /// @return kBadOption when a mount is of none of the sources
 Result<void> check_mounts(const NavLog& log, const std::map<std::string, Pose>& body_from_source);
 
-/// The heading or attitude with most samples, the first of equals.
+/// The heading or attitude with most samples (HeadingSource::samples), the first of equals.
 /// @param body_from_source  how sources are mounted, by name; the identity for others
 std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source);
 

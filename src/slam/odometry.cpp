@@ -18,6 +18,16 @@ namespace {
 /// Sources that are silent for longer say nothing of the way in between.
 constexpr double kMaxStep_s = 5.0;
 
+/// Leaves out the times at which another source goes on while this one is silent.
+void leave_out_gaps(const TimeSeries& series, std::vector<double>& times_s) {
+  std::vector<TimeSeries::Gap> gaps = series.gaps(series.from_s(), series.to_s());
+  std::erase_if(gaps, [](const TimeSeries::Gap& gap) { return gap.to_s - gap.from_s <= kMaxStep_s; });
+  std::erase_if(times_s, [&](double time_s) {
+    const auto next = std::ranges::lower_bound(gaps, time_s, {}, &TimeSeries::Gap::from_s);
+    return next != gaps.begin() && time_s < std::prev(next)->to_s;
+  });
+}
+
 Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
                      std::optional<VelocitySource>& velocity) {
   const HeadingCalibration* deviation = calibration.heading(heading.name);
@@ -88,6 +98,8 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   std::ranges::sort(times_s);
   times_s.erase(std::ranges::unique(times_s).begin(), times_s.end());
   std::erase_if(times_s, [&](double time_s) { return time_s < from_s || time_s > to_s; });
+  leave_out_gaps(heading->yaw_rad, times_s);
+  if (velocity) leave_out_gaps(velocity->ahead, times_s);
 
   // What is measured at a place of the body is carried to its origin.
   const Eigen::Vector3d place = velocity ? mount_of(options.body_from_source, velocity->name).translation()

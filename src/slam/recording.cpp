@@ -122,7 +122,7 @@ std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& opt
   }
   if (headings.empty()) headings = std::move(turns);
   std::ranges::sort(headings, [](const HeadingSource& a, const HeadingSource& b) {
-    return std::tuple(b.yaw_rad.size(), a.name) < std::tuple(a.yaw_rad.size(), b.name);
+    return std::tuple(b.samples(), a.name) < std::tuple(a.samples(), b.name);
   });
   return headings;
 }

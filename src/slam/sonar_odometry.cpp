@@ -283,8 +283,9 @@ std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std:
   std::vector<double> differences_m_s, measured_m_s, seen_m_s;
   // The first and the last sample go on to the ends.
   for (std::size_t i = 1; i + 1 < odometry.velocity.samples.size(); ++i) {
-    const auto& [time_s, seen, deviation, valid] = odometry.velocity.samples[i];
-    const double from_s = time_s - 0.5 * over_s, part_s = over_s / kParts;
+    const NavSample& sample = odometry.velocity.samples[i];
+    const Eigen::Vector3d& seen = sample.value;
+    const double from_s = sample.time_s - 0.5 * over_s, part_s = over_s / kParts;
     if (velocity.ahead.gap_s(from_s, from_s + over_s) > 0.0) continue;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     for (int part = 0; part < kParts; ++part) {

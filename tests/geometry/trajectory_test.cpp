@@ -89,4 +89,29 @@ TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
   }
 }
 
+// Kills a path across the step of an origin that was set anew, however short it takes.
+TEST(Trajectory, HasNoPoseInACut) {
+  const auto made = Trajectory::make({{10.0, pose_with_yaw(0.0, 0.0)},
+                                      {10.1, pose_with_yaw(0.1, 0.0)},
+                                      {10.2, pose_with_yaw(40.0, 0.0)},
+                                      {10.3, pose_with_yaw(40.1, 0.0)}},
+                                     0.5, {2});
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->gaps(), 1U);
+  EXPECT_TRUE(made->at(10.05));
+  EXPECT_TRUE(made->at(10.1));
+  EXPECT_FALSE(made->at(10.15));
+  EXPECT_TRUE(made->at(10.2));
+  EXPECT_TRUE(made->at(10.25));
+  for (const std::vector<std::size_t>& cuts : {std::vector<std::size_t>{0}, {2}, {1, 1}}) {
+    EXPECT_FALSE(Trajectory::make({{0.0, Pose::Identity()}, {1.0, Pose::Identity()}}, 0.5, cuts)) << cuts.back();
+  }
+}
+
+TEST(Trajectory, StandsStillAtAllTimes) {
+  const Trajectory still = Trajectory::still(pose_with_yaw(3.0, 0.0), 12.0);
+  EXPECT_EQ(still.poses().front().time_s, 12.0);
+  for (const double time_s : {-1e9, 0.0, 12.0, 1e10}) EXPECT_TRUE(still.at(time_s)) << time_s;
+}
+
 }  // namespace

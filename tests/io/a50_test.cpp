@@ -206,5 +206,36 @@ TEST(A50, TheRecordingHasAsManyReportsAsItsReadmeSays) {
   EXPECT_NEAR(summary.to_s - summary.from_s, 59.0, 0.1);
 }
 
+std::string position_at(int tenth, double x_m) {
+  return R"({"ts":)" + std::to_string(1000.0 + 0.1 * tenth) + R"(,"x":)" + std::to_string(x_m) +
+         R"(,"y":0,"z":0,"std":0.1,"roll":0,"pitch":0,"yaw":30,"status":0,"format":"json_v3","type":"position_local"})"
+         "\n";
+}
+
+// One position 20 m aside, and no beam of the rest of the dive had a pose.
+TEST(A50, AnOutlierOfThePositionEndsNothing) {
+  std::string log;
+  for (int i = 0; i < 200; ++i) log += position_at(i, i == 50 ? 20.0 : 2.0 + 0.01 * i);
+  const NavFile nav = read_as_a50(log);
+  const NavSource* const positions = nav.log.best(NavQuantity::kPosition);
+  ASSERT_TRUE(positions);
+  EXPECT_EQ(summary_of(*positions).invalid, 1U);
+  EXPECT_FALSE(positions->samples.at(50).valid);
+  EXPECT_EQ(summary_of(*nav.log.best(NavQuantity::kAttitude)).invalid, 0U);
+}
+
+// A dead reckoning that was reset to zero made two maps in one.
+TEST(A50, AResetOfTheDeadReckoningIsLeftOutWithItsAttitudes) {
+  std::string log;
+  for (int i = 0; i < 200; ++i) log += position_at(i, i < 150 ? 5.0 : 0.01 * (i - 150));
+  const NavFile nav = read_as_a50(log);
+  for (const NavQuantity quantity : {NavQuantity::kPosition, NavQuantity::kAttitude}) {
+    const NavSource* const source = nav.log.best(quantity);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(summary_of(*source).invalid, 50U) << name_of(quantity);
+  }
+  EXPECT_TRUE(nav.log.best(NavQuantity::kPosition)->steps.at(0).is_new_start);
+}
+
 }  // namespace
 }  // namespace pingvox

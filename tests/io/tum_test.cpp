@@ -117,4 +117,17 @@ TEST(Tum, GapsStayGaps) {
 }
 
 }  // namespace
+// Kills a path of one pose that all but one beam lie outside of.
+TEST(Tum, OnePoseIsAVehicleThatStandsStill) {
+  const auto still = read_as_tum("# standing\n12.5 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(still) << still.error().message;
+  ASSERT_EQ(still->poses().size(), 1U);
+  EXPECT_EQ(still->poses().front().time_s, 12.5);
+  for (const double time_s : {0.0, 12.5, 1e9}) {
+    const auto pose = still->at(time_s);
+    ASSERT_TRUE(pose) << time_s;
+    EXPECT_EQ(pose->translation(), Eigen::Vector3d(1.0, 2.0, 3.0));
+  }
+}
+
 }  // namespace pingvox

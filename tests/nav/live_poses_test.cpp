@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pingvox/nav/nav_trajectory.hpp"
@@ -157,6 +159,104 @@ TEST(LivePoses, LeaveOutWhatSaysNothing) {
   poses.add("ATTITUDE", NavQuantity::kAttitude, at(1.0, {3.0, 3.0, 3.0}));
   EXPECT_EQ(poses.at(2.0)->matrix(), before->matrix());
   EXPECT_NEAR(*poses.known_until_s(), 4.9, 0.031);
+}
+
+/// The same vehicle, 20 times a second, with what is added to its positions.
+void add_with_steps(LivePoses& poses, double from_s, double to_s, const std::function<double(double)>& added_m) {
+  for (int i = static_cast<int>(std::lround(20.0 * from_s)); 0.05 * i < to_s; ++i) {
+    const double time_s = 0.05 * i;
+    poses.add("ATTITUDE", NavQuantity::kAttitude, at(time_s, {0.0, 0.0, 0.3 * time_s}));
+    poses.add("LOCAL_POSITION_NED", NavQuantity::kPosition, at(time_s, {0.5 * time_s + added_m(time_s), 0.0, 0.0}));
+  }
+}
+
+// One outlier, and no beam of the rest of the dive had a pose; or the path went there and back.
+TEST(LivePoses, AnOutlierIsLeftOut) {
+  LivePoses poses;
+  add_with_steps(poses, 0.0, 10.0, [](double time_s) { return std::abs(time_s - 5.0) < 0.01 ? 20.0 : 0.0; });
+  for (const double time_s : {4.97, 5.0, 5.03, 9.0}) {
+    const auto pose = poses.at(time_s);
+    ASSERT_TRUE(pose) << time_s;
+    EXPECT_NEAR(pose->translation().x(), 0.5 * time_s, 1e-9);
+  }
+  EXPECT_EQ(poses.outliers(), 1U);
+  EXPECT_TRUE(poses.take_new_frames().empty());
+}
+
+// Kills a pose between two origins, and two maps in one without a word.
+TEST(LivePoses, GoOnInANewFrameAndSayIt) {
+  LivePoses poses;
+  const auto step = [](double time_s) { return time_s > 4.99 ? 40.0 : 0.0; };
+  add_with_steps(poses, 0.0, 5.3, step);
+  EXPECT_NEAR(poses.known_until_s().value(), 4.95, 1e-9) << "not known yet whether it returns";
+  EXPECT_FALSE(poses.at(5.1));
+  add_with_steps(poses, 5.3, 10.0, step);
+  EXPECT_FALSE(poses.at(4.97));
+  ASSERT_TRUE(poses.at(5.1));
+  EXPECT_NEAR(poses.at(5.1)->translation().x(), 42.55, 1e-9);
+  EXPECT_NEAR(poses.at(4.9)->translation().x(), 2.45, 1e-9);
+  EXPECT_EQ(poses.outliers(), 0U);
+  const auto frames = poses.take_new_frames();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].source, "LOCAL_POSITION_NED");
+  EXPECT_EQ(frames[0].quantity, NavQuantity::kPosition);
+  EXPECT_NEAR(frames[0].step.moved_m, 40.025, 1e-9);
+  EXPECT_NEAR(frames[0].step.to_s, 5.0, 1e-9);
+  EXPECT_TRUE(poses.take_new_frames().empty()) << "said once";
+}
+
+TEST(LivePoses, AShortStayElsewhereIsNoNewFrame) {
+  LivePoses poses;
+  add_with_steps(poses, 0.0, 10.0, [](double time_s) { return time_s > 4.99 && time_s < 5.39 ? 40.0 : 0.0; });
+  EXPECT_EQ(poses.outliers(), 8U);
+  EXPECT_TRUE(poses.take_new_frames().empty());
+  EXPECT_NEAR(poses.at(8.0).value().translation().x(), 4.0, 1e-9);
+}
+
+// The depth of fixes moves the path, too.
+TEST(LivePoses, StepsOfTheDepthAreThoseOfThePath) {
+  LivePoses poses;
+  for (int i = 0; i < 200; ++i) {
+    const double time_s = 0.1 * i, depth_m = i == 50 ? 30.0 : i < 100 ? 3.0 : -9.5;
+    poses.add("ATTITUDE", NavQuantity::kAttitude, at(time_s, {0.0, 0.0, 1.0}));
+    poses.add("GLOBAL_POSITION_INT", NavQuantity::kDepth, at(time_s, {depth_m, 0.0, 0.0}));
+    poses.add("GLOBAL_POSITION_INT", NavQuantity::kFix, at(time_s, {0.9, 0.1, 0.0}));
+  }
+  EXPECT_EQ(poses.at(5.0).value().translation().z(), -3.0);
+  EXPECT_EQ(poses.at(9.9).value().translation().z(), -3.0);
+  EXPECT_EQ(poses.at(19.0).value().translation().z(), 9.5);
+  const auto frames = poses.take_new_frames();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].quantity, NavQuantity::kDepth);
+  EXPECT_NEAR(frames[0].step.moved_m, 12.5, 1e-9);
+  for (double time_s = 10.0; time_s < 12.0; time_s += 0.05) {
+    const double z_m = poses.at(time_s) ? poses.at(time_s)->translation().z() : -3.0;
+    EXPECT_TRUE(z_m == -3.0 || z_m == 9.5) << time_s << ": " << z_m;
+  }
+}
+
+TEST(LivePoses, ADeviceThatStartsAnewIsInANewFrame) {
+  LivePoses poses;
+  add_with_steps(poses, 0.0, 10.0, [](double) { return 5.0; });
+  add_with_steps(poses, 15.0, 20.0, [](double time_s) { return -0.5 * time_s + 0.01 * (time_s - 15.0); });
+  const auto frames = poses.take_new_frames();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_TRUE(frames[0].step.is_new_start);
+  EXPECT_TRUE(poses.at(16.0));
+}
+
+// Made-up senders, as many as there are numbers for them, stopped the loop for 25 s.
+TEST(LivePoses, AreNotStoppedByManySources) {
+  LivePoses poses;
+  for (int i = 0; i < 100'000; ++i) {
+    const std::string name = "made up " + std::to_string(i);
+    poses.add(name, NavQuantity::kAttitude, at(1e-5 * i, {0.0, 0.0, 1.0}));
+    poses.add(name, NavQuantity::kPosition, at(1e-5 * i, {0.0, 0.0, 1.0}));
+  }
+  EXPECT_TRUE(poses.position().empty());
+  add_with_steps(poses, 1.0, 5.0, [](double) { return 0.0; });
+  EXPECT_EQ(poses.position(), "LOCAL_POSITION_NED");
+  EXPECT_TRUE(poses.at(3.0));
 }
 
 }  // namespace

@@ -115,15 +115,15 @@ TEST(NavTrajectory, TakesTheAttitudeOfThePositionsOwnSource) {
 TEST(NavTrajectory, MakesMetresOfFixesAlsoAcrossTheDateLine) {
   // By tables a degree at 45 degrees north is 111.132 km long to the north, and 78.847 km to the east.
   const auto made = trajectory_of({kLevel, source_of("gps", NavQuantity::kFix,
-                                                     {{0, {45.0 * kDegree_rad, 179.9995 * kDegree_rad, 50}},
-                                                      {1, {45.001 * kDegree_rad, -179.9995 * kDegree_rad, 52}}})});
+                                                     {{0, {45.0 * kDegree_rad, 179.99995 * kDegree_rad, 50}},
+                                                      {1, {45.0001 * kDegree_rad, -179.99995 * kDegree_rad, 52}}})});
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(made->trajectory.at(0)->translation().isZero());
   const Eigen::Vector3d moved = made->trajectory.at(1)->translation();
-  EXPECT_NEAR(moved.x(), 78.847, 1e-3);
-  EXPECT_NEAR(moved.y(), 111.132, 1e-3);
+  EXPECT_NEAR(moved.x(), 7.8847, 1e-4);
+  EXPECT_NEAR(moved.y(), 11.1132, 1e-4);
   EXPECT_NEAR(moved.z(), 2.0, 1e-9) << "without a depth the altitude counts";
-  EXPECT_TRUE(made->origin_fix->isApprox(Eigen::Vector3d(45.0 * kDegree_rad, 179.9995 * kDegree_rad, 50)));
+  EXPECT_TRUE(made->origin_fix->isApprox(Eigen::Vector3d(45.0 * kDegree_rad, 179.99995 * kDegree_rad, 50)));
 }
 
 TEST(NavTrajectory, PutsFixesAtTheDepthOfTheirTime) {

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -135,6 +136,36 @@ TEST(Odometry, RefusesACalibrationOfOtherSensors) {
               testing::HasSubstr("imu"));
   EXPECT_THAT(refused({source("A50", NavQuantity::kVelocity, 0.0, {0.5, 0.0, 0.0}), compass}),
               testing::HasSubstr("dvl, not of A50"));
+}
+
+// Kills dead reckoning that goes on through any silence: where nothing was heard for 10 s, there is no pose.
+TEST(Odometry, HasAGapWhereItsSourcesAreSilent) {
+  const auto silent = [](std::string name, NavQuantity quantity, const Eigen::Vector3d& value) {
+    NavSource all = source(std::move(name), quantity, 0.0, value);
+    for (std::size_t i = 11; i < all.samples.size(); ++i) all.samples[i].time_s += 10.0;
+    return all;
+  };
+  const NavSource velocity = source("dvl", NavQuantity::kVelocity, 0.0, {0.5, 0.0, 0.0});
+  const NavSource heading = source("compass", NavQuantity::kHeading, 0.0, {0.0, 0.0, 0.0});
+  NavSource long_velocity = velocity, long_heading = heading;
+  for (NavSource* all : {&long_velocity, &long_heading}) {
+    while (all->samples.back().time_s < 20.0) {
+      all->samples.push_back(all->samples.back());
+      all->samples.back().time_s += 0.5;
+    }
+  }
+  const NavSource silent_velocity = silent("dvl", NavQuantity::kVelocity, {0.5, 0.0, 0.0});
+  const NavSource silent_heading = silent("compass", NavQuantity::kHeading, {0.0, 0.0, 0.0});
+  for (const auto& [name, of, yaw] :
+       {std::tuple("both", &silent_velocity, &silent_heading), std::tuple("velocity", &silent_velocity, &long_heading),
+        std::tuple("heading", &long_velocity, &silent_heading)}) {
+    const auto odometry = odometry_of(log_of({*of, *yaw}), {});
+    ASSERT_TRUE(odometry) << odometry.error().message;
+    EXPECT_EQ(odometry->odometry_from_body.gaps(), 1U) << name;
+    EXPECT_TRUE(odometry->odometry_from_body.at(4.8)) << name;
+    EXPECT_FALSE(odometry->odometry_from_body.at(10.0)) << name;
+    EXPECT_TRUE(odometry->odometry_from_body.at(17.0)) << name;
+  }
 }
 
 }  // namespace

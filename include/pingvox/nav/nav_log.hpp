@@ -43,7 +43,8 @@ struct NavSample {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   /// Standard deviation of each number, in its unit; NaN: unknown.
   Eigen::Vector3d deviation = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  bool valid = true;  ///< false: marked as invalid by the device
+  bool valid = true;               ///< false: marked as invalid by the device, or left out
+  bool is_in_other_frame = false;  ///< left out for a step that no vehicle makes
 };
 
 /// How late a sample may come [s]: devices that share a line, and programs with queues, mix the order up by less.
@@ -55,12 +56,23 @@ struct ClockStep {
   std::size_t late = 0;             ///< samples that are more than kMaxLate_s behind one that came before
 };
 
+/// A step of a position, depth or heading that no vehicle makes, and the samples that are left out because of it: it is
+/// an outlier, or the origin was set anew.
+struct SourceStep {
+  double from_s = 0.0, to_s = 0.0;  ///< times of the samples before and after it
+  double moved_m = 0.0, turned_rad = 0.0;
+  bool is_new_start = false;  ///< the device was started anew: it is back at its origin
+  std::size_t left_out = 0;
+  double left_from_s = 0.0, left_to_s = 0.0;  ///< times of the first and last sample that are left out
+};
+
 /// The samples of one quantity by one sensor, in order of time.
 struct NavSource {
   std::string name;  ///< as the log names it: "ATTITUDE", "DISTANCE_SENSOR 1/194"
   NavQuantity quantity = NavQuantity::kVelocity;
   std::vector<NavSample> samples;
   std::optional<ClockStep> step_back = std::nullopt;  ///< nullopt: no sample came too late
+  std::vector<SourceStep> steps = {};                 ///< in order of time
 };
 
 /// Origin of the times of a log.
@@ -75,14 +87,15 @@ std::string_view name_of(NavClock clock);
 class NavLog {
  public:
   /// Takes samples as they came; those of a source are put in order of time, equal times as they came, and where its
-  /// clock was set back is noted. Sources without samples are left out.
+  /// clock was set back is noted. Sources without samples are left out. Of positions, depths and headings that step
+  /// faster than a vehicle moves, the samples that are not in the frame of most others become invalid (SourceStep).
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 
   const std::vector<NavSource>& sources() const { return sources_; }
   NavClock clock() const { return clock_; }
 
-  /// The source of a quantity with most valid samples, the first of equals; nullptr: there is none.
+  /// The source of a quantity with most valid samples and few_left_out, the first of equals; nullptr: there is none.
   const NavSource* best(NavQuantity quantity) const;
 
  private:
@@ -91,8 +104,16 @@ class NavLog {
   NavClock clock_;
 };
 
-/// Adds samples of the same source, of another log or part of it: they are no step back of its clock.
+/// Adds samples of the same source, of another log or part of it: they are no step back of its clock. Which of all of
+/// them are in another frame is found again by NavLog::make.
 void add_samples(const NavSource& from, NavSource& to);
+
+/// Samples that are left out as being in another frame, where these are few (a twentieth at most), else 0: outliers are
+/// no reason to prefer another source.
+std::size_t few_left_out(const NavSource& source);
+
+/// Moves all times of a source.
+void shift_times(NavSource& source, double offset_s);
 
 /// @return kCorrupt when its clock was set back: which times are right is not known
 Result<void> check_clock(const NavSource& source);
