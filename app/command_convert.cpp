@@ -155,7 +155,7 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
     what += fmt::format("; {} skipped", counted(skipped, "damaged record"));
   }
   // Samples are written in order of time, where nothing tells it any more.
-  if (const auto checked = check_clocks(nav.log); !checked) what += "; " + on_one_line(checked.error().message);
+  if (const auto checked = check_sources(nav.log); !checked) what += "; " + on_one_line(checked.error().message);
   return what;
 }
 

@@ -344,6 +344,7 @@ class LogMapper {
   }
 
   void say_what_is_odd(const MappedLog& mapped, const std::string& name) {
+    if (!mapped.note.empty()) say(fmt::format("{}: {}", name, mapped.note));
     if (!mapped.skipped_text.empty()) say(fmt::format("{}: skipped {}", name, mapped.skipped_text));
     if (!command_.path.poses) return;
     for (const std::string& odd :

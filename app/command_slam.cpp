@@ -40,6 +40,7 @@ std::string inputs_text(const SlamCommand& command) {
 
 struct Read {
   std::size_t beams = 0, skipped = 0;
+  std::vector<std::string> notes = {};  ///< of the logs
 };
 
 /// Gives the smoother all beams and navigation.
@@ -64,6 +65,7 @@ Result<Read> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCom
       ++read.beams;
     }
     read.skipped += (*log)->skipped();
+    if (const std::string note = (*log)->note(); !note.empty()) read.notes.push_back(fmt::format("{}: {}", name, note));
   }
   return read;
 }
@@ -146,6 +148,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Result<Read> all = read_all(smoother, *nav, command, std::move(first));
   if (!all) return tl::unexpected(all.error());
   inputs.skipped = all->skipped;
+  for (const std::string& note : all->notes) console.say(note);
   seconds.read = read.seconds();
 
   ProgressBar bar(command.output_options);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <filesystem>
@@ -125,6 +126,9 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
   const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav);
   if (!nav) return tl::unexpected(nav.error());
   if (!tells_path(nav->log)) {
+    if (const std::string faults = faults_text(nav->log); !faults.empty()) {
+      return fail(Error::Code::kCorrupt, fmt::format("{}: {}", fmt::join(path.navs, ", "), faults));
+    }
     return fail(
         Error::Code::kUnsupported,
         fmt::format("{}: gives no path: it has no valid {}{}", fmt::join(path.navs, ", "),
@@ -186,6 +190,10 @@ Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<c
   if (!contents) return tl::unexpected(contents.error());
   const NavFile& read = contents->nav;
   const bool has_attitude = has(read.log, NavQuantity::kAttitude);
+  constexpr std::array kOfTurns = {NavQuantity::kAttitude};
+  if (const auto checked = check_sources(read.log, kOfTurns); !checked) {
+    return fail(checked.error().code, fmt::format("{}: {}", name, checked.error().message));
+  }
   Result<NavTrajectory> made = has_attitude ? nav_trajectory(read.log) : nav_positions(read.log);
   if (!made) {
     const bool can_reckon = has(read.log, NavQuantity::kVelocity);
@@ -261,6 +269,7 @@ Result<MappedLog> map_log(const Log& log, const std::string& name, const Vehicle
   mapped.assumes_beam = beams != nullptr && head.assumes_beam(device);
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log);
   mapped.first_damage = std::visit([](const auto& source) { return source->first_damage(); }, log);
+  if (beams != nullptr) mapped.note = (*beams)->note();
   mapped.skipped_text = text_of_skipped(mapped, beams != nullptr ? "beam" : "point", path, map.lattice());
   const bool are_all_outside =
       report->outside.count == report->beams && report->cells_freed == 0 && report->cells_hit == 0;

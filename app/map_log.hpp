@@ -67,6 +67,7 @@ struct MappedLog {
   bool assumes_beam = false;  ///< width or height are defaults: neither options nor log tell them
   std::size_t damaged = 0;    ///< records that could not be read
   std::string first_damage;   ///< place and reason of the first one
+  std::string note;           ///< how its beams are read, where that is not as its format says; empty: as it says
   std::string skipped_text;   ///< skipped beams by reason, and what to do; empty: none
   bool is_nothing = false;    ///< no beam or point of it is on the map
 };

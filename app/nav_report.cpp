@@ -187,6 +187,9 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   if (!log) return tl::unexpected(log.error());
   const std::string files = fmt::format("{}", fmt::join(names, ", "));
   if (const auto there = check_contents(fields, topics, files); !there) return tl::unexpected(there.error());
+  if (const std::string faults = faults_text(*log); !faults.empty()) {
+    warnings.push_back(fmt::format("{}: {}", files, faults));
+  }
   for (const std::string& step : step_texts(*log)) warnings.push_back(fmt::format("{}: {}", files, step));
   return NavFiles{*std::move(log), damaged, std::move(warnings)};
 }
@@ -209,8 +212,8 @@ void add_nav(JsonObject& json, const NavFile& nav) {
   std::vector<JsonObject> sources;
   for (const NavSource& source : nav.log.sources()) {
     const NavSummary summary = summary_of(source);
-    sources.emplace_back()
-        .add("name", source.name)
+    JsonObject& json_of_source = sources.emplace_back();
+    json_of_source.add("name", source.name)
         .add("quantity", name_of(source.quantity))
         .add("samples", summary.samples)
         .add("invalid", summary.invalid)
@@ -221,6 +224,8 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("late", source.step_back ? source.step_back->late : 0)
         .add("left_out", left_out(source.steps))
         .add("steps", steps_json(source.steps));
+    if (!source.fault.empty()) json_of_source.add("fault", source.fault);
+    if (!source.note.empty()) json_of_source.add("note", source.note);
   }
   json.add("clock", name_of(nav.log.clock()))
       .add("records", nav.records)
@@ -261,6 +266,11 @@ std::string nav_text(const NavFile& nav) {
     text += fmt::format("  {:<{}}  {:<11} {:>8} {:>8} {:>8.2f} {:>5} {:>17.3f} {:>17.3f}\n", on_one_line(source.name),
                         widest, name_of(source.quantity), summary.samples, summary.invalid, summary.rate_hz,
                         summary.gaps, summary.from_s, summary.to_s);
+  }
+  for (const NavSource& source : nav.log.sources()) {
+    const std::string named = fmt::format("{} of {}: ", name_of(source.quantity), source.name);
+    if (!source.note.empty()) text += report_line("note", on_one_line(named + source.note));
+    if (!source.fault.empty()) text += report_line("not used", on_one_line(named + source.fault));
   }
   for (const NavSource& source : nav.log.sources()) {
     if (!source.step_back) continue;

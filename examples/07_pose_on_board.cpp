@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     if (!sonar) return tl::unexpected(sonar.error());
     const auto nav = read_file(argv[2]).and_then([](const FileBytes& bytes) { return read_nav(bytes); });
     if (!nav) return tl::unexpected(nav.error());
-    if (const auto checked = check_clocks(nav->log); !checked) return checked;
+    if (const auto checked = check_sources(nav->log); !checked) return checked;
     return dive(**sonar, nav->log);
   }();
   if (!done) {

@@ -17,6 +17,7 @@
 #include "io/dvl_a50.hpp"
 #include "io/nav_fields.hpp"
 #include "io/nav_sources.hpp"
+#include "nav/pressure_unit.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
@@ -29,18 +30,9 @@ namespace {
 
 /// What the messages of a topic so far say about later ones.
 struct TopicState {
-  double altitude_m = 0.0;                 ///< the last one that a receiver knew
-  std::optional<double> pressure_unit_pa;  ///< nullopt: there was no pressure yet
-  std::vector<DeviceTime> report_times;    ///< of a DVL, where they have a time of the device
+  double altitude_m = 0.0;               ///< the last one that a receiver knew
+  std::vector<DeviceTime> report_times;  ///< of a DVL, where they have a time of the device
 };
-
-/// Unit of a pressure, of drivers that send bar, kPa, hPa or Pa. Down to 40 m of water these do not overlap.
-double pressure_unit_pa(double pressure) {
-  constexpr double kMaxBar = 50.0, kMaxKpa = 500.0, kMaxHpa = 50'000.0;
-  if (pressure < kMaxBar) return 1e5;
-  if (pressure < kMaxKpa) return 1e3;
-  return pressure < kMaxHpa ? 1e2 : 1.0;
-}
 
 /// Where the samples of one message go.
 class Samples {
@@ -65,13 +57,6 @@ class Samples {
   void add_fix(double latitude_deg, double longitude_deg, double altitude_m, bool valid) {
     if (std::isfinite(altitude_m)) state_.altitude_m = altitude_m;
     add(NavQuantity::kFix, {latitude_deg * kDegree_rad, longitude_deg * kDegree_rad, state_.altitude_m}, valid);
-  }
-
-  /// In the unit of the topic: that of its first pressure, which was not yet deep under water.
-  void add_pressure(double pressure) {
-    constexpr double kVacuum_bar = 0.1;  // of a sensor that does not answer yet
-    if (!state_.pressure_unit_pa && pressure > kVacuum_bar) state_.pressure_unit_pa = pressure_unit_pa(pressure);
-    add(NavQuantity::kPressure, {pressure * state_.pressure_unit_pa.value_or(1.0), 0.0, 0.0});
   }
 
   void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
@@ -129,13 +114,14 @@ void add_xsens_fix(const RosFields& message, Samples& samples) {
   samples.add_fix(message.number(0), message.number(1), 0.0, message.number(2) > 0.0);
 }
 
+/// In the unit of its driver, which tell_pressures finds.
 void add_pressure(const RosFields& message, Samples& samples) {
-  samples.add_pressure(message.number(0));
+  samples.add(NavQuantity::kPressure, {message.number(0), 0.0, 0.0});
 }
 
 void add_depth_pressure_temperature(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
-  samples.add_pressure(message.number(1));
+  samples.add(NavQuantity::kPressure, {message.number(1), 0.0, 0.0});
   samples.add(NavQuantity::kTemperature, {message.number(2), 0.0, 0.0});
 }
 
@@ -309,7 +295,7 @@ class BagSurvey {
     }
     if (!topic.known) return {};
     if (!message_.read(*topic.known->layout, message.bytes)) {
-      add_damage(unusable_, kNoFit, message.file_byte);
+      unusable_.add({kNoFit}, message.file_byte);
       return {};
     }
     ++records_;
@@ -333,6 +319,7 @@ class BagSurvey {
     if (const auto added = add_topics(); !added) return tl::unexpected(added.error());
     std::vector<NavSource> sources = sources_.take();
     set_times(sources);
+    tell_pressures(sources, named_by_fields());
     add_where_no_other_is(transforms_.take(), sources);
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
@@ -371,6 +358,15 @@ class BagSurvey {
     };
     if (std::ranges::any_of(sources, is_position)) return;
     std::ranges::move(transforms, std::back_inserter(sources));
+  }
+
+  /// The topics whose fields, with their units, were named.
+  std::vector<std::string> named_by_fields() const {
+    std::vector<std::string> names;
+    for (const Topic& topic : topics_) {
+      if (!topic.readers.empty()) names.push_back(summaries_[topic.summary].name);
+    }
+    return names;
   }
 
   /// Sets the times of samples of DVLs that say when their reports were true.
@@ -443,7 +439,7 @@ class BagSurvey {
   NavSources sources_, transforms_;
   RosMessage message_;
   std::size_t records_ = 0;
-  std::vector<DamageKind> unusable_;
+  UnusableMessages unusable_;
 };
 
 }  // namespace

@@ -90,10 +90,34 @@ std::optional<T> whole(double number) {
 
 /// Kinds of damage: messages that cannot be used.
 inline constexpr std::string_view kNoFit = "message that does not fit its definition",
-                                  kImpossible = "impossible values";
+                                  kImpossible = "impossible values",
+                                  kContradiction = "numbers that contradict each other";
+
+/// Why a message cannot be used.
+struct Unusable {
+  std::string_view kind;  ///< lives as long as the program
+  std::string why = {};   ///< with the numbers, as in "1 range does not fit ..."; empty: the kind says all
+};
+
+/// The messages of a bag that cannot be used.
+class UnusableMessages {
+ public:
+  void add(const Unusable& message, std::optional<std::uint64_t> file_byte);
+
+  const std::vector<DamageKind>& kinds() const { return kinds_; }
+  bool empty() const { return kinds_.empty(); }
+  /// Place and reason of the first one, as in "byte 4117: 1 range does not fit ..."; empty: there is none.
+  const std::string& first_text() const { return first_text_; }
+
+ private:
+  std::vector<DamageKind> kinds_;
+  std::string first_text_;
+};
 
 /// That of the bag, then its messages that cannot be used.
-std::vector<DamageKind> damage_of(const Bag& bag, const std::vector<DamageKind>& unusable);
+std::vector<DamageKind> damage_of(const Bag& bag, const UnusableMessages& unusable);
+/// Place and reason of the first of them; empty: there is none.
+std::string first_damage_of(const Bag& bag, const UnusableMessages& unusable);
 
 /// "/left (sensor_msgs/LaserScan), /right (sensor_msgs/LaserScan)": the topics so far that are of a kind.
 std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&));

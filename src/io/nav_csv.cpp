@@ -11,6 +11,7 @@
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
 #include "io/text.hpp"
+#include "nav/pressure_unit.hpp"
 #include "pingvox/io/frame_finder.hpp"
 
 // Navigation as text: a first line that names the columns, then a sample in each line (docs/formats.md).
@@ -122,6 +123,7 @@ NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
     ++reading.records;
   }
   reading.sources = sources.take();
+  tell_pressures(reading.sources);
   return reading;
 }
 

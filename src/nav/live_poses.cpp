@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "nav/plausible_values.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 
 namespace pingvox {
@@ -40,6 +41,7 @@ Pose pose_between(NavQuantity quantity, const NavSample& before, const NavSample
 
 void LivePoses::add(const std::string& source, NavQuantity quantity, const NavSample& sample) {
   if (!sample.valid || !sample.value.allFinite() || !std::isfinite(sample.time_s)) return;
+  if (!is_possible(quantity, sample.value)) return;
   NavSample kept = sample;
   switch (quantity) {
     case NavQuantity::kDepth:

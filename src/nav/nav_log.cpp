@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "base/median.hpp"
+#include "nav/plausible_values.hpp"
 #include "nav/source_steps.hpp"
+#include "nav/water_column.hpp"
 
 namespace pingvox {
 namespace {
@@ -27,8 +29,6 @@ constexpr std::array kNames = {std::pair{NavQuantity::kVelocity, std::string_vie
                                std::pair{NavQuantity::kRange, std::string_view("range")},
                                std::pair{NavQuantity::kPressure, std::string_view("pressure")},
                                std::pair{NavQuantity::kTemperature, std::string_view("temperature")}};
-
-constexpr double kMaxInAir_pa = 110'000.0, kSurface_pa = 101'325.0, kSeaWater_kg_m3 = 1025.0, kGravity_m_s2 = 9.80665;
 
 std::size_t valid_samples(const NavSource& source) {
   return static_cast<std::size_t>(
@@ -126,7 +126,9 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
     }
     if (const auto step = step_back_in(source.samples)) source.step_back = step;
     sort_by_time(source.samples);
+    check_values(source);
   }
+  compare_turns(sources);
   leave_out_other_frames(sources);
   return NavLog(std::move(sources), clock);
 }
@@ -136,6 +138,8 @@ void add_samples(const NavSource& from, NavSource& to) {
   restore_other_frames(to);
   sort_by_time(to.samples);
   if (!to.step_back) to.step_back = from.step_back;
+  if (to.fault.empty()) to.fault = from.fault;
+  if (to.note.empty()) to.note = from.note;
 }
 
 std::size_t few_left_out(const NavSource& source) {
@@ -156,6 +160,12 @@ void shift_times(NavSource& source, double offset_s) {
   }
 }
 
+bool is_usable(const NavSource& source) {
+  return source.fault.empty() && std::ranges::any_of(source.samples, &NavSample::valid);
+}
+
+namespace {
+
 Result<void> check_clock(const NavSource& source) {
   if (!source.step_back) return {};
   const auto& [from_s, to_s, late] = *source.step_back;
@@ -165,26 +175,61 @@ Result<void> check_clock(const NavSource& source) {
                           name_of(source.quantity), source.name, from_s - to_s, from_s, to_s));
 }
 
-Result<void> check_clocks(const NavLog& log, std::span<const NavQuantity> quantities) {
-  for (const NavSource& source : log.sources()) {
-    if (std::ranges::find(quantities, source.quantity) == quantities.end()) continue;
-    if (const auto checked = check_clock(source); !checked) return checked;
-  }
-  return {};
+std::string fault_text(const NavSource& source) {
+  return fmt::format("the {} of {} cannot be used: {}", name_of(source.quantity), source.name, source.fault);
 }
 
-Result<void> check_clocks(const NavLog& log) {
+bool is_one_of(NavQuantity quantity, std::span<const NavQuantity> quantities) {
+  return std::ranges::find(quantities, quantity) != quantities.end();
+}
+
+/// Whether a usable source of these quantities tells the same as one with a fault.
+bool has_another(const NavLog& log, NavQuantity quantity, std::span<const NavQuantity> quantities) {
+  const bool is_turn = quantity == NavQuantity::kTurnRate || is_one_of(quantity, kHeadingQuantities);
+  return std::ranges::any_of(log.sources(), [&](const NavSource& source) {
+    const bool tells_turns = is_turn && is_one_of(source.quantity, kHeadingQuantities);
+    return is_one_of(source.quantity, quantities) && (source.quantity == quantity || tells_turns) && is_usable(source);
+  });
+}
+
+}  // namespace
+
+Result<void> check_source(const NavSource& source) {
+  if (!source.fault.empty()) return fail(Error::Code::kCorrupt, fault_text(source));
+  return check_clock(source);
+}
+
+Result<void> check_sources(const NavLog& log, std::span<const NavQuantity> quantities) {
+  std::string faults;
   for (const NavSource& source : log.sources()) {
+    if (!is_one_of(source.quantity, quantities)) continue;
     if (const auto checked = check_clock(source); !checked) return checked;
+    if (source.fault.empty() || has_another(log, source.quantity, quantities)) continue;
+    faults += (faults.empty() ? "" : "; ") + fault_text(source);
   }
-  return {};
+  if (faults.empty()) return {};
+  return fail(Error::Code::kCorrupt, std::move(faults));
+}
+
+Result<void> check_sources(const NavLog& log) {
+  std::array<NavQuantity, kNames.size()> all{};
+  std::ranges::transform(kNames, all.begin(), [](const auto& named) { return named.first; });
+  return check_sources(log, all);
+}
+
+std::string faults_text(const NavLog& log) {
+  std::string text;
+  for (const NavSource& source : log.sources()) {
+    if (!source.fault.empty()) text += (text.empty() ? "" : "; ") + fault_text(source);
+  }
+  return text;
 }
 
 const NavSource* NavLog::best(NavQuantity quantity) const {
   const NavSource* best = nullptr;
   std::size_t most = 0;
   for (const NavSource& source : sources_) {
-    if (source.quantity != quantity) continue;
+    if (source.quantity != quantity || !source.fault.empty()) continue;
     const std::size_t valid = valid_samples(source) + few_left_out(source);
     if (valid <= most) continue;
     best = &source;
@@ -198,7 +243,7 @@ std::optional<NavSource> depth_source(const NavLog& log) {
   const NavSource* chosen = nullptr;
   double highest_pa = kMaxInAir_pa;
   for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kPressure) continue;
+    if (source.quantity != NavQuantity::kPressure || !source.fault.empty()) continue;
     for (const NavSample& sample : source.samples) {
       if (!sample.valid || sample.value.x() <= highest_pa) continue;
       highest_pa = sample.value.x();
@@ -209,8 +254,8 @@ std::optional<NavSource> depth_source(const NavLog& log) {
   NavSource depth = *chosen;
   depth.quantity = NavQuantity::kDepth;
   for (NavSample& sample : depth.samples) {
-    sample.value.x() = (sample.value.x() - kSurface_pa) / (kSeaWater_kg_m3 * kGravity_m_s2);
-    sample.deviation.x() /= kSeaWater_kg_m3 * kGravity_m_s2;
+    sample.value.x() = depth_of_pressure(sample.value.x());
+    sample.deviation.x() /= kPascalsPerMetre;
   }
   return depth;
 }
@@ -219,7 +264,7 @@ std::optional<WaterAround> water_around(const NavLog& log) {
   constexpr double kNone_c = 0.0, kWarmest_c = 35.0;
   std::optional<double> coldest_c;
   for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kTemperature) continue;
+    if (source.quantity != NavQuantity::kTemperature || !source.fault.empty()) continue;
     const std::optional<double> usual_c = usual_value(source);
     if (!usual_c || *usual_c <= kNone_c || *usual_c > kWarmest_c) continue;
     coldest_c = std::min(*usual_c, coldest_c.value_or(*usual_c));
@@ -263,6 +308,7 @@ Eigen::Vector3d world(const Eigen::Vector3d& north_east_down) {
 }
 
 double yaw(double heading_rad) {
+  if (!is_possible(NavQuantity::kHeading, {heading_rad, 0.0, 0.0})) return std::numbers::pi / 2.0 - heading_rad;
   const double yaw_rad = std::remainder(std::numbers::pi / 2.0 - heading_rad, 2.0 * std::numbers::pi);
   return yaw_rad > -std::numbers::pi ? yaw_rad : std::numbers::pi;
 }

@@ -26,14 +26,14 @@ Result<std::optional<NavSource>> main_source(const NavLog& log, NavQuantity quan
   const NavSource* chosen = log.best(quantity);
   if (chosen == nullptr) return std::nullopt;
   for (const NavSource& source : log.sources()) {
-    if (source.quantity != quantity || std::ranges::none_of(source.samples, &NavSample::valid)) continue;
+    if (source.quantity != quantity || !is_usable(source)) continue;
     if (source.name == preferred) {
       chosen = &source;
       break;
     }
     if (std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end()) chosen = &source;
   }
-  if (const auto checked = check_clock(*chosen); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = check_source(*chosen); !checked) return tl::unexpected(checked.error());
   NavSource valid = *chosen;
   std::erase_if(valid.samples, [](const NavSample& sample) { return !sample.valid; });
   return valid;
@@ -91,7 +91,7 @@ Result<std::optional<PositionSource>> position_source(const NavLog& log) {
   NavSource& fixes = **found;
   const Eigen::Vector3d origin = make_positions(fixes);
   if (auto depth = depth_source(log)) {
-    if (const auto checked = check_clock(*depth); !checked) return tl::unexpected(checked.error());
+    if (const auto checked = check_source(*depth); !checked) return tl::unexpected(checked.error());
     std::erase_if(depth->samples, [](const NavSample& sample) { return !sample.valid; });
     if (const auto done = set_depths(fixes, *depth); !done) return tl::unexpected(done.error());
   }
@@ -121,6 +121,8 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
     if (!turned) return tl::unexpected(turned.error());
     const std::optional<NavSource>& attitude = *turned;
     if (!attitude || position == nullptr) {
+      constexpr std::array kOfPoses = {NavQuantity::kAttitude, NavQuantity::kPosition, NavQuantity::kFix};
+      if (const auto checked = check_sources(log, kOfPoses); !checked) return tl::unexpected(checked.error());
       return fail(Error::Code::kUnsupported,
                   fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
     }
@@ -159,7 +161,11 @@ Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
   return detail::without_exceptions([&]() -> Result<NavTrajectory> {
     const Result<std::optional<PositionSource>> found = position_source(log);
     if (!found) return tl::unexpected(found.error());
-    if (!*found) return fail(Error::Code::kUnsupported, "has no valid position");
+    if (!*found) {
+      constexpr std::array kOfPositions = {NavQuantity::kPosition, NavQuantity::kFix};
+      if (const auto checked = check_sources(log, kOfPositions); !checked) return tl::unexpected(checked.error());
+      return fail(Error::Code::kUnsupported, "has no valid position");
+    }
     const NavSource& position = (*found)->source;
     Result<Trajectory> trajectory = trajectory_of(position, offset_s, translation);
     if (!trajectory) return tl::unexpected(trajectory.error());

@@ -123,7 +123,7 @@ bool ClockOffset::is_apart() const {
 
 Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
   constexpr double kStep_s = 1.0;
-  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = check_sources(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
   std::vector<YawChange> changes;
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading || heading->yaw_rad.to_s() - heading->yaw_rad.from_s() > EvenYaw::kMaxLength_s) return changes;
@@ -139,7 +139,7 @@ Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
 }
 
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog& log) {
-  if (const auto checked = check_clocks(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = check_sources(log, kHeadingQuantities); !checked) return tl::unexpected(checked.error());
   const std::optional<HeadingSource> heading = best_heading(log, {});
   if (!heading) return cannot_tell("the navigation has no valid heading or attitude");
   return clock_offset(all, heading->yaw_rad, kAny_s);

@@ -226,6 +226,7 @@ std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std:
   std::optional<HeadingSource> best;
   for (const NavSource& source : log.sources()) {
     if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
+    if (!is_usable(source)) continue;
     auto heading = heading_source(source, mount_of(body_from_source, source.name));
     if (heading && (!best || heading->samples() > best->samples())) best = *std::move(heading);
   }

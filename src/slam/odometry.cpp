@@ -60,7 +60,7 @@ Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
 }  // namespace
 
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
-  if (const auto checked = check_clocks(log, kReckoningQuantities); !checked) return tl::unexpected(checked.error());
+  if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return tl::unexpected(checked.error());
   if (const auto known = check_mounts(log, options.body_from_source); !known) return tl::unexpected(known.error());
   std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
@@ -79,7 +79,7 @@ Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) 
   }
   std::optional<TimeSeries> depth;
   if (const auto source = depth_source(log)) {
-    if (const auto checked = check_clock(*source); !checked) return tl::unexpected(checked.error());
+    if (const auto checked = check_source(*source); !checked) return tl::unexpected(checked.error());
     depth = number_source(*source);
   }
 

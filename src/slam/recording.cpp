@@ -113,6 +113,7 @@ std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& opt
     headings.push_back(*std::move(heading));
   }
   for (const NavSource& source : log.sources()) {
+    if (!is_usable(source)) continue;
     const Pose mount = mount_of(options.body_from_source, source.name);
     if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
       if (auto heading = heading_source(source, mount)) headings.push_back(*std::move(heading));
@@ -137,6 +138,7 @@ Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& optio
   std::vector<HeadingSource> headings =
       headings_of(log, options, by_sonar && by_sonar->heading ? &*by_sonar->heading : nullptr);
   if (!velocity || headings.empty()) {
+    if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return tl::unexpected(checked.error());
     return fail(Error::Code::kUnsupported,
                 fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
                                                               : !velocity                   ? "velocity over ground"
@@ -153,7 +155,7 @@ Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& optio
   }
   Navigation navigation{*std::move(velocity), std::move(headings), std::nullopt};
   if (const auto depth = depth_source(log)) {
-    if (const auto checked = check_clock(*depth); !checked) return tl::unexpected(checked.error());
+    if (const auto checked = check_source(*depth); !checked) return tl::unexpected(checked.error());
     navigation.depth = number_source(*depth);
   }
   return navigation;

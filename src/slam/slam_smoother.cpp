@@ -108,7 +108,7 @@ Result<void> SlamSmoother::add(std::string_view source, NavQuantity quantity, co
 
 Result<void> SlamSmoother::add(const NavLog& log) {
   return detail::without_exceptions([&]() -> Result<void> {
-    if (const auto checked = check_clocks(log, kReckoningQuantities); !checked) return checked;
+    if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return checked;
     for (NavSource source : log.sources()) {
       for (NavSample& sample : source.samples) sample.time_s += state_->options.nav_offset_s;
       add_samples(source, source_in(state_->sources, source.name, source.quantity));

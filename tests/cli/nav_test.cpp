@@ -257,6 +257,66 @@ TEST(Nav, WithoutAPositionAVelocityGivesDeadReckoning) {
   EXPECT_EQ(render.status, 0) << render.err;
 }
 
+/// A path to the north in degrees where radians are meant.
+std::string nav_in_degrees() {
+  std::string nav = "# clock: unix\ntime_s,source,quantity,x,y,z\n";
+  for (int i = 0; i < 100; ++i) {
+    nav += fmt::format("{0},GPS,fix,{1},10.1,0\n{0},AHRS,attitude,0,0,{2}\n", 0.5 * i, 54.3 + 1e-6 * i, 90 + i);
+  }
+  return nav;
+}
+
+// A vehicle at latitude 54 rad was mapped where it never was, along a path that turned wildly.
+TEST(Nav, InDegreesIsRefusedByName) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("nav.csv", nav_in_degrees());
+  const std::string latitude = "the fix of GPS cannot be used: latitude of 54.3 rad is beyond pi/2: is it in degrees?",
+                    yaw = "the attitude of AHRS cannot be used: yaw of 90 rad is beyond 2 pi: is it in degrees?";
+  expect_error(here.call({"map", "tank.csv", "--nav", "nav.csv", "-o", "o.bt"}), 1, {"nav.csv", latitude, yaw});
+  expect_error(here.call({"convert", "nav.csv", "-o", "o.tum"}), 1, {"nav.csv", yaw});
+  expect_error(here.call({"slam", "tank.csv", "--nav", "nav.csv", "--nav-offset", "0", "-o", "o.tum"}), 1, {yaw});
+  const Outcome info = here.call({"info", "nav.csv"}), json = here.call({"info", "nav.csv", "--json"});
+  EXPECT_THAT(info.out, HasSubstr("not used    fix of GPS: latitude of 54.3 rad is beyond pi/2: is it in degrees?"));
+  EXPECT_THAT(json.out, HasSubstr(R"("fault": "latitude of 54.3 rad is beyond pi/2: is it in degrees?")"));
+}
+
+TEST(Nav, ASourceThatIsNotUsedIsNamedBesideAnother) {
+  const Workplace here;
+  here.simulate_tank();
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  for (int i = 0; i < 400; ++i) {
+    nav += fmt::format("{0},dvl,position,0,0,0\n{0},imu,attitude,0,0,1\n{0},ahrs,attitude,0,0,{1}\n", 0.5 * i, 90 + i);
+  }
+  here.write("nav.csv", nav);
+  const Outcome mapped = here.call({"map", "tank.csv", "--nav", "nav.csv", "--nav-offset", "0", "-o", "o.bt"});
+  EXPECT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("imu and dvl"));
+  EXPECT_THAT(mapped.err, HasSubstr("nav.csv: the attitude of ahrs cannot be used: yaw of 90 rad"));
+}
+
+// Kills a heading that is integrated from degrees: SLAM was 5 m off and stated 0.1 m.
+TEST(Nav, TurnRatesInDegreesPerSecondAreRefusedBySlam) {
+  const Workplace here;
+  here.simulate_tank();
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  for (int i = 0; i < 500; ++i) {
+    nav += fmt::format("{0},dvl,velocity,0.2,0,0\n{0},imu,turn rate,0.1,0,{1}\n", 0.2 * i, 8.0 * std::sin(0.1 * i));
+  }
+  here.write("nav.csv", nav);
+  expect_error(here.call({"slam", "tank.csv", "--nav", "nav.csv", "--nav-offset", "0", "-o", "o.tum"}), 1,
+               {"the turn rate of imu cannot be used", "is it in degrees per second?"});
+}
+
+TEST(Nav, InfoSaysInWhichUnitAPressureWasRead) {
+  const Workplace here;
+  std::string nav = "time_s,source,quantity,x\n";
+  for (int i = 0; i < 100; ++i) nav += fmt::format("{},bar,pressure,{}\n", i, 101.3 + 0.5 * i);
+  here.write("nav.csv", nav);
+  EXPECT_THAT(here.call({"info", "nav.csv"}).out, HasSubstr("note        pressure of bar: read as kPa"));
+  EXPECT_THAT(here.call({"info", "nav.csv", "--json"}).out, HasSubstr(R"("note": "read as kPa")"));
+}
+
 // The log of a moving vehicle was mapped as if it stood still, and nothing said so.
 TEST(Nav, BesideALogThatIsMappedWithoutIsNamed) {
   const Workplace here;

@@ -131,7 +131,7 @@ TEST(A50, TimesOfPositionsDoNotCountWhereVelocitiesHaveNone) {
   ASSERT_EQ(positions.size(), 2U);
   EXPECT_DOUBLE_EQ(positions[0].time_s, 0.0);
   EXPECT_DOUBLE_EQ(positions[1].time_s, 0.1);
-  EXPECT_TRUE(check_clocks(nav.log));
+  EXPECT_TRUE(check_sources(nav.log));
 }
 
 // Kills positions that count though the device says that they are wrong.

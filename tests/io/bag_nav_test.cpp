@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -65,7 +66,7 @@ TEST(BagNav, TellsUnitsOfPressureByTheirSize) {
   };
   EXPECT_NEAR(pascals(1.5), 150'000.0, 1e-6);
   EXPECT_NEAR(pascals(101.3), 101'300.0, 1e-6);
-  EXPECT_NEAR(pascals(1500.0), 150'000.0, 1e-6);
+  EXPECT_NEAR(pascals(1020.0), 102'000.0, 1e-6);
   EXPECT_NEAR(pascals(150'000.0), 150'000.0, 1e-6);
 }
 
@@ -100,6 +101,24 @@ TEST(BagNav, ATopicHasOneUnitOfPressure) {
   EXPECT_NEAR(values[2].x(), 499'000.0, 1e-6);
   EXPECT_NEAR(values[3].x(), 501'000.0, 1e-6);
   EXPECT_NEAR(values[4].x(), 700'000.0, 1e-6);
+}
+
+// 604 kPa at the beginning were read as 604 hPa, which is above the surface, and a gauge's Pa as hPa.
+TEST(BagNav, ThePressuresOfFluidsAreAbsolutePascals) {
+  const auto pressures = [](double first_pa, double zero_pa, double unit_pa) {
+    std::vector<std::vector<double>> messages;
+    for (int i = 0; i < 100; ++i) messages.push_back({(first_pa + 500.0 * i - zero_pa) / unit_pa});
+    return values_of("/pressure", "lab_msgs/msg/FluidPressure", "float64 fluid_pressure\n", messages,
+                     NavQuantity::kPressure);
+  };
+  const std::vector<std::tuple<double, double, double>> drivers = {
+      {603'916.0, 0.0, 1.0}, {603'916.0, 0.0, 1e3}, {106'351.0, 101'325.0, 1.0}, {106'351.0, 0.0, 1e2}};
+  for (const auto& [first_pa, zero_pa, unit_pa] : drivers) {
+    const auto values = pressures(first_pa, zero_pa, unit_pa);
+    ASSERT_THAT(values, SizeIs(100));
+    EXPECT_NEAR(values[0].x(), first_pa, 1e-6) << unit_pa;
+    EXPECT_NEAR(values[99].x(), first_pa + 49'500.0, 1e-6) << unit_pa;
+  }
 }
 
 // Kills fixes that are lost, or jump to height 0, where the receiver knows no altitude.

@@ -54,7 +54,7 @@ TEST(NavLog, NotesWhereAClockWasSetBack) {
   EXPECT_EQ(step->from_s, 10.0);
   EXPECT_EQ(step->to_s, 5.0);
   EXPECT_EQ(step->late, 3U);
-  const auto checked = check_clocks(*log);
+  const auto checked = check_sources(*log);
   ASSERT_FALSE(checked);
   EXPECT_THAT(checked.error().message,
               testing::HasSubstr("depth of back runs back by 5.000 s, from 10.000 to 5.000 s"));
@@ -63,7 +63,7 @@ TEST(NavLog, NotesWhereAClockWasSetBack) {
   add_samples(depths("a", {1, 2}), both);
   const auto joined = NavLog::make({both}, NavClock::kBoot);
   ASSERT_TRUE(joined);
-  EXPECT_TRUE(check_clocks(*joined));
+  EXPECT_TRUE(check_sources(*joined));
   EXPECT_EQ(joined->sources()[0].samples.front().time_s, 1.0);
 }
 

@@ -21,7 +21,8 @@ namespace pingvox {
 /// stay for half a second, the poses go on in the new frame, and none is known between the two.
 class LivePoses {
  public:
-  /// Takes a sample; those that are not valid, not finite or not later than the last one of their source are left out.
+  /// Takes a sample; those that are not valid, not finite, not possible (a latitude beyond pi/2) or not later than the
+  /// last one of their source are left out.
   void add(const std::string& source, NavQuantity quantity, const NavSample& sample);
 
   /// map_from_body; nullopt: not known (yet): a pose needs samples of each source before and after it, without a gap.

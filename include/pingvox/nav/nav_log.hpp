@@ -73,7 +73,14 @@ struct NavSource {
   std::vector<NavSample> samples;
   std::optional<ClockStep> step_back = std::nullopt;  ///< nullopt: no sample came too late
   std::vector<SourceStep> steps = {};                 ///< in order of time
+  /// Why its values cannot be used, as in "latitude of 54.3 rad is beyond pi/2: is it in degrees?"; empty: nothing is
+  /// wrong with them. Nothing is computed from a source with a fault.
+  std::string fault = {};
+  std::string note = {};  ///< how it was read, where its format leaves that open, as in "read as kPa"; empty: as always
 };
+
+/// Whether something can be computed from it: it has no fault and at least one valid sample.
+bool is_usable(const NavSource& source);
 
 /// Origin of the times of a log.
 enum class NavClock {
@@ -87,15 +94,18 @@ std::string_view name_of(NavClock clock);
 class NavLog {
  public:
   /// Takes samples as they came; those of a source are put in order of time, equal times as they came, and where its
-  /// clock was set back is noted. Sources without samples are left out. Of positions, depths and headings that step
-  /// faster than a vehicle moves, the samples that are not in the frame of most others become invalid (SourceStep).
+  /// clock was set back is noted. Sources without samples are left out. A single value that cannot be true (a yaw
+  /// beyond 2 pi, a latitude beyond pi/2) is marked as invalid; where they are not single, the source gets a fault. Of
+  /// positions, depths and headings that step faster than a vehicle moves, the samples that are not in the frame of most
+  /// others become invalid (SourceStep).
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 
   const std::vector<NavSource>& sources() const { return sources_; }
   NavClock clock() const { return clock_; }
 
-  /// The source of a quantity with most valid samples and few_left_out, the first of equals; nullptr: there is none.
+  /// The source of a quantity with most valid samples and few_left_out, without a fault, the first of equals; nullptr:
+  /// there is none.
   const NavSource* best(NavQuantity quantity) const;
 
  private:
@@ -115,12 +125,16 @@ std::size_t few_left_out(const NavSource& source);
 /// Moves all times of a source.
 void shift_times(NavSource& source, double offset_s);
 
-/// @return kCorrupt when its clock was set back: which times are right is not known
-Result<void> check_clock(const NavSource& source);
-/// The same of all sources of these quantities, those that something is computed from; kCorrupt names the first.
-Result<void> check_clocks(const NavLog& log, std::span<const NavQuantity> quantities);
+/// @return kCorrupt when its clock was set back, for which times are right is not known; when it has a fault
+Result<void> check_source(const NavSource& source);
+/// The same of all sources of these quantities, those that something is computed from. One with a fault is an error
+/// only where no other source of these quantities tells the same: how the vehicle turns, each heading or attitude does.
+/// @return kCorrupt naming the first clock, or all faults
+Result<void> check_sources(const NavLog& log, std::span<const NavQuantity> quantities);
 /// The same of all sources.
-Result<void> check_clocks(const NavLog& log);
+Result<void> check_sources(const NavLog& log);
+/// The sources with a fault, each with its reason, for a warning; empty: there are none.
+std::string faults_text(const NavLog& log);
 
 /// What the turns of a vehicle are known by, and what dead reckoning is computed from besides the depth.
 inline constexpr std::array kHeadingQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude};
@@ -159,9 +173,10 @@ namespace from_ned {
 Eigen::Vector3d body(const Eigen::Vector3d& forward_right_down);
 /// A position or velocity in the world: north, east, down -> east, north, up.
 Eigen::Vector3d world(const Eigen::Vector3d& north_east_down);
-/// Roll, pitch and yaw [rad] of a forward-right-down body in north-east-down -> ours; yaw in (-pi, pi].
+/// Roll, pitch and yaw [rad] of a forward-right-down body in north-east-down -> ours; yaw as by yaw().
 Eigen::Vector3d attitude(const Eigen::Vector3d& roll_pitch_yaw_rad);
-/// A heading, clockwise from north [rad] -> yaw from east in (-pi, pi].
+/// A heading, clockwise from north [rad] -> yaw from east in (-pi, pi]. Beyond 2 pi, where no heading in radians is, it
+/// goes on beyond them, so that NavLog::make finds it.
 double yaw(double heading_rad);
 }  // namespace from_ned
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "pingvox/nav/nav_log.hpp"
+
+// What no vehicle can measure: numbers in another unit than their quantity has, and damaged ones. The limits are
+// physical and generous, for all readers alike.
+namespace pingvox {
+
+/// Whether each number of a sample is within what its quantity can be.
+bool is_possible(NavQuantity quantity, const Eigen::Vector3d& value);
+
+/// Marks single samples that are not possible as invalid. Where they are not single, the unit is wrong: `fault` says
+/// so.
+/// @param source  in order of time
+void check_values(NavSource& source);
+
+/// Compares how far the vehicle turns by the turn rates and by the attitudes and headings of a log: where one turns as
+/// the other but 57.3 times as far, it is in degrees, and its `fault` says so.
+/// @param sources  each in order of time
+void compare_turns(std::span<NavSource> sources);
+
+}  // namespace pingvox

@@ -1,0 +1,222 @@
+#include "nav/pressure_unit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "base/median.hpp"
+#include "nav/plausible_values.hpp"
+#include "nav/water_column.hpp"
+
+namespace pingvox {
+namespace {
+
+/// One meaning of the numbers of a source.
+struct Reading {
+  std::string_view unit;
+  double unit_pa = 1.0;
+  bool is_gauge = false;  ///< 0 is the surface, not a vacuum
+
+  double pascals(double number) const { return number * unit_pa + (is_gauge ? kSurface_pa : 0.0); }
+  double depth_m(double number) const { return depth_of_pressure(pascals(number)); }
+  std::string text() const { return fmt::format("{}{}", unit, is_gauge ? " above that of air" : ""); }
+};
+
+constexpr std::array kReadings = {Reading{"Pa", 1.0, false},  Reading{"hPa", 1e2, false}, Reading{"kPa", 1e3, false},
+                                  Reading{"bar", 1e5, false}, Reading{"Pa", 1.0, true},   Reading{"hPa", 1e2, true},
+                                  Reading{"kPa", 1e3, true},  Reading{"bar", 1e5, true}};
+
+/// What the numbers of a recording are like. Outliers, up to a hundredth of them, are left out.
+struct Numbers {
+  double lowest = 0.0, highest = 0.0;
+  double speed_s = 0.0;  ///< by how much they change in a second, but for the fastest tenth
+};
+
+/// Numbers that a sensor sends before it answers.
+bool is_answer(const NavSample& sample) {
+  return sample.valid && sample.value.x() != 0.0;
+}
+
+/// The lowest and highest value, but for this share of them at either end.
+std::pair<double, double> range_of(std::vector<double> values, double share) {
+  const auto left_out = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::sort(values);
+  return {values[left_out], values[values.size() - 1 - left_out]};
+}
+
+/// nullopt: there are none.
+std::optional<Numbers> extent_of(const NavSource& source) {
+  constexpr double kOutliers = 0.01, kFastest = 0.1, kStep_s = 1.0;
+  std::vector<double> values, speeds_s;
+  const NavSample* before = nullptr;
+  for (const NavSample& sample : source.samples) {
+    if (!is_answer(sample)) continue;
+    values.push_back(sample.value.x());
+    const double step_s = before != nullptr ? sample.time_s - before->time_s : 0.0;
+    if (before != nullptr && step_s < kStep_s) continue;
+    if (before != nullptr) speeds_s.push_back(std::fabs(sample.value.x() - before->value.x()) / step_s);
+    before = &sample;
+  }
+  if (values.empty()) return std::nullopt;
+  Numbers numbers;
+  std::tie(numbers.lowest, numbers.highest) = range_of(std::move(values), kOutliers);
+  if (!speeds_s.empty()) numbers.speed_s = range_of(std::move(speeds_s), kFastest).second;
+  return numbers;
+}
+
+/// Air at sea level in any weather, and at the height of most lakes.
+bool begins_in_air(const Reading& reading, const Numbers& numbers) {
+  constexpr double kLowest_pa = 80'000.0;
+  const double lowest_pa = reading.pascals(numbers.lowest);
+  return !reading.is_gauge && lowest_pa >= kLowest_pa && lowest_pa <= kMaxInAir_pa;
+}
+
+/// Whether the numbers can have this meaning at all.
+bool is_possible_reading(const Reading& reading, const Numbers& numbers) {
+  constexpr double kDeepest_m = 1000.0, kLeastDive_m = 0.3, kWeather_m = 1.0, kThinAir_pa = 50'000.0;
+  const double lowest_m = reading.depth_m(numbers.lowest), highest_m = reading.depth_m(numbers.highest);
+  const bool is_usual_unit = reading.unit_pa == 1.0;
+  if (highest_m > kDeepest_m) return false;
+  if (!reading.is_gauge) {
+    // Air that is so thin is that of aircraft and of high mountains: it stays as thin.
+    const bool is_thin_air = is_usual_unit && reading.pascals(numbers.lowest) >= kThinAir_pa && highest_m <= 0.0;
+    return is_thin_air || begins_in_air(reading, numbers) || reading.pascals(numbers.lowest) > kMaxInAir_pa;
+  }
+  // A gauge is known by a dive and, unless it is in the usual unit, by its zero.
+  return highest_m >= kLeastDive_m && lowest_m >= -kWeather_m && (is_usual_unit || lowest_m < kLeastDive_m);
+}
+
+/// Leaves out what goes up and down faster than any vehicle, if that leaves something.
+void leave_out_too_fast(std::vector<Reading>& readings, const Numbers& numbers) {
+  constexpr double kFastest_m_s = 1.5;
+  const auto is_too_fast = [&](const Reading& reading) {
+    return numbers.speed_s * reading.unit_pa / kPascalsPerMetre > kFastest_m_s;
+  };
+  if (!std::ranges::all_of(readings, is_too_fast)) std::erase_if(readings, is_too_fast);
+}
+
+/// The readings, each with how far it is off a known depth [m], the best one first; empty: the depth says nothing.
+std::vector<std::pair<double, Reading>> readings_by_depth(const NavSource& source, const NavSource& depth) {
+  constexpr double kNear_s = 1.0;
+  constexpr std::size_t kFewest = 3, kEnough = 1000;
+  const std::size_t step = std::max<std::size_t>(1, source.samples.size() / kEnough);
+  std::vector<std::pair<double, double>> pairs;  // a number, and a depth at the same time
+  for (std::size_t i = 0; i < source.samples.size(); i += step) {
+    const NavSample& sample = source.samples[i];
+    if (!is_answer(sample)) continue;
+    const auto near = std::ranges::lower_bound(depth.samples, sample.time_s - kNear_s, {}, &NavSample::time_s);
+    const auto until = std::ranges::upper_bound(depth.samples, sample.time_s + kNear_s, {}, &NavSample::time_s);
+    const auto distance_s = [&](const NavSample& other) {
+      return other.valid ? std::fabs(other.time_s - sample.time_s) : 2.0 * kNear_s;
+    };
+    const auto nearest = std::ranges::min_element(near, until, {}, distance_s);
+    if (nearest != until && nearest->valid) pairs.emplace_back(sample.value.x(), nearest->value.x());
+  }
+  std::vector<std::pair<double, Reading>> readings;
+  if (pairs.size() < kFewest) return readings;
+  for (const Reading& reading : kReadings) {
+    std::vector<double> off_m;
+    for (const auto& [number, depth_m] : pairs) off_m.push_back(std::fabs(reading.depth_m(number) - depth_m));
+    readings.emplace_back(median(std::move(off_m)), reading);
+  }
+  std::ranges::sort(readings, {}, [](const auto& reading) { return reading.first; });
+  return readings;
+}
+
+std::optional<Reading> reading_by_depth(const NavSource& source, const NavSource& depth) {
+  // Weather, fresh water and the place of the sensor, beside the ten metres between the two zeros.
+  constexpr double kMost_m = 1.5, kTimes = 3.0, kApart_m = 1.0;
+  const auto readings = readings_by_depth(source, depth);
+  if (readings.empty() || readings[0].first > kMost_m) return std::nullopt;
+  if (readings[1].first < kTimes * readings[0].first + kApart_m) return std::nullopt;
+  return readings[0].second;
+}
+
+/// The possible meanings; one: it is that.
+std::vector<Reading> readings_of(const NavSource& source, const Numbers& numbers, const NavSource* depth,
+                                 PressureUnit unit) {
+  const auto is_stated = [unit](const Reading& reading) {
+    return unit == PressureUnit::kOpen || reading.unit_pa == 1.0;
+  };
+  if (depth != nullptr) {
+    if (const auto reading = reading_by_depth(source, *depth); reading && is_stated(*reading)) return {*reading};
+  }
+  std::vector<Reading> possible;
+  std::ranges::copy_if(kReadings, std::back_inserter(possible), [&](const Reading& reading) {
+    return is_stated(reading) && is_possible_reading(reading, numbers);
+  });
+  leave_out_too_fast(possible, numbers);
+  for (const Reading& reading : possible) {
+    if (begins_in_air(reading, numbers)) return {reading};
+  }
+  const auto is_usual = [](const Reading& reading) { return reading.unit_pa == 1.0 && !reading.is_gauge; };
+  const auto usual = std::ranges::find_if(possible, is_usual);
+  if (usual != possible.end() && usual->pascals(numbers.lowest) > kMaxInAir_pa) return {*usual};
+  return possible;
+}
+
+/// "its numbers, from 604 to 624, may be kPa (50.0 to 52.0 m deep) or ..."
+std::string fault_of(const std::vector<Reading>& possible, const Numbers& numbers, PressureUnit unit) {
+  const std::string range = fmt::format("its numbers, from {:.6g} to {:.6g},", numbers.lowest, numbers.highest);
+  if (possible.empty()) {
+    return range + " are no pressures of air or water in " +
+           (unit == PressureUnit::kOpen ? "Pa, hPa, kPa or bar" : "Pa");
+  }
+  std::string text;
+  for (const Reading& reading : possible) {
+    text += fmt::format("{}{} ({:.1f} to {:.1f} m deep)", text.empty() ? "" : " or ", reading.text(),
+                        reading.depth_m(numbers.lowest), reading.depth_m(numbers.highest));
+  }
+  return fmt::format("{} may be {}, and no depth of the log says which", range, text);
+}
+
+}  // namespace
+
+void tell_pressure(NavSource& source, const NavSource* depth, PressureUnit unit) {
+  const std::optional<Numbers> numbers = extent_of(source);
+  if (!numbers) return;
+  const std::vector<Reading> possible = readings_of(source, *numbers, depth, unit);
+  if (possible.size() != 1) {
+    source.fault = fault_of(possible, *numbers, unit);
+    return;
+  }
+  const Reading& reading = possible.front();
+  if (reading.unit_pa == 1.0 && !reading.is_gauge) return;
+  source.note = "read as " + reading.text();
+  for (NavSample& sample : source.samples) {
+    // Of a sensor that did not answer yet.
+    if (!reading.is_gauge && !is_answer(sample)) sample.valid = false;
+    sample.value.x() = reading.pascals(sample.value.x());
+    sample.deviation.x() *= reading.unit_pa;
+  }
+}
+
+void tell_pressures(std::vector<NavSource>& sources, std::span<const std::string> stated) {
+  NavSource* depth = nullptr;
+  const auto valid = [](const NavSource& source) { return std::ranges::count_if(source.samples, &NavSample::valid); };
+  for (NavSource& source : sources) {
+    if (source.quantity == NavQuantity::kDepth && (depth == nullptr || valid(source) > valid(*depth))) depth = &source;
+  }
+  NavSource ordered;
+  if (depth != nullptr) {
+    ordered = *depth;
+    std::ranges::sort(ordered.samples, {}, &NavSample::time_s);
+    check_values(ordered);
+  }
+  for (NavSource& source : sources) {
+    if (source.quantity != NavQuantity::kPressure) continue;
+    const bool is_stated = std::ranges::find(stated, source.name) != stated.end();
+    tell_pressure(source, depth != nullptr && is_usable(ordered) ? &ordered : nullptr,
+                  is_stated ? PressureUnit::kStated : PressureUnit::kOpen);
+  }
+}
+
+}  // namespace pingvox

@@ -1,0 +1,182 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pingvox/nav/live_poses.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
+
+namespace pingvox {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+using enum NavQuantity;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Five samples a second.
+NavSource source_of(std::string name, NavQuantity quantity, int samples, const std::function<Vector3d(double)>& at) {
+  NavSource source{std::move(name), quantity, {}};
+  for (int i = 0; i < samples; ++i) {
+    NavSample sample;
+    sample.time_s = 0.2 * i;
+    sample.value = at(sample.time_s);
+    source.samples.push_back(sample);
+  }
+  return source;
+}
+
+NavLog log_of(std::vector<NavSource> sources) {
+  return *NavLog::make(std::move(sources), NavClock::kUnix);
+}
+
+std::string fault_of(const NavSource& source) {
+  return log_of({source}).sources().front().fault;
+}
+
+/// A yaw that turns to and fro by half a radian, with a full turn every 20 s.
+double yaw_at(double time_s) {
+  return 0.5 * std::sin(0.1 * std::numbers::pi * time_s);
+}
+double yaw_rate_at(double time_s) {
+  return 0.05 * std::numbers::pi * std::cos(0.1 * std::numbers::pi * time_s);
+}
+
+TEST(PlausibleValues, ValuesInAnotherUnitAreAFault) {
+  const auto all = [](const Vector3d& value) {
+    return [value](double time_s) -> Vector3d { return value + Vector3d::Constant(1e-3 * time_s); };
+  };
+  EXPECT_EQ(fault_of(source_of("gps", kFix, 50, all({54.25, 10.0, 0.0}))),
+            "latitude of 54.25 rad is beyond pi/2: is it in degrees?");
+  EXPECT_THAT(fault_of(source_of("gps", kFix, 50, all({0.5, 103.8, 0.0}))), HasSubstr("longitude of 103.8 rad"));
+  EXPECT_THAT(fault_of(source_of("gps", kFix, 50, all({9.4e6, 1.8e6, 0.0}))), HasSubstr("is it in another unit?"));
+  EXPECT_THAT(fault_of(source_of("ahrs", kAttitude, 50, all({0.0, 0.0, 90.0}))),
+              HasSubstr("yaw of 90 rad is beyond 2 pi: is it in degrees?"));
+  EXPECT_THAT(fault_of(source_of("ahrs", kAttitude, 50, all({12.0, 0.0, 1.0}))), HasSubstr("roll of 12 rad"));
+  EXPECT_THAT(fault_of(source_of("compass", kHeading, 50, all({200.0, 0.0, 0.0}))), HasSubstr("yaw of 200 rad"));
+  EXPECT_THAT(fault_of(source_of("imu", kTurnRate, 50, all({0.0, 0.0, 21.0}))), HasSubstr("turn rate of 21 rad/s"));
+  EXPECT_THAT(fault_of(source_of("dvl", kVelocity, 50, all({400.0, 0.0, 0.0}))), HasSubstr("velocity of 400 m/s"));
+  EXPECT_THAT(fault_of(source_of("bar", kDepth, 50, all({50'000.0, 0.0, 0.0}))), HasSubstr("depth of 50000 m"));
+  EXPECT_THAT(fault_of(source_of("bar", kTemperature, 50, all({283.0, 0.0, 0.0}))), HasSubstr("is it in kelvins?"));
+  EXPECT_THAT(fault_of(source_of("usbl", kPosition, 50, all({5e9, 0.0, 0.0}))), HasSubstr("position of 5e+09 m"));
+  for (const Vector3d& good : {Vector3d(0.9, 3.1, 40.0), Vector3d(-1.5, -3.1, 0.0)}) {
+    EXPECT_EQ(fault_of(source_of("gps", kFix, 50, all(good))), "");
+  }
+  EXPECT_EQ(fault_of(source_of("ahrs", kAttitude, 50, all({-3.1, 1.5, 6.27}))), "");
+}
+
+// A heading in degrees is small for some time. Kills a verdict by the median or by the first samples.
+TEST(PlausibleValues, DegreesThatBeginAtZeroAreAFault) {
+  EXPECT_NE(fault_of(source_of("compass", kHeading, 100, [](double time_s) { return Vector3d(0.5 * time_s, 0, 0); })),
+            "");
+}
+
+// Kills a dive that ends by one damaged number, or by a device's word for "not known".
+TEST(PlausibleValues, SingleOnesAreInvalidSamples) {
+  NavSource yaw = source_of("ahrs", kAttitude, 100, [](double time_s) { return Vector3d(0, 0, yaw_at(time_s)); });
+  yaw.samples[40].value.z() = 90.0;
+  yaw.samples[41].value.z() = -3e20;
+  NavSource fix = source_of("gps", kFix, 100, [](double) { return Vector3d(0.9, 0.2, 0.0); });
+  for (std::size_t i = 0; i < 30; ++i) fix.samples[i].value = {91.0 * kDegree, 181.0 * kDegree, 0.0};
+  const NavLog log = log_of({yaw, fix});
+  for (const NavSource& source : log.sources()) EXPECT_EQ(source.fault, "") << source.name;
+  EXPECT_EQ(summary_of(log.sources()[0]).invalid, 2U);
+  EXPECT_FALSE(log.sources()[0].samples[40].valid);
+  EXPECT_EQ(summary_of(log.sources()[1]).invalid, 30U);
+}
+
+TEST(PlausibleValues, NothingIsComputedFromAFault) {
+  const auto position = source_of("dvl", kPosition, 100, [](double time_s) { return Vector3d(time_s, 0, 0); });
+  const auto good = source_of("imu", kAttitude, 50, [](double time_s) { return Vector3d(0, 0, yaw_at(time_s)); });
+  const auto bad = source_of("ahrs", kAttitude, 100, [](double time_s) { return Vector3d(0, 0, 90.0 + time_s); });
+  const auto path = nav_trajectory(log_of({position, bad, good}));
+  ASSERT_TRUE(path) << path.error().message;
+  EXPECT_EQ(path->attitude, "imu") << "though it has less samples";
+  EXPECT_EQ(log_of({bad, good}).best(kAttitude)->name, "imu");
+  EXPECT_EQ(log_of({bad}).best(kAttitude), nullptr);
+
+  const auto none = nav_trajectory(log_of({position, bad}));
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().message,
+            "the attitude of ahrs cannot be used: yaw of 90 rad is beyond 2 pi: is it in degrees?");
+  const auto fixes = source_of("gps", kFix, 100, [](double) { return Vector3d(54.3, 10.0, 0.0); });
+  const auto nowhere = nav_positions(log_of({fixes}));
+  ASSERT_FALSE(nowhere);
+  EXPECT_THAT(nowhere.error().message, HasSubstr("the fix of gps cannot be used: latitude of 54.3 rad"));
+
+  EXPECT_TRUE(check_sources(log_of({bad, good}), kHeadingQuantities));
+  EXPECT_FALSE(check_sources(log_of({bad}), kHeadingQuantities));
+  EXPECT_THAT(faults_text(log_of({bad, good, fixes})), HasSubstr("; the fix of gps cannot be used"));
+
+  NavSource joined = good;
+  add_samples(log_of({bad}).sources().front(), joined);
+  EXPECT_NE(log_of({joined}).sources().front().fault, "") << "a part of it is in degrees";
+}
+
+// Most rates of a slow vehicle are below any limit, in degrees per second as well.
+TEST(PlausibleValues, TurnRatesInDegreesAreAFault) {
+  const auto in_degrees = source_of(
+      "imu", kTurnRate, 500, [](double time_s) { return Vector3d(0.1, 0, yaw_rate_at(time_s) / kDegree / 1.2); });
+  EXPECT_THAT(fault_of(in_degrees), HasSubstr("rad/s on average"));
+
+  const auto rate = [](std::string name, double scale) {
+    return source_of(std::move(name), kTurnRate, 500,
+                     [scale](double time_s) { return Vector3d(0, 0, scale * yaw_rate_at(time_s)); });
+  };
+  const auto yaw = [](std::string name, double scale) {
+    return source_of(std::move(name), kHeading, 500,
+                     [scale](double time_s) { return Vector3d(scale * yaw_at(time_s), 0, 0); });
+  };
+  constexpr double kSlow = 0.1;  // 0.9 degrees per second at most
+  NavLog log = log_of({yaw("compass", kSlow), rate("imu", kSlow / kDegree)});
+  EXPECT_EQ(log.sources()[0].fault, "");
+  EXPECT_EQ(log.sources()[1].fault,
+            "it turns 57.3 times as far as the heading of compass: is it in degrees per second?");
+  log = log_of({yaw("compass", kSlow / kDegree), rate("imu", kSlow)});
+  EXPECT_EQ(log.sources()[0].fault, "it turns 57.3 times as far as the turn rate of imu: is it in degrees?");
+  EXPECT_EQ(log.sources()[1].fault, "");
+  log = log_of({yaw("one", kSlow), yaw("other", kSlow / kDegree)});
+  EXPECT_EQ(log.sources()[0].fault, "");
+  EXPECT_EQ(log.sources()[1].fault, "it turns 57.3 times as far as the heading of one: is it in degrees?");
+  for (const double scale : {1.0, -1.0, 2.0}) {
+    log = log_of({yaw("compass", 1.0), rate("imu", scale)});
+    EXPECT_EQ(faults_text(log), "") << scale;
+  }
+}
+
+// Kills a yaw that is wrapped into the turn before anybody sees it.
+TEST(PlausibleValues, AHeadingInDegreesStaysVisible) {
+  NavSource source{"ahrs", kAttitude, {}};
+  for (int i = 0; i < 20; ++i) {
+    NavSample sample;
+    sample.time_s = i;
+    sample.value = from_ned::attitude({0.0, 0.0, 100.0 + i});
+    source.samples.push_back(sample);
+  }
+  EXPECT_THAT(fault_of(source), HasSubstr("is it in degrees?"));
+}
+
+TEST(LivePoses, LeavesOutWhatIsNotPossible) {
+  LivePoses poses;
+  NavSample sample;
+  for (int i = 0; i < 30; ++i) {
+    sample.time_s = 0.1 * i;
+    sample.value = i == 0 ? Vector3d(54.0, 10.0, 0.0) : Vector3d(0.9, 0.2, 0.0);
+    poses.add("gps", kFix, sample);
+    sample.value = {0.0, 0.0, 1.0};
+    poses.add("imu", kAttitude, sample);
+  }
+  const auto pose = poses.at(2.0);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->translation().norm(), 0.0, 1e-6) << "the first fix was none";
+}
+
+}  // namespace
+}  // namespace pingvox
