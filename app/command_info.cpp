@@ -99,11 +99,36 @@ void add_damage(Summary& summary, const std::vector<DamageKind>& kinds) {
 using BinLengths = std::vector<std::pair<double, std::size_t>>;  ///< [m], with the beams that have it
 constexpr std::size_t kMaxListed = 8;
 
+/// As a report shows a length.
+std::string length_text(double length_m) {
+  return fmt::format("{:.6g}", length_m);
+}
+
+/// Lengths that a report shows alike are one: that of most beams. They differ by rounding.
+/// @param beams  by length
+BinLengths distinct_lengths(const std::map<double, std::size_t>& beams) {
+  BinLengths lengths;
+  std::size_t most = 0;
+  for (const auto& [length_m, count] : beams) {
+    if (lengths.empty() || length_text(lengths.back().first) != length_text(length_m)) {
+      lengths.emplace_back(length_m, count);
+      most = count;
+      continue;
+    }
+    lengths.back().second += count;
+    if (count <= most) continue;
+    lengths.back().first = length_m;
+    most = count;
+  }
+  return lengths;
+}
+
 std::string lengths_text(const BinLengths& lengths) {
-  if (lengths.size() == 1) return fmt::format("{:.6g} m", lengths.front().first);
+  if (lengths.size() == 1) return length_text(lengths.front().first) + " m";
   std::string text;
   for (std::size_t i = 0; i < std::min(lengths.size(), kMaxListed); ++i) {
-    text += fmt::format("{}{:.6g} m ({})", i == 0 ? "" : ", ", lengths[i].first, counted(lengths[i].second, "beam"));
+    text += fmt::format("{}{} m ({})", i == 0 ? "" : ", ", length_text(lengths[i].first),
+                        counted(lengths[i].second, "beam"));
   }
   return lengths.size() > kMaxListed ? text + fmt::format(" and {} more", lengths.size() - kMaxListed) : text;
 }
@@ -112,7 +137,7 @@ std::string lengths_text(const BinLengths& lengths) {
 JsonObject lengths_json(const BinLengths& lengths) {
   JsonObject json;
   for (std::size_t i = 0; i < std::min(lengths.size(), kMaxListed); ++i) {
-    json.add(fmt::format("{:.6g}", lengths[i].first), lengths[i].second);
+    json.add(length_text(lengths[i].first), lengths[i].second);
   }
   return json;
 }
@@ -154,7 +179,7 @@ class BeamSurvey {
     const std::size_t skipped = source.skipped();
     take(assembler_.finish());
     // Most frequent first.
-    std::vector<std::pair<double, std::size_t>> lengths(bin_lengths_.begin(), bin_lengths_.end());
+    BinLengths lengths = distinct_lengths(bin_lengths_);
     std::sort(lengths.begin(), lengths.end(),
               [](const auto& a, const auto& b) { return std::pair(b.second, a.first) < std::pair(a.second, b.first); });
     const std::size_t fewest = beams_ > 0 ? fewest_bins_ : 0;
@@ -199,6 +224,10 @@ class BeamSurvey {
       summary.text +=
           report_line("device", fmt::format("not named: a beam of {:.6g} x {:.6g} degrees is assumed (--device)",
                                             rounded_degrees(assumed.width_rad), rounded_degrees(assumed.height_rad)));
+    }
+    if (const std::string note = source.note(); !note.empty()) {
+      summary.json.add("note", note);
+      summary.text += report_line("note", on_one_line(note));
     }
     if (skipped > 0) summary.text += skipped_line(source);
     add_damage(summary, source.damage());
@@ -469,7 +498,9 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
   // Of several topics with scans none is chosen.
   const bool has_only_scans = !summary && !has(*bag, Use::kBeams) && command.damage == Damage::kSkip;
   if ((has_none || has_only_scans) && command.bag.beams.name.empty()) {
-    return summarize_contents(*bag, name, format, has_only_scans ? "" : summary.error().message);
+    // Of scans that cannot be read, the reason is worth more than the choice of a topic.
+    const bool is_damaged = summary.error().code == Error::Code::kCorrupt;
+    return summarize_contents(*bag, name, format, has_only_scans && !is_damaged ? "" : summary.error().message);
   }
   if (!summary) return summary;
   add_topics(*summary, bag->topics);

@@ -4,190 +4,76 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
+#include <vector>
 
 #include "io/bag_scans.hpp"
 #include "io/bag_topics.hpp"
 #include "io/device_log.hpp"
 #include "io/readers.hpp"
-#include "pingvox/geometry/degree.hpp"
+#include "io/sonar_messages.hpp"
 #include "pingvox/io/frame_finder.hpp"
-#include "pingvox/io/ping_frame.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 // The beams in bags: drivers' messages, by their type and fields (docs/formats.md).
 namespace pingvox {
 namespace {
 
-/// Settings from a message, valid for the beams after it.
-struct SonarSettings {
-  std::optional<double> period_25ns;
+/// Beams whose angles are not understood yet.
+class HeldBeams {
+ public:
+  explicit HeldBeams(const HeadAngle& angle) : angle_(angle), units_(angle.unit) {}
+
+  void add(Beam beam, double angle) {
+    bytes_ += beam.intensities.size();
+    units_.add(angle);
+    beams_.emplace_back(std::move(beam), angle);
+  }
+  bool are_enough() const {
+    constexpr std::size_t kMaxBytes = 64U << 20U;
+    return bytes_ >= kMaxBytes || units_.are_enough();
+  }
+  const AngleUnits& units() const { return units_; }
+  const HeadAngle& angle() const { return angle_; }
+  std::vector<std::pair<Beam, double>> take() { return std::move(beams_); }
+
+ private:
+  HeadAngle angle_;
+  AngleUnits units_;
+  std::size_t bytes_ = 0;
+  std::vector<std::pair<Beam, double>> beams_;
 };
 
-/// The reason why a message is no beam.
-using NoBeam = tl::unexpected<std::string_view>;
-using Beams = tl::expected<std::vector<Beam>, std::string_view>;
+/// Beyond any number of turns that a driver counts.
+constexpr double kMaxCounted_rad = 1e3;
 
-constexpr std::string_view kNoSamples = "ping without samples", kOtherSamples = "samples that are not of 8 bits";
+/// Turns beams by angles of a known unit.
+struct KnownAngle {
+  HeadAngle angle;
+  double unit_rad = 1.0;
+  double max_rad = 3.0 * std::numbers::pi;  ///< a turn, and any angle ahead; more where turns are counted
+  double last_rad = 0.0;
 
-Beams beam_of(double bearing_rad, double bin_length_m, std::vector<std::uint8_t> intensities) {
-  constexpr double kMaxAngle_rad = 1e3;  // beyond any number of turns that a driver counts
-  if (intensities.size() < 2) return NoBeam(kNoSamples);
-  if (!(std::fabs(bearing_rad) <= kMaxAngle_rad)) return NoBeam(kImpossible);
-  return std::vector{Beam{0.0, wrap_bearing(bearing_rad), bin_length_m, std::move(intensities)}};
-}
-
-/// From angles as the head counts them, clockwise with half a turn ahead.
-double bearing_of(double head_angle_rad) {
-  return std::numbers::pi - head_angle_rad;
-}
-
-/// A length that a driver computed with its own speed of sound, at the assumed one, as that of all beams.
-double at_assumed_speed(double length_m, double sound_speed_m_s) {
-  constexpr double kSlowest_m_s = 1300.0, kFastest_m_s = 1700.0;
-  const bool is_speed = sound_speed_m_s >= kSlowest_m_s && sound_speed_m_s <= kFastest_m_s;
-  return is_speed ? length_m * (kAssumedSoundSpeed_m_s / sound_speed_m_s) : length_m;
-}
-
-Beams echo_beam(const RosFields& message, SonarSettings&) {
-  std::vector<std::uint8_t> samples = message.bytes(2);
-  const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
-  return beam_of(bearing_of(message.number(0)), bin_length_m, std::move(samples));
-}
-
-Beams echo_beam_with_speed(const RosFields& message, SonarSettings& settings) {
-  Beams beams = echo_beam(message, settings);
-  if (beams) beams->front().bin_length_m = at_assumed_speed(beams->front().bin_length_m, message.number(3));
-  return beams;
-}
-
-Beams ping_beam(const RosFields& message, SonarSettings& settings) {
-  const std::vector<std::uint8_t> samples = message.bytes(2);
-  if (samples.size() < 2) return NoBeam(kNoSamples);  // recorded when the head did not answer
-  const auto angle_grad = whole<std::uint16_t>(message.number(0));
-  const auto period_25ns = whole<std::uint16_t>(settings.period_25ns.value_or(message.number(1)));
-  if (!angle_grad || !period_25ns) return NoBeam(kImpossible);
-  Ping360Ping ping;
-  ping.angle_grad = *angle_grad;
-  ping.period_25ns = *period_25ns;
-  ping.data = samples;
-  auto beam = pingvox::beam_of(ping, 0.0);
-  if (!beam) return NoBeam(kImpossible);
-  return std::vector{*std::move(beam)};
-}
-
-Beams ping_settings(const RosFields& message, SonarSettings& settings) {
-  settings.period_25ns = message.number(0);
-  return {};
-}
-
-Beams scan_line_beam(const RosFields& message, SonarSettings&) {
-  return beam_of(-message.number(0) * kDegree_rad, message.number(1), message.bytes(2));
-}
-
-Beams slice_beam(const RosFields& message, SonarSettings&) {
-  std::vector<std::uint8_t> samples = message.bytes(2);
-  const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
-  return beam_of(bearing_of(message.number(0)), bin_length_m, std::move(samples));
-}
-
-Beams acoustic_beam(const RosFields& message, SonarSettings&) {
-  std::vector<std::uint8_t> samples = message.bytes(2);
-  const double bin_length_m = message.number(1) / static_cast<double>(samples.size());
-  return beam_of(bearing_of(message.number(0) * kDegree_rad), bin_length_m, std::move(samples));
-}
-
-/// A scan is a beam when it looks in one direction and has the profile in its intensities.
-Beams laser_beam(const RosFields& message, SonarSettings&) {
-  if (message.number(0) != message.number(1)) return std::vector<Beam>{};
-  std::vector<std::uint8_t> samples = message.bytes(3);
-  const double bin_length_m = message.number(2) / static_cast<double>(samples.size());
-  return beam_of(message.number(0), bin_length_m, std::move(samples));
-}
-
-/// The points of a beam: the k-th of n (from 1) at k / n of the range, at the angle as the head counts.
-Beams points_beam(const RosFields& message, SonarSettings&) {
-  const std::size_t count = message.count(0);
-  std::vector<std::uint8_t> samples = message.bytes(2);
-  if (samples.size() != count) return NoBeam(kImpossible);
-  if (count == 0) return NoBeam(kNoSamples);
-  const double x_m = message.number(0, count - 1), y_m = message.number(1, count - 1);
-  const double bin_length_m = std::hypot(x_m, y_m) / static_cast<double>(count);
-  return beam_of(bearing_of(std::atan2(y_m, x_m)), bin_length_m, std::move(samples));
-}
-
-/// All beams of an imaging sonar at once, in its frame: z ahead, y right, x up.
-Beams image_beams(const RosFields& message, SonarSettings&) {
-  constexpr double kBytes = 0.0;
-  if (message.number(4) != kBytes) return NoBeam(kOtherSamples);
-  const std::size_t beams = message.count(0), ranges = message.count(2);
-  const std::vector<std::uint8_t> samples = message.bytes(5);
-  const double count = message.number(3);
-  if (ranges < 2 || beams == 0 || static_cast<double>(beams) != count || samples.size() / ranges != beams ||
-      samples.size() % ranges != 0) {
-    return NoBeam(kImpossible);
+  /// false: the angle is not possible.
+  bool turn(Beam& beam, double number) {
+    constexpr double kMaxStep_rad = 0.5;
+    const double angle_rad = number * unit_rad;
+    const bool goes_on = std::fabs(angle_rad - last_rad) <= kMaxStep_rad;
+    if (!(std::fabs(angle_rad) <= (goes_on ? kMaxCounted_rad : max_rad))) return false;
+    last_rad = angle_rad;
+    beam.bearing_rad = wrap_bearing(angle.turn * (angle_rad - angle.ahead_rad));
+    return true;
   }
-  // A range is that of the middle of its bin.
-  const double bin_length_m = (message.number(2, ranges - 1) - message.number(2)) / static_cast<double>(ranges - 1);
-  const double before = std::round(message.number(2) / bin_length_m - 0.5);
-  constexpr double kMaxBefore = 1e5;
-  if (!(before >= -1.0 && before <= kMaxBefore)) return NoBeam(kImpossible);
-  const auto first = static_cast<std::size_t>(std::max(before, 0.0));
-  if (first > ranges * 16) return NoBeam(kImpossible);
-  std::vector<Beam> found;
-  for (std::size_t i = 0; i < beams; ++i) {
-    std::vector<std::uint8_t> intensities(first + ranges);
-    for (std::size_t j = 0; j < ranges; ++j) intensities[first + j] = samples[j * beams + i];
-    auto beam = beam_of(std::atan2(-message.number(0, i), message.number(1, i)),
-                        at_assumed_speed(bin_length_m, message.number(6)), std::move(intensities));
-    if (!beam) return NoBeam(beam.error());
-    found.push_back(std::move(beam->front()));
-  }
-  return found;
-}
-
-/// Of a driver that we do not know.
-Beams beam_of_fields(const RosFields& message, const BeamFields& fields) {
-  std::vector<std::uint8_t> samples = message.bytes(2);
-  const double length_m = message.number(1), parts = static_cast<double>(samples.size());
-  const double bin_length_m = fields.length_of == BeamFields::Length::kBin ? length_m : length_m / parts;
-  return beam_of((message.number(0) - fields.ahead) * fields.angle_unit_rad, bin_length_m, std::move(samples));
-}
-
-struct SonarType {
-  RosType type;
-  std::string_view device;  ///< empty: unknown
-  Beams (*beams_in)(const RosFields& message, SonarSettings& settings);
-  enum class Holds { kBeams, kBeamsToo, kSettings } holds = Holds::kBeams;  ///< kBeamsToo: the driver's, once more
-};
-
-constexpr std::array kSonarTypes = {
-    SonarType{{"SonarEcho", {"angle", "range", "intensities", "speed_of_sound"}}, "ping360", echo_beam_with_speed},
-    SonarType{{"SonarEcho", {"angle", "range", "intensities"}}, "ping360", echo_beam},
-    SonarType{{"Ping360", {"angle_ping360", "sample_period", "data"}}, "ping360", ping_beam},
-    SonarType{{"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, SonarType::Holds::kSettings},
-    SonarType{{"Ping360_config", {"sample_period"}}, "ping360", ping_settings, SonarType::Holds::kSettings},
-    SonarType{{"ScanLine", {"angle", "bin_distance_step", "bins.intensity"}}, "micron", scan_line_beam},
-    SonarType{{"TritechMicronSlice", {"angle", "range", "data"}}, "micron", slice_beam},
-    SonarType{{"AcousticBeam", {"angle", "range_max", "intensities"}}, "miniking", acoustic_beam},
-    SonarType{{"PointCloud", {"points.x", "points.y", "channels.values"}, "tritech_micron/scan"},
-              "micron",
-              points_beam,
-              SonarType::Holds::kBeamsToo},
-    SonarType{{"LaserScan", {"angle_min", "angle_max", "range_max", "intensities"}}, "", laser_beam},
-    SonarType{{"ProjectedSonarImage",
-               {"beam_directions.y", "beam_directions.z", "ranges", "image.beam_count", "image.dtype", "image.data",
-                "ping_info.sound_speed"}},
-              "",
-              image_beams},
 };
 
 /// Whether messages of the topic are beams that the driver sends in another topic, too.
 bool is_second_sonar(const BagTopic& topic) {
-  const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
-  return known && kSonarTypes[known->type].holds == SonarType::Holds::kBeamsToo;
+  const std::optional<KnownTopic> known = known_topic(topic, sonar_types());
+  return known && sonar_types()[known->type].holds == SonarType::Holds::kBeamsToo;
 }
 
 class BagBeams final : public DeviceLog {
@@ -221,23 +107,83 @@ class BagBeams final : public DeviceLog {
   tl::unexpected<Error> no_beams() const { return fail(Error::Code::kUnsupported, why_none()); }
 
   std::vector<DamageKind> damage() const override { return damage_of(*bag_, unusable_); }
+  std::string first_damage() const override { return first_damage_of(*bag_, unusable_); }
+  std::string note() const override { return note_; }
   std::optional<double> share_read() const override { return bag_->share_read(); }
   const std::string& name() const { return bag_->name(); }
 
  private:
   Result<std::optional<Beam>> read() override {
-    while (beams_.empty() && !scan_) {
+    while (beams_.empty() && !scan_ && !has_ended_) {
       const Result<std::optional<BagMessage>> message = bag_->next();
       if (!message) return tl::unexpected(message.error());
-      if (damage_ == Damage::kFail && !bag_->damage().empty()) return damage_error(bag_->damage().front());
-      if (!*message) return std::nullopt;
-      if (const Result<void> added = add(**message); !added) return tl::unexpected(added.error());
-      if (damage_ == Damage::kFail && !unusable_.empty()) return damage_error(unusable_.front());
+      has_ended_ = !*message;
+      if (damage_ == Damage::kFail && !bag_->damage().empty()) return damage_error();
+      const Result<void> added = has_ended_ ? turn_held() : add(**message);
+      if (!added) return tl::unexpected(added.error());
+      if (damage_ == Damage::kFail && !unusable_.empty()) return damage_error();
     }
-    if (scan_) return std::nullopt;
+    if (beams_.empty()) return std::nullopt;
     Beam beam = std::move(beams_.front());
     beams_.pop_front();
     return beam;
+  }
+
+  /// The angle of a driver that we do not know, less the one ahead.
+  HeadAngle by_fields() {
+    const std::optional<AngleUnit> unit = unit_of(*fields_);
+    const HeadAngle angle{unit.value_or(AngleUnit::kRadian), fields_->angle_unit_rad < 0.0 ? -1.0 : 1.0, 0.0};
+    if (!unit && !known_angle_) known_angle_ = KnownAngle{angle, std::fabs(fields_->angle_unit_rad), kMaxCounted_rad};
+    return angle;
+  }
+
+  /// Turns a beam by the first field of its message, once enough of them tell in which unit it is.
+  Result<void> add_turned(Beam beam, double angle, const HeadAngle& documented, const BagMessage& message) {
+    constexpr double kAny = 1e6;  // what is no angle in any unit
+    if (!(std::fabs(angle) <= kAny)) {
+      unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, message.file_byte);
+      return {};
+    }
+    if (!known_angle_) {
+      if (!held_) held_.emplace(documented);
+      held_->add(std::move(beam), angle);
+      return held_->are_enough() ? turn_held() : Result<void>{};
+    }
+    if (known_angle_->turn(beam, angle)) {
+      beams_.push_back(std::move(beam));
+    } else {
+      unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, message.file_byte);
+    }
+    return {};
+  }
+
+  /// Finds the unit of the angles so far, and turns their beams.
+  Result<void> turn_held() {
+    if (!held_) return {};
+    HeldBeams held = *std::exchange(held_, std::nullopt);
+    const AngleUnit documented = held.angle().unit;
+    const std::optional<AngleUnit> unit = held.units().unit();
+    const std::string wrong =
+        fmt::format("the angles in {}, {}, cannot be {}", chosen_, held.units().range_text(), name_of(documented));
+    if (!unit) {
+      return fail(Error::Code::kUnsupported,
+                  fmt::format("{}: {}: they may be degrees or gradians, and nothing says which", bag_->name(), wrong));
+    }
+    if (fields_ && unit != documented) {
+      return fail(Error::Code::kUnsupported,
+                  fmt::format("{}: {}, as is stated: they seem to be {}", bag_->name(), wrong, name_of(*unit)));
+    }
+    if (unit != documented) note_ = fmt::format("{}, as is documented: read as {}", wrong, name_of(*unit));
+    known_angle_ = KnownAngle{held.angle(), radians_of(*unit)};
+    if (held.units().count_turns()) known_angle_->max_rad = kMaxCounted_rad;
+    for (auto& [beam, angle] : held.take()) {
+      if (known_angle_->turn(beam, angle)) {
+        beams_.push_back(std::move(beam));
+      } else {
+        unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, std::nullopt);
+      }
+    }
+    return {};
   }
 
   Result<void> add(const BagMessage& message) {
@@ -254,30 +200,32 @@ class BagBeams final : public DeviceLog {
       return {};
     }
     if (!topic) return {};
-    const SonarType& type = kSonarTypes[topic->type];
+    const SonarType& type = sonar_types()[topic->type];
     if (!fields_ && is_unwanted(type, name)) return {};
     if (!message_.read(*topic->layout, message.bytes)) {
-      add_damage(unusable_, kNoFit, message.file_byte);
+      unusable_.add({kNoFit}, message.file_byte);
       return {};
     }
     const RosFields values(message_, topic->fields);
     Beams beams = fields_ ? beam_of_fields(values, *fields_) : type.beams_in(values, settings_);
     if (!beams) {
-      add_damage(unusable_, beams.error(), message.file_byte);
+      unusable_.add(beams.error(), message.file_byte);
       return {};
     }
     if (beams->empty()) return {};
     const double time_s = topic->time_of(message_, message.time_s);
     for (Beam& beam : *beams) {
       beam.time_s = time_s;
-      if (!validate(beam)) {
-        add_damage(unusable_, kImpossible, message.file_byte);
+      if (const auto valid = validate(beam); !valid) {
+        unusable_.add({kImpossible, valid.error().message}, message.file_byte);
         return {};
       }
     }
     if (chosen_.empty()) chosen_ = name;
     if (name != chosen_) return several_topics(*bag_, "beams", is_sonar);
     if (!fields_) device_ = find_device(type.device);
+    if (fields_) return add_turned(std::move(beams->front()), values.number(0) - fields_->ahead, by_fields(), message);
+    if (type.angle) return add_turned(std::move(beams->front()), values.number(0), *type.angle, message);
     beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
     return {};
   }
@@ -293,7 +241,7 @@ class BagBeams final : public DeviceLog {
   }
 
   std::optional<KnownTopic> sonar_topic(const BagTopic& topic) const {
-    if (!fields_) return known_topic(topic, kSonarTypes);
+    if (!fields_) return known_topic(topic, sonar_types());
     if (topic.name != wanted_ || !topic.is_readable) return std::nullopt;
     return topic_with(topic, std::array<std::string_view, 3>{fields_->angle, fields_->length, fields_->intensities});
   }
@@ -309,9 +257,10 @@ class BagBeams final : public DeviceLog {
 
   std::string why_none() const {
     if (!unusable_.empty()) {
-      const DamageKind& first = unusable_.front();
-      return fmt::format("{}: none of its messages can be used as a beam: {} x {}", bag_->name(), first.count,
-                         first.what);
+      const DamageKind& first = unusable_.kinds().front();
+      const bool has_more = !unusable_.first_text().ends_with(first.what);
+      return fmt::format("{}: none of its messages can be used as a beam: {} x {}{}", bag_->name(), first.count,
+                         first.what, has_more ? ", the first: " + unusable_.first_text() : "");
     }
     const std::string second = topics_text(*bag_, is_second_sonar);
     const std::string others =
@@ -325,8 +274,8 @@ class BagBeams final : public DeviceLog {
                        damage().empty() ? "" : ", or it is damaged");
   }
 
-  tl::unexpected<Error> damage_error(const DamageKind& kind) const {
-    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", bag_->name(), first_damage_text(kind)));
+  tl::unexpected<Error> damage_error() const {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", bag_->name(), first_damage()));
   }
 
   std::unique_ptr<Bag> bag_;
@@ -337,9 +286,13 @@ class BagBeams final : public DeviceLog {
   std::vector<std::optional<KnownTopic>> scan_topics_;  ///< of each topic, where it is the wanted one
   SonarSettings settings_;
   RosMessage message_;
+  std::optional<HeldBeams> held_;
+  std::optional<KnownAngle> known_angle_;
+  std::string note_;
   std::deque<Beam> beams_;
+  bool has_ended_ = false;
   std::optional<BagMessage> scan_;  ///< the first of the wanted topic
-  std::vector<DamageKind> unusable_;
+  UnusableMessages unusable_;
 };
 
 }  // namespace
@@ -366,10 +319,22 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
   return std::nullopt;
 }
 
-std::vector<DamageKind> damage_of(const Bag& bag, const std::vector<DamageKind>& unusable) {
+void UnusableMessages::add(const Unusable& message, std::optional<std::uint64_t> file_byte) {
+  add_damage(kinds_, message.kind, file_byte);
+  if (!first_text_.empty()) return;
+  first_text_ = message.why.empty()
+                    ? first_damage_text(kinds_.front())
+                    : fmt::format("{}{}", file_byte ? fmt::format("byte {}: ", *file_byte) : "", message.why);
+}
+
+std::vector<DamageKind> damage_of(const Bag& bag, const UnusableMessages& unusable) {
   std::vector<DamageKind> kinds = bag.damage();
-  kinds.insert(kinds.end(), unusable.begin(), unusable.end());
+  kinds.insert(kinds.end(), unusable.kinds().begin(), unusable.kinds().end());
   return kinds;
+}
+
+std::string first_damage_of(const Bag& bag, const UnusableMessages& unusable) {
+  return bag.damage().empty() ? unusable.first_text() : first_damage_text(bag.damage().front());
 }
 
 std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&)) {
@@ -386,8 +351,8 @@ tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool
 }
 
 bool is_sonar(const BagTopic& topic) {
-  const std::optional<KnownTopic> known = known_topic(topic, kSonarTypes);
-  return known && kSonarTypes[known->type].holds != SonarType::Holds::kSettings;
+  const std::optional<KnownTopic> known = known_topic(topic, sonar_types());
+  return known && sonar_types()[known->type].holds != SonarType::Holds::kSettings;
 }
 
 Result<std::unique_ptr<Bag>> open_bag(ByteStream stream) {

@@ -8,7 +8,10 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <numbers>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
@@ -21,8 +24,11 @@
 namespace pingvox {
 namespace {
 
-using Scans = tl::expected<std::vector<PointScan>, std::string_view>;
-using NoScan = tl::unexpected<std::string_view>;
+using Scans = tl::expected<std::vector<PointScan>, Unusable>;
+
+tl::unexpected<Unusable> no_scan(std::string_view kind, std::string why = {}) {
+  return tl::unexpected(Unusable{kind, std::move(why)});
+}
 
 constexpr std::string_view kNoPlaces = "cloud without numbers x, y and z";
 
@@ -45,7 +51,7 @@ Scans cloud_scan(RosMessage& message, const KnownTopic& topic, std::span<const s
   const RosFields fields(message, topic.fields);
   PointScan scan;
   scan.time_s = time_s;
-  if (fields.count(0) > kMaxPoints) return NoScan(kImpossible);
+  if (fields.count(0) > kMaxPoints) return no_scan(kImpossible);
   for (std::size_t i = 0; i < fields.count(0); ++i) {
     const Eigen::Vector3d point_m(fields.number(0, i), fields.number(1, i), fields.number(2, i));
     if (is_point(point_m)) scan.points_m.push_back(point_m);
@@ -82,15 +88,31 @@ std::optional<std::array<CloudColumn, 3>> columns_of(RosMessage& message, const 
   return std::array{*found[0], *found[1], *found[2]};
 }
 
+struct CloudRows {
+  std::uint64_t height = 0, of_points = 0;  ///< number of rows, and bytes of the points of each
+  std::uint64_t step = 0;                   ///< from row to row, as the message says
+};
+
+/// From row to row in data of this size; nullopt: they do not fit. Rows without bytes behind their points need no step:
+/// some drivers get it wrong.
+std::optional<std::uint64_t> bytes_of_row(const CloudRows& rows, std::uint64_t size) {
+  constexpr std::uint64_t kMaxRow = std::uint64_t{1} << 40U;
+  if (rows.of_points > kMaxRow / rows.height) return std::nullopt;
+  if (size == rows.height * rows.of_points) return rows.of_points;
+  const std::uint64_t last = rows.step * (rows.height - 1) + rows.of_points;  // without what is behind its points
+  const bool fits = rows.step >= rows.of_points && size >= last && size <= rows.step * rows.height;
+  return fits ? std::optional(rows.step) : std::nullopt;
+}
+
 Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const std::uint8_t> bytes, double time_s) {
   // The columns are looked up by walking through all but the data again and again.
   constexpr std::size_t kMaxDescription = 65'536;
   const RosFields fields(message, topic.fields);
-  if (bytes.size() - message.byte_array(topic.fields[8]).size() > kMaxDescription) return NoScan(kImpossible);
+  if (bytes.size() - message.byte_array(topic.fields[8]).size() > kMaxDescription) return no_scan(kImpossible);
   std::array<std::uint64_t, 4> sizes{};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const auto size = whole<std::uint32_t>(fields.number(3 + i));
-    if (!size) return NoScan(kImpossible);
+    if (!size) return no_scan(kImpossible);
     sizes[i] = *size;
   }
   const auto [height, width, point_step, row_step] = sizes;
@@ -98,19 +120,22 @@ Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const 
   scan.time_s = time_s;
   if (height == 0 || width == 0) return only(std::move(scan));  // nothing was seen
   const auto columns = columns_of(message, topic, bytes);
-  if (!columns) return NoScan(kNoPlaces);
+  if (!columns) return no_scan(kNoPlaces);
   const std::endian order = fields.number(7) != 0.0 ? std::endian::big : std::endian::little;
   const std::span<const std::uint8_t> data = message.byte_array(topic.fields[8]);
-  // Products of numbers of 32 bits have no overflow.
-  const std::uint64_t row = width * point_step;
-  const bool has_rows = height == 1 || (row_step >= row && row_step * (height - 1) + row <= data.size());
-  const bool fits = row <= data.size() && has_rows;
   const bool are_within = std::ranges::all_of(
       *columns, [&](const CloudColumn& column) { return column.offset + bytes_of(column.type) <= point_step; });
-  if (!fits || !are_within || height * width > kMaxPoints) return NoScan(kImpossible);
+  // Products of numbers of 32 bits have no overflow.
+  if (!are_within || height * width > kMaxPoints) return no_scan(kImpossible);
+  const std::optional<std::uint64_t> row = bytes_of_row({height, width * point_step, row_step}, data.size());
+  if (!row) {
+    return no_scan(kContradiction,
+                   fmt::format("{} bytes of data do not fit height {}, width {}, point_step {} and row_step {}",
+                               data.size(), height, width, point_step, row_step));
+  }
   for (std::uint64_t i = 0; i < height; ++i) {
     for (std::uint64_t j = 0; j < width; ++j) {
-      const auto point = data.subspan(i * row_step + j * point_step, point_step);
+      const auto point = data.subspan(i * *row + j * point_step, point_step);
       Eigen::Vector3d point_m;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto& [offset, type] = (*columns)[axis];
@@ -124,18 +149,34 @@ Scans cloud2_scan(RosMessage& message, const KnownTopic& topic, std::span<const 
   return only(std::move(scan));
 }
 
+/// What is wrong with the angles of a LaserScan; empty: nothing.
+std::string problem_of_angles(double first_rad, double last_rad, double step_rad, std::size_t count) {
+  constexpr double kMaxAngle_rad = 2.1 * std::numbers::pi, kMaxOff = 1.5, kMaxOffShare = 0.01;
+  if (!(std::fabs(first_rad) <= kMaxAngle_rad && std::fabs(last_rad) <= kMaxAngle_rad)) {
+    return fmt::format("angle_min {:.6g} and angle_max {:.6g} are not both within 2 pi", first_rad, last_rad);
+  }
+  // Whether the last direction is counted depends on the driver, and steps are rounded.
+  const double expected = (last_rad - first_rad) / step_rad + 1.0;
+  const double off = std::fabs(expected - static_cast<double>(count));
+  if (std::isfinite(expected) && off <= kMaxOff + kMaxOffShare * expected) return {};
+  return fmt::format("{} range{} not fit angle_min {:.6g}, angle_max {:.6g} and angle_increment {:.6g}", count,
+                     count == 1 ? " does" : "s do", first_rad, last_rad, step_rad);
+}
+
 /// Directions in which a sensor looked one after the other are of several scans, so that a moving vehicle does not
 /// smear them.
 Scans laser_scans(RosMessage& message, const KnownTopic& topic, std::span<const std::uint8_t>, double time_s) {
-  constexpr double kLongest_s = 0.02, kMaxAngle_rad = 1e3, kMaxStep_s = 60.0;
+  constexpr double kLongest_s = 0.02, kMaxStep_s = 60.0;
   constexpr std::size_t kMaxCount = 100'000;
   const RosFields fields(message, topic.fields);
   const double first_rad = fields.number(0), step_rad = fields.number(2), step_s = fields.number(3);
   const double nearest_m = fields.number(4), farthest_m = fields.number(5);
   const std::size_t count = fields.count(6);
-  const double last_rad = first_rad + step_rad * static_cast<double>(count);
-  const bool has_angles = std::fabs(first_rad) <= kMaxAngle_rad && std::fabs(last_rad) <= kMaxAngle_rad;
-  if (!has_angles || !(std::fabs(step_s) <= kMaxStep_s) || count > kMaxCount) return NoScan(kImpossible);
+  if (count == 0) return std::vector<PointScan>{};
+  if (const std::string problem = problem_of_angles(first_rad, fields.number(1), step_rad, count); !problem.empty()) {
+    return no_scan(kContradiction, problem);
+  }
+  if (!(std::fabs(step_s) <= kMaxStep_s) || count > kMaxCount) return no_scan(kImpossible);
   std::vector<PointScan> scans;
   for (std::size_t i = 0; i < count; ++i) {
     const double at_s = time_s + step_s * static_cast<double>(i);
@@ -204,10 +245,7 @@ class BagScans final : public ScanSource {
     return scan;
   }
   std::size_t skipped() const override { return damage_count(damage_of(*bag_, unusable_)); }
-  std::string first_damage() const override {
-    const std::vector<DamageKind> kinds = damage_of(*bag_, unusable_);
-    return kinds.empty() ? "" : first_damage_text(kinds.front());
-  }
+  std::string first_damage() const override { return first_damage_of(*bag_, unusable_); }
   std::optional<double> share_read() const override { return bag_->share_read(); }
 
  private:
@@ -233,14 +271,14 @@ class BagScans final : public ScanSource {
     const std::string& name = bag_->topics()[message.topic].name;
     if (!topic || (!wanted_.empty() && name != wanted_)) return {};
     if (!message_.read(*topic->layout, message.bytes)) {
-      add_damage(unusable_, kNoFit, message.file_byte);
+      unusable_.add({kNoFit}, message.file_byte);
       return {};
     }
     if (!looks_around(*topic, message_)) return {};
     const double time_s = topic->time_of(message_, message.time_s);
     Scans scans = kScanTypes[topic->type].scans_in(message_, *topic, message.bytes, time_s);
     if (!scans) {
-      add_damage(unusable_, scans.error(), message.file_byte);
+      unusable_.add(scans.error(), message.file_byte);
       return {};
     }
     if (chosen_.empty()) chosen_ = name;
@@ -256,7 +294,7 @@ class BagScans final : public ScanSource {
   RosMessage message_;
   std::deque<PointScan> scans_;
   std::size_t given_ = 0;
-  std::vector<DamageKind> unusable_;
+  UnusableMessages unusable_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/median.hpp"
+#include "io/angle_units.hpp"
 #include "io/readers.hpp"
 #include "io/text.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -74,35 +74,41 @@ double bearing_of(Column column, double number) {
   return number >= 0.0 && number < 2.0 * std::numbers::pi ? number : wrap_bearing(number);
 }
 
-/// The numbers in the column bearing_rad of the first beams; none in a file without that column.
-std::vector<double> first_bearings_rad(Lines lines, const std::vector<Column>& columns, char separator) {
-  constexpr std::size_t kLines = 64;
-  const auto column = std::ranges::find(columns, Column::kBearingRad);
-  std::vector<double> bearings_rad;
-  if (column == columns.end()) return bearings_rad;
-  for (std::size_t n = 0; n < kLines; ++n) {
+AngleUnit unit_of(Column column) {
+  return column == Column::kBearingRad ? AngleUnit::kRadian : AngleUnit::kDegree;
+}
+
+/// The numbers in the column of bearings, of as many beams as tell their unit. REQUIRES such a column.
+AngleUnits first_bearings(Lines lines, const std::vector<Column>& columns, char separator) {
+  const auto column = std::ranges::find_if(columns, is_bearing);
+  AngleUnits bearings(unit_of(*column));
+  for (std::size_t n = 0; n < AngleUnits::kMost && !bearings.are_enough(); ++n) {
     std::optional<std::string_view> line = lines.next_with_content();
     if (!line) break;
     for (auto c = columns.begin(); c != column; ++c) cut_field(*line, separator);
     const auto field = cut_field(*line, separator);
     const std::optional<double> number = field ? number_in(*field) : std::nullopt;
-    if (number) bearings_rad.push_back(*number);
+    if (number) bearings.add(*number);
   }
-  return bearings_rad;
+  return bearings;
 }
 
-/// Whether bearings in radians are in fact degrees: beyond a turn, and farther apart than heads step.
-bool are_degrees(const std::vector<double>& bearings_rad) {
-  constexpr std::size_t kFewest = 8;
-  constexpr double kMaxStep_rad = 15.0 * kDegree_rad;  // a Micron's largest step is 14.3 degrees
-  if (bearings_rad.size() < kFewest) return false;
-  double farthest_rad = 0.0;
-  std::vector<double> steps_rad;
-  for (std::size_t i = 0; i < bearings_rad.size(); ++i) {
-    farthest_rad = std::max(farthest_rad, std::abs(bearings_rad[i]));
-    if (i > 0) steps_rad.push_back(std::abs(bearings_rad[i] - bearings_rad[i - 1]));
+/// What is wrong with the unit of bearings; empty: nothing.
+std::string problem_of(Column column, const AngleUnits& bearings) {
+  const std::optional<AngleUnit> unit = bearings.unit();
+  if (unit == unit_of(column)) return {};
+  if (column != Column::kBearingRad) {
+    return fmt::format("the column of bearings in degrees holds {}, it seems: its numbers go {}",
+                       unit ? name_of(*unit) : "something else", bearings.range_text());
   }
-  return farthest_rad > 2.1 * std::numbers::pi && median(std::move(steps_rad)) > kMaxStep_rad;
+  if (unit == AngleUnit::kGradian) {
+    return fmt::format("the column bearing_rad holds gradians, it seems: its numbers go {}: multiply them by pi/200",
+                       bearings.range_text());
+  }
+  return fmt::format(
+      "the column bearing_rad holds degrees, it seems: its numbers go {}: name it bearing_deg, or "
+      "bearing_cw_deg if they count clockwise",
+      bearings.range_text());
 }
 
 std::optional<std::uint8_t> intensity_in(std::string_view field) {
@@ -197,13 +203,9 @@ Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), problem));
   }
   const char separator = separator_of(*header);
-  if (are_degrees(first_bearings_rad(lines, columns, separator))) {
-    return fail(
-        Error::Code::kCorrupt,
-        fmt::format("{}: the column bearing_rad holds degrees, it seems: name it bearing_deg, or bearing_cw_deg "
-                    "if they count clockwise",
-                    file.name));
-  }
+  const Column bearing = *std::ranges::find_if(columns, is_bearing);
+  const std::string problem = problem_of(bearing, first_bearings(lines, columns, separator));
+  if (!problem.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, problem));
   return std::make_unique<CsvSource>(std::move(file), damage, lines, std::move(columns), separator);
 }
 

@@ -84,6 +84,9 @@ class CloudSource : public ScanSource {
   Result<void> report_missing(std::uint64_t points, std::uint64_t wanted) {
     return handle_damage(damage_, skipped_, name_, "end", fmt::format("holds {} of {} points", points, wanted));
   }
+  Result<void> report_surplus(std::uint64_t points, const std::string& what) {
+    return handle_damage(damage_, skipped_, name_, "end", fmt::format("{} behind its {} points", what, points));
+  }
 
  private:
   std::string name_;
@@ -115,7 +118,9 @@ class TextCloudSource : public CloudSource {
       if (!counted) return counted;
     }
     if (cloud_.points && count < *cloud_.points) return report_missing(count, *cloud_.points);
-    return {};
+    std::uint64_t further = 0;
+    while (cloud_.is_last && lines_.next_with_content()) ++further;
+    return further > 0 ? report_surplus(count, fmt::format("{} further lines are", further)) : Result<void>{};
   }
 
   FileBytes file_;  ///< viewed by `lines_`; moving a vector does not move its bytes
@@ -141,7 +146,8 @@ class ByteCloudSource : public CloudSource {
       const auto counted = skip_point(fmt::format("point {}", n), point.hasNaN());
       if (!counted) return counted;
     }
-    return {};
+    if (cloud_.bytes_behind == 0) return {};
+    return report_surplus(cloud_.points, fmt::format("{} further bytes are", cloud_.bytes_behind));
   }
 
   double value(std::size_t axis, std::size_t n) const {
@@ -159,6 +165,12 @@ class ByteCloudSource : public CloudSource {
 std::unique_ptr<ScanSource> text_cloud(FileBytes file, Lines lines, const TextCloud& cloud, Damage damage,
                                        const Eigen::Vector3d& origin_m) {
   return std::make_unique<TextCloudSource>(std::move(file), lines, cloud, damage, origin_m);
+}
+
+std::uint64_t bytes_like_points(std::span<const std::uint8_t> behind, std::uint64_t point_bytes) {
+  const bool has_more =
+      behind.size() >= point_bytes && std::ranges::any_of(behind, [](std::uint8_t byte) { return byte != 0; });
+  return has_more ? behind.size() : 0;
 }
 
 std::unique_ptr<ScanSource> byte_cloud(std::string name, std::vector<std::uint8_t> bytes, const ByteCloud& cloud,

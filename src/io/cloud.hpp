@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/readers.hpp"
@@ -25,8 +26,10 @@ struct TextCloud {
     Scalar type = Scalar::kDouble;  ///< kFloat: rounded to float, as other readers do
   };
   std::array<Column, 3> xyz;
-  /// Number of lines with points: fewer are damage, further lines are ignored. nullopt: all lines.
+  /// Number of lines with points: fewer are damage, and so are further lines where nothing else may follow. nullopt:
+  /// all lines.
   std::optional<std::uint64_t> points;
+  bool is_last = false;  ///< nothing else may follow
   NanPoint nan = NanPoint::kDamage;
 };
 
@@ -44,9 +47,13 @@ struct ByteCloud {
   };
   std::array<Column, 3> xyz;
   std::size_t points = 0;
+  std::uint64_t bytes_behind = 0;  ///< of what looks like more points, where nothing else may follow
   std::endian order = std::endian::little;
   NanPoint nan = NanPoint::kDamage;
 };
+
+/// The size of what is behind the last point, if it is as long as a point; 0 for zeros, which fill up a page.
+std::uint64_t bytes_like_points(std::span<const std::uint8_t> behind, std::uint64_t point_bytes);
 
 /// REQUIRES that each value of each point is within `bytes`.
 std::unique_ptr<ScanSource> byte_cloud(std::string name, std::vector<std::uint8_t> bytes, const ByteCloud& cloud,

@@ -224,7 +224,7 @@ Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, cons
   const Eigen::Vector3d origin = origin_m.value_or(header->viewpoint_m.value_or(Eigen::Vector3d::Zero()));
 
   if (*header->data == PcdData::kText) {
-    TextCloud cloud{{}, points, NanPoint::kNoReturn};
+    TextCloud cloud{{}, points, true, NanPoint::kNoReturn};
     std::size_t words = 0;
     for (std::size_t i = 0; i < fields.size(); words += fields[i].count, ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -260,6 +260,8 @@ Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, cons
     at += is_compressed ? points * bytes_in(fields[i]) : bytes_in(fields[i]);
   }
   if (!is_compressed) {
+    const auto end = static_cast<std::size_t>(header->size + points * record);
+    cloud.bytes_behind = bytes_like_points(file.view().subspan(end), record);
     std::string name = file.name;
     return byte_cloud(std::move(name), std::move(file.bytes), cloud, damage, origin);
   }

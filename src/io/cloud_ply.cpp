@@ -50,6 +50,7 @@ Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage
   if (header->format == PlyFormat::kText) {
     TextCloud cloud;
     cloud.points = vertices->count;
+    cloud.is_last = vertices + 1 == header->elements.end();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       cloud.xyz[axis] = {*place[axis], vertices->properties[*place[axis]].type};
     }
@@ -78,6 +79,7 @@ Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage
     return error(Error::Code::kCorrupt, fmt::format("byte {}: {} vertices of {} bytes do not fit into the {} left", at,
                                                     vertices->count, step, size - at));
   }
+  const std::uint64_t vertices_end = at + vertices->count * step;
   ByteCloud cloud;
   cloud.points = static_cast<std::size_t>(vertices->count);
   cloud.order = header->format == PlyFormat::kBig ? std::endian::big : std::endian::little;
@@ -87,6 +89,9 @@ Result<std::unique_ptr<ScanSource>> open_ply_cloud(FileBytes file, Damage damage
       if (place[axis] == i) cloud.xyz[axis] = {static_cast<std::size_t>(at), static_cast<std::size_t>(step), type};
     }
     at += bytes_of(type);
+  }
+  if (vertices + 1 == header->elements.end()) {
+    cloud.bytes_behind = bytes_like_points(file.view().subspan(static_cast<std::size_t>(vertices_end)), step);
   }
   std::string name = file.name;
   return byte_cloud(std::move(name), std::move(file.bytes), cloud, damage, origin);

@@ -101,6 +101,9 @@ std::optional<Ping360Ping> ping360_ping(std::span<const std::uint8_t> frame) {
 
 tl::expected<Beam, std::string> beam_of(const Ping360Ping& ping, double time_s) {
   constexpr double kTurn_grad = 400.0, kAhead_grad = 200.0, kTick_s = 25e-9;
+  if (ping.samples != 0 && !ping.data.empty() && ping.data.size() != ping.samples) {
+    return tl::unexpected(fmt::format("number_of_samples {} does not fit {} samples", ping.samples, ping.data.size()));
+  }
   if (ping.angle_grad > kTurn_grad) return tl::unexpected(fmt::format("angle {} of 400 a turn", ping.angle_grad));
   Beam beam;
   beam.time_s = time_s;

@@ -100,11 +100,57 @@ bags::Bytes header_at(std::uint32_t seconds) {
 /// A LaserScan at 1000 s, 0.5 rad from range to range.
 bags::Bytes laser_scan(std::initializer_list<float> ranges_m) {
   bags::Bytes scan = header_at(1000);
-  for (const float number : {0.0F, 1.5F, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
+  const float last_rad = 0.5F * static_cast<float>(ranges_m.size());  // one direction further: a single one is a beam
+  for (const float number : {0.0F, last_rad, 0.5F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
   bags::put(scan, static_cast<std::uint32_t>(ranges_m.size()));
   for (const float range_m : ranges_m) bags::put(scan, range_m);
   bags::put(scan, std::uint32_t{0});
   return scan;
+}
+
+/// A head that turns in gradians where its messages mean radians.
+std::string bag_in_gradians() {
+  bags::Mcap mcap;
+  mcap.topic(1, "/sonar", "lab_msgs/msg/SonarEcho", "float64 angle\nfloat64 range\nuint8[] intensities\n");
+  for (unsigned i = 0; i < 500; ++i) {
+    bags::Bytes message = {0, 1, 0, 0};
+    bags::put(message, static_cast<double>(i % 400));
+    bags::put(message, 4.0);
+    bags::put(message, std::uint32_t{4});
+    message.insert(message.end(), {0, 10, 200, 255});
+    mcap.message(1, 1'000'000'000'000U + i * 100'000'000ULL, message);
+  }
+  mcap.end_chunk();
+  const bags::Bytes file = mcap.closed();
+  return {file.begin(), file.end()};
+}
+
+TEST(Bags, AnglesInAnotherUnitAreReadAndNamed) {
+  const Workplace here;
+  here.write("dive.mcap", bag_in_gradians());
+  const std::string note = "the angles in /sonar, from 0 to 399, cannot be radians, as is documented: read as gradians";
+  EXPECT_THAT(here.call({"info", "dive.mcap"}).out, HasSubstr("note        " + note));
+  EXPECT_THAT(here.call({"info", "dive.mcap", "--json"}).out, HasSubstr(R"("sweeps": 1, )"));
+  EXPECT_THAT(here.call({"map", "dive.mcap", "-o", "o.bt"}).err, HasSubstr("dive.mcap: " + note));
+}
+
+// A LaserScan of one range, and angles of a whole turn.
+TEST(Bags, ScansWhoseNumbersContradictEachOtherAreRefused) {
+  const Workplace here;
+  bags::Mcap mcap;
+  mcap.topic(1, "/scan", "sensor_msgs/msg/LaserScan", "");
+  bags::Bytes scan = header_at(1000);
+  for (const float number : {0.0F, 6.25F, 0.015625F, 0.0F, 0.0F, 0.1F, 30.0F}) bags::put(scan, number);
+  bags::put(scan, std::uint32_t{1});
+  bags::put(scan, 4.0F);
+  bags::put(scan, std::uint32_t{0});
+  mcap.message(1, 1'000'000'000'000U, scan);
+  mcap.end_chunk();
+  const bags::Bytes file = mcap.closed();
+  here.write("dive.mcap", {file.begin(), file.end()});
+  const std::string why = "1 range does not fit angle_min 0, angle_max 6.25 and angle_increment 0.015625";
+  expect_error(here.call({"map", "dive.mcap", "-o", "o.bt"}), 1, {"dive.mcap", why});
+  EXPECT_THAT(here.call({"info", "dive.mcap"}).out, HasSubstr(why));
 }
 
 /// A bag of one LaserScan in four directions at 1000 s, without beams, and its poses.

@@ -1,5 +1,6 @@
 // The commands one after another, and what their JSON promises.
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,6 +77,17 @@ Args info_log_keys() {
 Args info_map_keys() {
   return {"kind",  "format",         "resolution", "depth",      "nodes",      "leaves",
           "inner", "occupied_cells", "free_cells", "bounds.min", "bounds.max", "memory_bytes"};
+}
+
+// Lengths that differ by rounding had one key, eight times.
+TEST(Pipeline, InfoCountsBinLengthsThatItShowsAlikeAsOne) {
+  const Workplace here;
+  std::string log = "time_s,bearing_deg,bin_length_m,intensities\n";
+  for (int i = 0; i < 30; ++i) log += fmt::format("{},{},{},1,2,3\n", i, i, 0.0252525 + 1e-9 * (i % 10));
+  here.write("log.csv", log + "30,30,0.05,1,2,3\n");
+  EXPECT_THAT(here.call({"info", "log.csv", "--json"}).out,
+              testing::HasSubstr(R"("bin_lengths": {"0.0252525": 30, "0.05": 1})"));
+  EXPECT_THAT(here.call({"info", "log.csv"}).out, testing::HasSubstr("0.0252525 m (30 beams), 0.05 m (1 beam)"));
 }
 
 TEST(Pipeline, FromTheSimulatedTankToItsPictures) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -129,8 +130,8 @@ TEST(BagScans, SizesThatDoNotFitTheDataAreDamage) {
     std::memcpy(changed.data() + place, &number, sizeof(number));
     return scans_of(bag_of(kCloud2, changed)).items.size();
   };
-  EXPECT_EQ(scans_with(kHeight, 1), 1U);
   EXPECT_EQ(scans_with(kOffsetOfX, 16), 1U);
+  EXPECT_EQ(scans_with(kHeight, 1), 0U) << "half of the data are of no row";
   for (const std::uint32_t wrong : {17U, 4'000'000'000U, 0xFFFF'FFFFU}) {
     for (const std::size_t place : {kHeight, kWidth, kPointStep, kPointStep + 4, kOffsetOfX}) {
       EXPECT_EQ(scans_with(place, wrong), 0U) << wrong << " at " << place;
@@ -144,6 +145,63 @@ TEST(BagScans, SizesThatDoNotFitTheDataAreDamage) {
   std::memcpy(wide.data() + kWidth, &none, sizeof(none));
   std::memcpy(wide.data() + kPointStep + 4, &none, sizeof(none));
   EXPECT_THAT(scans_of(bag_of(kCloud2, wide)).items.at(0).points_m, SizeIs(0));
+}
+
+/// Two rows of two points without anything behind them.
+bags::Bytes dense_cloud(std::uint32_t row_step) {
+  bags::Bytes message = from_hex("00010000e80300000065cd1d030000006d620000");
+  for (const std::uint32_t number : {2U, 2U, 3U}) bags::put(message, number);
+  std::uint32_t offset = 0;
+  for (const char axis : {'x', 'y', 'z'}) {
+    bags::put(message, std::uint32_t{2});
+    message.insert(message.end(), {static_cast<std::uint8_t>(axis), 0, 0, 0});
+    for (const std::uint32_t number : {offset, 7U, 1U}) bags::put(message, number);  // float (and padding), one
+    offset += 4;
+  }
+  for (const std::uint32_t number : {0U, 12U, row_step, 48U}) bags::put(message, number);
+  for (int i = 1; i <= 12; ++i) bags::put(message, static_cast<float>(i));
+  message.push_back(0);
+  return message;
+}
+
+// Drivers leave the row step at 0, or at the size of a point. Kills a refusal of data of exactly the right size.
+TEST(BagScans, ARowStepDoesNotMatterWhereTheDataHaveTheSizeOfThePoints) {
+  for (const std::uint32_t row_step : {24U, 0U, 12U, 48U, 1'000'000U}) {
+    const auto read = scans_of(bag_of(kCloud2, dense_cloud(row_step)));
+    ASSERT_THAT(read.items, SizeIs(1)) << row_step << read.error;
+    ASSERT_THAT(read.items[0].points_m, SizeIs(4));
+    EXPECT_EQ(read.items[0].points_m[2], Vector3d(7.0, 8.0, 9.0));
+  }
+  bags::Bytes short_of_one = dense_cloud(24);
+  const std::size_t width = 24;
+  const std::uint32_t three = 3;
+  std::memcpy(short_of_one.data() + width, &three, sizeof(three));
+  EXPECT_THAT(scans_of(bag_of(kCloud2, short_of_one)).error,
+              HasSubstr("48 bytes of data do not fit height 2, width 3, point_step 12 and row_step 24"));
+}
+
+/// The scan with other numbers: angle_min, angle_max, angle_increment.
+bags::Bytes laser_with_angles(const std::array<float, 3>& angles_rad) {
+  bags::Bytes message = from_hex(kFourRanges);
+  const std::size_t angle_min = 4 + 8 + 4 + 4;
+  std::memcpy(message.data() + angle_min, angles_rad.data(), sizeof(angles_rad));
+  return message;
+}
+
+// A driver sends the one range of where the head is with the angles of a whole turn: all echoes came out ahead.
+TEST(BagScans, RangesThatDoNotFitTheAnglesAreDamage) {
+  const auto error_of = [](const std::array<float, 3>& angles_rad) {
+    return scans_of(bag_of(kLaser, laser_with_angles(angles_rad))).error;
+  };
+  EXPECT_THAT(error_of({0.0F, 6.25F, 0.015625F}),
+              HasSubstr("4 ranges do not fit angle_min 0, angle_max 6.25 and angle_increment 0.015625"));
+  EXPECT_THAT(error_of({0.0F, 1.0F, 0.0F}), HasSubstr("angle_increment 0"));
+  EXPECT_THAT(error_of({1.0F, 0.0F, 0.25F}), HasSubstr("do not fit"));
+  EXPECT_THAT(error_of({-135.0F, 135.0F, 90.0F}), HasSubstr("are not both within 2 pi"));
+  for (const float last_rad : {0.75F, 1.0F, 0.5F}) {
+    EXPECT_EQ(error_of({0.0F, last_rad, 0.25F}), "") << "with or without the last direction";
+  }
+  EXPECT_EQ(error_of({1.0F, 0.25F, -0.25F}), "");
 }
 
 // A driver sends one when nothing was seen. Kills a strict read that refuses it.

@@ -73,7 +73,11 @@ TEST(Csv, RefusesDegreesInTheColumnOfRadians) {
   EXPECT_THAT(read("bearing_rad", 1.8, 360.0).error, HasSubstr("bearing_rad holds degrees, it seems"));
   EXPECT_THAT(read("bearing_rad", -0.9, 360.0).error, HasSubstr("bearing_deg"));
   EXPECT_EQ(read("bearing_deg", 1.8, 360.0).items.size(), 300U);
-  EXPECT_EQ(read("bearing_rad", 0.25, 1e9).items.size(), 300U) << "radians that go on from turn to turn";
+  EXPECT_THAT(read("bearing_rad", 0.25, 360.0).error, HasSubstr("its numbers go from")) << "a fine step";
+  EXPECT_THAT(read("bearing_rad", 2.0, 400.0).error, HasSubstr("bearing_rad holds gradians, it seems"));
+  EXPECT_THAT(read("bearing_deg", 0.02, 2.0 * std::numbers::pi).error, HasSubstr("holds radians, it seems"));
+  EXPECT_EQ(read("bearing_rad", 0.04, 1e9).items.size(), 300U) << "radians that go on from turn to turn";
+  EXPECT_EQ(read("bearing_deg", 2.5, 1e9).items.size(), 300U) << "degrees that do";
   EXPECT_EQ(read("bearing_rad", 0.5 * std::numbers::pi, 2.0 * std::numbers::pi).items.size(), 300U) << "four sides";
 }
 

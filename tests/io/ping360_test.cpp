@@ -199,6 +199,17 @@ TEST(PingFrames, ADeviceCountsClockwiseFrom200Ahead) {
   EXPECT_EQ(bearing_deg(401), -1.0);
 }
 
+// Kills a beam of another length than the head was asked for.
+TEST(PingFrames, SamplesThatAreNotAsManyAsWereAskedForAreRefused) {
+  const auto frame = ping_frame(200, 88, {1, 2, 3});
+  Ping360Ping ping = *ping360_ping(frame);
+  EXPECT_TRUE(beam_of(ping, 0.0));
+  ping.samples = 200;
+  const auto beam = beam_of(ping, 0.0);
+  ASSERT_FALSE(beam);
+  EXPECT_EQ(beam.error(), "number_of_samples 200 does not fit 3 samples");
+}
+
 TEST(PingViewer, AFrameHasTheTimeOfTheRecordThatHoldsItsLastByte) {
   const auto ping = from_hex(kPing);
   const auto log =

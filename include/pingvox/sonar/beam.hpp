@@ -72,6 +72,9 @@ class BeamSource {
   /// The sonar head, if the log or its format names it; else nullptr.
   virtual const DeviceProfile* device() const { return nullptr; }
   virtual BeamClock clock() const { return BeamClock::kOwn; }
+  /// How beams are read that are not as their format says, as in "angles are in gradians, not in radians"; empty: as it
+  /// says. Known with the first beam.
+  virtual std::string note() const { return {}; }
   /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.
   virtual std::optional<double> share_read() const { return std::nullopt; }
 };

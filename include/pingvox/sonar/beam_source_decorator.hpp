@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// A source that changes the beams of another: what was skipped, the head, the clock and the share
+/// A source that changes the beams of another: what was skipped, the head, the clock, the note and the share
 /// that was read are the other's.
 class BeamSourceDecorator : public BeamSource {
  public:
@@ -19,6 +19,7 @@ class BeamSourceDecorator : public BeamSource {
   std::string first_damage() const override { return source_->first_damage(); }
   const DeviceProfile* device() const override { return source_->device(); }
   BeamClock clock() const override { return source_->clock(); }
+  std::string note() const override { return source_->note(); }
   std::optional<double> share_read() const override { return source_->share_read(); }
 
  protected:

@@ -1,0 +1,173 @@
+// Units of angles, lengths and counts in drivers' messages.
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/angle_units.hpp"
+#include "pingvox/io/beam_topic.hpp"
+#include "pingvox/io/beams.hpp"
+#include "support/bag_writer.hpp"
+#include "support/logs.hpp"
+
+namespace pingvox {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view kEcho =
+    "float64 angle\nfloat64 range\nuint16 number_of_samples\nuint16 speed_of_sound\nuint8[] intensities\n";
+
+struct EchoMessage {
+  double angle = 0.0, range_m = 8.0;
+  std::uint16_t number_of_samples = 4;
+};
+
+bags::Bytes bag_of(const std::vector<EchoMessage>& echoes, std::string_view type = "lab_msgs/msg/SonarEcho") {
+  bags::Mcap mcap;
+  mcap.topic(1, "/sonar", type, kEcho);
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    bags::Bytes message = {0, 1, 0, 0};
+    bags::put(message, echoes[i].angle);
+    bags::put(message, echoes[i].range_m);
+    bags::put(message, echoes[i].number_of_samples);
+    bags::put(message, std::uint16_t{1500});
+    bags::put(message, std::uint32_t{4});
+    message.insert(message.end(), {1, 2, 3, 4});
+    mcap.message(1, 1'000'000'000'000U + i * 100'000'000U, message);
+  }
+  mcap.end_chunk();
+  return mcap.closed();
+}
+
+/// A head's angles: `turn` is one turn of it.
+std::vector<EchoMessage> turns_of(double from, double step, double turn, std::size_t count) {
+  std::vector<EchoMessage> echoes;
+  for (std::size_t i = 0; i < count; ++i) echoes.push_back({std::fmod(from + step * static_cast<double>(i), turn)});
+  return echoes;
+}
+
+struct BeamsRead {
+  std::vector<Beam> beams;
+  std::size_t skipped = 0;
+  std::string note, first_damage, error;
+};
+
+BeamsRead beams_in(bags::Bytes file, const BeamTopic& topic = {}) {
+  const auto source = open_beams(FileBytes{"dive.mcap", std::move(file)}, Damage::kSkip, topic);
+  if (!source) return {{}, 0, "", "", source.error().message};
+  BeamsRead read;
+  read.note = (*source)->note();
+  auto beams = read_all(**source);
+  if (!beams) return {{}, 0, "", "", beams.error().message};
+  read.beams = *std::move(beams);
+  read.skipped = (*source)->skipped();
+  read.first_damage = (*source)->first_damage();
+  return read;
+}
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+// A known driver writes gradians where its message says radians: the beams were spread over all bearings at random.
+TEST(BagAngles, GradiansAndDegreesWhereRadiansAreMeantAreRead) {
+  const auto radians = beams_in(bag_of(turns_of(1.0, kTurn / 400, kTurn, 400)));
+  ASSERT_EQ(radians.beams.size(), 400U) << radians.error;
+  EXPECT_EQ(radians.note, "");
+  for (const double turn : {400.0, 360.0}) {
+    for (const std::size_t count : {400U, 2000U}) {
+      const auto read = beams_in(bag_of(turns_of(turn / kTurn, turn / 400, turn, count)));
+      ASSERT_EQ(read.beams.size(), count) << read.error;
+      EXPECT_THAT(read.note, HasSubstr(turn == 400.0 ? "cannot be radians, as is documented: read as gradians"
+                                                     : "cannot be radians, as is documented: read as degrees"));
+      for (std::size_t i = 0; i < count; ++i) {
+        const double off_rad = read.beams[i].bearing_rad - radians.beams[i % 400].bearing_rad;
+        ASSERT_NEAR(std::remainder(off_rad, kTurn), 0.0, 1e-6) << i;
+        ASSERT_NEAR(read.beams[i].time_s, 1000.0 + 0.1 * static_cast<double>(i), 1e-6);
+      }
+    }
+  }
+}
+
+// Kills a guess: 100 to 259 are a sector in both units.
+TEST(BagAngles, AreRefusedWhereTheirUnitIsNotKnown) {
+  EXPECT_EQ(beams_in(bag_of(turns_of(100.0, 1.0, 1e9, 160))).error,
+            "dive.mcap: the angles in /sonar, from 100 to 259, cannot be radians: they may be degrees or gradians, and "
+            "nothing says which");
+  EXPECT_THAT(beams_in(bag_of(turns_of(200.0, 0.0, 1e9, 10))).error, HasSubstr("from 200 to 200"));
+}
+
+// Kills a log that is refused, or turned, because of one damaged number.
+TEST(BagAngles, OneOfManyThatIsDamagedIsLeftOut) {
+  auto echoes = turns_of(0.0, kTurn / 200, kTurn, 300);
+  echoes[20].angle = 390.0;
+  echoes[200].angle = -1e7;
+  const auto read = beams_in(bag_of(echoes));
+  EXPECT_EQ(read.beams.size(), 298U) << read.error;
+  EXPECT_EQ(read.skipped, 2U);
+  EXPECT_EQ(read.note, "");
+}
+
+TEST(BagAngles, RadiansMayCountTurns) {
+  const auto read = beams_in(bag_of(turns_of(0.0, kTurn / 400, 1e9, 2000)));
+  EXPECT_EQ(read.beams.size(), 2000U) << read.error;
+  EXPECT_EQ(read.note, "");
+}
+
+TEST(BagAngles, AgainstAStatedUnitAreRefused) {
+  const bags::Bytes gradians = bag_of(turns_of(0.0, 1.0, 400.0, 800), "lab_msgs/msg/Own");
+  BeamTopic topic{"/sonar", BeamFields{"angle", "range", "intensities", BeamFields::Length::kBeam, 1.0, 0.0}};
+  EXPECT_THAT(beams_in(gradians, topic).error, HasSubstr("cannot be radians, as is stated: they seem to be gradians"));
+  topic.fields->angle_unit_rad = kTurn / 360;
+  EXPECT_THAT(beams_in(gradians, topic).error, HasSubstr("cannot be degrees, as is stated: they seem to be gradians"));
+  topic.fields->angle_unit_rad = kTurn / 400;
+  EXPECT_EQ(beams_in(gradians, topic).beams.size(), 800U);
+  const bags::Bytes radians = bag_of(turns_of(0.0, kTurn / 400, kTurn, 800), "lab_msgs/msg/Own");
+  topic.fields->angle_unit_rad = kTurn / 360;
+  EXPECT_THAT(beams_in(radians, topic).error, HasSubstr("cannot be degrees, as is stated: they seem to be radians"));
+}
+
+TEST(BagAngles, AMessageWhoseNumbersContradictEachOtherIsLeftOut) {
+  auto echoes = turns_of(0.0, 0.1, kTurn, 20);
+  echoes[3].number_of_samples = 200;
+  const auto read = beams_in(bag_of(echoes));
+  EXPECT_EQ(read.beams.size(), 19U) << read.error;
+  EXPECT_THAT(read.first_damage, HasSubstr("number_of_samples 200 does not fit 4 intensities"));
+  for (EchoMessage& echo : echoes) echo.number_of_samples = 200;
+  EXPECT_THAT(beams_in(bag_of(echoes)).error,
+              testing::AllOf(HasSubstr("none of its messages can be used as a beam: 20 x numbers that contradict"),
+                             HasSubstr("number_of_samples 200 does not fit 4 intensities")));
+}
+
+// Kills ranges in millimetres, and beams without a length.
+TEST(BagAngles, ARangeThatNoHeadHearsIsRefused) {
+  for (const double range_m : {8000.0, 0.0, -8.0}) {
+    auto echoes = turns_of(0.0, 0.1, kTurn, 20);
+    for (EchoMessage& echo : echoes) echo.range_m = range_m;
+    EXPECT_THAT(beams_in(bag_of(echoes)).error,
+                HasSubstr(fmt::format("a range of {:.6g} m is none of a scanning sonar", range_m)));
+  }
+}
+
+TEST(AngleUnits, AStatedUnitStandsWhereNothingSpeaksAgainstIt) {
+  for (const AngleUnit stated : {AngleUnit::kRadian, AngleUnit::kDegree, AngleUnit::kGradian}) {
+    AngleUnits still(stated), sides(stated);
+    for (int i = 0; i < 10; ++i) {
+      still.add(0.5);
+      sides.add(1.5 * (i % 4));
+    }
+    EXPECT_EQ(still.unit(), stated);
+    EXPECT_EQ(sides.unit(), stated);
+  }
+}
+
+}  // namespace
+}  // namespace pingvox
