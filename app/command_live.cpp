@@ -438,6 +438,8 @@ class LiveRun {
 }  // namespace
 
 Result<int> run(const LiveCommand& command, Console& console) {
+  // A terminal that is stopped must not stop the head.
+  console.never_wait();
   Result<StopSignals> signals = StopSignals::make();
   if (!signals) return tl::unexpected(signals.error());
   const Stopwatch watch;
@@ -468,8 +470,6 @@ Result<int> run(const LiveCommand& command, Console& console) {
   if (command.obstacles) {
     obstacles.emplace(*command.obstacles, ObstacleOptions{.max_range_m = command.ping360.range_m});
   }
-  // A terminal that is stopped must not stop the head.
-  console.never_wait();
   for (const std::filesystem::path& file : recordings.keep()) console.say("recording to " + file.string());
   return LiveRun(command, console, std::move(*source), std::move(nav), std::move(obstacles), std::move(*mapper), *map)
       .run(*signals, watch);

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/device/head_emulator.hpp"
+
 /// A head whose answers are right by their checksums, but not what was asked for.
 namespace pingvox::test {
 
@@ -18,8 +20,8 @@ class AlteredHead {
   /// The frame to send in place of a frame; an empty one: this frame is not counted and stays.
   using Alter = std::function<Bytes(const Bytes&)>;
 
-  AlteredHead(Emulator head, std::size_t every, Alter alter)
-      : head_(std::move(head)), every_(every), alter_(std::move(alter)) {}
+  AlteredHead(const typename Emulator::Hear& hear, std::size_t every, Alter alter)
+      : head_(HeadEmulatorOptions{}, hear), every_(every), alter_(std::move(alter)) {}
 
   double due_s() const { return head_.due_s(); }
   void take(std::span<const std::uint8_t> bytes, double now_s) { head_.take(bytes, now_s); }

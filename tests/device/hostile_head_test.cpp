@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "device/micron_command.hpp"
 #include "pingvox/device/a50_receiver.hpp"
 #include "pingvox/device/link.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/micron_emulator.hpp"
 #include "pingvox/device/ping360_emulator.hpp"
+#include "pingvox/io/frame_finder.hpp"
 #include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/seanet_frame.hpp"
 #include "tests/device/altered_head.hpp"
@@ -55,7 +57,7 @@ TEST(HostileHead, AnAnswerOfAnotherRangeCostsItsBeam) {
   double now_s = 0.0;
   const auto source = ping360_source(line->address(), {.range_m = 4.0, .timeout_s = 1.0}, *std::move(recorder), now_s);
   constexpr std::size_t kPeriod = 6;
-  AlteredHead<Ping360Emulator> head(Ping360Emulator({}, hear_nothing), 3,
+  AlteredHead<Ping360Emulator> head(hear_nothing, 3,
                                     [](const Bytes& frame) { return with_word(frame, kPeriod, 16'000); });
   std::vector<Beam> beams;
   run(*source, *line, head, now_s, beams, 60);
@@ -77,8 +79,10 @@ TEST(HostileHead, EachValueOfAPingIsComparedWithTheRequest) {
   Ping360Emulator head({}, hear_nothing);
   const auto dialogue = [&](double now_s) {
     head.take(*driver.message(now_s), now_s);
-    Bytes answer;
-    while (answer.empty() || ping_message(answer) == PingMessage::kAck) answer = head.send(head.due_s());
+    FrameFinder finder(check_ping_frame);
+    while (std::isfinite(head.due_s())) finder.push(head.send(head.due_s()));
+    Bytes answer;  // the last one
+    while (const auto frame = finder.next()) answer.assign(frame->bytes.begin(), frame->bytes.end());
     return answer;
   };
   driver.take(dialogue(0.0));
@@ -121,7 +125,7 @@ TEST(HostileHead, AMicronsLineOfAnotherRangeCostsItsBeam) {
   const MicronSettings settings{.range_m = 4.0, .sector = {{.left = 2400, .right = 4000}}, .timeout_s = 1.0};
   const auto source = micron_source(line->address(), settings, *std::move(recorder), now_s);
   int kind = 0;
-  AlteredHead<MicronEmulator> head(MicronEmulator({}, hear_nothing), 4, [&](const Bytes& frame) -> Bytes {
+  AlteredHead<MicronEmulator> head(hear_nothing, 4, [&](const Bytes& frame) -> Bytes {
     if (seanet_message(frame) != SeanetMessage::kHeadData) return {};
     constexpr std::size_t kBlock = 15, kInterval = kBlock + 18, kBearing = kBlock + 25;
     Bytes changed = frame;

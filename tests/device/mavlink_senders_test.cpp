@@ -14,6 +14,7 @@
 
 #include "pingvox/device/link.hpp"
 #include "pingvox/device/mavlink_receiver.hpp"
+#include "pingvox/io/file.hpp"
 #include "pingvox/io/mavlink.hpp"
 #include "pingvox/io/nav.hpp"
 #include "tests/device/recording.hpp"
