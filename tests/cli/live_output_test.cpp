@@ -88,15 +88,10 @@ TEST(LiveOutput, AMapIsNotWrittenToAPipe) {
 TEST(Output, ABarThatCannotBeDrawnCostsNoResult) {
   const Workplace here;
   here.simulate_tank();
-  const std::vector<std::vector<std::string>> calls = {
-      {"map", "tank.csv", "-o", "map.bt", "--progress", "always"},
-      {"slam", "tank.csv", "-o", "slam.tum", "--progress", "always"},
-  };
-  for (const std::vector<std::string>& call : calls) {
-    const Outcome outcome = here.call(call, {.err_path = "/dev/full"});
-    EXPECT_EQ(outcome.status, 0) << call.front();
-    EXPECT_TRUE(here.has(call[3])) << call.front();
-  }
+  const Outcome outcome =
+      here.call({"map", "tank.csv", "-o", "map.bt", "--progress", "always"}, {.err_path = "/dev/full"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(here.has("map.bt"));
 }
 
 // A dropped SSH connection lost the map since it was last written, and left the head turning.
