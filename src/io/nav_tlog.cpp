@@ -136,7 +136,7 @@ class TlogNav {
     }
     notes.push_back(fmt::format(
         "holds several vehicles with the same address, system {}, which were switched on at different times: {} "
-        "messages of one are read, left out: {} of others, and those that do not tell their time",
+        "samples of one are read, left out: {} of others, and those of messages that do not tell their time",
         sender.first, own.size(), times.size() - own.size()));
     leave_out_messages_without_time(sender, sources);
     return times_s;

@@ -156,7 +156,7 @@ TEST(Tlog, OfVehiclesWithTheSameAddressOneIsRead) {
   expect_positions(*nav, 60, 200.0);
   ASSERT_EQ(nav->notes.size(), 1U);
   EXPECT_THAT(nav->notes.front(), testing::HasSubstr("same address, system 1"));
-  EXPECT_THAT(nav->notes.front(), testing::HasSubstr("60 messages of one are read, left out: 30 of others"));
+  EXPECT_THAT(nav->notes.front(), testing::HasSubstr("60 samples of one are read, left out: 30 of others"));
 }
 
 // Kills an autopilot that is started anew and taken for two.

@@ -143,7 +143,7 @@ TEST(ObstacleSectors, AreClearOnTheSideWhereAllIsFree) {
         set(map, around(pose, range_m, clockwise_deg), -1.0F);
       }
     }
-    set(map, around(pose, 3.0, 300.0), 2.0F);
+    set(map, around(pose, 4.5, 300.0), 2.0F);
     const ObstacleSectors found = nearest_obstacles(map, pose, {.max_range_m = 5.0});
     std::vector<std::size_t> expected;
     for (std::size_t i = 1; i <= 16; ++i) expected.push_back(i);
@@ -169,15 +169,18 @@ TEST(ObstacleSectors, ACellReachesIntoSectorsWithItsCorners) {
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(sectors_that_are(What::kObstacle, nearest_obstacles(map, pose, {})), expected);
   }
-  // Seen from aside: from 49.8 to 58.6 degrees, by its side from 51.1 on.
-  OccupancyMap map = empty_map();
-  set(map, {0.65, -0.75, 0.05}, 2.0F);
-  const ObstacleSectors found = nearest_obstacles(map, pose, {});
-  for (const std::size_t i : sectors_that_are(What::kObstacle, found)) {
-    EXPECT_TRUE(i >= 10 && i <= 12) << i;
-    EXPECT_NEAR(found.sectors[i].range_m, 1.0, 1e-9);
+  // Seen from aside: from 17.9 to 28.5 degrees to the right or left, by its side up to 27.0.
+  struct Case {
+    double left_m;
+    std::vector<std::size_t> sectors;
+  };
+  for (const Case& c : {Case{-0.3, {4, 5, 6}}, Case{0.3, {66, 67, 68}}}) {
+    OccupancyMap map = empty_map();
+    set(map, pose * Eigen::Vector3d(0.7, c.left_m, 0.0), 2.0F);
+    const ObstacleSectors found = nearest_obstacles(map, pose, {});
+    EXPECT_EQ(sectors_that_are(What::kObstacle, found), c.sectors);
+    for (const std::size_t i : c.sectors) EXPECT_NEAR(found.sectors[i].range_m, std::hypot(0.7, 0.3), 1e-9);
   }
-  EXPECT_EQ(sectors_that_are(What::kObstacle, found).size(), 3U);
 }
 
 // Kills left and right, or ahead and behind, that are swapped for some headings only.
