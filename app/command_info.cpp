@@ -491,12 +491,15 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
   const bool is_navigated = !bag->nav.log.sources().empty();
   using Use = BagTopicSummary::Use;
   const bool has_log = has(*bag, Use::kBeams) || has(*bag, Use::kScans);
-  if (!has_log && !command.bag.beams.fields) return summarize_contents(*bag, name, format, "");
+  const bool has_other_encoding =
+      std::ranges::any_of(bag->topics, [](const BagTopicSummary& topic) { return !topic.other_encoding.empty(); });
+  if (!has_log && !command.bag.beams.fields && !has_other_encoding) return summarize_contents(*bag, name, format, "");
   Result<Summary> summary = summarize_log(std::move(stream), format, command.damage, command.bag.beams);
   // Messages of a sonar's type may hold nothing.
-  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported && is_navigated;
+  const bool has_none = !summary && summary.error().code == Error::Code::kUnsupported && (is_navigated || !has_log);
   // Of several topics with scans none is chosen.
-  const bool has_only_scans = !summary && !has(*bag, Use::kBeams) && command.damage == Damage::kSkip;
+  const bool has_only_scans =
+      !summary && has(*bag, Use::kScans) && !has(*bag, Use::kBeams) && command.damage == Damage::kSkip;
   if ((has_none || has_only_scans) && command.bag.beams.name.empty()) {
     // Of scans that cannot be read, the reason is worth more than the choice of a topic.
     const bool is_damaged = summary.error().code == Error::Code::kCorrupt;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/ros_message.hpp"
+#include "io/unpack.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
@@ -21,7 +22,8 @@ struct BagTopic {
   /// By the definition in the bag, shared by the topics of a type; nullptr: there is none, or it cannot be read.
   std::shared_ptr<const RosLayout> layout;
   RosEncoding encoding = RosEncoding::kRos1;
-  bool is_readable = true;  ///< false: its messages are in another encoding
+  bool is_readable = true;          ///< false: its messages are in another encoding
+  std::string other_encoding = {};  ///< its name in the bag, as in "json"; empty where it is readable
 };
 
 /// One message as it was recorded.
@@ -45,8 +47,9 @@ class Bag {
  public:
   virtual ~Bag() = default;
   virtual const std::string& name() const = 0;
-  /// nullopt: the end; an error when the operating system reports one.
-  virtual Result<std::optional<BagMessage>> next() = 0;
+  /// The next message, unpacked where it was compressed by itself (rosbag2's compression mode MESSAGE). nullopt: the
+  /// end; an error when the operating system reports one.
+  Result<std::optional<BagMessage>> next();
   virtual std::optional<double> share_read() const { return std::nullopt; }
 
   /// Those met so far.
@@ -57,6 +60,13 @@ class Bag {
  protected:
   std::vector<BagTopic> topics_;
   std::vector<DamageKind> damage_;
+  UnpackBudget budget_;  ///< of the file's chunks and messages
+
+ private:
+  /// The next message as it is in the file.
+  virtual Result<std::optional<BagMessage>> read() = 0;
+
+  std::vector<std::uint8_t> unpacked_message_;
 };
 
 bool looks_like_ros1_bag(std::span<const std::uint8_t> beginning);
@@ -68,7 +78,7 @@ Result<std::unique_ptr<Bag>> open_sqlite_bag(ByteStream stream);
 bool looks_like_mcap(std::span<const std::uint8_t> beginning);
 Result<std::unique_ptr<Bag>> open_mcap(ByteStream stream);
 
-/// Whichever it is. REQUIRES a stream that looks like one of them.
+/// Whichever it is, or all files of a folder's bag one after the other. REQUIRES a stream that looks like one of them.
 Result<std::unique_ptr<Bag>> open_bag(ByteStream stream);
 
 }  // namespace pingvox

@@ -247,6 +247,7 @@ class BagBeams final : public DeviceLog {
   }
 
   tl::unexpected<Error> missing_field(const BagTopic& topic) const {
+    if (!topic.other_encoding.empty()) return no_beams();
     const auto layout = topic.layout ? topic.layout : shared_layout(topic.type, {}, topic.encoding);
     return fail(Error::Code::kBadOption,
                 fmt::format("{}: {} ({}) lacks a field of {}, {}, {}{}", bag_->name(), topic.name, topic.type,
@@ -262,6 +263,7 @@ class BagBeams final : public DeviceLog {
       return fmt::format("{}: none of its messages can be used as a beam: {} x {}{}", bag_->name(), first.count,
                          first.what, has_more ? ", the first: " + unusable_.first_text() : "");
     }
+    if (std::string encoding = other_encoding_text(); !encoding.empty()) return encoding;
     const std::string second = topics_text(*bag_, is_second_sonar);
     const std::string others =
         topics_text(*bag_, [](const BagTopic& topic) { return is_sonar(topic) || may_have_scans(topic); });
@@ -272,6 +274,22 @@ class BagBeams final : public DeviceLog {
     if (!second.empty()) return fmt::format("{}: choose the topic of its beams with --topic: {}", bag_->name(), second);
     return fmt::format("{}: is a ROS bag without beams of a sonar that we know{}", bag_->name(),
                        damage().empty() ? "" : ", or it is damaged");
+  }
+
+  /// Names messages, of the wanted topic if there is one, in an encoding that is not read; empty: there are none.
+  std::string other_encoding_text() const {
+    const std::vector<BagTopic>& topics = bag_->topics();
+    const auto other = std::ranges::find_if(topics, [&](const BagTopic& topic) {
+      return !topic.other_encoding.empty() && (wanted_.empty() || topic.name == wanted_);
+    });
+    if (other == topics.end()) return {};
+    const auto is_of_ping_viewer = [](const BagTopic& topic) { return topic.type.starts_with("bluerobotics_ping::"); };
+    const bool is_ping_viewer = other->other_encoding == "json" && std::ranges::any_of(topics, is_of_ping_viewer);
+    return fmt::format("{}: holds {}: {}", bag_->name(),
+                       is_ping_viewer
+                           ? "JSON messages of Ping Viewer, which are not read yet"
+                           : fmt::format("messages in the encoding '{}', which is not read", other->other_encoding),
+                       topics_text(*bag_, [](const BagTopic& topic) { return !topic.other_encoding.empty(); }));
   }
 
   tl::unexpected<Error> damage_error() const {
@@ -353,12 +371,6 @@ tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool
 bool is_sonar(const BagTopic& topic) {
   const std::optional<KnownTopic> known = known_topic(topic, sonar_types());
   return known && sonar_types()[known->type].holds != SonarType::Holds::kSettings;
-}
-
-Result<std::unique_ptr<Bag>> open_bag(ByteStream stream) {
-  if (looks_like_ros1_bag(stream.beginning())) return open_ros1_bag(std::move(stream));
-  if (looks_like_mcap(stream.beginning())) return open_mcap(std::move(stream));
-  return open_sqlite_bag(std::move(stream));
 }
 
 Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& topic) {

@@ -422,7 +422,8 @@ class BagSurvey {
 
   static BagTopicSummary summary_of(const BagTopic& topic, bool has_navigation, bool may_have_scans) {
     using Use = BagTopicSummary::Use;
-    BagTopicSummary summary{topic.name, topic.type, 0, is_sonar(topic) ? Use::kBeams : Use::kNone, {}};
+    BagTopicSummary summary{topic.name, topic.type,          0, is_sonar(topic) ? Use::kBeams : Use::kNone,
+                            {},         topic.other_encoding};
     if (summary.use == Use::kNone && has_navigation) summary.use = Use::kNavigation;
     if (summary.use == Use::kNone && may_have_scans) summary.use = Use::kScans;
     if (summary.use == Use::kNone && topic.is_readable) {

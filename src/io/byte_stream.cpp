@@ -8,13 +8,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <filesystem>
 #include <new>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
-#include <vector>
 
+#include "io/bag_folder.hpp"
 #include "pingvox/io/descriptor.hpp"
 
 namespace pingvox {
@@ -68,38 +66,6 @@ ByteStream::ByteStream(ByteStream&&) noexcept = default;
 ByteStream& ByteStream::operator=(ByteStream&&) noexcept = default;
 ByteStream::~ByteStream() = default;
 
-namespace {
-
-/// The bag in a folder of ROS 2. Without metadata.yaml it must be the only file: a folder of logs is no bag.
-Result<std::string> bag_in(const std::string& folder) {
-  std::vector<std::string> bags;
-  bool has_metadata = false, has_others = false;
-  std::error_code error;
-  // Not by a range: its increment throws.
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::filesystem::path& path = entry->path();
-    const std::string file = path.filename().string(), suffix = path.extension().string();
-    if (suffix == ".db3" || suffix == ".mcap") {
-      bags.push_back(path.string());
-    } else if (file == "metadata.yaml") {
-      has_metadata = true;
-    } else if (!file.starts_with('.') && !suffix.starts_with(".db3-")) {  // of SQLite beside its file
-      has_others = true;
-    }
-  }
-  if (error) return os_error(folder, error.value());
-  if (bags.empty()) {
-    return fail(Error::Code::kIo, fmt::format("{}: is a folder without a bag of ROS 2: name the files in it", folder));
-  }
-  if (bags.size() == 1 && has_others && !has_metadata) {
-    return fail(Error::Code::kIo, fmt::format("{}: is a folder of a bag and other files: name those to read", folder));
-  }
-  if (bags.size() == 1) return bags.front();
-  return fail(Error::Code::kIo, fmt::format("{}: is a folder of {} bags: name them one by one", folder, bags.size()));
-}
-
-}  // namespace
-
 Result<ByteStream> ByteStream::open(const std::string& path) {
   const bool standard_input = path == "-";
   FileBytes beginning{standard_input ? std::string(kStandardInput) : path, {}};
@@ -111,8 +77,13 @@ Result<ByteStream> ByteStream::open(const std::string& path) {
   struct stat status = {};
   if (::fstat(fd, &status) != 0) return os_error(beginning.name, errno);
   if (S_ISDIR(status.st_mode)) {
-    const Result<std::string> bag = bag_in(path);
-    return bag ? open(*bag) : tl::unexpected(bag.error());
+    Result<std::vector<std::string>> files = bag_files_in(path);
+    if (!files) return tl::unexpected(files.error());
+    Result<ByteStream> first = open(files->front());
+    if (!first || files->size() == 1) return first;
+    first->held_.name = path;
+    first->bag_files_ = *std::move(files);
+    return first;
   }
   std::optional<std::uint64_t> size;
   if (S_ISREG(status.st_mode)) size = static_cast<std::uint64_t>(status.st_size);
@@ -181,6 +152,10 @@ std::optional<double> ByteStream::share_read() const {
 Result<void> ByteStream::load_all() {
   assert(taken_ == 0);
   if (!rest_) return {};
+  if (!bag_files_.empty()) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: is a bag of {} files, not one: name them one by one", name(), bag_files_.size()));
+  }
   const auto too_large = [&] { return fail(Error::Code::kIo, fmt::format("{}: does not fit into memory", name())); };
   constexpr std::size_t kChunk = std::size_t{1} << 20;
   std::vector<std::uint8_t>& bytes = held_.bytes;

@@ -81,7 +81,8 @@ class Mcap final : public Bag {
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
-  Result<std::optional<BagMessage>> next() override {
+ private:
+  Result<std::optional<BagMessage>> read() override {
     while (!at_end_) {
       std::optional<BagMessage> message;
       if (!rest_.empty()) {
@@ -97,7 +98,6 @@ class Mcap final : public Bag {
     return std::nullopt;
   }
 
- private:
   /// The next message of the chunk; nullopt: another record, or the end of the chunk.
   std::optional<BagMessage> next_in_chunk() {
     const std::uint64_t at = is_packed_ ? chunk_at_ : chunk_at_ + (chunk_size_ - rest_.size());
@@ -173,6 +173,7 @@ class Mcap final : public Bag {
                    {},
                    *encoding == "ros1" ? RosEncoding::kRos1 : RosEncoding::kCdr,
                    *encoding == "ros1" || *encoding == "cdr"};
+    if (!added.is_readable) added.other_encoding = printable(*encoding);
     if (const auto schema = schemas_.find(*schema_id); schema != schemas_.end()) {
       added.type = schema->second.name;
       if (schema->second.encoding == added.encoding) added.layout = schema->second.layout;
@@ -220,8 +221,9 @@ class Mcap final : public Bag {
       add_damage(damage_, FrameFinder::kCutOff, reader_.position());
       if (is_packed_) data = {};
     } else if (is_packed_) {
-      if (!unpack(*compression, data, chunk->size, unpacked_).is_whole) {
-        add_damage(damage_, "damaged chunk", reader_.position());
+      const Unpacked unpacked = unpack(*compression, data, chunk->size, budget_, unpacked_);
+      if (!unpacked.is_whole) {
+        add_damage(damage_, unpacked.is_refused ? kTooLargeUnpacked : "damaged chunk", reader_.position());
         unpacked_.clear();
       }
       data = unpacked_;

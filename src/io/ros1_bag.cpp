@@ -151,7 +151,8 @@ class Ros1Bag final : public Bag {
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
-  Result<std::optional<BagMessage>> next() override {
+ private:
+  Result<std::optional<BagMessage>> read() override {
     for (;;) {
       if (!rest_.empty()) {
         if (std::optional<BagMessage> message = next_in_chunk()) return message;
@@ -164,7 +165,6 @@ class Ros1Bag final : public Bag {
     }
   }
 
- private:
   /// The next message of the chunk; nullopt: another record, or the end of the chunk.
   std::optional<BagMessage> next_in_chunk() {
     const std::uint64_t at = is_packed_ ? chunk_at_ : chunk_at_ + (chunk_size_ - rest_.size());
@@ -269,11 +269,11 @@ class Ros1Bag final : public Bag {
     if (is_cut_) give_back_next_chunk(data);
     rest_ = bytes->first(held_).subspan(record.data_at);
     if (is_packed_) {
-      const auto [is_whole, packed] = unpack(*compression, rest_, record.header.size, unpacked_);
+      const auto [is_whole, packed, is_refused] = unpack(*compression, rest_, record.header.size, budget_, unpacked_);
       // What is packed ends by itself: with another chunk behind it, the length is wrong.
       const Bytes behind = data.subspan(is_whole ? packed : 0);
       if (!is_cut_ && (!is_whole || next_chunk(behind))) {
-        add_damage(damage_, "damaged chunk", reader_.position());
+        add_damage(damage_, is_refused ? kTooLargeUnpacked : "damaged chunk", reader_.position());
         give_back_next_chunk(behind);
       }
       is_cut_ = is_cut_ || !is_whole;

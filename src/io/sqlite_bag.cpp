@@ -2,8 +2,8 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <system_error>
@@ -44,9 +44,30 @@ std::string text_in(sqlite3_stmt* row, int column) {
   return {reinterpret_cast<const char*>(text), static_cast<std::size_t>(sqlite3_column_bytes(row, column))};
 }
 
-/// Name for sqlite3_open_v2. A database beside which there is no log of changes is opened so that nothing is written
-/// beside it.
-std::string uri_of(const std::string& path) {
+/// How the changes in a database's write-ahead log are read without writing anything beside it.
+enum class ChangeLog {
+  kNone,    ///< there are none
+  kShared,  ///< with the locks of a recorder that may be at work
+  kAlone,   ///< without locks: nobody has the database open
+};
+
+/// 0: there is no such file.
+std::uint64_t size_of(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+ChangeLog change_log_of(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path + "-wal", error)) return ChangeLog::kNone;
+  // Whoever writes shares memory by this file.
+  if (std::filesystem::exists(path + "-shm", error)) return ChangeLog::kShared;
+  return size_of(path + "-wal") > 0 ? ChangeLog::kAlone : ChangeLog::kNone;
+}
+
+/// Name for sqlite3_open_v2.
+std::string uri_of(const std::string& path, ChangeLog changes) {
   // Two slashes after the colon are followed by an authority, which is empty.
   std::string uri = path.starts_with('/') ? "file://" : "file:";
   for (const char c : path) {
@@ -54,25 +75,49 @@ std::string uri_of(const std::string& path) {
                           c == '.' || c == '-' || c == '_';
     uri += is_plain ? std::string(1, c) : fmt::format("%{:02x}", static_cast<unsigned char>(c));
   }
-  std::error_code error;
-  return uri + (std::filesystem::exists(path + "-wal", error) ? "" : "?immutable=1");
+  return uri + (changes == ChangeLog::kNone     ? "?immutable=1"
+                : changes == ChangeLog::kShared ? "?readonly_shm=1"
+                                                : "?vfs=unix-none");
 }
 
-/// Limits what a damaged or malicious file can do.
-void set_limits(sqlite3* database) {
-  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, 1 << 28);
-  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
-  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  // Nothing can be written; but without it SQLite refuses a file that is shorter than its header says.
-  sqlite3_db_config(database, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
+/// Limits what a damaged or malicious file can do: it can neither write nor call anything, and no value is larger than
+/// the file.
+void set_limits(sqlite3* database, std::uint64_t size) {
+  constexpr std::uint64_t kMaxLength = std::uint64_t{1} << 28, kMinLength = 4096;
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(std::clamp(size, kMinLength, kMaxLength)));
+  for (const int forbidden :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW}) {
+    sqlite3_db_config(database, forbidden, 0, nullptr);
+  }
+  // Without the last one SQLite refuses a file that is shorter than its header says.
+  for (const int wanted :
+       {SQLITE_DBCONFIG_DEFENSIVE, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, SQLITE_DBCONFIG_WRITABLE_SCHEMA}) {
+    sqlite3_db_config(database, wanted, 1, nullptr);
+  }
+  sqlite3_drop_modules(database, nullptr);  // those of virtual tables
   sqlite3_exec(database, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
 }
 
 class SqliteBag final : public Bag {
+  /// Steps of SQLite's machine: a row of 16 bytes or more takes some ten.
+  static constexpr std::uint64_t kFreeSteps = 10'000'000, kStepsPerByte = 4;
+  static constexpr int kCountedSteps = 1000;
+
  public:
   SqliteBag(std::string name, FileBytes held, Database database, std::uint64_t size)
-      : name_(std::move(name)), held_(std::move(held)), database_(std::move(database)), size_(size) {}
+      : name_(std::move(name)),
+        held_(std::move(held)),
+        database_(std::move(database)),
+        size_(size),
+        steps_left_(kFreeSteps + kStepsPerByte * size) {
+    const auto count = [](void* left) -> int {
+      auto& steps = *static_cast<std::uint64_t*>(left);
+      if (steps < kCountedSteps) return 1;
+      steps -= kCountedSteps;
+      return 0;
+    };
+    sqlite3_progress_handler(database_.get(), kCountedSteps, count, &steps_left_);
+  }
 
   const std::string& name() const override { return name_; }
   std::optional<double> share_read() const override {
@@ -83,34 +128,32 @@ class SqliteBag final : public Bag {
     const auto refuse = [&](std::string_view what) {
       return fail(Error::Code::kUnsupported, fmt::format("{}: is an SQLite database {}", name_, what));
     };
-    // Real tables only: a view can be endless.
-    const Query tables =
-        query_of(database_.get(),
-                 "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND rootpage > 0 AND name IN "
-                 "('topics', 'messages')");
-    constexpr int kWanted = 2;
-    if (!tables || sqlite3_step(tables.get()) != SQLITE_ROW || sqlite3_column_int(tables.get(), 0) != kWanted) {
-      return refuse("that holds no ROS messages, or is damaged at its beginning");
+    if (!has_columns("topics", {"id", "name", "type", "serialization_format"}) ||
+        !has_columns("messages", {"topic_id", "timestamp", "data"})) {
+      return no_tables();
     }
     if (const Query last = query_of(database_.get(), "SELECT max(rowid) FROM messages");
         last && sqlite3_step(last.get()) == SQLITE_ROW) {
       last_row_ = static_cast<double>(sqlite3_column_int64(last.get(), 0));
     }
     std::map<std::string, std::shared_ptr<const RosLayout>> layouts;
-    if (const Query query = query_of(database_.get(),
-                                     "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE "
-                                     "encoding = 'ros2msg'")) {
-      while (has_row(query.get())) {
+    if (has_columns("message_definitions", {"topic_type", "encoding", "encoded_message_definition"})) {
+      const Query query = query_of(database_.get(),
+                                   "SELECT topic_type, encoded_message_definition FROM message_definitions NOT "
+                                   "INDEXED WHERE encoding = 'ros2msg'");
+      while (query && has_row(query.get())) {
         const std::string type = text_in(query.get(), 0);
         layouts[type] = shared_layout(type, text_in(query.get(), 1), RosEncoding::kCdr);
       }
     }
-    const Query query = query_of(database_.get(), "SELECT id, name, type, serialization_format FROM topics");
+    const Query query =
+        query_of(database_.get(), "SELECT id, name, type, serialization_format FROM topics NOT INDEXED");
     if (!query) return refuse("with other columns than those of ROS");
     while (has_row(query.get())) {
       numbers_.try_emplace(sqlite3_column_int64(query.get(), 0), topics_.size());
-      BagTopic topic{
-          text_in(query.get(), 1), text_in(query.get(), 2), {}, RosEncoding::kCdr, text_in(query.get(), 3) == "cdr"};
+      const std::string encoding = text_in(query.get(), 3);
+      BagTopic topic{text_in(query.get(), 1), text_in(query.get(), 2), {}, RosEncoding::kCdr, encoding == "cdr"};
+      if (!topic.is_readable) topic.other_encoding = printable(encoding);
       if (const auto layout = layouts.find(topic.type); layout != layouts.end()) topic.layout = layout->second;
       topics_.push_back(std::move(topic));
     }
@@ -119,7 +162,8 @@ class SqliteBag final : public Bag {
     return {};
   }
 
-  Result<std::optional<BagMessage>> next() override {
+ private:
+  Result<std::optional<BagMessage>> read() override {
     while (messages_ && has_row(messages_.get())) {
       sqlite3_stmt* row = messages_.get();
       row_ = static_cast<double>(sqlite3_column_int64(row, 3));
@@ -143,18 +187,52 @@ class SqliteBag final : public Bag {
     return std::nullopt;
   }
 
- private:
   /// Whether a query gives one more row; damage ends it.
   bool has_row(sqlite3_stmt* query) {
-    // The smallest row takes four bytes: more of them are pages that are read over and over.
-    const bool are_too_many = rows_ > size_ / 4;
-    const int result = are_too_many ? SQLITE_CORRUPT : sqlite3_step(query);
+    // More than the file has room for are pages that are read over and over.
+    const int result = read_ > size_ ? SQLITE_CORRUPT : sqlite3_step(query);
     if (result == SQLITE_ROW) {
-      ++rows_;
+      constexpr std::uint64_t kMinRow = 4;
+      read_ += kMinRow;
+      for (int column = 0; column < sqlite3_column_count(query); ++column) {
+        const int type = sqlite3_column_type(query, column);
+        if (type == SQLITE_TEXT || type == SQLITE_BLOB) {
+          read_ += static_cast<std::uint64_t>(sqlite3_column_bytes(query, column));
+        }
+      }
       return true;
     }
     if (result != SQLITE_DONE) add_damage(damage_, "damaged database page", std::nullopt);
     return false;
+  }
+
+  /// Whether these are columns of an ordinary table that are stored: what computes them (a view, a generated column, a
+  /// virtual table) may have no end.
+  bool has_columns(std::string_view table, std::initializer_list<std::string_view> columns) const {
+    constexpr int kName = 1, kHidden = 6;
+    const Query query = query_of(database_.get(), fmt::format("PRAGMA table_xinfo({})", table).c_str());
+    std::size_t found = 0;
+    while (query && sqlite3_step(query.get()) == SQLITE_ROW) {
+      const bool is_wanted = std::ranges::find(columns, text_in(query.get(), kName)) != columns.end();
+      if (is_wanted && sqlite3_column_int(query.get(), kHidden) == 0) ++found;
+    }
+    return found == columns.size();
+  }
+
+  /// After tables were looked for in vain.
+  tl::unexpected<Error> no_tables() const {
+    const int error = sqlite3_errcode(database_.get());
+    if (error == SQLITE_OK || error == SQLITE_ERROR || error == SQLITE_DONE) {
+      return fail(
+          Error::Code::kUnsupported,
+          fmt::format("{}: is an SQLite database that holds no ROS messages in ordinary tables topics and messages",
+                      name_));
+    }
+    const bool is_damage = error == SQLITE_CORRUPT || error == SQLITE_NOTADB || error == SQLITE_INTERRUPT;
+    return fail(is_damage ? Error::Code::kCorrupt : Error::Code::kIo,
+                fmt::format("{}: cannot be read: {}", name_,
+                            error == SQLITE_INTERRUPT ? "its tables take more steps than its size explains"
+                                                      : sqlite3_errmsg(database_.get())));
   }
 
   std::string name_;
@@ -163,7 +241,8 @@ class SqliteBag final : public Bag {
   std::uint64_t size_;
   std::map<std::int64_t, std::size_t> numbers_;  ///< of topics
   Query messages_;
-  std::uint64_t rows_ = 0;  ///< of all queries
+  std::uint64_t read_ = 0;  ///< bytes of all rows
+  std::uint64_t steps_left_;
   bool in_damage_ = false;
   double row_ = 0.0, last_row_ = 0.0;
 };
@@ -183,15 +262,23 @@ Result<std::unique_ptr<Bag>> open_sqlite_bag(ByteStream stream) {
   int result = SQLITE_OK;
   constexpr int kFlags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
   if (path) {
-    result = sqlite3_open_v2(uri_of(*path).c_str(), &opened, kFlags | SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
-    std::error_code error;
-    size = std::filesystem::file_size(*path, error);
+    const ChangeLog changes = change_log_of(*path);
+    const std::string uri = uri_of(*path, changes);
+    result = sqlite3_open_v2(uri.c_str(), &opened, kFlags | SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+    size = size_of(*path) + (changes == ChangeLog::kNone ? 0 : size_of(*path + "-wal"));
+    // Then no memory is shared, which would take a file.
+    if (changes == ChangeLog::kAlone) {
+      sqlite3_exec(opened, "PRAGMA locking_mode=EXCLUSIVE", nullptr, nullptr, nullptr);
+    }
   } else {
     // Its pages are not in order: a pipe has to be read as a whole.
     Result<FileBytes> whole = ByteStream::whole(std::move(stream));
     if (!whole) return tl::unexpected(whole.error());
     held = *std::move(whole);
     size = held.bytes.size();
+    // Memory has no write-ahead log: its mark says that there may be one.
+    constexpr std::size_t kWriteVersion = 18, kReadVersion = 19;
+    if (size > kReadVersion) held.bytes[kWriteVersion] = held.bytes[kReadVersion] = 1;
     result = sqlite3_open_v2(":memory:", &opened, kFlags | SQLITE_OPEN_READWRITE | SQLITE_OPEN_MEMORY, nullptr);
   }
   Database database(opened);
@@ -202,7 +289,7 @@ Result<std::unique_ptr<Bag>> open_sqlite_bag(ByteStream stream) {
   if (result != SQLITE_OK) {
     return fail(Error::Code::kCorrupt, fmt::format("{}: cannot be opened: {}", name, sqlite3_errstr(result)));
   }
-  set_limits(opened);
+  set_limits(opened, size);
   auto bag = std::make_unique<SqliteBag>(name, std::move(held), std::move(database), size);
   if (const Result<void> started = bag->start(); !started) return tl::unexpected(started.error());
   return bag;

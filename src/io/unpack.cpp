@@ -5,6 +5,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <memory>
@@ -72,11 +73,15 @@ class Zstd {
     ZSTD_outBuffer out = {room.data(), room.size(), 0};
     const std::size_t result = ZSTD_decompressStream(context_.get(), &out, &in);
     packed = packed.subspan(in.pos);
+    if (in.pos > 0 || out.pos > 0) has_ended_ = result == 0;
     if (ZSTD_isError(result) != 0) return std::nullopt;
     return out.pos;
   }
+  /// Whether the last bytes were those of a frame's end.
+  bool has_ended() const { return has_ended_; }
 
  private:
+  bool has_ended_ = false;
   static constexpr auto kFree = [](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); };
   std::unique_ptr<ZSTD_DCtx, decltype(kFree)> context_{ZSTD_createDCtx()};
 };
@@ -84,7 +89,7 @@ class Zstd {
 /// Unpacks at most `size` bytes. Grows with what is there, as a damaged size may be any.
 /// @return what is left of `packed`
 template <class Unpacker>
-Bytes unpack_with(Unpacker unpacker, Bytes packed, std::size_t size, std::vector<std::uint8_t>& to) {
+Bytes unpack_with(Unpacker&& unpacker, Bytes packed, std::size_t size, std::vector<std::uint8_t>& to) {
   constexpr std::size_t kLeast = std::size_t{1} << 16, kUsualRatio = 4;
   to.clear();
   while (to.size() < size) {
@@ -99,18 +104,37 @@ Bytes unpack_with(Unpacker unpacker, Bytes packed, std::size_t size, std::vector
 
 }  // namespace
 
-Unpacked unpack(Compression compression, std::span<const std::uint8_t> packed, std::uint64_t size,
+Unpacked unpack(Compression compression, std::span<const std::uint8_t> packed, std::uint64_t size, UnpackBudget& budget,
                 std::vector<std::uint8_t>& to) {
   assert(compression != Compression::kNone);
-  // No sonar compresses like this, but a damaged size does.
-  constexpr std::uint64_t kMaxRatio = 1024, kMaxUnchecked = 65'536;
   to.clear();
-  if (size > kMaxChunk || packed.size() > kMaxChunk || size > kMaxUnchecked + kMaxRatio * packed.size()) return {};
+  if (packed.size() > kMaxChunk || size > budget.limit(packed.size())) return {.is_refused = true};
   const auto whole = static_cast<std::size_t>(size);
   const Bytes left = compression == Compression::kBz2   ? unpack_with(Bz2(), packed, whole, to)
                      : compression == Compression::kLz4 ? unpack_with(Lz4(), packed, whole, to)
                                                         : unpack_with(Zstd(), packed, whole, to);
-  return {to.size() == whole, packed.size() - left.size()};
+  budget.add(packed.size(), to.size());
+  return {to.size() == whole, packed.size() - left.size(), false};
+}
+
+bool begins_zstd(std::span<const std::uint8_t> bytes) {
+  constexpr std::array<std::uint8_t, 4> kMagic = {0x28, 0xb5, 0x2f, 0xfd};
+  return bytes.size() > kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+}
+
+Unpacked unpack_zstd_frame(std::span<const std::uint8_t> packed, UnpackBudget& budget, std::vector<std::uint8_t>& to) {
+  to.clear();
+  const std::uint64_t most = budget.limit(packed.size());
+  const unsigned long long stated = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (stated == ZSTD_CONTENTSIZE_ERROR) return {};
+  const bool is_stated = stated != ZSTD_CONTENTSIZE_UNKNOWN;
+  if (is_stated && stated > most) return {.is_refused = true};
+  Zstd frame;
+  const Bytes left = unpack_with(frame, packed, static_cast<std::size_t>(is_stated ? stated : most), to);
+  budget.add(packed.size(), to.size());
+  // Of a size that is not stated the end of the frame tells that it is whole.
+  const bool is_whole = is_stated ? to.size() == stated : frame.has_ended();
+  return {is_whole, packed.size() - left.size(), !is_whole && to.size() == most};
 }
 
 }  // namespace pingvox

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -158,6 +159,56 @@ TEST(Mcap, GivesTheBeamsOfAnImagingSonar) {
   ASSERT_THAT(read.items, SizeIs(1));
   EXPECT_EQ(read.items[0].bin_length_m, 0.5);
   EXPECT_THAT(read.items[0].intensities, ElementsAre(0, 0, 255));
+}
+
+// 20 chunks of a few kilobytes took 2 GB and minutes.
+TEST(Mcap, ChunksThatUnpackToMoreThanTheFileCanBeAreDamage) {
+  bags::Mcap bomb;
+  bomb.message(9, 1, bags::Bytes(70'000'000));
+  bomb.end_chunk("zstd");
+  const bags::Bytes one = bomb.closed();
+  constexpr std::ptrdiff_t kBefore = 8 + 9 + 16, kBehind = kBehindChunks;  // magic and header
+  bags::Bytes file = echoes("zstd", 1).closed();
+  file.resize(file.size() - kBehindChunks);
+  for (int i = 0; i < 20; ++i) file.insert(file.end(), one.begin() + kBefore, one.end() - kBehind);
+  const auto source = open_beams({"dive.mcap", file});
+  ASSERT_TRUE(source) << source.error().message;
+  while (const auto beam = (*source)->next()) {
+    if (!*beam) break;
+  }
+  const std::vector<DamageKind> damage = (*source)->damage();
+  const auto refused =
+      std::ranges::find(damage, std::string_view("unpacks to more than its file can be"), &DamageKind::what);
+  ASSERT_NE(refused, damage.end());
+  EXPECT_EQ(refused->count, 19U);
+}
+
+TEST(Mcap, ReadsMessagesThatAreCompressedOneByOne) {
+  bags::Mcap mcap;
+  mcap.topic(4, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+  mcap.message(4, 1'000'000'000'000U, bags::packed("zstd", from_hex(bags::kSonarEcho)));
+  mcap.end_chunk();
+  const auto read = all_beams({"dive.mcap", mcap.closed()});
+  EXPECT_EQ(read.error, "");
+  ASSERT_THAT(read.items, SizeIs(1));
+  EXPECT_THAT(read.items[0].intensities, ElementsAre(0, 10, 64, 255));
+}
+
+// A log of Ping Viewer's successor was "a ROS bag without beams".
+TEST(Mcap, MessagesInAnotherEncodingAreNamed) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/device_1/Ping360", "bluerobotics_ping::ping360::AutoDeviceDataStruct", "{}", "json");
+  mcap.message(1, 1'000'000'000'000U, {'{', '}'});
+  mcap.end_chunk();
+  EXPECT_THAT(all_beams({"device.mcap", mcap.closed()}).error,
+              testing::HasSubstr("device.mcap: holds JSON messages of Ping Viewer, which are not read yet: "
+                                 "/device_1/Ping360"));
+  bags::Mcap other;
+  other.topic(1, "/echo", "lab.Echo", "", "protobuf");
+  other.message(1, 1'000'000'000'000U, {1, 2});
+  other.end_chunk();
+  EXPECT_THAT(all_beams({"x.mcap", other.closed()}).error,
+              testing::HasSubstr("holds messages in the encoding 'protobuf', which is not read: /echo (lab.Echo)"));
 }
 
 }  // namespace

@@ -163,7 +163,8 @@ class Mcap {
     record(file_, 1, header);
   }
 
-  void topic(std::uint16_t id, std::string_view name, std::string_view type, std::string_view definition) {
+  void topic(std::uint16_t id, std::string_view name, std::string_view type, std::string_view definition,
+             std::string_view encoding = "cdr") {
     Bytes schema, channel;
     put(schema, id);
     put_text(schema, type);
@@ -172,7 +173,7 @@ class Mcap {
     put(channel, id);
     put(channel, id);
     put_text(channel, name);
-    put_text(channel, "cdr");
+    put_text(channel, encoding);
     put(channel, std::uint32_t{0});
     record(chunk_, 3, schema);
     record(chunk_, 4, channel);

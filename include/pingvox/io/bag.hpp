@@ -21,6 +21,7 @@ struct BagTopicSummary {
   std::size_t messages = 0;
   Use use = Use::kNone;
   std::string fields = {};  ///< numbers in a message that is not used: "x float64, valid bool"; empty: none are known
+  std::string other_encoding = {};  ///< of messages that are not read, as in "json"; empty: CDR, or that of ROS 1
 };
 
 /// What a ROS bag holds: its topics in the order in which they were met, and its navigation.

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/result.hpp"
@@ -22,7 +23,7 @@ class ByteStream {
 
   /// Bytes in memory.
   ByteStream(FileBytes file);  // NOLINT(google-explicit-constructor): functions of streams accept bytes in memory
-  /// @param path  "-" is standard input; a folder with one ROS 2 bag (.db3 or .mcap) in it is that bag
+  /// @param path  "-" is standard input; a folder with one ROS 2 bag (.db3 or .mcap files) in it is that bag
   /// @return kIo when it cannot be opened or read (not found, no permission, another directory); the message names it
   static Result<ByteStream> open(const std::string& path);
 
@@ -31,8 +32,12 @@ class ByteStream {
   ~ByteStream();
 
   const std::string& name() const { return held_.name; }
-  /// The file that is read, for readers that open it again; nullopt: a pipe, or memory.
+  /// The file that is read, for readers that open it again; nullopt: a pipe, or memory. Of a bag of several files their
+  /// folder.
   std::optional<std::string> path() const;
+  /// The files of a bag in a folder, in their order, where they are several: the bytes are those of the first one, and
+  /// the name is that of the folder. Else empty.
+  const std::vector<std::string>& bag_files() const { return bag_files_; }
   /// The first bytes, at most kBeginning, also after reading on.
   std::span<const std::uint8_t> beginning() const;
 
@@ -61,6 +66,7 @@ class ByteStream {
 
   FileBytes held_;  ///< the beginning, or everything
   std::size_t taken_ = 0;
+  std::vector<std::string> bag_files_;
   std::unique_ptr<Source> rest_;  ///< what is not in held_; nullptr: nothing
 };
 
