@@ -117,7 +117,8 @@ class TextCloudSource : public CloudSource {
       const auto counted = skip_point(fmt::format("line {}", lines_.number()), reader.has_nan());
       if (!counted) return counted;
     }
-    if (cloud_.points && count < *cloud_.points) return report_missing(count, *cloud_.points);
+    const std::uint64_t wanted = cloud_.points.value_or(cloud_.announced.value_or(0));
+    if (count < wanted) return report_missing(count, wanted);
     std::uint64_t further = 0;
     while (cloud_.is_last && lines_.next_with_content()) ++further;
     return further > 0 ? report_surplus(count, fmt::format("{} further lines are", further)) : Result<void>{};

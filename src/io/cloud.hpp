@@ -30,6 +30,8 @@ struct TextCloud {
   /// all lines.
   std::optional<std::uint64_t> points;
   bool is_last = false;  ///< nothing else may follow
+  /// As many are announced, but all lines are read: fewer are damage.
+  std::optional<std::uint64_t> announced = std::nullopt;
   NanPoint nan = NanPoint::kDamage;
 };
 

@@ -72,7 +72,7 @@ std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader
   };
   // Sizes and counts are bounded, so that sums cannot overflow.
   const auto is_small = [](const std::optional<std::uint64_t>& count) {
-    return count && *count > 0 && *count <= std::numeric_limits<std::uint16_t>::max();
+    return count && *count <= std::numeric_limits<std::uint16_t>::max();
   };
   if (key == "FIELDS" || key == "COLUMNS") {
     if (!header.fields.empty()) return "is there twice";
@@ -81,14 +81,14 @@ std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader
     return for_each_field([&](Field& field, std::string_view word) {
       const auto size = count_in(word);
       field.size = size.value_or(0);
-      return is_small(size);
+      return is_small(size) && *size > 0;
     });
   } else if (key == "TYPE") {
     return for_each_field([](Field& field, std::string_view word) {
       field.type = word.front();
       return word.size() == 1;
     });
-  } else if (key == "COUNT") {
+  } else if (key == "COUNT") {  // 0 is of a field of no bytes, as PCL writes for padding
     return for_each_field([&](Field& field, std::string_view word) {
       const auto count = count_in(word);
       field.count = count.value_or(0);
@@ -224,7 +224,7 @@ Result<std::unique_ptr<ScanSource>> open_pcd(FileBytes file, Damage damage, cons
   const Eigen::Vector3d origin = origin_m.value_or(header->viewpoint_m.value_or(Eigen::Vector3d::Zero()));
 
   if (*header->data == PcdData::kText) {
-    TextCloud cloud{{}, points, true, NanPoint::kNoReturn};
+    TextCloud cloud{.xyz = {}, .points = points, .is_last = true, .nan = NanPoint::kNoReturn};
     std::size_t words = 0;
     for (std::size_t i = 0; i < fields.size(); words += fields[i].count, ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -123,6 +123,35 @@ TEST(XyzCloud, LeavesOutDamagedLinesAndNamesTheFirstWhenAsked) {
   EXPECT_EQ(cloud_error_of(text), "bad: line 4: is not a point of three finite numbers");
 }
 
+// CloudCompare names the columns, and PTS begins with the number of points: both were "text of no known format".
+TEST(XyzCloud, MayBeginWithNamesOrTheNumberOfPoints) {
+  const auto points = ElementsAre(Vector3d(1, 2, 3), Vector3d(4, 5, 6));
+  for (const char* beginning : {"//X Y Z\n", "// X Y Z R G B\n", "x,y,z\n", "2\n", "# by hand\n 2 \n"}) {
+    SCOPED_TRACE(beginning);
+    const FileBytes file{"a", bytes_of(std::string(beginning) + "1 2 3\n4 5 6\n")};
+    EXPECT_EQ(format_of(file.view()), Format::kXyz);
+    EXPECT_THAT(cloud_in(file).points_m, points);
+  }
+  for (const char* other : {"//Y X Z\n1 2 3\n", "x y\n1 2 3\n", "2\n3\n1 2 3\n", "2\n", "//X Y Z\n"}) {
+    EXPECT_EQ(format_of(bytes_of(other)), std::nullopt) << other;
+  }
+  EXPECT_EQ(cloud_error_of("3\n1 2 3\n4 5 6\n"), "bad: end: holds 2 of 3 points");
+  EXPECT_THAT(cloud_in({"a", bytes_of("1\n1 2 3\n4 5 6\n")}).points_m, points) << "all that are there";
+}
+
+// PCL writes padding as a field of no bytes: the header was refused.
+TEST(PcdCloud, AFieldOfCount0HasNoBytes) {
+  const std::string head =
+      "VERSION 0.7\nFIELDS x y _ z ring\nSIZE 1 1 4 1 1\nTYPE I I F I U\nCOUNT 1 1 0 1 2\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n"
+      "DATA ";
+  const auto points = ElementsAre(Vector3d(1, 2, 3), Vector3d(4, 5, 6));
+  EXPECT_THAT(cloud_in({"a", bytes_of(head + "ascii\n1 2 3 9 9\n4 5 6 9 9\n")}).points_m, points);
+  EXPECT_THAT(cloud_in({"a", bytes_of(head + "binary\n\x01\x02\x03\x09\x09\x04\x05\x06\x09\x09")}).points_m, points);
+  EXPECT_THAT(
+      cloud_error_of("VERSION 0.7\nFIELDS x y z\nSIZE 1 1 1\nTYPE I I I\nCOUNT 1 0 1\nPOINTS 1\nDATA ascii\n1 2\n"),
+      HasSubstr("the field y is of no type of number"));
+}
+
 TEST(PcdCloud, IsReadAsText) {
   const PointScan cloud = cloud_in(sample("pcd/ascii"));  // NaN is no damage here
   EXPECT_EQ(cloud.origin_m, Vector3d(1, 2, 3));
