@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double kMetresPerSecondOfKnot = 1852.0 / 3600.0, kDay_s = 86'400.0;
 
-/// A sentence with a right checksum.
+/// A sentence with a right checksum, or of a device that sends none.
 class Sentence {
  public:
   explicit Sentence(std::string_view body) {
@@ -42,11 +43,18 @@ class Sentence {
   std::vector<std::string_view> fields_;
 };
 
-/// Calls `take` for each sentence with a right checksum. Others, and pieces, are damage.
-/// @return how many there were
+/// What may be a sentence, from a dollar to the end of its line or the next one.
+struct RawSentence {
+  std::size_t at;            ///< of the dollar, in the text
+  std::string_view body;     ///< between dollar and asterisk
+  std::string_view address;  ///< at the front of the body
+  std::string_view behind;   ///< all text from the end of the body on
+
+  bool ends_its_line() const { return behind.starts_with('\r') || behind.starts_with('\n'); }
+};
+
 template <class Take>
-std::size_t for_each_sentence(std::string_view text, std::vector<DamageKind>& damage, Take take) {
-  std::size_t sentences = 0;
+void for_each_raw_sentence(std::string_view text, Take take) {
   for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
     const std::string_view rest = text.substr(at + 1);
     const std::size_t address = std::min(rest.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"), rest.size());
@@ -55,21 +63,48 @@ std::size_t for_each_sentence(std::string_view text, std::vector<DamageKind>& da
     const bool is_sentence = address >= kMinLength && address <= kMaxLength && rest.substr(address).starts_with(',');
     if (!is_sentence) continue;
     const std::size_t end = std::min(rest.find_first_of("*$\r\n"), rest.size());
-    const std::optional<unsigned> sum =
-        rest.substr(end).starts_with('*') ? hex_byte_in(rest.substr(end + 1, 2)) : std::nullopt;
-    if (!sum) {
-      add_damage(damage, end + 3 > rest.size() ? FrameFinder::kCutOff : "sentence without checksum", at);
-      continue;
-    }
-    unsigned computed = 0;
-    for (const char c : rest.substr(0, end)) computed ^= static_cast<unsigned char>(c);
-    if (computed != *sum) {
-      add_damage(damage, "wrong checksum", at);
-      continue;
-    }
-    ++sentences;
-    take(Sentence(rest.substr(0, end)));
+    take(RawSentence{at, rest.substr(0, end), rest.substr(0, address), rest.substr(end)});
   }
+}
+
+/// Whether it is one of those that are read.
+bool is_known(std::string_view address) {
+  constexpr std::string_view kRead = "GGA RMC GLL ZDA HDT HDM THS HDG DPT DBT MTW VBW";
+  return address.size() == 5 && kRead.find(address.substr(2)) != std::string_view::npos;
+}
+
+/// The devices (first two letters) that send checksums. These are optional, but what lacks one of theirs is damaged.
+std::set<std::string_view> talkers_with_checksums(std::string_view text) {
+  std::set<std::string_view> talkers;
+  for_each_raw_sentence(text, [&](const RawSentence& raw) {
+    if (raw.behind.starts_with('*')) talkers.insert(raw.address.substr(0, 2));
+  });
+  return talkers;
+}
+
+/// Calls `take` for each sentence with a right checksum, or without one of a device that sends none. Others, and
+/// pieces, are damage.
+/// @return how many there were
+template <class Take>
+std::size_t for_each_sentence(std::string_view text, std::vector<DamageKind>& damage, Take take) {
+  const std::set<std::string_view> checked = talkers_with_checksums(text);
+  std::size_t sentences = 0;
+  for_each_raw_sentence(text, [&](const RawSentence& raw) {
+    const bool has_sum = raw.behind.starts_with('*');
+    const std::optional<unsigned> sum = has_sum ? hex_byte_in(raw.behind.substr(1, 2)) : std::nullopt;
+    unsigned computed = 0;
+    for (const char c : raw.body) computed ^= static_cast<unsigned char>(c);
+    const bool needs_none =
+        !has_sum && raw.ends_its_line() && is_known(raw.address) && !checked.contains(raw.address.substr(0, 2));
+    if (!sum && !needs_none) {
+      add_damage(damage, raw.behind.size() < 3 ? FrameFinder::kCutOff : "sentence without checksum", raw.at);
+    } else if (sum && computed != *sum) {
+      add_damage(damage, "wrong checksum", raw.at);
+    } else {
+      ++sentences;
+      take(Sentence(raw.body));
+    }
+  });
   return sentences;
 }
 

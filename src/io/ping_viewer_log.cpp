@@ -145,6 +145,9 @@ class PingViewerRecords : public FrameContainer {
   const std::string& name() const override { return reader_.name(); }
   std::optional<double> share_read() const override { return reader_.share_read(); }
 
+  /// Counts a header that says another sensor than the records hold.
+  void report_wrong_header() { add_damage(damage_, "header that names another sensor", 0); }
+
   Result<std::optional<Piece>> next() override {
     const Result<Bytes> start = reader_.peek(kMaxHeader);
     if (!start) return tl::unexpected(start.error());
@@ -193,6 +196,13 @@ class PingViewerRecords : public FrameContainer {
   double day_s_;  ///< time at which those of the records began (again)
   bool in_damage_ = false;
 };
+
+/// Whether these records hold a ping of a Ping360.
+bool hold_ping360(Bytes records, Encoding encoding) {
+  StreamReader reader{ByteStream(FileBytes{{}, {records.begin(), records.end()}})};
+  auto container = std::make_unique<PingViewerRecords>(std::move(reader), encoding, 0.0);
+  return beams_of(std::move(container), ping_protocol(), Damage::kSkip)->device() != nullptr;
+}
 
 std::optional<Encoding> encoding_of(Bytes bytes) {
   if (bytes.size() < 4) return std::nullopt;
@@ -243,13 +253,16 @@ Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage d
     }
     return fail(Error::Code::kCorrupt, fmt::format("{}: its header is damaged or cut off", name));
   }
-  if (family == kPingFamily && type == kPing1d) {
+  // Ping Viewer has written Ping1D above pings of a Ping360.
+  const bool is_ping360 = family == kPingFamily && type == kPing360;
+  const bool is_wrong = !is_ping360 && hold_ping360(beginning->subspan(header.position()), *encoding);
+  if (!is_wrong && family == kPingFamily && type == kPing1d) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: is a Ping Viewer log of a Ping1D, an echosounder that looks one way: only those of a "
                             "Ping360 hold beams",
                             name));
   }
-  if (family != kPingFamily || type != kPing360) {
+  if (!is_wrong && !is_ping360) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: is a Ping Viewer log of an unknown sensor (family {}, type {}): only those of a "
                             "Ping360 hold beams",
@@ -258,7 +271,9 @@ Result<std::unique_ptr<BeamSource>> open_ping_viewer(ByteStream stream, Damage d
   // Our recordings have the date of their start there.
   const double start_s = date_time_s(ascii_of(*about[1], *encoding)).value_or(0.0);
   reader.skip(header.position());
-  return beams_of(std::make_unique<PingViewerRecords>(std::move(reader), *encoding, start_s), ping_protocol(), damage);
+  auto records = std::make_unique<PingViewerRecords>(std::move(reader), *encoding, start_s);
+  if (is_wrong) records->report_wrong_header();
+  return beams_of(std::move(records), ping_protocol(), damage);
 }
 
 }  // namespace pingvox

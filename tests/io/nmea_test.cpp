@@ -130,6 +130,28 @@ TEST(Nmea, CountsDamageByKindAndPlace) {
   EXPECT_EQ(nav.damage[2].what, "cut off at the end");
 }
 
+// Checksums are optional: a log without them was "text of no known format".
+TEST(Nmea, ReadsSentencesOfADeviceWithoutChecksums) {
+  const std::string log =
+      "$GPRMC,120000.00,A,5400.0000,N,01000.0000,E,0.5,90.0,150924,,\r\n$HEHDT,90.0,T\n"
+      "$GPRMC,120001.00,A,5400.0000,N,01000.0000,E,0.5,90.0,150924,,\r\n$HEHDT,91.0,T\n$HEHDT,9";
+  EXPECT_EQ(format_of(nmea_file(log).view()), Format::kNmea);
+  const NavFile nav = read_as_nmea(log);
+  EXPECT_EQ(nav.records, 4U);
+  EXPECT_EQ(samples_of(nav, "GPRMC").size(), 2U);
+  EXPECT_EQ(samples_of(nav, "HEHDT").size(), 2U);
+  EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
+  ASSERT_EQ(nav.damage.size(), 1U);
+  EXPECT_EQ(nav.damage[0].what, "cut off at the end");
+  // Where a device sends them, what lacks one is damaged.
+  const NavFile mixed =
+      read_as_nmea(std::string(kRmc) + "$GPGLL,4736.45,N,12220.47,W,000001.00,A\r\n$HEHDT,90.0,T\r\n");
+  EXPECT_TRUE(samples_of(mixed, "GPGLL").empty());
+  EXPECT_EQ(samples_of(mixed, "HEHDT").size(), 1U);
+  EXPECT_EQ(mixed.damage.at(0).what, "sentence without checksum");
+  EXPECT_EQ(format_of(nmea_file("it costs $AB,5\nor $PRICE,7\n").view()), std::nullopt);
+}
+
 struct NmeaRecording {
   const char* file;
   std::size_t sentences;

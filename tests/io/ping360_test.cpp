@@ -373,6 +373,19 @@ TEST(PingViewer, AnEchosounderIsToldAsSuch) {
   }
 }
 
+// Ping Viewer has written Ping1D above pings of a Ping360: the log was refused.
+TEST(PingViewer, TheRecordsDecideWhereTheHeaderNamesAnotherSensor) {
+  const std::vector<std::uint8_t> ping = from_hex(kPing);
+  LogWriter log(1);
+  log.record(U"00:00:01.000", cut(ping, 0, 7)).record(U"00:00:02.000", cut(ping, 7, ping.size()));
+  const auto opened = open_beams({"dive.bin", log.bytes()});
+  ASSERT_TRUE(opened) << opened.error().message;
+  EXPECT_EQ((*opened)->device()->name, "ping360");
+  EXPECT_EQ((*opened)->first_damage(), "byte 0: header that names another sensor");
+  ASSERT_TRUE((*opened)->next()->has_value());
+  EXPECT_FALSE((*opened)->next()->has_value());
+}
+
 std::vector<std::string> fields_of(const std::string& line, char separator) {
   std::vector<std::string> fields;
   std::istringstream in(line);
