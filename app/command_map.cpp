@@ -28,6 +28,7 @@
 #include "stopwatch.hpp"
 #include "threshold_range.hpp"
 #include "watched_beams.hpp"
+#include "watched_cloud.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -254,6 +255,7 @@ class LogMapper {
     totals_.report.seconds.read += read.seconds();
 
     WatchedBeams* const watched = watch_turns(*log);
+    const WatchedCloud* const cloud = watch_cloud(*log, *format);
     const Progress progress = [&](const BuildReport& done) { draw(share_read(*log), done.beams); };
     const Result<MappedLog> mapped = map_log(*log, name, path_, build_, command_.head, map_, progress);
     if (!mapped) return tl::unexpected(mapped.error());
@@ -261,9 +263,13 @@ class LogMapper {
     if (watched != nullptr) check_clock(*watched, name);
     if (mapped->is_nothing) {
       nothing_.push_back(text_of_nothing(*mapped, name));
+      if (cloud != nullptr && mapped->report.outside.count > 0) {
+        nothing_.back() += "; they are " + cloud->origin_text() + ", and --depth 32 (.pvx) reaches farther";
+      }
       return {};
     }
     say_what_is_odd(*mapped, name);
+    if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", name, cloud->origin_text()));
     const bool is_on_vehicle = std::holds_alternative<std::unique_ptr<BeamSource>>(*log) || is_bag(*format);
     if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {
       if (const std::string hint = hint_at_path(name, *format); !hint.empty()) {
@@ -330,6 +336,16 @@ class LogMapper {
     auto watched = std::make_unique<WatchedBeams>(std::move(*beams), build_.body_from_sensor);
     WatchedBeams* const source = watched.get();
     *beams = std::move(watched);
+    return source;
+  }
+
+  /// A cloud whose origin was not given. nullptr: else.
+  const WatchedCloud* watch_cloud(Log& log, Format format) const {
+    auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&log);
+    if (scans == nullptr || kind_of(format) != FormatKind::kCloud || command_.cloud_origin_m) return nullptr;
+    auto watched = std::make_unique<WatchedCloud>(std::move(*scans), build_.echo.max_range_m, map_.lattice());
+    const WatchedCloud* const source = watched.get();
+    *scans = std::move(watched);
     return source;
   }
 

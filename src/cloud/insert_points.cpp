@@ -8,6 +8,9 @@ namespace {
 template <class Point>
 Result<InsertReport> insert(OccupancyMap& map, const Eigen::Vector3d& origin_m, std::span<const Point> points_m,
                             const InsertOptions& options) {
+  if (const auto fits = check_rays(origin_m, points_m, options.scan, map.lattice()); !fits) {
+    return tl::unexpected(fits.error());
+  }
   try {
     ScanUpdate scan(map.lattice(), options.miss);
     const std::size_t outside = PointTracer(options.scan).trace(origin_m, points_m, scan);

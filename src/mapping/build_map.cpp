@@ -72,6 +72,7 @@ Result<BuildReport> build_map(ScanSource& source, const Trajectory& map_from_bod
   detail::Stopwatch watch;
   const auto map_scan = [&](const PointScan& points) -> Result<void> {
     const std::span<const Eigen::Vector3d> all_m = points.points_m;
+    if (const auto fits = check_rays(points.origin_m, all_m, how, map.lattice()); !fits) return fits;
     std::atomic<std::size_t> outside = 0;
     while (tracers.size() < options.threads) tracers.emplace_back(how);
     parts.run(all_m.size(), scan, [&](std::size_t number, std::size_t first, std::size_t last, ScanUpdate& part) {

@@ -113,7 +113,7 @@ Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<c
       report.blocked.add(one.time_s);
       continue;
     }
-    if (range_of(one) > longest_m || cells_of(one) > kMaxCellsInBeam) {
+    if (range_of(one) > longest_m || length_of(one) > kMaxCellsInRay || cells_of(one) > kMaxCellsInBeam) {
       report.too_long.add(one.time_s);
       // One damaged number costs its beam; where no beam fits, the map is at fault.
       constexpr std::size_t kFew = 20;
@@ -148,13 +148,23 @@ bool EchoMapper::is_blocked(const PlacedBeam& beam) const {
   return end.what == Occupancy::kOccupied && farthest_corner_m(map_->lattice(), end.key, origin_m) <= blanking_m;
 }
 
-/// Number of cells that a beam would free.
+/// Number of cells that a beam is long, and that it would free.
+double EchoMapper::length_of(const EchoBeam& beam) const {
+  return std::min(freed_range_m(beam), options_.echo.max_range_m) / map_->lattice().resolution_m();
+}
+
 double EchoMapper::cells_of(const EchoBeam& beam) const {
   return cells_in_beam(options_.model, std::min(freed_range_m(beam), options_.echo.max_range_m),
                        map_->lattice().resolution_m());
 }
 
 tl::unexpected<Error> EchoMapper::too_many_cells(const EchoBeam& beam) const {
+  if (const double length = length_of(beam); length > kMaxCellsInRay) {
+    return fail(Error::Code::kLimit,
+                fmt::format("a beam of {:.3g} m at {:.3f} s is {:.1e} cells of {} m long, and {:.0e} are the most: "
+                            "larger cells or a shorter maximum range would do",
+                            freed_range_m(beam), beam.time_s, length, map_->lattice().resolution_m(), kMaxCellsInRay));
+  }
   return fail(
       Error::Code::kLimit,
       fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "

@@ -62,6 +62,7 @@ class EchoMapper {
   Result<Placed> place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
                        BuildReport& report) const;
   bool is_blocked(const PlacedBeam& beam) const;
+  double length_of(const EchoBeam& beam) const;
   double cells_of(const EchoBeam& beam) const;
   tl::unexpected<Error> too_many_cells(const EchoBeam& beam) const;
   Result<void> map_as_one_scan(const Placed& placed, BuildReport& report);

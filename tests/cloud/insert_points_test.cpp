@@ -23,6 +23,19 @@ TEST(InsertPoints, PointsAreHitAndCellsBeforeThemMissed) {
   EXPECT_EQ(map.at(Eigen::Vector3d(1.5, 1.5, 0.5)), std::nullopt);
 }
 
+// Kills rays that take all memory, and limits on rays that are not traced.
+TEST(InsertPoints, RaysThatAreTooLongAreRefused) {
+  OccupancyMap map({.resolution_m = 1.0, .depth = 32});
+  const std::vector<Eigen::Vector3d> points_m{{3.5, 0.5, 0.5}, {2e6, 0.0, 0.0}};
+  const auto refused = insert_points(map, {0.5, 0.5, 0.5}, points_m);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Error::Code::kLimit);
+  EXPECT_TRUE(map.empty());
+  EXPECT_TRUE(insert_points(map, {0.5, 0.5, 0.5}, points_m, {.scan = {.max_range_m = 100.0}}));
+  OccupancyMap small({.resolution_m = 1.0});
+  EXPECT_TRUE(insert_points(small, {0.5, 0.5, 0.5}, points_m)) << "outside of the lattice";
+}
+
 // Kills an insertion that fails and changes the map all the same.
 TEST(InsertPoints, AMapAtItsLimitStaysAsItWas) {
   OccupancyMap map({.resolution_m = 1.0, .memory_limit_bytes = 1000});

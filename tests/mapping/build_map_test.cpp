@@ -276,6 +276,18 @@ TEST(BuildMap, CellsTooSmallForTheBeamAreRefused) {
   EXPECT_THAT(report.error().message, ::testing::ContainsRegex(" at [0-9]+\\.[0-9][0-9][0-9] s "));  // not 17 digits
 }
 
+// Rays were not checked: 15 s, and then no memory.
+TEST(BuildMap, CellsTooSmallForARayAreRefused) {
+  Echoes source(kBeamsPerTurn, [](double, double) { return 2.0; });
+  BuildOptions options = clean_options();
+  options.model.shape = BeamShape::kRay;
+  OccupancyMap map({.resolution_m = 1e-6, .depth = 32});
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), options, map);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, Error::Code::kLimit);
+  EXPECT_THAT(report.error().message, ::testing::HasSubstr("cells of 1e-06 m long, and 1e+06 are the most"));
+}
+
 /// One scan of three points.
 class ThreePoints : public ScanSource {
  public:
@@ -309,6 +321,17 @@ TEST(BuildMap, PointScansTakeAnyMaximumRange) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->cells_hit, 0U);
   EXPECT_GT(report->cells_freed, 0U);
+}
+
+// Kills a cloud far away that takes all memory for its rays.
+TEST(BuildMap, PointsFarFromTheirOriginAreRefused) {
+  ThreePoints source;
+  OccupancyMap map({.resolution_m = 0.1, .depth = 40});
+  const auto report = build_map(source, Trajectory::still(Pose::Identity()), clean_options(), map);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, Error::Code::kLimit);
+  EXPECT_THAT(report.error().message, ::testing::HasSubstr("a ray of 1e+09 m has 1.0e+10 cells of 0.1 m"));
+  EXPECT_TRUE(map.empty());
 }
 
 /// One scan of the points ahead and to port, seen from the sensor at a time.

@@ -23,7 +23,8 @@ struct InsertReport {
 /// Inserts a point cloud [m, map frame] seen from `origin_m` into a map, as OctoMap's insertPointCloud does: the cell
 /// of each point is hit, the cells before it are missed, a hit beats a miss, each cell is updated once. For many clouds
 /// a PointTracer with a ScanUpdate is faster: it reuses its memory.
-/// @return kLimit when the map's memory limit would be passed, kNoMemory as for OccupancyMap::apply
+/// @return kLimit when the map's memory limit would be passed, or as for check_rays; kNoMemory as for
+/// OccupancyMap::apply
 Result<InsertReport> insert_points(OccupancyMap& map, const Eigen::Vector3d& origin_m,
                                    std::span<const Eigen::Vector3d> points_m, const InsertOptions& options = {});
 /// The same for points in single precision.

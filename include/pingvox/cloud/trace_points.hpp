@@ -10,6 +10,7 @@
 #include "pingvox/map/point_scan.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/map/trace_ray.hpp"
+#include "pingvox/result.hpp"
 
 namespace pingvox {
 
@@ -25,6 +26,14 @@ struct PointScanOptions {
   double max_range_m = std::numeric_limits<double>::infinity();  ///< longer rays free cells up to here and hit nothing
   EndPoints ends = EndPoints::kExact;
 };
+
+/// Checks before tracing that the rays of a scan are no longer than kMaxCellsInRay. Those that leave the lattice do not
+/// count: they are not traced.
+/// @return kLimit naming the length of a ray that is too long
+Result<void> check_rays(const Eigen::Vector3d& origin_m, std::span<const Eigen::Vector3d> points_m,
+                        const PointScanOptions& options, const Lattice& lattice);
+Result<void> check_rays(const Eigen::Vector3d& origin_m, std::span<const Eigen::Vector3f> points_m,
+                        const PointScanOptions& options, const Lattice& lattice);
 
 /// Traces point scans into scan updates. It reuses its memory from scan to scan, which saves a quarter of the time of a
 /// small one. Not thread-safe: each thread needs its own.

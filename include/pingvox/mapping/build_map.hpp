@@ -26,6 +26,7 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
 /// The same for scans of end points: of the options count `miss`, `threads`, the model's `ray` and `hit`, the echo's
 /// `max_range_m` and, for scans with a time, `body_from_sensor`.
 /// @param map_from_body  where the vehicle was; scans with another time are left out. Others are in the map frame.
+/// @return the same; kLimit also for a ray that is too long (check_rays)
 Result<BuildReport> build_map(ScanSource& source, const Trajectory& map_from_body, const BuildOptions& options,
                               OccupancyMap& map, const Progress& progress = {});
 
