@@ -270,7 +270,10 @@ Result<void> take_file(const std::string& path, BagArgs& bag) {
 }  // namespace
 
 Result<void> take_fields(const std::string& text, BagArgs& bag) {
-  if (text.find('=') == std::string::npos) return take_file(text, bag);
+  if (text.find('=') == std::string::npos) {
+    bag.file = text;
+    return take_file(text, bag);
+  }
   Result<BeamFields> fields = beam_fields_from(text);
   if (!fields) return tl::unexpected(fields.error());
   bag.beams.fields = *std::move(fields);

@@ -13,6 +13,7 @@ namespace pingvox::app {
 struct BagArgs {
   BeamTopic beams;
   std::vector<NavFields> nav;
+  std::string file = {};  ///< that --fields names; empty: none
 };
 
 /// Takes the value of --fields: the fields of beams as "angle=heading,range=...", or the name of a TOML file with those

@@ -190,16 +190,13 @@ Result<MapFile> map_of_mesh(const FileBytes& file, const ConvertCommand& command
 Result<std::string> write_grid(const OccupancyMap& map, const ConvertCommand& command) {
   const Result<Raster<Occupancy>> slice = slice_of(map, command.slice);
   if (!slice) return tl::unexpected(with_name(slice.error(), command.input));
-  const std::filesystem::path picture = std::filesystem::path(command.output).replace_extension(".pgm");
-  const std::filesystem::path about = std::filesystem::path(command.output).replace_extension(".yaml");
-  auto written =
-      write_file(picture.string(), [&](std::ostream& out) { return write_grid_pgm(*slice, out); }).and_then([&] {
-        return write_file(about.string(),
-                          [&](std::ostream& out) { return write_grid_yaml(*slice, picture.filename().string(), out); });
-      });
+  const auto [picture, about] = grid_files(command.output);
+  const std::string name = std::filesystem::path(picture).filename().string();
+  auto written = write_file(picture, [&](std::ostream& out) { return write_grid_pgm(*slice, out); });
+  if (written) written = write_file(about, [&](std::ostream& out) { return write_grid_yaml(*slice, name, out); });
   if (!written) return tl::unexpected(written.error());
   return fmt::format("{} x {} cells, and its {}", slice->columns, slice->rows,
-                     on_one_line((command.output == about.string() ? picture : about).string()));
+                     on_one_line(command.output == about ? picture : about));
 }
 
 Result<std::string> write_heights(const OccupancyMap& map, const ConvertCommand& command) {

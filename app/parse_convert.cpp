@@ -139,7 +139,13 @@ Result<Command> convert_command(const Args& args) {
     if (is_grid && command.output == "-") return usage_error("-o -: a grid is two files: give the name of one");
     CommandFiles files;
     files.read("IN", command.input);
+    files.read("--fields", command.bag.file);
     files.write("-o", command.output);
+    if (is_grid) {
+      for (const std::string& file : {grid_files(command.output).picture, grid_files(command.output).about}) {
+        if (file != command.output) files.write("the other file of the grid,", file);
+      }
+    }
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     return command;

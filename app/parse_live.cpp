@@ -215,8 +215,12 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
   if (!typed.record.empty()) {
     if (is_replay) return usage_error("--record: a replay is a recording already");
     for (const std::string_view suffix : {".tlog", ".jsonl"}) {
-      if (!command.nav.empty() && typed.record.ends_with(suffix)) {
+      if (command.nav.empty()) continue;
+      if (typed.record.ends_with(suffix)) {
         return usage_error(fmt::format("--record: {} is for --nav: give the sonar's log another suffix", suffix));
+      }
+      if (typed.output.ends_with(suffix)) {
+        return usage_error(fmt::format("-o: {} is for the recording of --nav: give the map another suffix", suffix));
       }
     }
     command.record = typed.record;

@@ -127,6 +127,7 @@ Result<Command> locate_command(const Args& args) {
     files.read("--nav", command.navs);
     files.read("--odometry", odometry);
     files.read("--use-calibration", calibration);
+    files.read("--fields", command.bag.file);
     files.read("--config", parsed.config);
     files.write("-o", output);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());

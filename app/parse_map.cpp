@@ -124,6 +124,7 @@ Result<Command> map_command(const Args& args) {
     CommandFiles files;
     files.read("LOG", command.logs);
     files.read("--config", parsed.config);
+    files.read("--fields", command.bag.file);
     build.name_files(files);
     files.write("-o", output);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());

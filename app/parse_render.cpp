@@ -294,6 +294,7 @@ Result<Command> render_command(const Args& args) {
     }
     CommandFiles files;
     files.read("FILE", inputs);
+    files.read("--fields", command.bag.file);
     files.read("--config", parsed.config);
     for (const PanelArgs& setting : settings) {
       setting.build.name_files(files);

@@ -123,6 +123,7 @@ Result<Command> slam_command(const Args& args) {
     files.read("LOG", command.logs);
     files.read("--nav", command.navs);
     files.read("--use-calibration", known_calibration);
+    files.read("--fields", command.bag.file);
     files.read("--config", parsed.config);
     files.write("-o", output);
     files.write("--map", map);

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "pingvox/io/mavlink.hpp"
+
 namespace pingvox::app {
 namespace {
 
@@ -45,7 +47,29 @@ constexpr std::array kSignatures = {
     Signature{"\x89HDF"sv, "is an HDF5 file", kAsCsv},
     Signature{"\x7f\x7f"sv, "is a DVL log in PD0, which pingvox does not read", kAsNavCsv},
     Signature{":SA,"sv, "is a DVL log in PD6, which pingvox does not read", kAsNavCsv},
+    Signature{"\xa3\x95"sv, "is a DataFlash log without the definitions of its records (FMT) at its beginning",
+              "its records cannot be told without them; a telemetry log (.tlog) of the same dive can be read"},
 };
+
+/// Whether it begins with MAVLink as it is sent.
+bool is_raw_mavlink(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kSearched = 600;  // two frames: the first one may be cut
+  for (std::size_t at = 0; at < std::min(bytes.size(), kSearched); ++at) {
+    const MavlinkRead read = read_mavlink(bytes.subspan(at));
+    if (read.frame && read.frame->check == MavlinkFrame::Check::kRight) return true;
+  }
+  return false;
+}
+
+/// Whether the first line that is no comment is one of a log of CARMEN.
+bool is_carmen(std::string_view text) {
+  constexpr std::array kMessages = {"PARAM "sv,       "SYNC "sv,        "ODOM "sv,      "FLASER "sv, "RLASER "sv,
+                                    "ROBOTLASER1 "sv, "ROBOTLASER2 "sv, "RAWLASER1 "sv, "TRUEPOS "sv};
+  while (text.starts_with('#') || text.starts_with('\n') || text.starts_with('\r')) {
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  }
+  return std::ranges::any_of(kMessages, [&](std::string_view message) { return text.starts_with(message); });
+}
 
 /// Whether the bytes are text.
 bool is_text(std::string_view bytes) {
@@ -62,8 +86,15 @@ std::optional<std::string> describe_unread_file(std::span<const std::uint8_t> by
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto known =
       std::ranges::find_if(kSignatures, [&](const Signature& signature) { return text.starts_with(signature.begin); });
-  if (known == kSignatures.end()) return std::nullopt;
-  return fmt::format("{}: {}", known->what, known->advice);
+  if (known != kSignatures.end()) return fmt::format("{}: {}", known->what, known->advice);
+  if (is_raw_mavlink(bytes)) {
+    return "is MAVLink without the time of each message: the telemetry log of a ground station (.tlog) has these times";
+  }
+  if (is_carmen(text)) {
+    return "is a log of a laser scanner by CARMEN, which pingvox does not read: scans can be given as a log of OctoMap "
+           "(NODE x y z roll pitch yaw, then a point in each line) or as clouds (.xyz)";
+  }
+  return std::nullopt;
 }
 
 std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
@@ -71,7 +102,7 @@ std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (is_text(text)) {
     return "is text of no known format: beams as CSV begin with the line "
-           "'time_s,bearing_cw_deg,bin_length_m,intensities' "
+           "'time_s,bearing_cw_deg,bin_length_m,intensities', and points have a line 'x y z' each "
            "(docs/formats.md)";
   }
   return fmt::format("is none of the logs, clouds, maps, meshes and trajectories that pingvox reads: {}", kAsCsv);

@@ -1,5 +1,6 @@
 // Files that are not what they should be, and places that cannot be written.
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -98,6 +99,12 @@ TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
       {"%time,field.header.seq,field.header.stamp,field.depth\n1,2,3,4.5\n", {"rostopic echo -p", "bag"}},
       {"time;angle;range\n1;2;3\n", {"is text of no known format", "the line", "bin_length_m"}},
       {"ping,angle,range\n1,2,3\n", {"'time_s,bearing_cw_deg,", "docs/formats.md"}},
+      {"PARAM robot_front_laser_max 81.9 0.1 host 0.1\nFLASER 2 1.0 2.0 0 0 0 0 0 0 0.1 host 0.1\n",
+       {"laser scanner by CARMEN", "NODE"}},
+      {"# CARMEN Logfile\n\nODOM 0 0 0 0 0 0 0.1 host 0.1\n", {"CARMEN", ".xyz"}},
+      {"\xa3\x95\x46 the records of a full memory"s, {"DataFlash", "FMT", ".tlog"}},
+      {"\xfe\x09\x00\x01\x01\x00\x00\x00\x00\x00\x0c\x03\x51\x04\x03\xdf\xe4"s,
+       {"MAVLink without the time", ".tlog"}},  // a HEARTBEAT
       // Taken for counter-clockwise, a map would be its mirror image.
       {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "clockwise from ahead", "bearing_deg is counter"}},
   };
@@ -239,6 +246,36 @@ TEST(Map, BeamsOutsideOfItAreCalledThat) {
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("; 1 damaged record, the first: line 4: is not a point"));
 }
 
+// A cloud in UTM took 18 s and 4 GB, or its refusal advised a coarser map.
+TEST(Map, ACloudFarFromWhereItWasSeenNamesTheOrigin) {
+  const Workplace here;
+  std::string points;
+  for (int i = 0; i < 200; ++i) points += fmt::format("{} {} -20\n", 500000 + 0.05 * i, 4100000 + 0.03 * i);
+  here.write("utm.xyz", points);
+  const std::string origin = "seen from 0, 0, 0, 4130 km away: --origin is where a cloud was seen from";
+  expect_error(here.call({"map", "utm.xyz", "-o", "m.bt"}), 1, {"utm.xyz: ", origin, "--depth 32"});
+  expect_error(here.call({"map", "utm.xyz", "--depth", "32", "-o", "m.pvx"}), 1,
+               {"utm.xyz: its points are " + origin, "and 1e+06 are the most"});
+  const Outcome given = here.call({"map", "utm.xyz", "--depth", "32", "--origin", "500000,4100000,0", "-o", "m.pvx"});
+  ASSERT_EQ(given.status, 0) << given.err;
+  EXPECT_THAT(given.out, ::testing::HasSubstr("200 points in 1 scan"));
+  EXPECT_EQ(given.err, "");
+  // Rays that fit into the memory are mapped, with a word.
+  const Outcome coarse = here.call({"map", "utm.xyz", "--depth", "32", "--resolution", "20", "-o", "m.pvx"});
+  ASSERT_EQ(coarse.status, 0) << coarse.err;
+  EXPECT_THAT(coarse.err, ::testing::HasSubstr("utm.xyz: its points are " + origin));
+}
+
+TEST(Map, RaysOfTooManyCellsAreRefusedAtOnce) {
+  const Workplace here;
+  here.simulate_tank();
+  for (const char* shape : {"ray", "cone"}) {
+    expect_error(
+        here.call({"map", "tank.csv", "--beam", shape, "--resolution", "1e-6", "--depth", "32", "-o", "m.pvx"}), 1,
+        {"tank.csv: a beam of", "are the most", "larger cells"});
+  }
+}
+
 TEST(Output, AFailedCallKeepsTheOldFile) {
   const Workplace here;
   here.simulate_tank();
@@ -270,6 +307,12 @@ TEST(Output, IsNeverAnInputOrAnotherOutputOfTheSameCommand) {
     fs::create_directories((here.folder() / name).parent_path());
     here.write(name, kept);
   }
+  for (const char* name : {"h.pgm", "h.yaml", "bag/dive_0.mcap", "bag/metadata.yaml"}) {
+    fs::create_directories((here.folder() / name).parent_path());
+    here.write(name, kept);
+  }
+  fs::create_symlink("../not_there.tum", here.folder() / "d/to_nothing.tum");
+  here.write("d/fields.toml", "[[beams]]\ntopic = \"/a\"\nangle = \"a\"\nrange = \"r\"\nintensities = \"i\"\n");
   fs::create_symlink("log.csv", here.folder() / "link.csv");
   fs::create_hard_link(here.folder() / "log.csv", here.folder() / "other.csv");
   const auto files_before = here.files();
@@ -287,12 +330,23 @@ TEST(Output, IsNeverAnInputOrAnotherOutputOfTheSameCommand) {
       {{"render", "log.csv", "m.bt", "--path", "a.png", "-o", "./a.png"}, "as --path a.png"},
       {{"convert", "log.csv", "-o", "log.csv", "--echoes"}, "-o log.csv: is the same file as IN log.csv"},
       {{"convert", "m.bt", "-o", "m.bt"}, "-o m.bt: is the same file as IN m.bt"},
+      {{"convert", "h.pgm", "-o", "h.yaml"}, "the other file of the grid, h.pgm: is the same file as IN h.pgm"},
+      {{"convert", "h.yaml", "-o", "./h.pgm"}, "the other file of the grid, ./h.yaml: is the same file as IN h.yaml"},
+      {{"convert", "bag", "-o", "bag/metadata.yaml"}, "-o bag/metadata.yaml: is a file of IN bag"},
+      {{"map", "bag", "--format", "bt", "-o", "bag/dive_0.mcap"}, "-o bag/dive_0.mcap: is a file of LOG bag"},
+      {{"map", "log.csv", "--fields", "d/fields.toml", "--format", "bt", "-o", "d/fields.toml"},
+       "as --fields d/fields.toml"},
+      {{"slam", "log.csv", "-o", "not_there.tum", "--covariance", "d/to_nothing.tum"},
+       "--covariance d/to_nothing.tum: is the same file as -o not_there.tum"},
       {{"simulate", "tank", "-o", "w.csv", "--nav", "w.csv"}, "--nav w.csv: is the same file as -o w.csv"},
       {{"simulate", "tank", "-o", "w.csv", "--nav", "w.tum", "--trajectory", "loop"},
        "the trajectory beside -o, w.tum"},
       {{"simulate", "tank", "-o", "way.csv", "--poses", "way.tum"}, "as --poses way.tum"},
       {{"simulate", "tank", "-o", "w.csv", "--poses", "d/poses.tum", "--truth", "d"}, "--truth d/poses.tum: is the"},
       {{"live", "replay:dive", "--format", "bt", "-o", "dive"}, "as DEVICE dive"},
+      {{"live", "ping360:udp://127.0.0.1:1", "--nav", "mavlink:udp://:14550", "--format", "bt", "-o", "d.tlog",
+        "--record", "d.bin"},
+       "-o: .tlog is for the recording of --nav"},
       {{"live", "ping360:udp://127.0.0.1:1", "-o", "same.bt", "--record", "same.bt"}, "--record same.bt: is the same"}};
   for (const auto& [words, text] : cases) {
     SCOPED_TRACE(::testing::PrintToString(words));
@@ -301,7 +355,7 @@ TEST(Output, IsNeverAnInputOrAnotherOutputOfTheSameCommand) {
   }
   EXPECT_EQ(here.files(), files_before);
   for (const std::string& name : files_before) {
-    EXPECT_EQ(here.read(name == "d" ? "d/poses.tum" : name), kept) << name;
+    EXPECT_EQ(here.read(name == "d" ? "d/poses.tum" : name == "bag" ? "bag/dive_0.mcap" : name), kept) << name;
   }
   // Devices take any number of outputs, and several commands may share them.
   EXPECT_EQ(here.call({"simulate", "tank", "-o", "/dev/null", "--nav", "/dev/null", "--turns", "1"}).status, 0);
