@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pingvox/map/cast_ray.hpp"
+#include "pingvox/map/trace_ray.hpp"
 
 namespace pingvox::detail {
 namespace {

@@ -9,8 +9,8 @@ namespace pingvox {
 
 enum class RayAlgorithm { kDda, kBresenham };
 
-/// Maximum length of a ray in cells for whoever maps what a file says: such a ray needs some hundred megabytes. A map of
-/// 16 levels is 65,536 cells wide.
+/// Maximum length of a ray in cells for whoever maps what a file says: such a ray needs some hundred megabytes. A map
+/// of 16 levels is 65,536 cells wide.
 inline constexpr double kMaxCellsInRay = 1e6;
 
 /// Marks the cells from `from_m` to `to_m` [m, map frame] as missed, the end cell excluded: what `dda` or `bresenham`

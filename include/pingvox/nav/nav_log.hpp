@@ -96,8 +96,8 @@ class NavLog {
   /// Takes samples as they came; those of a source are put in order of time, equal times as they came, and where its
   /// clock was set back is noted. Sources without samples are left out. A single value that cannot be true (a yaw
   /// beyond 2 pi, a latitude beyond pi/2) is marked as invalid; where they are not single, the source gets a fault. Of
-  /// positions, depths and headings that step faster than a vehicle moves, the samples that are not in the frame of most
-  /// others become invalid (SourceStep).
+  /// positions, depths and headings that step faster than a vehicle moves, the samples that are not in the frame of
+  /// most others become invalid (SourceStep).
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 
