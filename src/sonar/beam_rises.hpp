@@ -36,12 +36,16 @@ void for_each_rise(std::span<const std::uint8_t> bins, F&& f) {
 /// Interpolated between integers, since smoothed noise is often less than 2.
 double noise_of(std::span<const std::uint8_t> bins);
 
-/// Calls f(m) for each beam m that affects beam n, itself included, across the seam of a full turn.
+/// The same by their median second difference, which is 0 on a slope: differences of bins that a long echo fills are
+/// those of its slopes.
+double noise_on_slopes_of(std::span<const std::uint8_t> bins);
+
+/// Calls f(m) for each beam m within `reach` beams of beam n, itself included, across the seam of a full turn.
 template <class F>
-void for_each_beam_around(const PolarImage& image, std::size_t n, F&& f) {
+void for_each_beam_around(const PolarImage& image, std::size_t n, std::size_t reach, F&& f) {
   const auto rows = static_cast<std::ptrdiff_t>(image.rows()), middle = static_cast<std::ptrdiff_t>(n);
-  constexpr auto kReach = static_cast<std::ptrdiff_t>(kContrastReach_beams);
-  for (std::ptrdiff_t at = middle - kReach; at <= middle + kReach; ++at) {
+  const auto far = static_cast<std::ptrdiff_t>(reach);
+  for (std::ptrdiff_t at = middle - far; at <= middle + far; ++at) {
     const bool is_inside = at >= 0 && at < rows;
     if (is_inside || image.wrap() == PolarImage::Wrap::kAround) f(static_cast<std::size_t>((at % rows + rows) % rows));
   }

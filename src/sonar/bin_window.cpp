@@ -1,9 +1,8 @@
 #include "sonar/bin_window.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-
-#include "pingvox/sonar/blanking.hpp"
 
 namespace pingvox {
 namespace {
@@ -19,13 +18,13 @@ std::size_t bins_within(double range_m, double bin_length_m, double bins) {
 }  // namespace
 
 std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& options) {
-  const double min_range_m = options.min_range_m ? *options.min_range_m : blanking_range_m(image, sweep);
+  assert(options.min_range_m);
   std::vector<BinWindow> windows;
   windows.reserve(image.rows());
   for (std::size_t n = 0; n < image.rows(); ++n) {
     const double bins = static_cast<double>(image.bins_in(n));
     const double bin_length_m = sweep.beams[n].bin_length_m;
-    const double begin = std::ceil(min_range_m / bin_length_m - kRounding_bins);
+    const double begin = std::ceil(*options.min_range_m / bin_length_m - kRounding_bins);
     windows.push_back({.begin = std::max(static_cast<std::size_t>(std::clamp(begin, 0.0, bins)), options.min_bin),
                        .end = image.bins_in(n)});
   }

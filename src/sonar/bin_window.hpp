@@ -13,7 +13,7 @@ struct BinWindow {
   std::size_t end = 0;
 };
 
-/// One for each beam; measures the blanking range if none is given.
+/// One for each beam. REQUIRES a minimum range.
 std::vector<BinWindow> windows_of(const PolarImage& image, const Sweep& sweep, const EchoOptions& options);
 
 /// The same windows without the bins that end beyond max_range_m.

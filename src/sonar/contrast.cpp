@@ -58,7 +58,7 @@ Contrasts::Contrasts(const PolarImage& image, const std::vector<BinWindow>& wind
 int Contrasts::of(std::size_t beam) const {
   std::vector<int> rises;
   std::vector<double> noises;
-  for_each_beam_around(image_, beam, [&](std::size_t m) {
+  for_each_beam_around(image_, beam, kContrastReach_beams, [&](std::size_t m) {
     if (!heard_[m]) return;
     rises.push_back(heard_[m]->rise);
     noises.push_back(heard_[m]->noise);

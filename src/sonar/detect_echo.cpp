@@ -6,15 +6,19 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "pingvox/option_errors.hpp"
+#include "pingvox/sonar/blanking.hpp"
 #include "sonar/beam_rises.hpp"
 #include "sonar/bin_window.hpp"
 #include "sonar/canny.hpp"
 #include "sonar/cfar.hpp"
 #include "sonar/contrast.hpp"
+#include "sonar/near_field.hpp"
 #include "sonar/noise_floor.hpp"
+#include "sonar/ringing_arc.hpp"
 
 namespace pingvox {
 namespace {
@@ -136,6 +140,7 @@ class EchoSearch {
   /// Keeps references to all.
   EchoSearch(const PolarImage& image, const Sweep& sweep, const EchoOptions& options)
       : image_(image),
+        sweep_(sweep),
         options_(options),
         heard_(windows_of(image, sweep, options)),
         searched_(clip_windows(options.max_range_m, heard_, sweep)) {
@@ -166,15 +171,38 @@ class EchoSearch {
     return detector == Detector::kRise ? std::max(beam.contrast, beam.floor->at(first)) : beam.contrast;
   }
 
+  /// The near field of a beam (kRise). nullopt: no bin is loud where the blanking range ends.
+  std::optional<NearField> near_field(const SearchedBeam& beam, std::size_t n) const {
+    const std::size_t nearest = beam.searched.begin;
+    if (options_.detector != Detector::kRise || nearest >= beam.searched.end) return std::nullopt;
+    const int loudness = mean_of_beams(image_, sweep_, n, nearest, nearest + 1).front();
+    if (loudness < beam.contrast) return std::nullopt;  // no level is lower
+    const int level = default_level(beam.bins, beam.heard, beam.contrast);
+    if (loudness < level) return std::nullopt;
+    return near_field_of(mean_of_beams(image_, sweep_, n, 0, beam.bins.size()), nearest, level);
+  }
+
+  /// Where the next rise of a beam's bins reaches its threshold (kRise).
+  std::optional<std::size_t> rise_in(const SearchedBeam& beam, BinWindow window) const {
+    // A given threshold may be reached over any number of bins.
+    if (options_.threshold) return first_rise(beam.bins, window, beam.contrast, nullptr, beam.bins.size());
+    return first_rise(beam.bins, window, beam.contrast, &*beam.floor, kRise_bins);
+  }
+
+  /// The same of the mean of the beams around, which has less noise.
+  std::optional<std::size_t> rise_of_mean(Bins mean, const SearchedBeam& beam, BinWindow window) const {
+    if (options_.threshold) return first_rise(mean, window, beam.contrast, nullptr, mean.size());
+    const NoiseFloor floor = beam.floor->half();
+    return first_rise(mean, window, beam.contrast, &floor, kRise_bins);
+  }
+
   /// Where the next echo begins.
   /// @param window  part of the beam's bins that is searched. REQUIRES that it is not empty
   std::optional<std::size_t> first_in(const SearchedBeam& beam, BinWindow window) const {
     const Bins bins = beam.bins;
     switch (options_.detector) {
       case Detector::kRise:
-        // A given threshold may be reached over any number of bins.
-        if (options_.threshold) return first_rise(bins, window, beam.contrast, nullptr, bins.size());
-        return first_rise(bins, window, beam.contrast, &*beam.floor, kRise_bins);
+        return rise_in(beam, window);
       case Detector::kLevel:
         return first_at_level(bins, window, level_of(beam));
       case Detector::kMax:
@@ -208,6 +236,7 @@ class EchoSearch {
   }
 
   const PolarImage& image_;
+  const Sweep& sweep_;
   const EchoOptions& options_;
   std::vector<BinWindow> heard_;     ///< bins that set contrast and noise floor
   std::vector<BinWindow> searched_;  ///< within those
@@ -217,6 +246,66 @@ class EchoSearch {
   std::vector<std::optional<std::size_t>> edges_;  ///< kCanny
 };
 
+int loudest(Bins bins, std::size_t begin, std::size_t end) {
+  return begin < end ? *std::ranges::max_element(bins.subspan(begin, end - begin)) : 0;
+}
+
+/// The echo of the beams' mean that is heard where the blanking range ends or within the loud bins behind it: the last
+/// one with its peak nearer, unless that has faded, or the first with its peak beyond.
+std::optional<Echo> echo_of_mean(const EchoSearch& search, const SearchedBeam& beam, const NearField& near) {
+  std::optional<Echo> nearer;
+  BinWindow window{.begin = 0, .end = near.end};
+  while (const std::optional<std::size_t> first = search.rise_of_mean(near.mean, beam, window)) {
+    const Echo echo = echo_from(near.mean, {.begin = window.begin, .end = beam.heard.end}, *first, beam.contrast);
+    if (echo.peak >= beam.heard.begin) return echo;
+    if (echo.peak >= near.begin) nearer = echo;
+    window.begin = echo.last + 1;
+  }
+  return nearer;
+}
+
+/// The same echo in the beam's own bins. Its peak is beyond the blanking range.
+Echo echo_of_beam(const SearchedBeam& beam, const Echo& of_mean) {
+  Echo own = of_mean;
+  own.peak = std::max(of_mean.first, beam.heard.begin);
+  for (std::size_t i = own.peak; i < beam.heard.end; ++i) {
+    if (i > of_mean.last && has_ended(beam.bins, own.peak, i, beam.contrast)) break;
+    if (beam.bins[i] > beam.bins[own.peak]) own.peak = i;
+    own.last = i;
+  }
+  return own;
+}
+
+/// What a near field holds, and where the search for echoes goes on.
+struct SearchedNearField {
+  std::optional<Echo> wall;
+  std::size_t search_from;
+};
+
+/// The mean of the beams around says what a loud near field is, as speckle differs from beam to beam:
+/// - It rises to a crest beyond the blanking range, and nothing behind is louder: a near wall. What is behind a wall
+///   has lost more; what is louder has passed a part of the vehicle.
+/// - Its crest is within the blanking range, but the ringing had ended before: something near, at an unknown range.
+///   Unless something behind is louder, the beam says nothing.
+/// - It only falls: ringing or reverberation. If the beam alone rises in it, that is speckle, and unless what comes
+///   behind is as loud, it may be the second echo of a wall that the near field hides: the beam says nothing.
+SearchedNearField search_near_field(const EchoSearch& search, const SearchedBeam& beam, const NearField& near) {
+  const BinWindow heard = beam.heard;
+  const SearchedNearField nothing{.wall = std::nullopt, .search_from = heard.end};
+  const SearchedNearField no_wall{.wall = std::nullopt, .search_from = heard.begin};
+  const std::optional<Echo> echo = echo_of_mean(search, beam, near);
+  if (echo && echo->peak >= heard.begin) {
+    const Echo own = echo_of_beam(beam, *echo);
+    if (beam.bins[own.peak] < loudest(beam.bins, own.last + 1, heard.end)) return no_wall;
+    return {.wall = own, .search_from = own.last + 1};
+  }
+  const int fainter = loudest(beam.bins, heard.begin, near.end) - loudest(beam.bins, near.end, heard.end);
+  if (echo && near.begin >= near.ringing_end && fainter >= 0) return nothing;
+  const std::optional<std::size_t> rise = search.rise_in(beam, heard);
+  if (!rise || *rise >= near.end) return no_wall;
+  return 2 * fainter > beam.contrast ? nothing : SearchedNearField{.wall = std::nullopt, .search_from = near.end};
+}
+
 enum class Search { kStop, kContinue };
 
 /// Calls f(echo) for the echoes of a beam, the nearest first, until it returns kStop. The next echo is searched for
@@ -224,15 +313,29 @@ enum class Search { kStop, kContinue };
 template <class F>
 void for_each_echo(const EchoSearch& search, const Sweep& sweep, std::size_t n, F&& f) {
   const SearchedBeam beam = search.beam(n);
-  for (BinWindow window = beam.searched; window.begin < window.end;) {
+  const auto report = [&](Echo echo) {
+    echo.intensity = beam.bins[echo.peak];
+    echo.threshold = search.threshold_of(beam, echo.first);
+    Echo crest = echo;  // no bin within the blanking range sets a range
+    crest.first = std::max(echo.first, beam.searched.begin);
+    echo.range_m = wall_of(sweep.beams[n].intensities, crest, beam.contrast) * sweep.beams[n].bin_length_m;
+    return f(echo);
+  };
+  BinWindow window = beam.searched;
+  if (const std::optional<NearField> near = search.near_field(beam, n)) {
+    SearchedNearField found = search_near_field(search, beam, *near);
+    window.begin = found.search_from;
+    if (found.wall && found.wall->peak < window.end) {
+      found.wall->last = std::min(found.wall->last, window.end - 1);
+      if (report(*found.wall) == Search::kStop) return;
+    }
+  }
+  while (window.begin < window.end) {
     const std::optional<std::size_t> first = search.first_in(beam, window);
     if (!first) break;
-    Echo echo = echo_from(beam.bins, window, *first, beam.contrast);
-    echo.intensity = beam.bins[echo.peak];
-    echo.threshold = search.threshold_of(beam, *first);
-    echo.range_m = wall_of(sweep.beams[n].intensities, echo, beam.contrast) * sweep.beams[n].bin_length_m;
+    const Echo echo = echo_from(beam.bins, window, *first, beam.contrast);
     window.begin = echo.last + 1;
-    if (f(echo) == Search::kStop) break;
+    if (report(echo) == Search::kStop) break;
   }
 }
 
@@ -243,6 +346,30 @@ std::optional<Echo> first_echo(const EchoSearch& search, const Sweep& sweep, std
     return Search::kStop;
   });
   return found;
+}
+
+std::vector<std::optional<Echo>> first_echoes(const PolarImage& image, const Sweep& sweep, const EchoOptions& options) {
+  const EchoSearch search(image, sweep, options);
+  std::vector<std::optional<Echo>> first;
+  first.reserve(image.rows());
+  for (std::size_t n = 0; n < image.rows(); ++n) first.push_back(first_echo(search, sweep, n));
+  return first;
+}
+
+/// The options with a minimum range: if none is given, the blanking range of the sweep, beyond its arcs of ringing.
+EchoOptions with_min_range(const PolarImage& image, const Sweep& sweep, EchoOptions options) {
+  if (options.min_range_m) return options;
+  options.min_range_m = blanking_range_m(image, sweep);
+  EchoOptions anywhere = options;
+  anywhere.max_range_m = std::numeric_limits<double>::infinity();
+  constexpr int kMostArcs = 8;
+  for (int arc = 0; arc < kMostArcs; ++arc) {
+    const std::optional<double> end_m = end_of_ringing_arc_m(first_echoes(image, sweep, anywhere), sweep);
+    if (!end_m || *end_m <= *anywhere.min_range_m) break;
+    anywhere.min_range_m = end_m;
+  }
+  options.min_range_m = anywhere.min_range_m;
+  return options;
 }
 
 }  // namespace
@@ -271,11 +398,7 @@ std::vector<std::optional<Echo>> detect_echoes(const PolarImage& image, const Sw
                                                const EchoOptions& options) {
   assert(options.validate());
   assert(image.rows() == sweep.beams.size());
-  const EchoSearch search(image, sweep, options);
-  std::vector<std::optional<Echo>> first;
-  first.reserve(image.rows());
-  for (std::size_t n = 0; n < image.rows(); ++n) first.push_back(first_echo(search, sweep, n));
-  return first;
+  return first_echoes(image, sweep, with_min_range(image, sweep, options));
 }
 
 std::optional<Echo> detect_echo(const PolarImage& image, const Sweep& sweep, std::size_t beam,
@@ -283,14 +406,16 @@ std::optional<Echo> detect_echo(const PolarImage& image, const Sweep& sweep, std
   assert(options.validate());
   assert(image.rows() == sweep.beams.size());
   assert(beam < image.rows());
-  return first_echo(EchoSearch(image, sweep, options), sweep, beam);
+  const EchoOptions measured = with_min_range(image, sweep, options);
+  return first_echo(EchoSearch(image, sweep, measured), sweep, beam);
 }
 
 std::vector<std::vector<Echo>> detect_all_echoes(const PolarImage& image, const Sweep& sweep,
                                                  const EchoOptions& options) {
   assert(options.validate());
   assert(image.rows() == sweep.beams.size());
-  const EchoSearch search(image, sweep, options);
+  const EchoOptions measured = with_min_range(image, sweep, options);
+  const EchoSearch search(image, sweep, measured);
   std::vector<std::vector<Echo>> all(image.rows());
   for (std::size_t n = 0; n < image.rows(); ++n) {
     for_each_echo(search, sweep, n, [&](const Echo& echo) {
@@ -312,7 +437,7 @@ FilterOptions default_filter(Detector detector) {
 
 std::optional<std::size_t> reach_beams(const EchoOptions& options) {
   if (!options.min_range_m) return std::nullopt;
-  return (has_given_contrast(options) ? 0 : kContrastReach_beams) +
+  return (has_given_contrast(options) ? kNearFieldReach_beams : kContrastReach_beams) +
          (options.detector == Detector::kCanny ? canny_reach_beams(options.canny) : 0);
 }
 

@@ -14,6 +14,8 @@ namespace {
 constexpr double kWallNoiseRatio = 11.0, kQuietNoiseRatio = 12.0, kWallShare = 0.25;
 /// Noise grows by no more from one part of a beam to the next: what is louder is a wall.
 constexpr double kGrowth = 1.5;
+/// Where less than this part of the differences is noise, the bins lie on the slopes of a long echo.
+constexpr double kSlopes = 0.25;
 constexpr double kLeastNoise = 0.5;  // of intensities without noise
 constexpr std::size_t kParts = 8, kMinPart_bins = 40;
 
@@ -24,6 +26,10 @@ std::vector<BeamPart> parts_of(std::span<const std::uint8_t> bins) {
     const std::size_t first = (bins.size() * p + parts.size() - 1) / parts.size();
     const std::size_t end = (bins.size() * (p + 1) + parts.size() - 1) / parts.size();
     parts[p].noise = noise_of(bins.subspan(first, end - first));
+    if (p > 0) continue;
+    // No part before the first one limits its noise.
+    const double on_slopes = noise_on_slopes_of(bins.first(end));
+    if (on_slopes < kSlopes * parts[p].noise) parts[p].noise = on_slopes;
   }
   std::size_t p = 0;
   for_each_rise(bins, [&](std::size_t bin, int rise) {
@@ -73,7 +79,7 @@ NoiseFloor NoiseFloors::of(std::size_t beam) const {
   std::vector<int> rises(std::max<std::size_t>(heard_[beam].size(), 1), 0);
   if (heard_[beam].empty()) return {windows_[beam], std::move(rises)};
   std::vector<const std::vector<BeamPart>*> around;
-  for_each_beam_around(image_, beam, [&](std::size_t m) {
+  for_each_beam_around(image_, beam, kContrastReach_beams, [&](std::size_t m) {
     if (!heard_[m].empty()) around.push_back(&heard_[m]);
   });
   const std::vector<double> noises = noise_by_range(around, rises.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -14,9 +15,16 @@ class NoiseFloor {
   /// @param rises  of equal parts of the window, at least one
   NoiseFloor(BinWindow window, std::vector<int> rises) : window_(window), rises_(std::move(rises)) {}
 
-  /// REQUIRES a bin of the window.
+  /// Before the window, the floor where it begins. REQUIRES a bin before the window's end.
   int at(std::size_t bin) const {
-    return rises_[(bin - window_.begin) * rises_.size() / (window_.end - window_.begin)];
+    return rises_[(std::max(bin, window_.begin) - window_.begin) * rises_.size() / (window_.end - window_.begin)];
+  }
+
+  /// Half as high, for means of beams.
+  NoiseFloor half() const {
+    NoiseFloor lower = *this;
+    for (int& rise : lower.rises_) rise = (rise + 1) / 2;
+    return lower;
   }
 
  private:

@@ -99,9 +99,12 @@ Count check(const std::vector<Beam>& beams, const Way& way) {
   return count;
 }
 
-/// A head that turns or sweeps a sector over walls with noise, in beams of different lengths.
+/// A head that turns or sweeps a sector over walls with noise, in beams of different lengths. In a third of the cases
+/// the near field is loud beyond the blanking range, with a wall in it or without.
 std::vector<Beam> random_beams(std::mt19937_64& random) {
   std::vector<Beam> beams;
+  const std::size_t loud_bins = random() % 3 == 0 ? 18 + random() % 8 : 8;
+  const double near_wall = random() % 2 == 0 ? 18.0 : 1000.0;
   const std::size_t per_turn = 90 + random() % 60;
   const std::size_t count = 2 * per_turn + random() % per_turn;
   const bool sector = random() % 3 == 0;
@@ -117,7 +120,9 @@ std::vector<Beam> random_beams(std::mt19937_64& random) {
     const double wall = 35.0 + 10.0 * std::cos(3.0 * beam.bearing_rad);
     for (std::size_t i = 0; i < bins; ++i) {
       const double off = (static_cast<double>(i) - wall) / 2.0;
-      const double clean = 150.0 * std::exp(-0.5 * off * off) + (i < 8 ? 120.0 : 0.0);
+      const double near = (static_cast<double>(i) - near_wall) / 5.0;
+      const double clean = 100.0 * std::exp(-0.5 * off * off) + (i < loud_bins ? 60.0 : 0.0) +
+                           (loud_bins > 8 ? 60.0 * std::exp(-0.5 * near * near) : 0.0);
       beam.intensities.push_back(static_cast<std::uint8_t>(clean + static_cast<double>(random() % 30)));
     }
     beams.push_back(std::move(beam));
@@ -171,8 +176,8 @@ TEST(EchoStream, GivesTheEchoesOfWholeSweepsOfTheTankRecording) {
 TEST(EchoStream, ReturnsABeamAfterItsDelayAndTheEndsWithTheSweep) {
   const Way way{.filter = {}, .echo = {.threshold = 70}};
   EchoStream stream(way.filter, way.echo);
-  EXPECT_EQ(stream.delay_beams(), 4U);
-  EXPECT_EQ(EchoStream({.filter = Filter::kNone}, way.echo).delay_beams(), 0U);
+  EXPECT_EQ(stream.delay_beams(), 8U);
+  EXPECT_EQ(EchoStream({.filter = Filter::kNone}, way.echo).delay_beams(), 4U);
   EXPECT_EQ(EchoStream({}, {}).delay_beams(), 20U);
   EXPECT_EQ(EchoStream(default_filter(Detector::kCanny), {.detector = Detector::kCanny}).delay_beams(), 36U);
   for (std::size_t n = 0; n <= 100; ++n) {
@@ -182,12 +187,12 @@ TEST(EchoStream, ReturnsABeamAfterItsDelayAndTheEndsWithTheSweep) {
                     .bin_length_m = 0.1,
                     .intensities = std::vector<std::uint8_t>(20)};
     const auto heard = stream.add(beam);
-    ASSERT_EQ(heard.size(), n < 8 ? 0U : n < 100 ? 1U : 8U);
+    ASSERT_EQ(heard.size(), n < 16 ? 0U : n < 100 ? 1U : 16U);
     if (heard.size() == 1) {
-      EXPECT_EQ(heard[0].beam.time_s, static_cast<double>(n - 4));
-    } else if (heard.size() == 8) {
+      EXPECT_EQ(heard[0].beam.time_s, static_cast<double>(n - 8));
+    } else if (heard.size() == 16) {
       EXPECT_EQ(heard[0].beam.time_s, 0.0);
-      EXPECT_EQ(heard[7].beam.time_s, 99.0);
+      EXPECT_EQ(heard[15].beam.time_s, 99.0);
     }
   }
   EXPECT_EQ(stream.finish().size(), 1U);

@@ -110,6 +110,24 @@ TEST(NoiseFloor, DoesNotTakeALoudWallForNoise) {
   }
 }
 
+// Kills a wall in the first part of the beams that is taken for noise, which no part before limits: its echo fills the
+// part, and its second echo would be the wall.
+TEST(NoiseFloor, DoesNotTakeTheSlopesOfALongNearEchoForNoise) {
+  std::mt19937_64 random(13);
+  std::vector<Bins> beams;
+  for (std::size_t n = 0; n < 33; ++n) {
+    Bins bins(kBins);
+    for (std::size_t i = 0; i < kBins; ++i) {
+      const double slope = i < 4    ? 0.0
+                           : i < 22 ? (static_cast<double>(i) - 4.0) / 18.0
+                                    : (40.0 - static_cast<double>(i)) / 18.0;
+      bins[i] = static_cast<std::uint8_t>(120.0 * std::max(slope, 0.0) + static_cast<double>(random() % 8));
+    }
+    beams.push_back(std::move(bins));
+  }
+  for (const NoiseFloor& floor : floors_in(turn_with(std::move(beams)))) EXPECT_LE(floor.at(20), 60);
+}
+
 // Kills a floor that takes noise from beams that are shorter by their bin instead of their share of the range.
 TEST(NoiseFloor, FollowsEachBeamsOwnRange) {
   std::mt19937_64 random(7);

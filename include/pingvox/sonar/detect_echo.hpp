@@ -14,7 +14,7 @@ namespace pingvox {
 
 /// The detected return of one beam: the run of bins that it was found in.
 struct Echo {
-  std::size_t first = 0;  ///< bin where it was detected
+  std::size_t first = 0;  ///< bin where it was detected; of a near wall (Detector::kRise) maybe nearer than min_range_m
   std::size_t peak = 0;   ///< its strongest bin, the nearest of several
   std::size_t last = 0;   ///< its last bin
   double range_m = 0.0;   ///< estimated range of the wall from the transducer: one bin before the centre of the crest
@@ -33,6 +33,13 @@ enum class Detector {
   /// the threshold. They are summed because a real wall rises over some ten bins (pulse, slanting beam, smoothing): no
   /// beam of the smoothed tank recording has a single difference of 70. A rise continues across dips of up to half the
   /// threshold below its top, so speckle does not split an echo, and a falling edge starts none.
+  ///
+  /// Where the blanking range ends within loud bins (the mean of the nine beams around is at the level of kLevel), that
+  /// mean is searched first, from the transducer on. If it rises to a crest beyond the blanking range, and the beam has
+  /// nothing louder behind, that is the echo. A crest within the blanking range, behind the ringing and not fainter
+  /// than
+  /// what follows, leaves the beam without an echo. If the mean does not rise, a rise of the beam alone within the loud
+  /// bins is none, and the beam has an echo only if something behind them is as loud.
   kRise,
   /// The first bin that reaches the threshold. Ringing beyond the blanking range counts too.
   kLevel,
@@ -73,7 +80,7 @@ struct CfarOptions {
 struct EchoOptions {
   Detector detector = Detector::kRise;
   /// Blanking range: nearer bins hold the ringing transducer and the vehicle. nullopt: measured in each sweep
-  /// (blanking_range_m).
+  /// (blanking_range_m), and farther where nearly all directions of a turn have an echo at the same range, up to 1.5 m.
   std::optional<double> min_range_m = kDefaultBlanking_m;
   std::size_t min_bin = 0;  ///< the same in bins; the farther of both applies
   /// Echoes are searched up to this range. Bins beyond it still set the default threshold: otherwise, with the wall cut
@@ -95,7 +102,8 @@ struct EchoOptions {
 };
 
 /// The first echo of each beam (paper, section 8.2), one per row of the image; nullopt, not maximum range, if there is
-/// none. Only bins that lie entirely beyond the minimum range are used. No echo has bins beyond max_range_m.
+/// none. Range and peak of an echo come from bins that lie entirely beyond the minimum range; nearer ones tell no more
+/// than where a near wall begins (kRise). No echo has bins beyond max_range_m.
 /// @param image  the sweep's image, filtered or not
 /// @param sweep  the sweep that the image was made of
 /// REQUIRES valid options, image.rows() == sweep.beams.size()

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pingvox/sonar/polar_image.hpp"
+#include "pingvox/sonar/sweep.hpp"
+
+namespace pingvox {
+
+/// Beams to either side whose mean tells a near wall from speckle: more than a filter joins.
+inline constexpr std::size_t kNearFieldReach_beams = 4;
+
+/// Means of a beam and those around it that have bins as long, of bins [first, end).
+/// REQUIRES first <= end <= image.bins_in(beam)
+std::vector<std::uint8_t> mean_of_beams(const PolarImage& image, const Sweep& sweep, std::size_t beam,
+                                        std::size_t first, std::size_t end);
+
+/// The loud bins next to the blanking range: ringing that goes on beyond it, reverberation, or a near wall whose echo
+/// begins within it.
+struct NearField {
+  std::vector<std::uint8_t> mean;  ///< of the beams around, all bins
+  std::size_t ringing_end = 0;     ///< end of the first loud bins of the mean
+  std::size_t begin = 0,
+              end = 0;  ///< of the loud bins next to the blanking range; those of the ringing: begin < ringing_end
+};
+
+/// @param mean     of the beams around, all bins
+/// @param nearest  first bin beyond the blanking range. REQUIRES mean[nearest] >= level
+/// @param level    lowest intensity of a loud bin
+NearField near_field_of(std::vector<std::uint8_t> mean, std::size_t nearest, int level);
+
+}  // namespace pingvox
