@@ -80,7 +80,7 @@ Result<MappedBeams> map_along(const Trajectory& trajectory, const SlamCalibratio
   if (calibration != nullptr) {
     path.sonar_moved_m = {calibration->sonar_x_m.value, calibration->sonar_y_m.value, 0.0};
   }
-  BuildOptions build = BuildArgs().build;
+  BuildOptions build;
   build.filter = slam.filter;
   build.echo = slam.echo;
   build.sound_speed_ratio = slam.sound_speed_ratio;

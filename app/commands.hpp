@@ -56,10 +56,7 @@ struct HeadArgs {
   }
   /// Sets width and height of the beam: as given, else of the device, else unchanged.
   BuildOptions apply_to(BuildOptions options, const DeviceProfile* of_log) const {
-    if (const DeviceProfile* head = device != nullptr ? device : of_log; head != nullptr) {
-      options.model.width_rad = head->beam_width_rad;
-      options.model.height_rad = head->beam_height_rad;
-    }
+    options.model = beam_of_head(device != nullptr ? device : of_log, options.model);
     options.model.width_rad = beam_width_rad.value_or(options.model.width_rad);
     options.model.height_rad = beam_height_rad.value_or(options.model.height_rad);
     return options;

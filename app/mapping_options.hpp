@@ -47,9 +47,6 @@ struct EchoArgs {
 
 /// Mapping options of the command line.
 struct BuildArgs {
-  /// Maps are 3D by default.
-  BuildArgs() { build.model.shape = BeamShape::kCone; }
-
   MapOptions map;
   BuildOptions build;  ///< filter and echo: see `echoes`
   HeadArgs head;

@@ -1,4 +1,5 @@
-// Maps a log of sonar beams, each beam as a cone, and writes the map in OctoMap's format.
+// Maps a log of sonar beams, each beam as a cone of the head that the log names, and writes the map in OctoMap's
+// format.
 //
 //   01_map_a_log tank.csv tank.bt
 #include <cstdio>
@@ -18,7 +19,7 @@ Result<OccupancyMap> map_log(const std::string& path) {
 
   OccupancyMap map({.resolution_m = 0.05});
   BuildOptions options;
-  options.model.shape = BeamShape::kCone;
+  options.model = beam_of_head((*beams)->device());
   // The sonar stands still. For one that moves, read_tum reads a Trajectory.
   const auto report = build_map(**beams, Trajectory::still(Pose::Identity()), options, map);
   if (!report) return tl::unexpected(report.error());

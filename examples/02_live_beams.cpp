@@ -13,7 +13,7 @@ using namespace pingvox;
 
 Result<void> map_live(BeamSource& device, OccupancyMap& map) {
   BuildOptions options;
-  options.model.shape = BeamShape::kCone;
+  options.model = beam_of_head(device.device());
   options.timing = Timing::kByBeam;  // each beam as soon as its neighbours are heard
   options.vote = Vote::kPerBeam;
   auto mapper = BeamMapper::make(options, map);

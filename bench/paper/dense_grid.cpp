@@ -28,7 +28,7 @@ std::optional<std::size_t> DenseGrid::index_of(const Key& key) const {
 }
 
 void DenseGrid::add(const PlacedSweep& sweep) {
-  const BeamModelOptions model;
+  const BeamModelOptions model{.shape = BeamShape::kRay};
   const float miss = LogOdds::from_probability(0.4).value();
   std::vector<std::size_t> touched;
   const auto vote = [&](const Key& key, float evidence) {

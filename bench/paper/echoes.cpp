@@ -97,7 +97,7 @@ enum class SilentBeam { kWall, kNothing };
 OccupancyMap map_as_in_paper(const TankLog& log, const FilterOptions& filter, int threshold, SilentBeam silent_beam) {
   OccupancyMap map;
   ScanUpdate scan(map.lattice());
-  const BeamModelOptions model{.hit_from = HitFrom::kFixed};
+  const BeamModelOptions model{.shape = BeamShape::kRay, .hit_from = HitFrom::kFixed};
   for (const Sweep& sweep : log.sweeps) {
     const PolarImage image = apply_filter(PolarImage(sweep), filter);
     scan.clear();

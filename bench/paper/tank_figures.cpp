@@ -44,7 +44,7 @@ Picture polar(const std::vector<Beam>& beams) {
 Result<Picture> map_picture(const Sweep& sweep, const FilterOptions& filter, const EchoOptions& echo) {
   OccupancyMap map;
   BeamsInMemory beams(sweep.beams);
-  const BuildOptions options{.filter = filter, .echo = echo, .model = {}};
+  const BuildOptions options{.filter = filter, .echo = echo, .model = {.shape = BeamShape::kRay}};
   const auto report = build_map(beams, Trajectory::still(Pose::Identity()), options, map);
   if (!report) return tl::unexpected(report.error());
   // All maps to the same scale.

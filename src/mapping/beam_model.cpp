@@ -28,6 +28,13 @@ Result<void> BeamModelOptions::validate() const {
   return errors.result("beam model");
 }
 
+BeamModelOptions beam_of_head(const DeviceProfile* head, BeamModelOptions options) {
+  if (head == nullptr) return options;
+  options.width_rad = head->beam_width_rad;
+  options.height_rad = head->beam_height_rad;
+  return options;
+}
+
 LogOdds evidence_of_intensity(std::uint8_t intensity, LogOdds hit) {
   return LogOdds(hit.value() * 0.5F * (1.0F + static_cast<float>(intensity) / 255.0F));
 }

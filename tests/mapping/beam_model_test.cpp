@@ -225,7 +225,7 @@ TEST(BeamModel, AnEchoAtTheMaximumRangeIsHitAndOneBeyondIsNot) {
   const Lattice lattice(0.1);
   for (const double max_range_m : {2.0, std::nextafter(2.0, 0.0)}) {
     ScanUpdate scan(lattice);
-    BeamTracer(BeamModelOptions{}, max_range_m).trace(Pose::Identity(), beam_of(0.0, 400), echo_at(2.0), scan);
+    BeamTracer({.shape = BeamShape::kRay}, max_range_m).trace(Pose::Identity(), beam_of(0.0, 400), echo_at(2.0), scan);
     const Mark mark = mark_of(scan, *lattice.key_of(Eigen::Vector3d(2.0, 0.0, 0.0)));
     EXPECT_EQ(mark == Mark::kHit, max_range_m == 2.0);
   }
@@ -253,6 +253,7 @@ TEST(BeamModel, RayFreesUpToItsEchoAndHitsThere) {
   const Lattice lattice(0.1);
   ScanUpdate scan(lattice);
   BeamModelOptions options;
+  options.shape = BeamShape::kRay;
   options.hit_from = HitFrom::kFixed;
   const Pose sensor = pose_from_rpy({0.05, 0.05, 0.05}, 0, 0, 90.0 * kDegree_rad);
   trace_beam(sensor, beam_of(0.0, 400), echo_at(1.0), options, scan);
@@ -289,7 +290,7 @@ TEST(BeamModel, SilentBeamSaysNothingUnlessAsked) {
 TEST(BeamModel, NothingIsTouchedBeyondTheMaximumRange) {
   const Lattice lattice(0.1);
   ScanUpdate scan(lattice);
-  BeamTracer(BeamModelOptions{}, 1.0).trace(Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), scan);
+  BeamTracer({.shape = BeamShape::kRay}, 1.0).trace(Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), scan);
   OccupancyMap map({.resolution_m = 0.1});
   ASSERT_TRUE(map.apply(scan));
   EXPECT_EQ(map.counts().occupied_cells, 0U);
@@ -327,8 +328,24 @@ TEST(BeamModel, EvidenceGrowsWithTheEchoAndFallsOffTheAxis) {
 TEST(BeamModel, BeamThatLeavesTheLatticeIsLeftOutAndCounted) {
   const Lattice lattice(0.1, 5);  // 3.2 m across
   ScanUpdate scan(lattice);
-  EXPECT_EQ(trace_beam(Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), {}, scan), 1U);
+  EXPECT_EQ(trace_beam(Pose::Identity(), beam_of(0.0, 400), echo_at(3.0), {.shape = BeamShape::kRay}, scan), 1U);
   EXPECT_TRUE(scan.empty());
+}
+
+// Kills a Ping360 that is mapped with the Micron's cone, and a library whose beams are rays where the program's are
+// cones.
+TEST(BeamModel, IsTheConeOfTheHead) {
+  const BeamModelOptions usual;
+  EXPECT_EQ(usual.shape, BeamShape::kCone);
+  EXPECT_DOUBLE_EQ(usual.width_rad, 3.0 * kDegree_rad);
+  EXPECT_DOUBLE_EQ(usual.height_rad, 35.0 * kDegree_rad);
+  const BeamModelOptions ping360 = beam_of_head(find_device("ping360"), {.shape = BeamShape::kFan, .free_share = 0.5});
+  EXPECT_DOUBLE_EQ(ping360.width_rad, 2.0 * kDegree_rad);
+  EXPECT_DOUBLE_EQ(ping360.height_rad, 25.0 * kDegree_rad);
+  EXPECT_EQ(ping360.shape, BeamShape::kFan);
+  EXPECT_DOUBLE_EQ(ping360.free_share, 0.5);
+  EXPECT_DOUBLE_EQ(beam_of_head(nullptr, ping360).height_rad, 25.0 * kDegree_rad);
+  EXPECT_EQ(beam_of_head(nullptr).shape, BeamShape::kCone);
 }
 
 TEST(BeamModel, OptionsNameEachBrokenField) {

@@ -67,6 +67,7 @@ class EchoesBeforeLouderOnes : public Echoes {
 BuildOptions clean_options() {
   BuildOptions options;
   options.filter.filter = Filter::kNone;
+  options.model.shape = BeamShape::kRay;
   options.model.hit_from = HitFrom::kFixed;
   return options;
 }

@@ -291,6 +291,7 @@ TEST_P(NoMemory, AMapperSaysSoAndThrowsNothing) {
 // Kills a mapper whose state is half of one sweep and half of another after an error.
 TEST(NoMemoryOnce, AMapperGoesOn) {
   BuildOptions options;
+  options.model.shape = BeamShape::kRay;
   options.filter.filter = Filter::kNone;
   options.echo.threshold = 70;
   const std::vector<Beam> beams = two_turns();

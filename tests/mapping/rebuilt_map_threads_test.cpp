@@ -65,6 +65,7 @@ RebuiltMap empty_map(const BuildOptions& options) {
 
 BuildOptions by_beam() {
   BuildOptions options;
+  options.model.shape = BeamShape::kRay;
   options.timing = Timing::kByBeam;
   options.vote = Vote::kPerBeam;
   return options;

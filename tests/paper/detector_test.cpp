@@ -60,7 +60,8 @@ TEST(PaperDetector, ASilentBeamIsNoWallAtTheEndOfItsRange) {
   const auto occupied = [&](const std::optional<Echo>& echo, Silent silent) {
     OccupancyMap map;
     ScanUpdate scan(map.lattice());
-    trace_beam(Pose::Identity(), sweep.beams.front(), echo, {.hit_from = HitFrom::kFixed, .silent = silent}, scan);
+    trace_beam(Pose::Identity(), sweep.beams.front(), echo,
+               {.shape = BeamShape::kRay, .hit_from = HitFrom::kFixed, .silent = silent}, scan);
     EXPECT_TRUE(map.apply(scan));
     return map.counts().occupied_cells;
   };

@@ -14,6 +14,7 @@
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {
 
@@ -43,7 +44,7 @@ enum class Tracing {
 };
 
 struct BeamModelOptions {
-  BeamShape shape = BeamShape::kRay;
+  BeamShape shape = BeamShape::kCone;
   Tracing tracing = Tracing::kGeometry;
   double width_rad = 3.0 * kDegree_rad;    ///< horizontal, full angle; Micron data sheet
   double height_rad = 35.0 * kDegree_rad;  ///< vertical, full angle; Micron data sheet
@@ -58,6 +59,10 @@ struct BeamModelOptions {
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
+
+/// Options with the width and height of a head's beam, as its maker says; unchanged for nullptr, a head that is not
+/// known. As in `beam_of_head(source.device())` for the head that a log names.
+BeamModelOptions beam_of_head(const DeviceProfile* head, BeamModelOptions options = {});
 
 /// Evidence of an echo by its strength: half of `hit` for the faintest that a detector lets through, all of it at 255,
 /// linear in between. Monotone, and never more than `hit`.
