@@ -69,4 +69,28 @@ std::vector<double> device_times_s(std::span<const DeviceTime> times) {
   return made_s;
 }
 
+std::vector<DeviceRun> device_runs(std::span<const DeviceTime> times) {
+  constexpr double kSmallestDelay_s = 0.005;
+  const std::vector<double> times_s = device_times_s(times);
+  std::vector<DeviceRun> runs;
+  for (std::size_t first = 0; first < times.size();) {
+    std::size_t end = first + 1;
+    while (end < times.size() && !was_clock_set(times[end - 1], times[end])) ++end;
+    // Differences to the first one, as dates have no digits left for squares.
+    const double first_zero_s = times_s[first] - times[first].made_s, count = static_cast<double>(end - first);
+    double sum_s = 0.0, squares = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      const double more_s = times_s[i] - times[i].made_s - first_zero_s;
+      sum_s += more_s;
+      squares += more_s * more_s;
+    }
+    const double mean_s = sum_s / count, variance = std::max(0.0, squares / count - mean_s * mean_s);
+    const auto [from, to] = std::minmax_element(times_s.begin() + static_cast<std::ptrdiff_t>(first),
+                                                times_s.begin() + static_cast<std::ptrdiff_t>(end));
+    runs.push_back({first_zero_s + mean_s, std::hypot(std::sqrt(variance), kSmallestDelay_s), *from, *to});
+    first = end;
+  }
+  return runs;
+}
+
 }  // namespace pingvox

@@ -6,7 +6,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -55,22 +54,6 @@ void sort_by_time(std::vector<NavSample>& samples) {
   sorted.reserve(samples.size());
   for (const std::size_t i : order) sorted.push_back(samples[i]);
   samples = std::move(sorted);
-}
-
-/// Where the clock of samples, in the order in which they came, was set back by most.
-std::optional<ClockStep> step_back_in(const std::vector<NavSample>& samples) {
-  ClockStep step;
-  double latest_s = -std::numeric_limits<double>::infinity();
-  for (const NavSample& sample : samples) {
-    latest_s = std::max(latest_s, sample.time_s);
-    if (!(latest_s - sample.time_s > kMaxLate_s)) continue;
-    ++step.late;
-    if (latest_s - sample.time_s > step.from_s - step.to_s) {
-      step.from_s = latest_s;
-      step.to_s = sample.time_s;
-    }
-  }
-  return step.late > 0 ? std::optional(step) : std::nullopt;
 }
 
 }  // namespace
@@ -124,7 +107,11 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
       return fail(Error::Code::kCorrupt, fmt::format("{} of {}: sample {} has a number that is not finite",
                                                      name_of(source.quantity), source.name, i));
     }
-    if (const auto step = step_back_in(source.samples)) source.step_back = step;
+    if (std::ranges::is_sorted(source.samples, {}, &NavSample::time_s)) continue;
+    TimeOrder order;
+    for (const NavSample& sample : source.samples) order.add(sample.time_s);
+    source.late += order.late();
+    if (const auto step = order.step_back()) source.step_back = step;
     sort_by_time(source.samples);
     check_values(source);
   }
@@ -137,6 +124,7 @@ void add_samples(const NavSource& from, NavSource& to) {
   to.samples.insert(to.samples.end(), from.samples.begin(), from.samples.end());
   restore_other_frames(to);
   sort_by_time(to.samples);
+  to.late += from.late;
   if (!to.step_back) to.step_back = from.step_back;
   if (to.fault.empty()) to.fault = from.fault;
   if (to.note.empty()) to.note = from.note;

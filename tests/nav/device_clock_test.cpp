@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -87,6 +88,34 @@ TEST(DeviceClock, ADeviceWasStartedAnewWhenItIsUpForLessThanThePause) {
   EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1075.1, 600.1})) << "the receiver's clock was set";
   EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1.7e9, 600.1})) << "to the date";
   EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1000.1, 598.5})) << "by a slower way";
+}
+
+// Kills a clock that any overtaken message sets anew: it and those behind it would get the times of their arrival.
+TEST(DeviceClock, IsNotSetByMessagesThatOvertakeEachOther) {
+  const std::vector<DeviceTime> times = {{1000.02, 5.0}, {1000.12, 5.1}, {1000.50, 5.4},
+                                         {1000.55, 4.9}, {1000.60, 5.5}, {1001.20, 4.7}};
+  const std::vector<double> arriving_s = as_they_arrive(times), all_s = device_times_s(times);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_NEAR(arriving_s[i], 995.02 + times[i].made_s, 1e-6) << i;
+    EXPECT_NEAR(all_s[i], 995.02 + times[i].made_s, 1e-6) << i;
+  }
+  EXPECT_FALSE(was_started_anew({1000.50, 5.4}, {1000.55, 4.9})) << "it has hardly been up for longer than that";
+  EXPECT_EQ(device_runs(times).size(), 1U);
+}
+
+// Kills a run over a new start, whose zero is that of neither, and one without what its clock drifts.
+TEST(DeviceClock, ARunLastsFromOneStartToTheNext) {
+  const auto times =
+      messages(5000, kNoMore, [](double true_s) { return true_s < 49.95 ? 10.0 + true_s : (true_s - 47.0) * 1.0005; });
+  const std::vector<DeviceRun> runs = device_runs(times);
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_NEAR(runs[0].zero_s, kHost_s + kLeast_s - 10.0, 1e-5);
+  EXPECT_NEAR(runs[0].deviation_s, 0.005, 1e-4);
+  EXPECT_NEAR(runs[0].to_s, kHost_s + 49.9 + kLeast_s, 1e-4);
+  EXPECT_NEAR(runs[1].zero_s, kHost_s + kLeast_s + 47.0 - 0.5 * 450.0 * 5e-4, 0.1);
+  EXPECT_NEAR(runs[1].from_s, kHost_s + 50.0 + kLeast_s, 0.1);
+  EXPECT_NEAR(runs[1].deviation_s, 450.0 * 5e-4 / std::sqrt(12.0), 0.02);
+  EXPECT_TRUE(device_runs({}).empty());
 }
 
 // Kills a difference of long ago that counts after a pause.

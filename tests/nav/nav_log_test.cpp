@@ -43,6 +43,31 @@ TEST(NavLog, PutsSamplesInOrderAndKeepsThatOfEqualTimes) {
   EXPECT_THAT(came, testing::ElementsAre(1, 3, 2, 0));
 }
 
+// Two swapped messages of an echosounder were a clock that runs back, and the log was refused.
+TEST(NavLog, SwappedSamplesAreLateAndAClockThatWasSetBackStaysBack) {
+  std::vector<double> quick, quick_back;
+  for (int i = 0; i < 100; ++i) quick.push_back(0.1 * i);
+  std::rotate(quick.begin() + 30, quick.begin() + 33, quick.begin() + 48);  // three come 1.5 s late
+  for (int i = 0; i < 100; ++i) quick_back.push_back(0.1 * i - (i < 50 ? 0.0 : 1.5));
+  const auto log = NavLog::make(
+      {depths("swapped", {0, 1.5, 3, 6, 4.5, 7.5}), depths("quick", quick), depths("at the end", {0, 1, 2, 3.5, 2}),
+       depths("back", quick_back), depths("slow back", {0, 2, 4, 6, 4.5, 6.5, 8.5}),
+       depths("far back", {1, 2, 3, 4, 5, 1, 6}), depths("ends back", {3, 4, 5, 3, 3.5})},
+      NavClock::kBoot);
+  ASSERT_TRUE(log) << log.error().message;
+  const std::vector<NavSource>& sources = log->sources();
+  ASSERT_EQ(sources.size(), 7U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_FALSE(sources[i].step_back) << sources[i].name;
+    EXPECT_EQ(sources[i].late, i == 1 ? 3U : 1U) << sources[i].name;
+    EXPECT_TRUE(std::ranges::is_sorted(sources[i].samples, {}, &NavSample::time_s)) << sources[i].name;
+  }
+  for (std::size_t i = 3; i < 7; ++i) {
+    EXPECT_TRUE(sources[i].step_back) << sources[i].name;
+    EXPECT_FALSE(check_clock(sources[i])) << sources[i].name;
+  }
+}
+
 // Kills a clock that is put in order without a word, one that is found in every queue, and a step between two logs.
 TEST(NavLog, NotesWhereAClockWasSetBack) {
   const auto log =

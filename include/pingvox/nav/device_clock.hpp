@@ -32,4 +32,14 @@ class DeviceClock {
 /// @param times  in the order of the recording
 std::vector<double> device_times_s(std::span<const DeviceTime> times);
 
+/// A device from one of its starts to the next, as far as its messages were received. Times are on the clock of the
+/// receiver.
+struct DeviceRun {
+  double zero_s = 0.0;       ///< when its clock was 0
+  double deviation_s = 0.0;  ///< standard deviation, of what the clocks drift and of the smallest delay
+  double from_s = 0.0, to_s = 0.0;
+};
+/// @param times  in the order of the recording
+std::vector<DeviceRun> device_runs(std::span<const DeviceTime> times);
+
 }  // namespace pingvox

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pingvox/nav/time_order.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -47,15 +48,6 @@ struct NavSample {
   bool is_in_other_frame = false;  ///< left out for a step that no vehicle makes
 };
 
-/// How late a sample may come [s]: devices that share a line, and programs with queues, mix the order up by less.
-inline constexpr double kMaxLate_s = 1.0;
-
-/// A clock that was set back while samples came.
-struct ClockStep {
-  double from_s = 0.0, to_s = 0.0;  ///< the latest time until then, and that of the sample farthest behind it
-  std::size_t late = 0;             ///< samples that are more than kMaxLate_s behind one that came before
-};
-
 /// A step of a position, depth or heading that no vehicle makes, and the samples that are left out because of it: it is
 /// an outlier, or the origin was set anew.
 struct SourceStep {
@@ -71,7 +63,8 @@ struct NavSource {
   std::string name;  ///< as the log names it: "ATTITUDE", "DISTANCE_SENSOR 1/194"
   NavQuantity quantity = NavQuantity::kVelocity;
   std::vector<NavSample> samples;
-  std::optional<ClockStep> step_back = std::nullopt;  ///< nullopt: no sample came too late
+  std::optional<ClockStep> step_back = std::nullopt;  ///< nullopt: its clock was not set back
+  std::size_t late = 0;  ///< samples that came more than kMaxLate_s after a later one, and were put in order
   std::vector<SourceStep> steps = {};                 ///< in order of time
   /// Why its values cannot be used, as in "latitude of 54.3 rad is beyond pi/2: is it in degrees?"; empty: nothing is
   /// wrong with them. Nothing is computed from a source with a fault.
