@@ -58,7 +58,12 @@ Result<NavFile> read_nav(const FileBytes& file, Damage damage) {
     }
     Result<NavLog> log = NavLog::make(std::move(reading.sources), reading.clock);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", file.name, log.error().message));
-    return NavFile{*std::move(log), reading.records, std::move(reading.damage), std::move(reading.notes)};
+    return NavFile{*std::move(log),
+                   reading.records,
+                   std::move(reading.damage),
+                   std::move(reading.notes),
+                   std::move(reading.settings),
+                   std::move(reading.runs)};
   });
 }
 

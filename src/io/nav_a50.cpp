@@ -69,6 +69,21 @@ bool is_velocity(const A50Report& report) {
   return report.kind == A50Report::Kind::kVelocity;
 }
 
+/// The host's clock may have been set while it recorded: puts its times on one clock, by that of the device.
+/// @return where it was set
+std::vector<ClockSetting> correct_host_clock(std::vector<A50Report>& reports) {
+  std::vector<ReceivedMessage> messages;
+  for (const A50Report& report : reports) {
+    if (report.host_clock_s) messages.push_back({*report.host_clock_s, report.made_s});
+  }
+  ReceiverTimes times = receiver_times(messages);
+  auto next = times.times_s.begin();
+  for (A50Report& report : reports) {
+    if (report.host_clock_s) report.host_clock_s = *next++;
+  }
+  return std::move(times.settings);
+}
+
 /// Puts reports on one clock: the host's where the log has it, else the device's, else the sum of the steps.
 class ReportTimes {
  public:
@@ -146,6 +161,7 @@ NavReading read_a50(std::span<const std::uint8_t> bytes) {
     reports.push_back(*report);
   }
   leave_out_deprecated(reports);
+  reading.settings = correct_host_clock(reports);
   NavSources sources;
   ReportTimes times(reports);
   for (const A50Report& report : reports) add_a50_report(sources, kName, times.time_of(report), report);

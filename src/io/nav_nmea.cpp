@@ -123,8 +123,8 @@ std::optional<double> time_of_day(std::string_view text) {
 std::optional<double> midnight(std::string_view day, std::string_view month, std::string_view year) {
   const auto d = count_in(day), m = count_in(month), y = count_in(year);
   if (!d || !m || !y || *d > 31 || *m > 12 || *y > 9999) return std::nullopt;
-  // Two digits: receivers know no year before that of GPS.
-  const auto full = static_cast<int>(*y) + (year.size() == 2 ? (*y < 80 ? 2000 : 1900) : 0);
+  // Two digits: computers and receivers whose clock was not set say 1970 or 1980.
+  const auto full = static_cast<int>(*y) + (year.size() == 2 ? (*y < 70 ? 2000 : 1900) : 0);
   const std::chrono::year_month_day date(std::chrono::year(full), std::chrono::month(static_cast<unsigned>(*m)),
                                          std::chrono::day(static_cast<unsigned>(*d)));
   if (!date.ok()) return std::nullopt;

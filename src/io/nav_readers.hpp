@@ -17,6 +17,8 @@ struct NavReading {
   std::size_t records = 0;
   std::vector<DamageKind> damage;  ///< in the order in which the kinds were met
   std::vector<std::string> notes;  ///< as those of NavFile
+  std::vector<ClockSetting> settings;
+  std::vector<DeviceRun> runs;
 };
 
 bool looks_like_tlog(std::span<const std::uint8_t> bytes);

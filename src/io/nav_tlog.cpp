@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -20,6 +21,8 @@
 // The navigation in the telemetry log of a ground station.
 namespace pingvox {
 namespace {
+
+constexpr double kUnknownTime_s = std::numeric_limits<double>::quiet_NaN();
 
 /// By which of several clocks each message of a sender was made. Two vehicles with the same address take turns; one
 /// that is started anew does not go back to its clock of before.
@@ -58,51 +61,64 @@ struct Clocks {
 class TlogNav {
  public:
   void add(const TlogRecord& record) {
+    const double received_s = static_cast<double>(record.time_us) * 1e-6;
     const std::uint8_t system = record.frame.system;
     if (MavlinkNav::is_of_vehicle(record.frame)) ++frames_of_vehicles_[system];
-    for (const MavlinkNav::Report& report : nav_.add(record.frame, static_cast<double>(record.time_us) * 1e-6)) {
+    const std::size_t place = messages_.size();
+    messages_.push_back({received_s, std::nullopt});
+    for (const MavlinkNav::Report& report : nav_.add(record.frame, received_s)) {
       const bool is_taken = sources_.add(report.source, report.quantity, report.sample) != nullptr;
       if (!is_taken) continue;
-      made_[{report.source, report.quantity}].push_back(made_of(report));
+      origins_[{report.source, report.quantity}].push_back({place, timed_of(report, place)});
       senders_[report.source] = {system, record.frame.component};
     }
   }
 
   /// Times are estimated from the whole log. Of several vehicles the one with the most messages is read.
-  /// @param notes  gets what was left out
-  std::vector<NavSource> finish(std::vector<std::string>& notes) {
-    std::vector<NavSource> sources = sources_.take();
-    leave_out_other_systems(sources, notes);
-    std::map<MavlinkNav::Sender, std::vector<double>> times_s;
-    for (const auto& [sender, times] : times_) times_s[sender] = times_of(sender, times, sources, notes);
-    for (NavSource& source : sources) {
-      const auto& made = made_.at({source.name, source.quantity});
-      for (std::size_t i = 0; i < source.samples.size(); ++i) {
-        if (made[i]) source.samples[i].time_s = times_s.at(made[i]->sender)[made[i]->place];
-      }
-    }
-    std::erase_if(sources, [](NavSource& source) {
+  void finish(NavReading& reading) {
+    reading.sources = sources_.take();
+    leave_out_other_systems(reading);
+    std::map<MavlinkNav::Sender, Places> own;
+    for (const auto& [sender, timed] : timed_) own[sender] = places_of_one_device(sender, timed, reading);
+    const ReceiverTimes received = receiver_times(messages_of_one_device(own));
+    for (const auto& [sender, places] : own) find_times(sender, places, received, reading);
+    for (NavSource& source : reading.sources) set_times(source, received);
+    std::erase_if(reading.sources, [](NavSource& source) {
       std::erase_if(source.samples, [](const NavSample& sample) { return !std::isfinite(sample.time_s); });
       return source.samples.empty();
     });
-    return sources;
+    reading.settings = received.settings;
   }
 
  private:
-  /// Where the time of a message is in `times_`.
+  static constexpr std::uint8_t kAutopilot = 1;  // component
+
+  /// A message with a time of its sender.
+  struct Timed {
+    std::size_t message;
+    double made_s;
+  };
+  /// Where a message is in `timed_`.
   struct Made {
     MavlinkNav::Sender sender;
     std::size_t place;
   };
+  /// The message that a sample is of.
+  struct Origin {
+    std::size_t message;
+    std::optional<Made> made;
+  };
+  /// Of a sender's messages in `timed_`.
+  using Places = std::vector<std::size_t>;
 
-  std::optional<Made> made_of(const MavlinkNav::Report& report) {
+  std::optional<Made> timed_of(const MavlinkNav::Report& report, std::size_t message) {
     if (!report.made) return std::nullopt;
-    std::vector<DeviceTime>& times = times_[report.made->sender];
-    times.push_back(report.made->time);
-    return Made{report.made->sender, times.size() - 1};
+    std::vector<Timed>& timed = timed_[report.made->sender];
+    timed.push_back({message, report.made->time.made_s});
+    return Made{report.made->sender, timed.size() - 1};
   }
 
-  void leave_out_other_systems(std::vector<NavSource>& sources, std::vector<std::string>& notes) const {
+  void leave_out_other_systems(NavReading& reading) {
     if (frames_of_vehicles_.size() < 2) return;
     const auto vehicle =
         std::ranges::max_element(frames_of_vehicles_, {}, [](const auto& frames) { return frames.second; });
@@ -111,44 +127,70 @@ class TlogNav {
       if (system == vehicle->first) continue;
       others += fmt::format("{}{} ({} messages)", others.empty() ? "" : ", ", system, frames);
     }
-    notes.push_back(fmt::format("holds several vehicles: system {} ({} messages) is read, left out: system {}",
-                                vehicle->first, vehicle->second, others));
-    std::erase_if(sources, [&](const NavSource& source) {
-      const std::uint8_t system = senders_.at(source.name).first;
-      return system != vehicle->first && frames_of_vehicles_.contains(system);
-    });
+    reading.notes.push_back(fmt::format("holds several vehicles: system {} ({} messages) is read, left out: system {}",
+                                        vehicle->first, vehicle->second, others));
+    const auto is_other = [&](const MavlinkNav::Sender& sender) {
+      return sender.first != vehicle->first && frames_of_vehicles_.contains(sender.first);
+    };
+    std::erase_if(reading.sources, [&](const NavSource& source) { return is_other(senders_.at(source.name)); });
+    std::erase_if(timed_, [&](const auto& timed) { return is_other(timed.first); });
   }
 
-  /// Times of the messages of a sender. Not a number: of another vehicle with the same address.
-  std::vector<double> times_of(const MavlinkNav::Sender& sender, const std::vector<DeviceTime>& times,
-                               std::vector<NavSource>& sources, std::vector<std::string>& notes) const {
+  /// The messages of the device that sent most of them, where several have one address.
+  Places places_of_one_device(const MavlinkNav::Sender& sender, const std::vector<Timed>& timed, NavReading& reading) {
+    std::vector<DeviceTime> times;
+    for (const Timed& t : timed) times.push_back({messages_[t.message].received_s, t.made_s});
     const Clocks clocks(times);
-    if (!clocks.are_of_several()) return device_times_s(times);
-    const std::size_t vehicle = clocks.most_used();
-    std::vector<DeviceTime> own;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      if (clocks.of[i] == vehicle) own.push_back(times[i]);
+    const bool are_of_several = clocks.are_of_several();
+    const std::size_t most_used = clocks.most_used();
+    Places places;
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+      if (!are_of_several || clocks.of[i] == most_used) places.push_back(i);
     }
-    const std::vector<double> own_s = device_times_s(own);
-    std::vector<double> times_s(times.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0, next = 0; i < times.size(); ++i) {
-      if (clocks.of[i] == vehicle) times_s[i] = own_s[next++];
-    }
-    notes.push_back(fmt::format(
+    if (!are_of_several) return places;
+    reading.notes.push_back(fmt::format(
         "holds several vehicles with the same address, system {}, which were switched on at different times: {} "
         "samples of one are read, left out: {} of others, and those of messages that do not tell their time",
-        sender.first, own.size(), times.size() - own.size()));
-    leave_out_messages_without_time(sender, sources);
-    return times_s;
+        sender.first, places.size(), timed.size() - places.size()));
+    shared_.push_back(sender);
+    return places;
   }
 
-  /// Whose they are cannot be told.
-  void leave_out_messages_without_time(const MavlinkNav::Sender& sender, std::vector<NavSource>& sources) const {
-    for (NavSource& source : sources) {
-      if (senders_.at(source.name) != sender) continue;
-      const auto& made = made_.at({source.name, source.quantity});
-      for (std::size_t i = 0; i < source.samples.size(); ++i) {
-        if (!made[i]) source.samples[i].time_s = std::numeric_limits<double>::quiet_NaN();
+  /// With the times of the sender that says most of them.
+  std::vector<ReceivedMessage> messages_of_one_device(const std::map<MavlinkNav::Sender, Places>& own) const {
+    std::vector<ReceivedMessage> messages = messages_;
+    const auto most = std::ranges::max_element(own, {}, [](const auto& places) { return places.second.size(); });
+    if (most == own.end()) return messages;
+    const std::vector<Timed>& timed = timed_.at(most->first);
+    for (const std::size_t place : most->second) messages[timed[place].message].made_s = timed[place].made_s;
+    return messages;
+  }
+
+  /// Finds when the messages of a sender were made; the time of others with its address stays unknown.
+  void find_times(const MavlinkNav::Sender& sender, const Places& places, const ReceiverTimes& received,
+                  NavReading& reading) {
+    const std::vector<Timed>& timed = timed_.at(sender);
+    std::vector<DeviceTime> times;
+    for (const std::size_t place : places)
+      times.push_back({received.times_s[timed[place].message], timed[place].made_s});
+    const std::vector<double> found_s = device_times_s(times);
+    std::vector<double>& made_s = made_s_[sender];
+    made_s.assign(timed.size(), kUnknownTime_s);
+    for (std::size_t i = 0; i < places.size(); ++i) made_s[places[i]] = found_s[i];
+    if (sender.second == kAutopilot) std::ranges::move(device_runs(times), std::back_inserter(reading.runs));
+  }
+
+  /// Where several devices share an address, whose messages without a time are is not known.
+  void set_times(NavSource& source, const ReceiverTimes& received) const {
+    const std::vector<Origin>& origins = origins_.at({source.name, source.quantity});
+    const bool is_shared = std::ranges::find(shared_, senders_.at(source.name)) != shared_.end();
+    for (std::size_t i = 0; i < source.samples.size(); ++i) {
+      const auto& [message, made] = origins[i];
+      double& time_s = source.samples[i].time_s;
+      if (made) {
+        time_s = made_s_.at(made->sender)[made->place];
+      } else {
+        time_s = is_shared ? kUnknownTime_s : time_s + received.times_s[message] - messages_[message].received_s;
       }
     }
   }
@@ -157,8 +199,11 @@ class TlogNav {
   NavSources sources_;
   std::map<std::uint8_t, std::size_t> frames_of_vehicles_;  ///< with navigation, by system
   std::map<std::string, MavlinkNav::Sender> senders_;       ///< of each source
-  std::map<MavlinkNav::Sender, std::vector<DeviceTime>> times_;
-  std::map<std::pair<std::string, NavQuantity>, std::vector<std::optional<Made>>> made_;  ///< of each sample
+  std::vector<MavlinkNav::Sender> shared_;                  ///< whose address several devices have
+  std::vector<ReceivedMessage> messages_;                   ///< of all records, without times of devices
+  std::map<MavlinkNav::Sender, std::vector<Timed>> timed_;
+  std::map<MavlinkNav::Sender, std::vector<double>> made_s_;                    ///< when those of `timed_` were made
+  std::map<std::pair<std::string, NavQuantity>, std::vector<Origin>> origins_;  ///< of each sample
 };
 
 }  // namespace
@@ -179,7 +224,7 @@ NavReading read_tlog(std::span<const std::uint8_t> bytes) {
   reading.clock = NavClock::kUnix;
   TlogNav nav;
   reading.records = for_each_tlog_record(bytes, reading.damage, [&nav](const TlogRecord& record) { nav.add(record); });
-  reading.sources = nav.finish(reading.notes);
+  nav.finish(reading);
   return reading;
 }
 

@@ -14,12 +14,17 @@ constexpr std::size_t kTime = 8;
 constexpr std::uint64_t kYear2005_us = 1'104'537'600'000'000, kYear2100_us = 4'102'444'800'000'000;
 constexpr std::uint64_t kMinute_us = 60'000'000;
 
-/// The time in front of a possible record.
+/// The time in front of a possible record. A computer without a clock starts in 1970, 1980 or 2000.
 std::optional<std::uint64_t> time_at(std::span<const std::uint8_t> bytes) {
   if (bytes.size() <= kTime || (bytes[kTime] != 0xfe && bytes[kTime] != 0xfd)) return std::nullopt;
   const auto time_us = value_from<std::uint64_t>(bytes.first(kTime), std::endian::big);
-  if (time_us < kYear2005_us || time_us > kYear2100_us) return std::nullopt;
+  if (time_us == 0 || time_us > kYear2100_us) return std::nullopt;
   return time_us;
+}
+
+/// Whether it may be a date of a clock that was set: there were no such logs before.
+bool is_date(std::uint64_t time_us) {
+  return time_us >= kYear2005_us;
 }
 
 std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
@@ -33,11 +38,50 @@ bool may_follow(std::span<const std::uint8_t> bytes, std::uint64_t before_us) {
   return time_us && difference(*time_us, before_us) <= kMinute_us;
 }
 
+bool is_right(const MavlinkFrame& frame) {
+  using Check = MavlinkFrame::Check;
+  return frame.check == Check::kRight || frame.check == Check::kRightPadded;
+}
+
+/// Whether records from here on, each at most a minute after the one before, lead to one with a right checksum or to
+/// the end of the file.
+bool leads_to_right_record(std::span<const std::uint8_t> bytes, std::uint64_t before_us) {
+  constexpr int kMaxRecords = 64;
+  for (int i = 0; i < kMaxRecords; ++i) {
+    if (!may_follow(bytes, before_us)) return false;
+    if (bytes.size() <= kTime) return true;
+    before_us = *time_at(bytes);
+    const MavlinkRead read = read_mavlink(bytes.subspan(kTime));
+    if (!read.frame) return read.is_cut;
+    if (is_right(*read.frame)) return true;
+    bytes = bytes.subspan(kTime + read.length);
+  }
+  return false;
+}
+
+/// Whether bytes that look like a frame, but whose checksum is wrong or unknown, are a record: others follow.
+/// @param rest       what is behind it
+/// @param latest_us  time of the record before it
+bool is_between_records(std::uint64_t time_us, std::optional<std::uint64_t> latest_us,
+                        std::span<const std::uint8_t> rest) {
+  const bool is_likely = is_date(time_us) || (latest_us && difference(time_us, *latest_us) <= kMinute_us);
+  return is_likely ? may_follow(rest, time_us) : leads_to_right_record(rest, time_us);
+}
+
 /// Whether a time is far from those before and after it, which agree: a wrong bit, not a clock that was set.
 bool is_alone(std::uint64_t before_us, std::uint64_t time_us, std::uint64_t after_us) {
   constexpr std::uint64_t kFar_us = 1'000'000;
   return difference(before_us, after_us) <= kFar_us && difference(before_us, time_us) > kFar_us &&
          difference(time_us, after_us) > kFar_us;
+}
+
+/// Whether a time is none of a clock that was set, and far from those before and after it.
+bool is_undated_alone(std::optional<std::uint64_t> before_us, std::uint64_t time_us,
+                      std::optional<std::uint64_t> after_us) {
+  const auto is_far = [&](std::optional<std::uint64_t> other_us) {
+    return !other_us || difference(*other_us, time_us) > kMinute_us;
+  };
+  return !is_date(time_us) && (before_us || after_us) && is_far(before_us) && is_far(after_us);
 }
 
 /// A record whose time is judged by that of the next one.
@@ -64,11 +108,13 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
   std::optional<HeldRecord> held;
   const auto pass_on = [&](std::optional<std::uint64_t> after_us) {
     if (!held) return;
-    if (before_us && after_us && is_alone(*before_us, held->record.time_us, *after_us)) {
+    const std::uint64_t time_us = held->record.time_us;
+    if ((before_us && after_us && is_alone(*before_us, time_us, *after_us)) ||
+        is_undated_alone(before_us, time_us, after_us)) {
       add_damage(damage, "wrong time", held->at);
     } else {
       ++records;
-      before_us = held->record.time_us;
+      before_us = time_us;
       take(held->record);
     }
     held.reset();
@@ -79,9 +125,8 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
     const MavlinkRead read = time_us ? read_mavlink(rest.subspan(kTime)) : MavlinkRead{};
     const std::size_t length = kTime + read.length;
     // Without a correct checksum, the bytes that follow decide whether this was a record.
-    const bool is_right =
-        read.frame && (read.frame->check == Check::kRight || read.frame->check == Check::kRightPadded);
-    if (!is_right && !(read.frame && may_follow(rest.subspan(length), *time_us))) {
+    const std::optional<std::uint64_t> latest_us = held ? held->record.time_us : before_us;
+    if (!read.frame || (!is_right(*read.frame) && !is_between_records(*time_us, latest_us, rest.subspan(length)))) {
       if (!is_stray) stray_from = at;
       is_stray = true;
       is_cut = is_cut || read.is_cut || rest.size() <= kTime;

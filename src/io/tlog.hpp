@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// A frame and when it was received [us since 1970].
+/// A frame and when it was received [us since 1970 by the computer's clock, which may not have been set].
 struct TlogRecord {
   std::uint64_t time_us = 0;
   MavlinkFrame frame;

@@ -1,5 +1,6 @@
 // Logs of Water Linked's DVLs: JSON, serial, and tables of the same names.
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -170,6 +171,28 @@ TEST(A50, CountsDamageByKindAndPlace) {
   // The vendor's example for water tracking has a wrong checksum.
   EXPECT_FALSE(
       format_of(a50_file("wrs,0.120,-0.400,2.000,y,1.855,1e-07;0;1.4;0;1.2;0;0.2;0;1e+09,7,14,123.00,1*50\n").view()));
+}
+
+// Kills a dive on two dates, of a host whose clock was set meanwhile.
+TEST(A50, TheClockOfTheHostMayBeSetLaterOrBack) {
+  for (const bool is_set_back : {false, true}) {
+    std::string log = "timestamp,vx,vy,vz,altitude,velocity_valid,time_of_validity,time_of_transmission\n";
+    for (int i = 0; i < 60; ++i) {
+      const bool is_dated = (i < 30) == is_set_back;
+      log += fmt::format("{}.{},1,2,3,0.5,True,{},{}\n", (is_dated ? 1'700'000'000 : 100) + i / 10, i % 10,
+                         5'000'000 + i * 100'000, 5'000'000 + i * 100'000);
+    }
+    const NavFile nav = read_as_a50(log);
+    EXPECT_EQ(nav.records, 60U);
+    EXPECT_EQ(nav.log.clock(), NavClock::kUnix);
+    ASSERT_EQ(nav.settings.size(), 1U);
+    EXPECT_NEAR(nav.settings[0].by_s.value_or(0.0), is_set_back ? -1'699'999'900.0 : 1'699'999'900.0, 1e-5);
+    const auto& velocities = samples_of(nav, NavQuantity::kVelocity);
+    ASSERT_EQ(velocities.size(), 60U);
+    for (std::size_t i = 0; i < 60; ++i) {
+      ASSERT_NEAR(velocities[i].time_s, 1.7e9 + 0.1 * static_cast<double>(i), 1e-5);
+    }
+  }
 }
 
 TEST(A50, ReadsATableWithTheTimesOfTheHost) {

@@ -83,6 +83,12 @@ TEST(Nmea, ADateWithoutAFixCountsWhereThereIsNoOther) {
   EXPECT_DOUBLE_EQ(samples_of(under_water, "GPHDT").at(0).time_s, kRmc_s - 2.0);
 }
 
+// A computer without a clock wrote 1970, and its log was of 2070.
+TEST(Nmea, TwoDigitsOfAClockThatWasNotSetAreNoYearToCome) {
+  const NavFile nav = read_as_nmea("$GPRMC,000140.00,A,4736.4517,N,12220.4723,W,0.1,194.8,010170,15.2,E,A*16\r\n");
+  EXPECT_DOUBLE_EQ(samples_of(nav, "GPRMC").at(0).time_s, 100.0);
+}
+
 // Kills headings that vanish without a word.
 TEST(Nmea, ALogWithoutAnyTimeIsTold) {
   const NavFile nav = read_as_nmea("$GPHDT,90.0,T*0C\r\n");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -322,6 +323,101 @@ TEST(Tlog, DamageBehindAWrongTimeIsNotTheFirst) {
   EXPECT_EQ(damage[0].what, "wrong time");
   EXPECT_EQ(damage[0].first_byte, record);
   EXPECT_EQ(damage[1].what, "wrong checksum");
+}
+
+/// Attitudes in turn with fixes, whose messages have no time of their own, ten times a second.
+template <class Clock>
+std::vector<std::uint8_t> dive_by(const Clock& clock_s, int count = 300) {
+  std::vector<std::uint8_t> bytes;
+  for (int k = 0; k < count; ++k) {
+    const auto time_us = static_cast<std::uint64_t>(std::llround((clock_s(k) + 0.1 * k) * 1e6));
+    const auto boot_ms = static_cast<std::uint32_t>(100'000 + 100 * k);
+    std::vector<std::uint8_t> attitude(28), fix(30);
+    for (unsigned i = 0; i < 4; ++i) attitude[i] = static_cast<std::uint8_t>(boot_ms >> (8 * i));
+    fix[8] = fix[12] = fix[28] = 3;
+    for (const auto& [message, payload] : {std::pair(30U, attitude), std::pair(24U, fix)}) {
+      for (int shift = 56; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(time_us >> shift));
+      const std::vector<std::uint8_t> frame = make_mavlink_frame(message, payload, {});
+      bytes.insert(bytes.end(), frame.begin(), frame.end());
+    }
+  }
+  return bytes;
+}
+
+// Logs of 1970 and 1980 were of an unknown format, and where the clock was set, half of the records were one damage.
+TEST(Tlog, TheClockOfTheComputerMayBeSetLaterOrBackOrNever) {
+  constexpr double kDate_s = 1'684'351'479.0, kYear1980_s = 315'532'800.0;
+  const auto first = [](double before_s, double after_s) {
+    return [=](int k) { return k < 150 ? before_s : after_s; };
+  };
+  const struct {
+    double before_s, after_s, right_s;
+  } cases[] = {{100.0, 100.0, 100.0},     {kYear1980_s, kYear1980_s, kYear1980_s},
+               {100.0, kDate_s, kDate_s}, {kYear1980_s, kDate_s, kDate_s},
+               {kDate_s, 100.0, kDate_s}, {kDate_s, kYear1980_s, kDate_s}};
+  for (const auto& [before_s, after_s, right_s] : cases) {
+    SCOPED_TRACE(testing::Message() << before_s << ", " << after_s);
+    const std::vector<std::uint8_t> bytes = dive_by(first(before_s, after_s));
+    EXPECT_EQ(format_of(bytes), Format::kTlog);
+    const auto nav = read_as_tlog(bytes, Damage::kFail);
+    ASSERT_TRUE(nav) << nav.error().message;
+    EXPECT_EQ(nav->records, 600U);
+    EXPECT_EQ(nav->settings.size(), before_s == after_s ? 0U : 1U);
+    ASSERT_EQ(nav->runs.size(), 1U);
+    EXPECT_NEAR(nav->runs[0].zero_s, right_s - 100.0, 1e-5);
+    ASSERT_EQ(nav->log.sources().size(), 3U);
+    for (const NavSource& source : nav->log.sources()) {
+      ASSERT_EQ(source.samples.size(), 300U);
+      EXPECT_FALSE(source.step_back) << source.name;
+      for (int k = 0; k < 300; ++k) {
+        ASSERT_NEAR(source.samples[static_cast<std::size_t>(k)].time_s, right_s + 0.1 * k, 1e-5) << source.name;
+      }
+    }
+  }
+}
+
+// Kills records of unknown messages that are taken for damage because their dates are none, and ghosts that are taken
+// for records.
+TEST(Tlog, AMessageThatIsNotKnownIsARecordInAnyYearIfRightOnesFollow) {
+  const auto unknown = [](double time_s) {
+    std::vector<std::uint8_t> record;
+    const auto time_us = static_cast<std::uint64_t>(time_s * 1e6);
+    for (int shift = 56; shift >= 0; shift -= 8) record.push_back(static_cast<std::uint8_t>(time_us >> shift));
+    const auto frame = from_hex("fd010000000101f0ff00 07 1234");
+    record.insert(record.end(), frame.begin(), frame.end());
+    return record;
+  };
+  std::vector<std::uint8_t> bytes;
+  for (const double time_s : {99.8, 99.9}) {
+    const auto record = unknown(time_s);
+    bytes.insert(bytes.end(), record.begin(), record.end());
+  }
+  const auto dive = dive_by([](int) { return 100.0; }, 10);
+  bytes.insert(bytes.end(), dive.begin(), dive.end());
+  std::vector<DamageKind> damage;
+  EXPECT_EQ(times_in(bytes, damage).size(), 22U);
+  EXPECT_TRUE(damage.empty());
+  // In front of what is no record it is none either.
+  auto ghost = unknown(99.8);
+  ghost.insert(ghost.end(), 40, 0x55);
+  ghost.insert(ghost.end(), dive.begin(), dive.end());
+  EXPECT_EQ(times_in(ghost, damage).size(), 20U);
+  ASSERT_EQ(damage.size(), 1U);
+  EXPECT_EQ(damage[0].what, "bytes between records");
+}
+
+// Kills a wrong bit in the first or last time of a log that makes a record of 1970 of it.
+TEST(Tlog, ATimeWithoutADateIsNotAlone) {
+  constexpr std::uint64_t kStart_us = 1'683'220'541'493'000, kStep_us = 10'000;
+  for (const std::size_t wrong : {0U, 3U}) {
+    std::vector<std::uint64_t> times_us = {kStart_us, kStart_us + kStep_us, kStart_us + 2 * kStep_us,
+                                           kStart_us + 3 * kStep_us};
+    times_us[wrong] &= 0xff'ffff'ffffU;
+    std::vector<DamageKind> damage;
+    EXPECT_EQ(times_in(tlog_at(times_us), damage).size(), 3U);
+    ASSERT_EQ(damage.size(), 1U);
+    EXPECT_EQ(damage[0].what, "wrong time");
+  }
 }
 
 struct TlogRecording {

@@ -8,7 +8,9 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/bytes.hpp"
+#include "pingvox/nav/device_clock.hpp"
 #include "pingvox/nav/nav_log.hpp"
+#include "pingvox/nav/receiver_clock.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 
@@ -20,6 +22,10 @@ struct NavFile {
   std::size_t records = 0;              ///< frames, records or lines that were read, with or without navigation
   std::vector<DamageKind> damage;       ///< in the order in which the kinds were met
   std::vector<std::string> notes = {};  ///< what was left out though it is not damaged: what other vehicles sent
+  /// Where the clock of who recorded it was set; times before and after are on one clock where it is known by how much.
+  std::vector<ClockSetting> settings = {};
+  /// The starts of the autopilot, where its messages have times of its own: its log counts from one of them.
+  std::vector<DeviceRun> runs = {};
 };
 
 /// Reads any navigation log; the format is recognised by content. Units and frames are converted to those

@@ -65,7 +65,7 @@ struct NavSource {
   std::vector<NavSample> samples;
   std::optional<ClockStep> step_back = std::nullopt;  ///< nullopt: its clock was not set back
   std::size_t late = 0;  ///< samples that came more than kMaxLate_s after a later one, and were put in order
-  std::vector<SourceStep> steps = {};                 ///< in order of time
+  std::vector<SourceStep> steps = {};  ///< in order of time
   /// Why its values cannot be used, as in "latitude of 54.3 rad is beyond pi/2: is it in degrees?"; empty: nothing is
   /// wrong with them. Nothing is computed from a source with a fault.
   std::string fault = {};
