@@ -23,6 +23,8 @@
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/mapping/beam_model.hpp"
+#include "pingvox/nav/receiver_clock.hpp"
+#include "pingvox/nav/time_order.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -166,6 +168,7 @@ class BeamSurvey {
     if (beams_++ == 0) first_s_ = last_s_ = beam.time_s;
     first_s_ = std::min(first_s_, beam.time_s);
     last_s_ = std::max(last_s_, beam.time_s);
+    order_.add(beam.time_s);
     fewest_bins_ = std::min(fewest_bins_, beam.intensities.size());
     most_bins_ = std::max(most_bins_, beam.intensities.size());
     longest_m_ = std::max(longest_m_, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
@@ -202,6 +205,7 @@ class BeamSurvey {
         .add("bin_lengths", lengths_json(lengths))
         .add("duration_s", last_s_ - first_s_)
         .add("clock", name_of(source.clock()))
+        .add("late", order_.late())
         .add("sector_deg", sector)
         .add("echoes", echoes_)
         .add("threshold", threshold)
@@ -214,7 +218,7 @@ class BeamSurvey {
                       report_line("bin length", lengths_text(lengths)) +
                       report_line("range", fmt::format("{:.6g} m", longest_m_)) +
                       report_line("sector", fmt::format("{:.6g} degrees", sector)) +
-                      report_line("duration", beam_duration_text(source.clock())) +
+                      report_line("duration", beam_duration_text(source.clock())) + order_text() +
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
     if (const DeviceProfile* device = source.device()) {
@@ -246,7 +250,21 @@ class BeamSurvey {
     if (clock == BeamClock::kNone) return "not known: the log has no times";
     const std::string text = duration_text(first_s_, last_s_);
     if (clock == BeamClock::kTimeOfDay) return text + " of the day";
+    if (first_s_ < kFirstDate_s && last_s_ >= kFirstDate_s) {
+      return fmt::format("{} to {}: its clock was not set all the time", text, date_text(last_s_));
+    }
     return date_text(first_s_).empty() ? text : text + " by its clock";
+  }
+
+  /// Of beams that came after later ones.
+  std::string order_text() const {
+    if (const std::optional<ClockStep> step = order_.step_back()) {
+      return report_line("clock back",
+                         fmt::format("by {:.3f} s, from {:.3f} to {:.3f} s; {} late", step->from_s - step->to_s,
+                                     step->from_s, step->to_s, counted(step->late, "beam")));
+    }
+    if (order_.late() == 0) return "";
+    return report_line("late", counted(order_.late(), "beam") + " behind a later one: messages were swapped");
   }
 
   void take(const std::optional<Sweep>& sweep) {
@@ -268,6 +286,7 @@ class BeamSurvey {
   double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
   bool has_turn_ = false;
   std::map<double, std::size_t> bin_lengths_;
+  TimeOrder order_;
   std::set<double> bearings_rad_;  ///< rounded: their number is bounded, however long the log
   SweepAssembler assembler_;
 };

@@ -129,6 +129,7 @@ JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& c
       .add("skipped", path.nav->damaged)
       .add("velocity", path.nav->velocity)
       .add("clock", json_of(path.nav->offset))
+      .add("logs", nav_logs_json(path.nav->offset))
       .add("frame", frame_text(*path.nav));
   if (!path.warnings.empty()) json.add("warnings", fmt::format("{}", fmt::join(path.warnings, "; ")));
   return clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
@@ -211,7 +212,7 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path)) +
                          report_line("nav clock", text_of(path.nav->offset, totals.clock_check)) +
-                         report_line("frame", frame_text(*path.nav))
+                         nav_logs_text(path.nav->offset) + report_line("frame", frame_text(*path.nav))
                    : "") +
          (stands_still ? report_line("vehicle", "stands still: no --poses, no --nav") : "") + beams +
          map_text(map, map.counts()) +

@@ -17,6 +17,7 @@
 #include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "pingvox/io/beams_in_order.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/sonar/device_profile.hpp"
@@ -52,20 +53,21 @@ Result<Read> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCom
   }
   Read read{.skipped = nav.damaged};
   for (const std::string& name : command.logs) {
-    const auto log = first ? std::exchange(first, nullptr) : open_slam_beams(name, command);
+    auto log = first ? std::exchange(first, nullptr) : open_slam_beams(name, command);
     if (!log) return tl::unexpected(log.error());
     if (!command.navs.empty()) {
       if (const auto has = check_has_times(**log, name); !has) return tl::unexpected(has.error());
     }
+    const std::unique_ptr<BeamSource> beams = in_order(*std::move(log), name);
     for (;;) {
-      Result<std::optional<Beam>> beam = (*log)->next();
+      Result<std::optional<Beam>> beam = beams->next();
       if (!beam) return tl::unexpected(beam.error());
       if (!*beam) break;
       smoother.add(std::move(**beam));
       ++read.beams;
     }
-    read.skipped += (*log)->skipped();
-    if (const std::string note = (*log)->note(); !note.empty()) read.notes.push_back(fmt::format("{}: {}", name, note));
+    read.skipped += beams->skipped();
+    if (const std::string note = beams->note(); !note.empty()) read.notes.push_back(fmt::format("{}: {}", name, note));
   }
   return read;
 }
@@ -126,8 +128,8 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   if (!nav) return tl::unexpected(nav.error());
   for (const std::string& warning : nav->warnings) console.say(warning);
   Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, nav->log,
-                 {command.logs.front(), command.bag.beams, command.slam.body_from_sonar}, command.damage);
+      nav_offset(command.nav_offset_s, *nav, {command.logs.front(), command.bag.beams, command.slam.body_from_sonar},
+                 command.damage);
   if (!offset) return tl::unexpected(offset.error());
   SlamInputs inputs;
   inputs.nav_offset = *std::move(offset);

@@ -14,6 +14,7 @@
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "pingvox/io/beams_in_order.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "step_report.hpp"
@@ -45,7 +46,7 @@ Result<LocateMotion> read_motion(const LocateCommand& command) {
     motion.water = *water;
   }
   Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, nav->log,
+      nav_offset(command.nav_offset_s, *nav,
                  {command.logs.front(), command.bag.beams, command.localizer.body_from_sonar}, command.damage);
   if (!offset) return tl::unexpected(offset.error());
   OdometryOptions options = command.nav;
@@ -82,17 +83,17 @@ Result<std::vector<Beam>> read_beams(const LocateCommand& command, std::size_t& 
     Result<ByteStream> stream = ByteStream::open(name);
     if (!stream) return tl::unexpected(stream.error());
     const std::string shown = stream->name();
-    const auto source =
-        open_log(std::move(*stream), command.damage, std::nullopt, command.bag.beams).and_then([&](Log log) {
-          return only_beams(std::move(log), shown);
-        });
+    auto source = open_log(std::move(*stream), command.damage, std::nullopt, command.bag.beams).and_then([&](Log log) {
+      return only_beams(std::move(log), shown);
+    });
     if (!source) return tl::unexpected(source.error());
     if (!command.navs.empty()) {
       if (const auto has = check_has_times(**source, shown); !has) return tl::unexpected(has.error());
     }
-    Result<std::vector<Beam>> read = read_all(**source);
+    const std::unique_ptr<BeamSource> ordered = in_order(*std::move(source), shown);
+    Result<std::vector<Beam>> read = read_all(*ordered);
     if (!read) return tl::unexpected(read.error());
-    skipped += (*source)->skipped();
+    skipped += ordered->skipped();
     std::ranges::move(*read, std::back_inserter(beams));
   }
   if (beams.empty()) {

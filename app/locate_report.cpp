@@ -82,6 +82,7 @@ std::string locate_json(const LocatedRecording& found, const LocateInputs& input
       .add("sound_speed_m_s", inputs.sound_speed_m_s)
       .add("motion", inputs.motion.text);
   inputs.motion.clock ? json.add("nav_clock", json_of(*inputs.motion.clock)) : json.add_null("nav_clock");
+  json.add("nav_logs", inputs.motion.clock ? nav_logs_json(*inputs.motion.clock) : std::vector<JsonObject>());
   found.clock_check ? json.add("clock_check", json_of(*found.clock_check)) : json.add_null("clock_check");
   json.add_truth("sure", found.is_sure()).add("hypotheses", hypotheses).add("sure_spans", spans);
   if (sure.empty()) {
@@ -103,7 +104,9 @@ std::string locate_text(const LocatedRecording& found, const LocateCommand& comm
                      : command.output == "-" ? "standard output\n"
                                              : on_one_line(command.output) + "\n";
   text += report_line("motion", motion.text);
-  if (motion.clock) text += report_line("nav clock", text_of(*motion.clock, found.clock_check));
+  if (motion.clock) {
+    text += report_line("nav clock", text_of(*motion.clock, found.clock_check)) + nav_logs_text(*motion.clock);
+  }
   text += motion.water ? report_line("water", water_text(*motion.water)) : sound_line(inputs.sound_speed_m_s);
   text += report_line(
       "trajectory", fmt::format("{} of {}, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",

@@ -136,7 +136,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
                     can_turn(nav->log) ? " ('pingvox slam' estimates the path from sonar and heading, for --poses)"
                                        : ", and no heading; another --nav may have them"));
   }
-  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, nav->log, log, damage);
+  const Result<NavOffset> offset = nav_offset(path.nav_offset_s, *nav, log, damage);
   if (!offset) return tl::unexpected(offset.error());
   const std::optional<WaterAround> water = water_around(nav->log);
   const auto name_files = [&](Error error) {

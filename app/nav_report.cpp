@@ -48,7 +48,8 @@ bool overlap(const NavSource& a, const NavSource& b) {
 struct NavPart {
   std::string name;
   BagContents contents;
-  double offset_s = 0.0;  ///< to add to its times to get those of the others
+  double offset_s = 0.0;                                 ///< to add to its times to get those of the others
+  std::optional<NavClockOffset> aligned = std::nullopt;  ///< nullopt: it did not have to be
 
   const NavLog& log() const { return contents.nav.log; }
 };
@@ -108,50 +109,94 @@ std::string names_of(const std::vector<const NavPart*>& parts) {
   return names;
 }
 
-/// To add to the times of a log that counts from a start to get dates, by how the vehicle turned in it and in one of
-/// the logs with dates, the one that tells it best.
-Result<ClockOffset> date_offset(const std::vector<const NavPart*>& dated,
-                                const std::vector<const NavPart*>& from_start) {
-  Result<ClockOffset> best = fail(Error::Code::kUnsupported, "the vehicle turns too little");
+/// To add to the times of a log that counts from a start to get dates: by the logs with dates, the pair that tells it
+/// best.
+Result<NavClockOffset> date_offset(const std::vector<const NavPart*>& dated,
+                                   const std::vector<const NavPart*>& from_start) {
+  using By = NavClockOffset::By;
+  Result<NavClockOffset> best = fail(Error::Code::kUnsupported, "the vehicle turns too little");
   for (const NavPart* with_dates : dated) {
-    const auto turns = yaw_changes(with_dates->log());
     for (const NavPart* without : from_start) {
-      const Result<ClockOffset> offset =
-          turns.and_then([&](const std::vector<YawChange>& changes) { return clock_offset(changes, without->log()); });
-      if (!best || (offset && offset->deviation_s < best->deviation_s)) best = offset;
+      const Result<NavClockOffset> offset =
+          nav_clock_offset(with_dates->log(), with_dates->contents.nav.runs, without->log());
+      const auto is_better = [&] {
+        return offset->by != best->by ? offset->by == By::kDevice : offset->deviation_s < best->deviation_s;
+      };
+      if (!best || (offset && is_better())) best = offset;
     }
   }
   return best;
 }
 
+/// Whether it counts from 1970 by a clock that was set.
+bool has_dates(const NavPart& part) {
+  return part.log().clock() == NavClock::kUnix &&
+         std::ranges::any_of(part.log().sources(),
+                             [](const NavSource& source) { return source.samples.back().time_s >= kFirstDate_s; });
+}
+
 /// Finds the offsets of the parts on another clock than `clock`, of which there is a part.
 Result<void> align(std::vector<NavPart>& parts, NavClock clock) {
-  std::vector<const NavPart*> dated, from_start;
+  // Where none was set, the clock of a computer is as good as one with dates.
+  const bool are_dated = std::ranges::any_of(parts, has_dates);
+  const auto is_dated = [&](const NavPart& part) {
+    return part.log().clock() == NavClock::kUnix && (!are_dated || has_dates(part));
+  };
+  std::vector<const NavPart*> dated, from_boot;
   for (const NavPart& part : parts) {
-    if (part.log().clock() == NavClock::kUnix) dated.push_back(&part);
-    if (part.log().clock() == NavClock::kBoot) from_start.push_back(&part);
+    if (is_dated(part)) dated.push_back(&part);
+    if (part.log().clock() == NavClock::kBoot) from_boot.push_back(&part);
   }
-  if (dated.empty() || from_start.empty()) return {};
+  if (dated.empty()) return {};
   const auto refuse = [](const Error& error, const std::vector<const NavPart*>& its,
                          const std::vector<const NavPart*>& others) {
     return fail(error.code, fmt::format("{}: the offset between its clock and that of {} cannot be found: {}",
                                         names_of(its), names_of(others), error.message));
   };
+  double zero_s = 0.0;  // date of the common clock's
   if (clock == NavClock::kBoot) {
-    const Result<ClockOffset> offset = date_offset(dated, from_start);
-    if (!offset) return refuse(offset.error(), dated, from_start);
+    const Result<NavClockOffset> offset = date_offset(dated, from_boot);
+    if (!offset) return refuse(offset.error(), dated, from_boot);
+    zero_s = offset->offset_s;
     for (NavPart& part : parts) {
-      if (part.log().clock() == NavClock::kUnix) part.offset_s = -offset->offset_s;
+      if (!is_dated(part)) continue;
+      part.aligned = *offset;
+      part.offset_s = -zero_s;
     }
-    return {};
   }
   for (NavPart& part : parts) {  // each from a start of its own
-    if (part.log().clock() != NavClock::kBoot) continue;
-    const Result<ClockOffset> offset = date_offset(dated, {&part});
+    if (part.log().clock() == NavClock::kUnknown || is_dated(part)) continue;
+    if (clock == NavClock::kBoot && part.log().clock() == NavClock::kBoot) continue;
+    const Result<NavClockOffset> offset = date_offset(dated, {&part});
     if (!offset) return refuse(offset.error(), {&part}, dated);
-    part.offset_s = offset->offset_s;
+    part.aligned = *offset;
+    part.offset_s = offset->offset_s - zero_s;
   }
   return {};
+}
+
+/// How the clocks of parts are joined, once they are aligned.
+std::vector<NavLogClock> clocks_of(const std::vector<NavPart>& parts) {
+  std::vector<NavLogClock> clocks;
+  for (const NavPart& part : parts) {
+    NavLogClock& clock = clocks.emplace_back();
+    clock.name = part.name;
+    clock.settings = part.contents.nav.settings;
+    if (clocks.size() == 1) continue;
+    const NavPart& first = parts.front();
+    clock.offset_s = part.offset_s - first.offset_s;
+    const NavClock own = part.log().clock();
+    if (const std::optional<NavClockOffset>& aligned = part.aligned ? part.aligned : first.aligned) {
+      clock.deviation_s = aligned->deviation_s;
+      clock.from = aligned->by == NavClockOffset::By::kDevice ? "the clock of the autopilot, which both have"
+                                                              : "how the vehicle turns in both";
+    } else if (own != first.log().clock() || own == NavClock::kUnknown) {
+      clock.from = "taken as one clock";
+    } else {
+      clock.from = own == NavClock::kUnix ? "both have dates" : "both count from the start of the device";
+    }
+  }
+  return clocks;
 }
 
 }  // namespace
@@ -191,7 +236,7 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
     warnings.push_back(fmt::format("{}: {}", files, faults));
   }
   for (const std::string& step : step_texts(*log)) warnings.push_back(fmt::format("{}: {}", files, step));
-  return NavFiles{*std::move(log), damaged, std::move(warnings)};
+  return NavFiles{*std::move(log), damaged, std::move(warnings), clocks_of(parts)};
 }
 
 Result<Water> water_of(const std::optional<WaterAround>& around, double salinity) {
@@ -221,7 +266,7 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("gaps", summary.gaps)
         .add("from_s", summary.from_s)
         .add("to_s", summary.to_s)
-        .add("late", source.step_back ? source.step_back->late : 0)
+        .add("late", source.late)
         .add("left_out", left_out(source.steps))
         .add("steps", steps_json(source.steps));
     if (!source.fault.empty()) json_of_source.add("fault", source.fault);
@@ -230,6 +275,7 @@ void add_nav(JsonObject& json, const NavFile& nav) {
   json.add("clock", name_of(nav.log.clock()))
       .add("records", nav.records)
       .add("sources", sources)
+      .add("clock_set", json_of(nav.settings))
       .add("skipped", damaged_records(nav));
   if (!nav.notes.empty()) json.add("notes", fmt::format("{}", fmt::join(nav.notes, "; ")));
 }
@@ -238,14 +284,39 @@ namespace {
 
 /// ", 2023-05-04 17:22:21 to 2023-05-04 17:55:02 UTC" where the clock has dates.
 std::string dates_text(const NavLog& log) {
-  if (log.clock() != NavClock::kUnix) return "";
+  if (log.clock() != NavClock::kUnix || log.sources().empty()) return "";
   double from_s = std::numeric_limits<double>::infinity(), to_s = -from_s;
   for (const NavSource& source : log.sources()) {
     from_s = std::min(from_s, source.samples.front().time_s);
     to_s = std::max(to_s, source.samples.back().time_s);
   }
+  if (to_s < kFirstDate_s) {
+    return fmt::format(", {:.3f} to {:.3f} s since 1970: the clock of the computer was not set", from_s, to_s);
+  }
   const std::string from = date_text(from_s), to = date_text(to_s);
+  if (from_s < kFirstDate_s) {
+    return fmt::format(", {:.3f} s since 1970 to {} UTC: the clock was not set at first", from_s, to);
+  }
   return from.empty() || to.empty() ? "" : fmt::format(", {} to {} UTC", from, to);
+}
+
+/// Samples that were put in order, and clocks that were set.
+std::string order_text(const NavFile& nav) {
+  std::string text;
+  for (const ClockSetting& setting : nav.settings) text += report_line("clock set", text_of(setting));
+  for (const NavSource& source : nav.log.sources()) {
+    const std::string name = fmt::format("{} of {}", name_of(source.quantity), on_one_line(source.name));
+    if (source.step_back) {
+      const auto& [step_from_s, step_to_s, late] = *source.step_back;
+      text += report_line("clock back",
+                          fmt::format("{} by {:.3f} s, from {:.3f} to {:.3f} s; {} late", name, step_from_s - step_to_s,
+                                      step_from_s, step_to_s, counted(late, "sample")));
+    } else if (source.late > 0) {
+      text += report_line(
+          "late", fmt::format("{} of {}, put in order: messages were swapped", counted(source.late, "sample"), name));
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -272,14 +343,7 @@ std::string nav_text(const NavFile& nav) {
     if (!source.note.empty()) text += report_line("note", on_one_line(named + source.note));
     if (!source.fault.empty()) text += report_line("not used", on_one_line(named + source.fault));
   }
-  for (const NavSource& source : nav.log.sources()) {
-    if (!source.step_back) continue;
-    const auto& [step_from_s, step_to_s, late] = *source.step_back;
-    text += report_line("clock back",
-                        fmt::format("{} of {} by {:.3f} s, from {:.3f} to {:.3f} s; {} late", name_of(source.quantity),
-                                    on_one_line(source.name), step_from_s - step_to_s, step_from_s, step_to_s,
-                                    counted(late, "sample")));
-  }
+  text += order_text(nav);
   for (const std::string& note : nav.notes) text += report_line("note", note);
   for (const std::string& step : step_texts(nav.log)) text += report_line("step", step);
   if (damaged_records(nav) > 0) text += report_line("skipped", counted(damaged_records(nav), "damaged record"));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "json.hpp"
+#include "nav_clock.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/nav.hpp"
@@ -22,9 +23,11 @@ struct NavFiles {
   NavLog log;                         ///< sources of the same name and quantity are one
   std::size_t damaged = 0;            ///< records that could not be read
   std::vector<std::string> warnings;  ///< what is left out and why; each begins with the names of files
+  std::vector<NavLogClock> clocks;    ///< of each log
 };
-/// Logs that count from the start of a device are aligned with those that have dates by how the vehicle turned in both;
-/// kUnsupported when that cannot be told.
+/// Logs that count from the start of a device, or from that of a computer whose clock was not set, are aligned with
+/// those that have dates: by the clock of the device, where these have its messages, else by how the vehicle turned in
+/// both. kUnsupported when that cannot be told.
 /// @param names   - is standard input; an empty log without any
 /// @param fields  of messages in ROS bags; if one of the logs is a bag, there must be messages of each
 Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields);

@@ -197,7 +197,8 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
       .add("velocity", velocity)
       .add("heading", report.heading)
       .add("frame", frame_text(report.heading))
-      .add("nav_clock", json_of(inputs.nav_offset));
+      .add("nav_clock", json_of(inputs.nav_offset))
+      .add("nav_logs", nav_logs_json(inputs.nav_offset));
   report.clock_check ? json.add("clock_check", json_of(*report.clock_check)) : json.add_null("clock_check");
   command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
@@ -232,6 +233,7 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   if (inputs.skipped > 0) read += fmt::format("; skipped {}", counted(inputs.skipped, "damaged record"));
   text += report_line("read", read);
   text += report_line("nav clock", text_of(inputs.nav_offset, report.clock_check));
+  text += nav_logs_text(inputs.nav_offset);
   text += inputs.nav_water ? report_line("water", water_text(*inputs.nav_water))
                            : sound_line(command.slam.sound_speed_ratio * kAssumedSoundSpeed_m_s);
   text += report_line("velocity", velocity_text(report));

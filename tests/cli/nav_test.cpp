@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <numbers>
 #include <sstream>
@@ -392,7 +393,11 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   expect_error(map("beams.csv", "unix.csv"), 1, {"beams.csv", "--nav-offset"});
   expect_error(map("beams.csv", "boot.csv"), 1, {"beams.csv", "--nav-offset"});
   here.write("20200926-110158491.csv", here.read("beams.csv"));
-  expect_error(map("20200926-110158491.csv", "unix.csv"), 1, {"its name says 2020-09-26, --nav is of 20"});
+  expect_error(
+      map("20200926-110158491.csv", "unix.csv"), 1,
+      {"20200926-110158491.csv: does not overlap --nav in time, whatever the time zone (by the date in its name the "
+       "log ends 2020-09-26 11:02:",
+       "--nav begins 2026-01-01 00:00:00)"});
   const Outcome given =
       here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
   ASSERT_EQ(given.status, 0) << given.err;
@@ -411,7 +416,8 @@ TEST(Nav, SeveralTimeZonesAreNamed) {
   here.write("nav.csv", nav);
   const Outcome mapped = here.call({"map", "20260101-120010000.csv", "--nav", "nav.csv", "-o", "map.bt"});
   expect_error(mapped, 1,
-               {"its name says 2026-01-01, --nav is of 2026-01-01: in UTC+0:00 --nav-offset -1767268810.000, "
+               {"its name says 2026-01-01 12:00:10 to 2026-01-01 12:00:",
+                "--nav is of 2026-01-01 09:00:00 to 2026-01-01 12:59:50: in UTC+0:00 --nav-offset -1767268810.000, "
                 "in UTC+1:00 --nav-offset -1767265210.000, in UTC+2:00 "});
 }
 
@@ -464,6 +470,172 @@ TEST(Nav, LogsAreAlignedInAnyOrder) {
   EXPECT_EQ(orders, 6);
   expect_error(map({"unknown.csv", "long.csv", "apart.csv"}), 1,
                {"apart.csv: the offset between its clock and that of long.csv cannot be found"});
+}
+
+// Refused were logs of one day "as it is of 2023-05-17, --nav is of 2023-05-17", and those that do not overlap with
+// "the offset is not known".
+TEST(Nav, ThatDoesNotOverlapIsRefusedWithTheTimesOfBoth) {
+  const Workplace here;
+  constexpr double kTen_s = 1'684'317'600.0;  // 2023-05-17 10:00:00
+  const auto beams_from = [](double from_s) {
+    std::string log = "time_s,bearing_deg,bin_length_m,intensities\n";
+    for (int i = 0; i < 40; ++i) log += fmt::format("{},{},0.1,1,2,3,9,2,1\n", from_s + 0.25 * i, 9 * i);
+    return log;
+  };
+  const auto nav_from = [](const char* clock, double from_s, double to_s) {
+    std::string nav = fmt::format("# clock: {}\ntime_s,source,quantity,x,y,z\n", clock);
+    for (double time_s = from_s; time_s <= to_s; time_s += 1.0) {
+      nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,position,0,0,0\n", time_s);
+    }
+    return nav;
+  };
+  here.write("dive.csv", beams_from(kTen_s + 4 * 3600 + 12));
+  here.write("morning.csv", nav_from("unix", kTen_s, kTen_s + 723));
+  here.write("never.csv", nav_from("unix", 100, 130));
+  here.write("start.csv", nav_from("", 100, 130));
+  here.write("short.csv", beams_from(0.0));
+  const auto map = [&](const char* log, const char* nav) {
+    return here.call({"map", log, "--nav", nav, "-o", "o.bt"});
+  };
+  // The same logs, four hours and twelve seconds apart: a zone of UTC+4 would make up for it.
+  EXPECT_THAT(map("dive.csv", "morning.csv").out, HasSubstr("both have dates, the sonar log's in UTC+4:00"));
+  here.write("dive.csv", beams_from(kTen_s + 1.5 * 3600));
+  expect_error(
+      map("dive.csv", "morning.csv"), 1,
+      {"dive.csv: does not overlap --nav in time, whatever the time zone (--nav ends 2023-05-17 10:12:03, the log "
+       "begins 2023-05-17 11:30:00)"});
+  expect_error(map("dive.csv", "never.csv"), 1,
+               {"--nav ends 130.000 s, the log begins 2023-05-17 11:30:00", "of a clock that was not set"});
+  expect_error(map("short.csv", "start.csv"), 1,
+               {"short.csv: does not overlap --nav in time (the log ends 9.750 s, --nav begins 100.000 s)"});
+  expect_error(map("short.csv", "morning.csv"), 1,
+               {"is not known (the log ends 9.750 s, --nav begins 2023-05-17 10:00:00)"});
+}
+
+// Logs of one vehicle were put on one clock, and nothing said by how much, how, and how surely.
+TEST(Nav, TheReportTellsHowTheClocksOfItsLogsAreJoined) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2"}).status, 0);
+  constexpr double kDate_s = 1'684'317'600.0;
+  const auto nav_of = [](const char* clock, const char* samples, double zero_s) {
+    std::string nav = fmt::format("# clock: {}\ntime_s,source,quantity,x,y,z\n", clock);
+    for (double time_s = 0.0; time_s <= 190.0; time_s += 0.5) {
+      const double yaw_rad = 0.6 * std::sin(0.047 * time_s) + 0.2 * std::sin(0.171 * time_s + 1.0);
+      nav += fmt::format(fmt::runtime(samples), fmt::arg("t", time_s + zero_s), fmt::arg("yaw", yaw_rad));
+    }
+    return nav;
+  };
+  constexpr const char* kTurns = "{t},ahrs,attitude,0,0,{yaw}\n";
+  here.write("boot.csv", nav_of("boot", "{t},ATT,attitude,0,0,{yaw}\n{t},ATT,velocity,0.1,0,0\n", 5.0));
+  here.write("dated.csv", nav_of("unix", kTurns, kDate_s));
+  here.write("also.csv", nav_of("unix", "{t},bar,depth,2,,\n", kDate_s));
+  here.write("never.csv", nav_of("unix", "{t},mru,attitude,0,0,{yaw}\n", 300.0));
+  const std::vector<std::string> navs = {
+      "--nav",    "dated.csv", "--nav",     "boot.csv",     "--nav",
+      "also.csv", "--nav",     "never.csv", "--nav-offset", fmt::format("{}", -kDate_s)};
+  const auto call = [&](std::vector<std::string> words) {
+    words.insert(words.end(), navs.begin(), navs.end());
+    return here.call(words);
+  };
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"map", "dive.csv", "-o", "o.bt"},
+                                                {"slam", "dive.csv", "-o", "o.tum", "--matching", "none"},
+                                                {"locate", "dive.csv", "--map", "o.bt", "-o", "o.tum"}}) {
+    SCOPED_TRACE(words[0]);
+    const Outcome said = call(words);
+    ASSERT_EQ(said.status, 0) << said.err;
+    EXPECT_THAT(said.out,
+                testing::ContainsRegex("nav log     boot.csv: .1684317(594.99|595.00). s .sd [0-9.]+ s. to the "
+                                       "clock of dated.csv: how the vehicle turns in both"));
+    EXPECT_THAT(said.out, HasSubstr("nav log     also.csv: +0.000 s to the clock of dated.csv: both have dates\n"));
+    EXPECT_THAT(said.out, testing::ContainsRegex("nav log     never.csv: .1684317(299.99|300.00). s .sd "));
+    std::vector<std::string> with_json = words;
+    with_json.emplace_back("--json");
+    const Outcome json = call(with_json);
+    ASSERT_EQ(json.status, 0) << json.err;
+    EXPECT_THAT(json.out, HasSubstr(R"(logs": [)"));
+    EXPECT_THAT(json.out,
+                HasSubstr(R"({"name": "also.csv", "offset_s": 0, "sd_s": null, "from": "both have dates", )"));
+  }
+  const Outcome one = here.call({"map", "dive.csv", "-o", "o.bt", "--nav", "boot.csv", "--nav-offset", "-5"});
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_THAT(one.out, Not(HasSubstr("nav log ")));
+}
+
+/// An attitude in a log of telemetry, behind its time.
+std::string tlog_of(const std::vector<double>& times_s) {
+  std::string log;
+  for (const double time_s : times_s) {
+    const auto time_us = static_cast<std::uint64_t>(std::llround(time_s * 1e6));
+    for (int shift = 56; shift >= 0; shift -= 8) log += static_cast<char>(time_us >> shift & 0xffU);
+    for (const unsigned byte : {0xfd, 0x1c, 0x00, 0x00, 0xec, 0x01, 0x01, 0x1e, 0x00, 0x00, 0x53, 0x84, 0x0a, 0x00,
+                                0x9c, 0x11, 0xc7, 0xbc, 0x2b, 0x3e, 0xca, 0x3c, 0xa0, 0x45, 0x16, 0xc0, 0x16, 0x73,
+                                0xbf, 0xbc, 0x59, 0x0e, 0x30, 0x3c, 0x07, 0x07, 0x37, 0xba, 0x07, 0xba}) {
+      log += static_cast<char>(byte);
+    }
+  }
+  return log;
+}
+
+// Logs of a computer without a clock were no logs, or half of one, and nothing named the clock.
+TEST(Nav, InfoNamesAClockThatWasNotSetOrSetMeanwhile) {
+  const Workplace here;
+  const auto info = [&](const std::string& name, const std::string& bytes) {
+    here.write(name, bytes);
+    const Outcome said = here.call({"info", name});
+    EXPECT_EQ(said.status, 0) << said.err;
+    return said.out;
+  };
+  const auto line_at = [](double time_s) { return fmt::format("{},bar,depth,1\n", time_s); };
+  const std::string head = "# clock: unix\ntime_s,source,quantity,x\n";
+  constexpr double kDate_s = 1'684'351'479.0;
+  const std::string never = info("never.tlog", tlog_of({100.0, 100.1, 100.2}));
+  EXPECT_THAT(never, HasSubstr("records     3\n"));
+  EXPECT_THAT(never,
+              HasSubstr("clock       unix, 100.000 to 100.000 s since 1970: the clock of the computer was not set\n"));
+  const std::string set = info("set.tlog", tlog_of({100.0, 100.1, kDate_s, kDate_s + 0.1}));
+  EXPECT_THAT(set, HasSubstr("records     4\n"));
+  EXPECT_THAT(set, HasSubstr("clock set   by +1684351379.000 s at 1684351479.000 s, 2023-05-17 19:24:39: all times"));
+  const std::string back = info("back.tlog", tlog_of({kDate_s, kDate_s + 0.1, 100.0, 100.1}));
+  EXPECT_THAT(back, HasSubstr("clock set   by -1684351379"));
+  EXPECT_THAT(back, HasSubstr(", 2023-05-17 19:24:39 to 2023-05-17 19:24:39 UTC"));
+  EXPECT_THAT(here.call({"info", "set.tlog", "--json"}).out, HasSubstr(R"("clock_set": [)"));
+
+  EXPECT_THAT(info("never.csv", head + line_at(100) + line_at(101)),
+              HasSubstr("the clock of the computer was not set\n"));
+  EXPECT_THAT(info("set.csv", head + line_at(100) + line_at(kDate_s)),
+              HasSubstr("100.000 s since 1970 to 2023-05-17 19:24:39 UTC: the clock was not set at first\n"));
+  EXPECT_THAT(info("back.csv", head + line_at(kDate_s) + line_at(100) + line_at(101)),
+              HasSubstr("clock back  depth of bar by 1684351379.000 s"));
+  EXPECT_THAT(info("swapped.csv",
+                   head + line_at(kDate_s) + line_at(kDate_s + 3) + line_at(kDate_s + 1.5) + line_at(kDate_s + 4.5)),
+              HasSubstr("late        1 sample of depth of bar, put in order: messages were swapped\n"));
+}
+
+// A sonar log in which two messages were swapped was refused, and nothing told such a log from one whose clock was set
+// back.
+TEST(Nav, BeamsThatWereSwappedAreSaidAndPutInOrder) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--turns", "2", "--nav", "nav.csv"}).status, 0);
+  std::vector<std::string> lines;
+  std::istringstream log(here.read("dive.csv"));
+  for (std::string line; std::getline(log, line);) lines.push_back(line + "\n");
+  const auto joined = [&] {
+    std::string text;
+    for (const std::string& line : lines) text += line;
+    return text;
+  };
+  ASSERT_GT(lines.size(), 200U);
+  std::rotate(lines.begin() + 100, lines.begin() + 101, lines.begin() + 131);
+  here.write("swapped.csv", joined());
+  const auto slam = [&](const char* name) { return here.call({"slam", name, "--nav", "nav.csv", "-o", "o.tum"}); };
+  const Outcome as_it_was = slam("dive.csv");
+  ASSERT_EQ(as_it_was.status, 0) << as_it_was.err;
+  const std::string poses = here.read("o.tum");
+  const Outcome info = here.call({"info", "swapped.csv"});
+  EXPECT_THAT(info.out, HasSubstr("late        1 beam behind a later one: messages were swapped\n"));
+  const Outcome swapped = slam("swapped.csv");
+  ASSERT_EQ(swapped.status, 0) << swapped.err;
+  EXPECT_EQ(here.read("o.tum"), poses);
 }
 
 // Kills navigation that is joined to times made up for a log without any, whatever the offset is known from.

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -132,6 +134,70 @@ TEST(ClockOffset, OfAnAutopilotAndItsGroundStation) {
   ASSERT_TRUE(offset) << offset.error().message;
   EXPECT_NEAR(offset->offset_s, 1712333650.395, 0.02);
   EXPECT_LT(offset->deviation_s, 0.02);
+}
+
+// The same by the clock of the autopilot, which is in both.
+TEST(NavClockOffset, OfAnAutopilotAndItsGroundStation) {
+  const auto tlog = shared("bluerov2-echosounder-nav/2024-04-05 09-19-03.tlog"),
+             later = shared("bluerov2-echosounder-nav/2024-04-05 09-25-32.tlog"),
+             own = shared("bluerov2-echosounder-nav/00000124.BIN");
+  if (!std::filesystem::exists(tlog) || !std::filesystem::exists(own)) GTEST_SKIP() << "no recording";
+  const auto ground = read_nav(*read_file(tlog.string())), autopilot = read_nav(*read_file(own.string()));
+  ASSERT_TRUE(ground && autopilot);
+  const auto offset = nav_clock_offset(ground->log, ground->runs, autopilot->log);
+  ASSERT_TRUE(offset) << offset.error().message;
+  EXPECT_EQ(offset->by, NavClockOffset::By::kDevice);
+  EXPECT_NEAR(offset->offset_s, 1712333650.395, 0.002);
+  EXPECT_LT(offset->deviation_s, 0.01);
+  // Without its messages.
+  const auto by_turns = nav_clock_offset(ground->log, {}, autopilot->log);
+  ASSERT_TRUE(by_turns) << by_turns.error().message;
+  EXPECT_EQ(by_turns->by, NavClockOffset::By::kTurns);
+  EXPECT_NEAR(by_turns->offset_s, 1712333650.395, 0.01);
+  // Of another start, whose clock says times that the log has, too.
+  const auto other = read_nav(*read_file(later.string()));
+  ASSERT_TRUE(other);
+  const auto of_other = nav_clock_offset(other->log, other->runs, autopilot->log);
+  EXPECT_TRUE(!of_other || of_other->by == NavClockOffset::By::kTurns);
+}
+
+/// Turns of up to 130 degrees that last half a second, at uneven times, while the vehicle wanders.
+double jerks(double time_s) {
+  double yaw_rad = wander(time_s);
+  for (int i = 0; i < 12; ++i) {
+    const double share = std::clamp((time_s - (7.0 + 20.0 * i + 3.0 * std::sin(5.0 * i))) / 0.5, 0.0, 1.0);
+    yaw_rad += (i % 2 == 0 ? 1.0 : -1.0) * (1.2 + 0.1 * i) * (3.0 - 2.0 * share) * share * share;
+  }
+  return yaw_rad;
+}
+
+/// Samples of a yaw, ten in a second, with a drift that is not in the other log.
+NavLog drifting_log_of(const Yaw& yaw, double from_s, double to_s, double clock_s) {
+  return log_of([&](double time_s) { return yaw(time_s) + 1e-3 * time_s + 2e-3 * std::sin(31.0 * time_s); }, from_s,
+                to_s, 0.1, clock_s);
+}
+
+// Kills an offset that is tens of milliseconds off, by 7 degrees of a quick turn, and a device's clock that is taken
+// though the log counts from another start.
+TEST(NavClockOffset, OfShortAndQuickTurns) {
+  constexpr double kStart_s = 1.6e9;
+  const NavLog ground = log_of(jerks, 0.0, 260.0, 0.05, kStart_s + 40.0);
+  for (const double phase_s : {0.0, 0.013, 0.05, 0.081}) {
+    const NavLog own = drifting_log_of(jerks, 20.0 + phase_s, 240.0, 40.0);
+    const auto by_turns = nav_clock_offset(ground, {}, own);
+    ASSERT_TRUE(by_turns) << by_turns.error().message;
+    EXPECT_NEAR(by_turns->offset_s, kStart_s, 0.006) << phase_s;
+    const std::vector<DeviceRun> runs = {{kStart_s - 31.0, 0.006, kStart_s, kStart_s + 300.0},
+                                         {kStart_s + 0.001, 0.006, kStart_s, kStart_s + 300.0}};
+    const auto by_device = nav_clock_offset(ground, runs, own);
+    ASSERT_TRUE(by_device) << by_device.error().message;
+    EXPECT_EQ(by_device->by, NavClockOffset::By::kDevice);
+    EXPECT_EQ(by_device->offset_s, kStart_s + 0.001);
+    EXPECT_EQ(by_device->deviation_s, 0.006);
+    const auto other_start = nav_clock_offset(ground, std::span(runs).first(1), own);
+    ASSERT_TRUE(other_start) << other_start.error().message;
+    EXPECT_EQ(other_start->by, NavClockOffset::By::kTurns);
+  }
 }
 
 // The sonar's times are about 0.6 s before those of both compasses (docs/slam-figures.md). The first quarter of an

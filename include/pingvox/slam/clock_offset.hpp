@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/nav/device_clock.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -75,6 +77,22 @@ struct ClockOffset {
 /// little
 ///         or evenly, or another offset that is nearly as good; kCorrupt when the clock of a heading was set back
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
+
+/// How the clocks of two navigation logs of one vehicle are offset.
+struct NavClockOffset {
+  enum class By {
+    kDevice,  ///< both have times of one device's clock, and the vehicle turns alike by them
+    kTurns,   ///< the heading in both
+  };
+  double offset_s = 0.0;     ///< to add to the times of the log that counts from a start
+  double deviation_s = 0.0;  ///< standard deviation
+  By by = By::kTurns;
+};
+
+/// The offset of a log that counts from the start of a device to one with other times.
+/// @param runs  of devices, in the log `dated`
+/// @return as clock_offset
+Result<NavClockOffset> nav_clock_offset(const NavLog& dated, std::span<const DeviceRun> runs, const NavLog& from_start);
 
 /// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
 /// As clock_offset, but of offsets up to ten minutes. Where a vehicle goes round and turns alike each time, the
