@@ -161,13 +161,15 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
 
 /// Writes the poses of a navigation log. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command, Console& console) {
-  const Result<VehiclePath> path = vehicle_positions(std::move(stream), command.damage, command.bag.nav);
+  const Result<VehiclePath> path =
+      vehicle_positions(std::move(stream), command.damage, command.bag.nav, command.nav_sources);
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : path->warnings) console.say(warning);
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
   if (!written) return tl::unexpected(written.error());
-  return nav_text(*path);
+  const std::string others = path->nav->others.text();
+  return nav_text(*path) + (others.empty() ? "" : "; others: " + others);
 }
 
 Error with_name(Error error, const std::string& name) {

@@ -489,6 +489,7 @@ Summary summarize_contents(const BagContents& bag, const std::string& name, Form
     summary.text += report_line("no beams", on_one_line(reason));
   }
   summary.text += nav_text(bag.nav);
+  for (const std::string& note : bag.notes) summary.text += report_line("tf", on_one_line(note));
   add_damage(summary, bag.nav.damage);
   add_topics(summary, bag.topics);
   summary.text += other_fields_text(bag.topics);
@@ -532,6 +533,7 @@ Result<Summary> summarize_bag(ByteStream stream, Format format, const InfoComman
     summary->json.add("nav", nav);
     summary->text += "navigation (--nav):\n" + nav_text(bag->nav);
   }
+  for (const std::string& note : bag->notes) summary->text += report_line("tf", on_one_line(note));
   summary->text += other_fields_text(bag->topics);
   return summary;
 }

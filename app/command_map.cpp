@@ -132,7 +132,8 @@ JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& c
       .add("logs", nav_logs_json(path.nav->offset))
       .add("frame", frame_text(*path.nav));
   if (!path.warnings.empty()) json.add("warnings", fmt::format("{}", fmt::join(path.warnings, "; ")));
-  return clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
+  clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
+  return json.add("others", path.nav->others.json());
 }
 
 std::string report_json(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
@@ -210,7 +211,7 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
   }
   beams += totals.nav_water ? report_line("water", water_text(*totals.nav_water)) : sound_line(totals.sound_speed_m_s);
   return name + "\n" + report_line("read", read) +
-         (path.nav ? report_line("nav", nav_text(path)) +
+         (path.nav ? report_line("nav", nav_text(path)) + others_line(path.nav->others) +
                          report_line("nav clock", text_of(path.nav->offset, totals.clock_check)) +
                          nav_logs_text(path.nav->offset) + report_line("frame", frame_text(*path.nav))
                    : "") +

@@ -185,7 +185,8 @@ class CartesianCollector {
 /// By the options, or by the water that the navigation logs tell of.
 Result<double> sound_speed_ratio_of(const PanelCommand& panel, const RenderCommand& command) {
   if (!panel.nav_salinity) return panel.build.sound_speed_ratio;
-  const Result<NavFiles> nav = read_navs(panel.path.navs, command.damage, command.bag.nav);
+  const Result<NavFiles> nav = read_navs(panel.path.navs, command.damage, command.bag.nav,
+                                         {panel.input, command.bag.beams.name, panel.path.nav_sources});
   if (!nav) return tl::unexpected(nav.error());
   return water_of(water_around(nav->log), *panel.nav_salinity).map(sound_speed_ratio);
 }

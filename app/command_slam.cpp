@@ -118,19 +118,30 @@ Result<void> use_calibration(const std::string& path, const NavLog& log, SlamOpt
   return {};
 }
 
+std::vector<std::string> used_sources(const SlamSolution& solution) {
+  std::vector<std::string> used = {solution.report.velocity, solution.report.heading};
+  for (const HeadingCalibration& heading : solution.calibration.headings) used.push_back(heading.source);
+  return used;
+}
+
 Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> first, Console& console) {
   const Stopwatch total;
   SlamSeconds seconds;
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
   if (!map) return tl::unexpected(map.error());
   const Stopwatch read;
-  const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
+  const Result<NavFiles> nav =
+      read_navs(command.navs, command.damage, command.bag.nav, {.log = {}, .topic = {}, .chosen = command.nav_sources});
   if (!nav) return tl::unexpected(nav.error());
   for (const std::string& warning : nav->warnings) console.say(warning);
   Result<NavOffset> offset =
       nav_offset(command.nav_offset_s, *nav, {command.logs.front(), command.bag.beams, command.slam.body_from_sonar},
                  command.damage);
   if (!offset) return tl::unexpected(offset.error());
+  if (command.slam.body_from_sonar.matrix().isIdentity(0.0)) {
+    const std::string hint = mount_hint(nav->bags, command.logs.front(), command.bag.beams.name);
+    if (!hint.empty()) console.say(hint);
+  }
   SlamInputs inputs;
   inputs.nav_offset = *std::move(offset);
   SlamOptions options = command.slam;
@@ -166,6 +177,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
     return fail(solution.error().code, fmt::format("{}: {}{}", inputs_text(command), solution.error().message, advice));
   }
   seconds.solve = solve.seconds();
+  inputs.nav_others = NavOthers(nav->log, kMotionQuantities, used_sources(*solution));
 
   if (command.map) {
     bar.draw(std::nullopt, "mapping");

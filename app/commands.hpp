@@ -21,6 +21,7 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
+#include "pingvox/nav/main_source.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -84,6 +85,7 @@ struct PathArgs {
   std::optional<std::string> poses;        ///< TUM lines
   std::vector<std::string> navs;           ///< navigation logs
   std::optional<double> nav_offset_s;      ///< added to their times; nullopt: to be found
+  std::vector<NamedSource> nav_sources;    ///< of them, that are taken instead of others
   std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
 };
 
@@ -142,6 +144,7 @@ struct ConvertCommand {
   EchoOptions echo;
   double sound_speed_ratio = 1.0;  ///< of the echoes
   std::optional<double> background_m;
+  std::vector<NamedSource> nav_sources;  ///< that poses are made of
   std::vector<LimitedOption> limited;
   Surface surface = Surface::kHighest;
 };
@@ -217,8 +220,9 @@ struct SlamCommand {
   Damage damage = Damage::kSkip;
   BagArgs bag;
   SlamOptions slam;
-  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
-  std::optional<double> nav_offset_s;  ///< added to the times of `navs`; nullopt: to be found
+  std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
+  std::optional<double> nav_offset_s;    ///< added to the times of `navs`; nullopt: to be found
+  std::vector<NamedSource> nav_sources;  ///< of `navs`, that are taken instead of others
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
 };
@@ -238,6 +242,7 @@ struct LocateCommand {
   OdometryOptions nav;
   std::optional<std::string> calibration;  ///< of the sensors of `navs`: output of 'slam --calibration'
   std::optional<double> nav_offset_s;      ///< added to the times of `navs`; nullopt: to be found
+  std::vector<NamedSource> nav_sources;    ///< of `navs`, that are taken instead of others
   std::optional<std::string> odometry;     ///< TUM lines in a frame that may drift; not with `navs`
   std::optional<StartPose> start;          ///< nullopt: anywhere
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <memory>
 #include <utility>
@@ -36,7 +37,8 @@ Result<LocateMotion> read_motion(const LocateCommand& command) {
     return motion;
   }
   if (command.navs.empty()) return motion;
-  const Result<NavFiles> nav = read_navs(command.navs, command.damage, command.bag.nav);
+  const Result<NavFiles> nav =
+      read_navs(command.navs, command.damage, command.bag.nav, {.log = {}, .topic = {}, .chosen = command.nav_sources});
   if (!nav) return tl::unexpected(nav.error());
   motion.skipped = nav->damaged;
   motion.warnings = nav->warnings;
@@ -66,6 +68,11 @@ Result<LocateMotion> read_motion(const LocateCommand& command) {
                     ? fmt::format("heading of {}, no velocity", on_one_line(odometry->heading))
                     : fmt::format("velocity of {} along the heading of {}", on_one_line(odometry->velocity),
                                   on_one_line(odometry->heading));
+  motion.others = NavOthers(nav->log, kMotionQuantities, std::array{odometry->velocity, odometry->heading});
+  if (command.localizer.body_from_sonar.matrix().isIdentity(0.0)) {
+    const std::string hint = mount_hint(nav->bags, command.logs.front(), command.bag.beams.name);
+    if (!hint.empty()) motion.warnings.push_back(hint);
+  }
   motion.recorded.odometry_from_body = std::move(odometry->odometry_from_body);
   if (odometry->velocity.empty()) {
     motion.text += ": the vehicle is assumed to move little";

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "nav_clock.hpp"
+#include "nav_report.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/slam/locate_recording.hpp"
@@ -23,6 +24,7 @@ struct LocateMotion {
   MotionNoise noise;  ///< of the odometry
   std::optional<NavOffset> clock;
   std::optional<Water> water;  ///< by the navigation log, where it was asked
+  NavOthers others;            ///< sources of velocity and heading that were not used
   std::size_t skipped = 0;
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
   std::vector<std::string> warnings = {};                   ///< each begins with the name of a file

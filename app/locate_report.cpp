@@ -80,7 +80,8 @@ std::string locate_json(const LocatedRecording& found, const LocateInputs& input
       .add("beams", inputs.beams)
       .add("skipped", inputs.skipped)
       .add("sound_speed_m_s", inputs.sound_speed_m_s)
-      .add("motion", inputs.motion.text);
+      .add("motion", inputs.motion.text)
+      .add("nav_others", inputs.motion.others.json());
   inputs.motion.clock ? json.add("nav_clock", json_of(*inputs.motion.clock)) : json.add_null("nav_clock");
   json.add("nav_logs", inputs.motion.clock ? nav_logs_json(*inputs.motion.clock) : std::vector<JsonObject>());
   found.clock_check ? json.add("clock_check", json_of(*found.clock_check)) : json.add_null("clock_check");
@@ -103,7 +104,7 @@ std::string locate_text(const LocatedRecording& found, const LocateCommand& comm
   std::string text = inputs.written == 0     ? "no trajectory is written\n"
                      : command.output == "-" ? "standard output\n"
                                              : on_one_line(command.output) + "\n";
-  text += report_line("motion", motion.text);
+  text += report_line("motion", motion.text) + others_line(motion.others);
   if (motion.clock) {
     text += report_line("nav clock", text_of(*motion.clock, found.clock_check)) + nav_logs_text(*motion.clock);
   }

@@ -58,6 +58,28 @@ bool tells_path(const NavLog& nav) {
   return has(nav, has_position(nav) ? NavQuantity::kAttitude : NavQuantity::kVelocity);
 }
 
+/// What a log has and was not used: "; not taken: /aruco/pose (580 samples: ...) (--nav-source takes it)"
+std::string unused_text(const NavLog& nav, std::span<const std::string> notes) {
+  std::vector<std::string> taken;
+  for (const NavSource& source : nav.sources()) {
+    if (source.subject != NavSubject::kOther) taken.push_back(source.name);
+  }
+  constexpr std::array kAll = {NavQuantity::kPosition, NavQuantity::kFix, NavQuantity::kAttitude, NavQuantity::kHeading,
+                               NavQuantity::kVelocity};
+  const std::string others = NavOthers(nav, kAll, taken).text();
+  std::string text = others.empty() ? "" : fmt::format("; not taken: {} (--nav-source takes one)", others);
+  for (const std::string& note : notes) text += "; " + on_one_line(note);
+  return text;
+}
+
+/// How the frame of a position was read.
+std::string frame_note_of(const NavLog& nav, const std::string& position) {
+  for (const NavSource& source : nav.sources()) {
+    if (source.name == position && source.quantity == NavQuantity::kPosition) return source.note;
+  }
+  return {};
+}
+
 /// "3036 of 4000 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover
 /// the log, with times in seconds of the same clock)"
 /// @param unit  of what the log holds: "beam" or "point"
@@ -123,7 +145,7 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
       return made;
     });
   }
-  const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav);
+  const Result<NavFiles> nav = read_navs(path.navs, damage, bag.nav, {log.name, log.topic.name, path.nav_sources});
   if (!nav) return tl::unexpected(nav.error());
   if (!tells_path(nav->log)) {
     if (const std::string faults = faults_text(nav->log); !faults.empty()) {
@@ -131,20 +153,26 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
     }
     return fail(
         Error::Code::kUnsupported,
-        fmt::format("{}: gives no path: it has no valid {}{}", fmt::join(path.navs, ", "),
+        fmt::format("{}: gives no path: it has no valid {}{}{}", fmt::join(path.navs, ", "),
                     has_position(nav->log) ? "attitude" : "position or velocity",
                     can_turn(nav->log) ? " ('pingvox slam' estimates the path from sonar and heading, for --poses)"
-                                       : ", and no heading; another --nav may have them"));
+                                       : ", and no heading; another --nav may have them",
+                    unused_text(nav->log, nav->notes)));
   }
   const Result<NavOffset> offset = nav_offset(path.nav_offset_s, *nav, log, damage);
   if (!offset) return tl::unexpected(offset.error());
   const std::optional<WaterAround> water = water_around(nav->log);
+  const bool is_mounted = !log.body_from_sonar.matrix().isIdentity(0.0);
   const auto name_files = [&](Error error) {
     error.message = fmt::format("{}: {}", fmt::join(path.navs, ", "), error.message);
     return error;
   };
   const auto with_warnings = [&](VehiclePath made) {
     made.warnings = nav->warnings;
+    if (!is_mounted) {
+      const std::string hint = mount_hint(nav->bags, log.name, log.topic.name);
+      if (!hint.empty()) made.warnings.push_back(hint);
+    }
     if (std::ranges::any_of(nav->log.sources(), [](const NavSource& source) { return !source.steps.empty(); })) {
       made.advice = VehiclePath::kLeftOut;
     }
@@ -162,7 +190,8 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
         .map([&](Odometry odometry) {
           return VehiclePath{
               std::move(odometry.odometry_from_body),
-              VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water, std::nullopt},
+              VehiclePath::Nav{odometry.heading, "", odometry.velocity, nav->damaged, *offset, water, std::nullopt,
+                               NavOthers(nav->log, kMotionQuantities, std::array{odometry.heading, odometry.velocity})},
               sonar_moved_m, VehiclePath::kNavMustCover};
         })
         .map(with_warnings)
@@ -177,41 +206,48 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
       .map([&](NavTrajectory made) {
         return VehiclePath{
             std::move(made.trajectory),
-            VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water, made.origin_fix},
+            VehiclePath::Nav{made.attitude, made.position, "", nav->damaged, *offset, water, made.origin_fix,
+                             NavOthers(nav->log, kPathQuantities, std::array{made.attitude, made.position}),
+                             frame_note_of(nav->log, made.position)},
             Eigen::Vector3d::Zero(), VehiclePath::kNavMustCover};
       })
       .map(with_warnings)
       .map_error(name_files);
 }
 
-Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields) {
+Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields,
+                                      std::span<const NamedSource> chosen) {
   const std::string name = nav.name();
   const Result<BagContents> contents = read_nav_log(std::move(nav), damage, fields);
   if (!contents) return tl::unexpected(contents.error());
   const NavFile& read = contents->nav;
-  const bool has_attitude = has(read.log, NavQuantity::kAttitude);
+  const Result<NavLog> log = chosen.empty() ? read.log : choose_named(read.log, chosen);
+  if (!log) return fail(log.error().code, fmt::format("{}: {}", name, log.error().message));
+  const bool has_attitude = has(*log, NavQuantity::kAttitude);
   constexpr std::array kOfTurns = {NavQuantity::kAttitude};
-  if (const auto checked = check_sources(read.log, kOfTurns); !checked) {
+  if (const auto checked = check_sources(*log, kOfTurns); !checked) {
     return fail(checked.error().code, fmt::format("{}: {}", name, checked.error().message));
   }
-  Result<NavTrajectory> made = has_attitude ? nav_trajectory(read.log) : nav_positions(read.log);
+  Result<NavTrajectory> made = has_attitude ? nav_trajectory(*log) : nav_positions(*log);
   if (!made) {
-    const bool can_reckon = has(read.log, NavQuantity::kVelocity);
+    const bool can_reckon = has(*log, NavQuantity::kVelocity);
     return fail(
         made.error().code,
-        fmt::format("{}: {}{}", name, made.error().message,
-                    can_reckon ? " ('pingvox slam --matching none' reckons them from velocity and heading)" : ""));
+        fmt::format("{}: {}{}{}", name, made.error().message,
+                    can_reckon ? " ('pingvox slam --matching none' reckons them from velocity and heading)" : "",
+                    unused_text(*log, contents->notes)));
   }
-  VehiclePath path{
-      std::move(made->trajectory),
-      VehiclePath::Nav{made->attitude, made->position, "", damaged_records(read), {}, {}, made->origin_fix}};
-  add_warnings(step_texts(read.log), name, path);
+  VehiclePath::Nav by{made->attitude, made->position, "", damaged_records(read), {}, {}, made->origin_fix};
+  by.others = NavOthers(*log, kPathQuantities, std::array{made->attitude, made->position});
+  by.frame_note = frame_note_of(*log, made->position);
+  VehiclePath path{std::move(made->trajectory), std::move(by)};
+  add_warnings(step_texts(*log), name, path);
   return path;
 }
 
 std::string nav_text(const VehiclePath& path) {
   assert(path.nav);
-  const auto& [attitude, position, velocity, damaged, offset, water, origin_fix] = *path.nav;
+  const std::string &attitude = path.nav->attitude, &position = path.nav->position, &velocity = path.nav->velocity;
   std::string sources = on_one_line(attitude.empty() ? position : attitude);
   if (!velocity.empty()) {
     sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));
@@ -224,13 +260,18 @@ std::string nav_text(const VehiclePath& path) {
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += ", " + counted(gaps, "gap");
   }
-  if (damaged > 0) text += fmt::format("; skipped {}", counted(damaged, "damaged record"));
+  if (const std::size_t damaged = path.nav->damaged; damaged > 0) {
+    text += fmt::format("; skipped {}", counted(damaged, "damaged record"));
+  }
   return text;
 }
 
 std::string frame_text(const VehiclePath::Nav& nav) {
   if (nav.position.empty()) return frame_text(nav.attitude);
-  if (!nav.origin_fix) return fmt::format("origin and axes are those of {}", on_one_line(nav.position));
+  if (!nav.origin_fix) {
+    return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position,
+                                   nav.frame_note.empty() ? "" : ": " + nav.frame_note));
+  }
   return fmt::format("x east, y north of latitude {:.7f}, longitude {:.7f} degrees", nav.origin_fix->x() / kDegree_rad,
                      nav.origin_fix->y() / kDegree_rad);
 }
@@ -332,8 +373,10 @@ std::string hint_at_path(const std::string& log, Format format) {
 
 std::string hint_at_nav(const std::string& log) {
   if (log == "-") return {};
-  const Result<BagContents> bag =
-      ByteStream::open(log).and_then([](ByteStream stream) { return read_bag(std::move(stream)); });
+  // Of a long bag the beginning tells enough.
+  constexpr std::size_t kBeginning_bytes = 32'000'000;
+  const Result<BagContents> bag = ByteStream::open(log).and_then(
+      [](ByteStream stream) { return read_bag(std::move(stream), Damage::kSkip, {}, kBeginning_bytes); });
   return bag && tells_path(bag->nav.log) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
 }
 

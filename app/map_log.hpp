@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "nav_clock.hpp"
+#include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/format.hpp"
@@ -33,6 +34,8 @@ struct VehiclePath {
     NavOffset offset;                ///< that was added to its times
     std::optional<WaterAround> water;
     std::optional<Eigen::Vector3d> origin_fix;  ///< NavTrajectory::origin_fix
+    NavOthers others = {};                      ///< sources that were not used
+    std::string frame_note = {};                ///< how the frame of the position was read; empty: as it is
   };
   std::optional<Nav> nav;                                   ///< nullopt: it is not from a navigation log
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
@@ -49,7 +52,9 @@ struct VehiclePath {
 Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, const BagArgs& bag, Damage damage);
 /// Trajectory of one navigation log; positions without an attitude give poses without rotation.
 /// @param fields  as for read_nav_log
-Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields);
+/// @param chosen  as for read_navs
+Result<VehiclePath> vehicle_positions(ByteStream nav, Damage damage, std::span<const NavFields> fields,
+                                      std::span<const NamedSource> chosen);
 /// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from a navigation log.
 std::string nav_text(const VehiclePath& path);
 /// What the axes of the map are. REQUIRES a path from a navigation log.
@@ -91,7 +96,7 @@ std::string odd_attitudes_text(const Trajectory& trajectory);
 
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum" or
 /// "its navigation may be --nav dive.tlog" (files beside it), or "navigation in the bag is used with --nav dive.db3";
-/// empty: nowhere. Reads a bag once.
+/// empty: nowhere. Reads the beginning of a bag.
 std::string hint_at_path(const std::string& log, Format format);
 /// The same of a log that is a bag; empty also for others and for standard input.
 std::string hint_at_nav(const std::string& log);

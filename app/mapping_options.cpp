@@ -186,6 +186,31 @@ Option nav_option(Args& targets, std::string help) {
   return {"--nav", 0, "FILE", std::move(help), "", store_each(targets), Repeats::kEachCounts};
 }
 
+Option source_option(std::vector<NamedSource>& targets) {
+  const Take take = [&targets](const std::string& text) -> Result<void> {
+    if (text.empty()) return usage_error("must be NAME or QUANTITY=NAME");
+    const std::size_t equals = text.find('=');
+    const auto quantity =
+        equals == std::string::npos ? std::nullopt : nav_quantity_of(std::string_view(text).substr(0, equals));
+    targets.push_back(quantity ? NamedSource{text.substr(equals + 1), quantity} : NamedSource{text});
+    return {};
+  };
+  return {"--nav-source",
+          0,
+          "[QUANTITY=]NAME",
+          "source of navigation to take instead of others, for all that it tells or for one quantity (position, fix, "
+          "attitude, heading, velocity, depth ...); 'pingvox info' lists the sources",
+          "chosen by what they are and when they are known",
+          take,
+          Repeats::kEachCounts};
+}
+
+Option nav_source_option(std::vector<NamedSource>& targets) {
+  Option option = source_option(targets);
+  option.only_with = {{"--nav"}};
+  return option;
+}
+
 Option nav_offset_option(std::optional<double>& target_s) {
   Option option{"--nav-offset",
                 0,
@@ -336,6 +361,7 @@ Result<PathArgs> BuildArgs::path() const {
   if (!poses.empty()) path.poses = poses;
   path.navs = navs;
   path.nav_offset_s = nav_offset_s;
+  path.nav_sources = nav_sources;
   if (!calibration.empty()) path.calibration = calibration;
   return path;
 }
@@ -384,6 +410,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        nav_option(args.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of "
                   "--poses"),
+       nav_source_option(args.nav_sources),
        nav_offset_option(args.nav_offset_s),
        use_calibration_option(args.calibration,
                               "correct the dead reckoning of --nav with a file of 'slam --calibration'"),
@@ -405,8 +432,8 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};
   for (Option& option : group.options) {
     option.only_for = {std::string(kBeamLogs)};
-    if (option.name == "--poses" || option.name == "--nav" || option.name == "--nav-offset" ||
-        option.name == "--use-calibration" || option.name == "--mount")
+    if (option.name == "--poses" || option.name == "--nav" || option.name == "--nav-source" ||
+        option.name == "--nav-offset" || option.name == "--use-calibration" || option.name == "--mount")
       option.only_for.emplace_back(kBagScans);
     if (option.name == "--ray")
       option.only_for = {std::string(kRayBeams), std::string(kPointLogs), std::string(kClouds)};

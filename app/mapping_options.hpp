@@ -54,6 +54,7 @@ struct BuildArgs {
   std::string poses;
   std::vector<std::string> navs;
   std::optional<double> nav_offset_s;
+  std::vector<NamedSource> nav_sources;
   std::string calibration;
 
   BuildOptions build_options() const {
@@ -78,8 +79,11 @@ Option mount_option(Pose& target);
 Take store_mount(Pose& target);
 /// --nav: navigation logs.
 Option nav_option(Args& targets, std::string help);
-/// What has an effect only with --nav: seconds to add to its times, mounts of its sources, and the output of
-/// 'slam --calibration'.
+/// --nav-source, without the condition that there is --nav.
+Option source_option(std::vector<NamedSource>& targets);
+/// What has an effect only with --nav: the sources to take, seconds to add to its times, mounts of its sources, and the
+/// output of 'slam --calibration'.
+Option nav_source_option(std::vector<NamedSource>& targets);
 Option nav_offset_option(std::optional<double>& target_s);
 Option nav_mount_option(std::map<std::string, Pose>& body_from_source);
 Option use_calibration_option(std::string& target, std::string help);

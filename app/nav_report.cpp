@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "console.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
+#include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/slam/clock_offset.hpp"
 #include "step_report.hpp"
@@ -209,7 +212,20 @@ Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<con
   return contents;
 }
 
-Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields) {
+namespace {
+
+/// Sources with a fault, and steps that no vehicle makes, of all but those that are not taken.
+void add_warnings(const std::string& names, NavFiles& files) {
+  if (const std::string faults = faults_text(files.log); !faults.empty()) {
+    files.warnings.push_back(fmt::format("{}: {}", names, faults));
+  }
+  for (const std::string& step : step_texts(files.log)) files.warnings.push_back(fmt::format("{}: {}", names, step));
+}
+
+}  // namespace
+
+Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage, std::span<const NavFields> fields,
+                           const WantedNav& wanted) {
   std::vector<NavPart> parts;
   std::vector<BagTopicSummary> topics;
   std::size_t damaged = 0;
@@ -230,13 +246,108 @@ Result<NavFiles> read_navs(const std::vector<std::string>& names, Damage damage,
   for (const NavPart& part : parts) all.push_back(&part);
   Result<NavLog> log = joined(all, clock);
   if (!log) return tl::unexpected(log.error());
-  const std::string files = fmt::format("{}", fmt::join(names, ", "));
-  if (const auto there = check_contents(fields, topics, files); !there) return tl::unexpected(there.error());
-  if (const std::string faults = faults_text(*log); !faults.empty()) {
-    warnings.push_back(fmt::format("{}: {}", files, faults));
+  const std::string all_names = fmt::format("{}", fmt::join(names, ", "));
+  if (const auto there = check_contents(fields, topics, all_names); !there) return tl::unexpected(there.error());
+  NavFiles files{*std::move(log), damaged, std::move(warnings), clocks_of(parts), {}, {}};
+  for (NavPart& part : parts) {
+    for (const std::string& note : part.contents.notes) files.notes.push_back(fmt::format("{}: {}", part.name, note));
+    files.bags.push_back({part.name, std::move(part.contents.topics)});
   }
-  for (const std::string& step : step_texts(*log)) warnings.push_back(fmt::format("{}: {}", files, step));
-  return NavFiles{*std::move(log), damaged, std::move(warnings), clocks_of(parts)};
+  for (const BagTopicSummary& sonar : sonar_topics(files.bags, wanted.log, wanted.topic)) {
+    log = sources_between(files.log, sonar.from_s, sonar.to_s);
+    if (!log) return tl::unexpected(log.error());
+    files.log = *std::move(log);
+  }
+  if (!wanted.chosen.empty()) {
+    log = choose_named(files.log, wanted.chosen);
+    if (!log) return tl::unexpected(log.error());
+    files.log = *std::move(log);
+  }
+  add_warnings(all_names, files);
+  return files;
+}
+
+Result<NavLog> choose_named(const NavLog& log, std::span<const NamedSource> chosen) {
+  return choose_sources(log, chosen).map_error([](const Error& error) {
+    return Error{error.code, fmt::format("--nav-source: {}", error.message)};
+  });
+}
+
+NavOthers::NavOthers(const NavLog& log, std::span<const NavQuantity> quantities, std::span<const std::string> used) {
+  std::map<std::string, Other> others;
+  for (const NavSource& source : log.sources()) {
+    if (std::ranges::find(quantities, source.quantity) == quantities.end()) continue;
+    if (std::ranges::find(used, source.name) != used.end()) continue;
+    const std::string note = source.subject == NavSubject::kOther ? source.note : "";
+    Other& other = others.try_emplace(source.name, Other{source.name, source.frame, note, 0}).first->second;
+    other.samples = std::max(other.samples, source.samples.size());
+  }
+  for (auto& [name, other] : others) others_.push_back(std::move(other));
+}
+
+std::string NavOthers::text() const {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  for (const Other& other : std::span(others_).first(std::min(kShown, others_.size()))) {
+    text += fmt::format("{}{} ({}", text.empty() ? "" : ", ", other.name, counted(other.samples, "sample"));
+    if (!other.note.empty()) {
+      text += ": " + other.note;
+    } else if (!other.frame.empty()) {
+      text += ", frame " + other.frame;
+    }
+    text += ")";
+  }
+  if (others_.size() > kShown) text += fmt::format(", and {} more", others_.size() - kShown);
+  return on_one_line(text);
+}
+
+std::string others_line(const NavOthers& others) {
+  const std::string text = others.text();
+  return text.empty() ? "" : report_line("nav others", text);
+}
+
+std::vector<BagTopicSummary> sonar_topics(std::span<const NavFiles::Topics> bags, const std::string& log,
+                                          const std::string& topic) {
+  using Use = BagTopicSummary::Use;
+  std::vector<BagTopicSummary> found;
+  for (const auto& [file, topics] : bags) {
+    if (file != log) continue;
+    const bool has_beams = std::ranges::any_of(
+        topics, [](const BagTopicSummary& one) { return one.use == Use::kBeams && one.messages > 0; });
+    for (const BagTopicSummary& one : topics) {
+      const bool is_it = topic.empty() ? one.use == (has_beams ? Use::kBeams : Use::kScans) : one.name == topic;
+      if (is_it && one.messages > 0) found.push_back(one);
+    }
+  }
+  return found;
+}
+
+std::string mount_hint(std::span<const NavFiles::Topics> bags, const std::string& log, const std::string& topic) {
+  constexpr double kSame = 1e-3;
+  for (const BagTopicSummary& sonar : sonar_topics(bags, log, topic)) {
+    if (!sonar.mount || sonar.mount->body_from_sensor.isApprox(Pose::Identity(), kSame)) continue;
+    const Pose& pose = sonar.mount->body_from_sensor;
+    // 0 instead of -0.
+    const Eigen::Vector3d at = pose.translation() + Eigen::Vector3d::Zero(), rpy = rpy_of(pose.rotation());
+    return on_one_line(
+        fmt::format("{}: {} has the sonar's frame {} on {}, which is not used: --mount "
+                    "{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}",
+                    log, sonar.mount->topic, sonar.frame, sonar.mount->vehicle, at.x(), at.y(), at.z(),
+                    rounded_degrees(rpy.x()) + 0.0, rounded_degrees(rpy.y()) + 0.0, rounded_degrees(rpy.z()) + 0.0));
+  }
+  return {};
+}
+
+std::vector<JsonObject> NavOthers::json() const {
+  std::vector<JsonObject> json;
+  for (const Other& other : others_) {
+    json.emplace_back()
+        .add("name", other.name)
+        .add("samples", other.samples)
+        .add("frame", other.frame)
+        .add("note", other.note);
+  }
+  return json;
 }
 
 Result<Water> water_of(const std::optional<WaterAround>& around, double salinity) {
@@ -268,9 +379,10 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("to_s", summary.to_s)
         .add("late", source.late)
         .add("left_out", left_out(source.steps))
-        .add("steps", steps_json(source.steps));
+        .add("steps", steps_json(source.steps))
+        .add("frame", source.frame)
+        .add("note", source.note);
     if (!source.fault.empty()) json_of_source.add("fault", source.fault);
-    if (!source.note.empty()) json_of_source.add("note", source.note);
   }
   json.add("clock", name_of(nav.log.clock()))
       .add("records", nav.records)
@@ -339,13 +451,19 @@ std::string nav_text(const NavFile& nav) {
                         summary.gaps, summary.from_s, summary.to_s);
   }
   for (const NavSource& source : nav.log.sources()) {
-    const std::string named = fmt::format("{} of {}: ", name_of(source.quantity), source.name);
-    if (!source.note.empty()) text += report_line("note", on_one_line(named + source.note));
-    if (!source.fault.empty()) text += report_line("not used", on_one_line(named + source.fault));
+    if (source.fault.empty()) continue;
+    text += report_line("not used",
+                        on_one_line(fmt::format("{} of {}: {}", name_of(source.quantity), source.name, source.fault)));
   }
   text += order_text(nav);
   for (const std::string& note : nav.notes) text += report_line("note", note);
   for (const std::string& step : step_texts(nav.log)) text += report_line("step", step);
+  std::set<std::string> noted;  // once for all quantities of a source
+  for (const NavSource& source : nav.log.sources()) {
+    const std::string note = on_one_line(fmt::format("{}: {}", source.name, source.note));
+    if (source.note.empty() || !noted.insert(note).second) continue;
+    text += report_line(source.subject == NavSubject::kOther ? "not taken" : "note", note);
+  }
   if (damaged_records(nav) > 0) text += report_line("skipped", counted(damaged_records(nav), "damaged record"));
   return text;
 }

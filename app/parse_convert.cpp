@@ -87,6 +87,7 @@ Result<Command> convert_command(const Args& args) {
          strict_option(command.damage),
          topic_option(command.bag),
          fields_option(command.bag),
+         source_option(command.nav_sources),
          quiet_option(command.output_options)}},
        std::move(echo_options),
        {"Meshes",
@@ -122,6 +123,9 @@ Result<Command> convert_command(const Args& args) {
     if (const auto valid = echo.validate(); !valid) return tl::unexpected(valid.error());
     command.sound_speed_ratio = echo.sound_speed_ratio();
     command.background_m = echo.background_m;
+    if (!command.nav_sources.empty() && command.format != Format::kTum) {
+      return usage_error("--nav-source: has an effect only on poses (.tum)");
+    }
     if (command.echoes && command.format != Format::kCsv) return usage_error("--echoes: are written as .csv only");
     if (const auto valid = command.filter.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = command.echo.validate(); !valid) return tl::unexpected(valid.error());

@@ -323,7 +323,7 @@ Result<Command> live_command(const Args& args) {
           "send the nearest obstacle in each of 72 sectors by MAVLink (OBSTACLE_DISTANCE), five times a second", "none",
           obstacles}}},
        map_group(typed.build),
-       without(sensor_group(typed.build), {"--poses", "--nav", "--nav-offset", "--use-calibration"}),
+       without(sensor_group(typed.build), {"--poses", "--nav", "--nav-source", "--nav-offset", "--use-calibration"}),
        without(echo_group(typed.build.echoes, WaterOfNav::kNo), {"--background"}),
        {"Input", {config_option()}}},
       {"pingvox live ping360:udp://192.168.2.2:9092 -o dive.ot --record dive.bin --range 20",

@@ -82,6 +82,7 @@ Result<Command> locate_command(const Args& args) {
        {"Navigation",
         {nav_option(command.navs,
                     "navigation log, as for 'slam': a heading, and velocity over ground where it has one"),
+         nav_source_option(command.nav_sources),
          nav_offset_option(command.nav_offset_s),
          nav_mount_option(command.nav.body_from_source),
          use_calibration_option(calibration, "correct --nav with a file of 'slam --calibration'"),

@@ -264,12 +264,14 @@ Result<Command> render_command(const Args& args) {
       next.panel.caption.clear();
       // Repeated options replace those of the first panel.
       std::vector<std::string> navs = std::exchange(next.build.navs, {});
+      std::vector<NamedSource> nav_sources = std::exchange(next.build.nav_sources, {});
       std::vector<std::string> paths = std::exchange(next.panel.drawn_paths, {});
       const Result<Parsed> taken = parse({"render: --beside", "", {}, panel_groups(next), {}, ""}, *changed);
       if (!taken) return tl::unexpected(taken.error());
       command.limited.insert(command.limited.end(), taken->limited.begin(), taken->limited.end());
       if (taken->is_help_wanted) return usage_error("--beside: takes no --help");
       if (next.build.navs.empty()) next.build.navs = std::move(navs);
+      if (next.build.nav_sources.empty()) next.build.nav_sources = std::move(nav_sources);
       if (next.panel.drawn_paths.empty()) next.panel.drawn_paths = std::move(paths);
       settings.push_back(std::move(next));
     }

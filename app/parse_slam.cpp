@@ -62,8 +62,8 @@ Result<Command> slam_command(const Args& args) {
       "Navigation",
       {nav_option(command.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)"),
-       nav_offset_option(command.nav_offset_s), mount_option(slam.body_from_sonar),
-       nav_mount_option(slam.body_from_source),
+       nav_source_option(command.nav_sources), nav_offset_option(command.nav_offset_s),
+       mount_option(slam.body_from_sonar), nav_mount_option(slam.body_from_source),
        use_calibration_option(known_calibration,
                               "calibration of the same sensors by an earlier run, taken as a prior")}};
   OptionTable::Group estimation{

@@ -198,7 +198,8 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
       .add("heading", report.heading)
       .add("frame", frame_text(report.heading))
       .add("nav_clock", json_of(inputs.nav_offset))
-      .add("nav_logs", nav_logs_json(inputs.nav_offset));
+      .add("nav_logs", nav_logs_json(inputs.nav_offset))
+      .add("nav_others", inputs.nav_others.json());
   report.clock_check ? json.add("clock_check", json_of(*report.clock_check)) : json.add_null("clock_check");
   command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
@@ -236,7 +237,7 @@ std::string slam_text(const SlamSolution& solution, const SlamCommand& command, 
   text += nav_logs_text(inputs.nav_offset);
   text += inputs.nav_water ? report_line("water", water_text(*inputs.nav_water))
                            : sound_line(command.slam.sound_speed_ratio * kAssumedSoundSpeed_m_s);
-  text += report_line("velocity", velocity_text(report));
+  text += report_line("velocity", velocity_text(report)) + others_line(inputs.nav_others);
   const std::size_t poses = solution.trajectory.poses().size();
   std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));
   if (report.in_pauses > 0) trajectory += fmt::format(", {} of them in pauses of the sonar", report.in_pauses);

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "nav_clock.hpp"
+#include "nav_report.hpp"
 #include "pingvox/slam/scan_slam.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/sound_speed.hpp"
@@ -21,6 +22,7 @@ struct MappedBeams {
 struct SlamInputs {
   NavOffset nav_offset;
   std::optional<Water> nav_water;     ///< by the navigation log, where it was asked
+  NavOthers nav_others;               ///< sources of velocity and heading that were not used
   std::size_t skipped = 0;            ///< records
   std::optional<MappedBeams> mapped;  ///< nullopt: there is no map
 };

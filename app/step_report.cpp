@@ -48,7 +48,7 @@ std::size_t left_out(const std::vector<SourceStep>& steps) {
 std::vector<std::string> step_texts(const NavLog& log) {
   std::vector<std::string> texts;
   for (const NavSource& source : log.sources()) {
-    if (source.steps.empty()) continue;
+    if (source.steps.empty() || source.subject == NavSubject::kOther) continue;
     const SourceStep& step = main_step(source.steps);
     std::string text =
         fmt::format("{} of {} {} at {:.3f} s{}: {} of {} are left out", name_of(source.quantity),

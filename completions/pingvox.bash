@@ -18,20 +18,20 @@ _pingvox_options() {
     map)
       options+=(--output --format --json --quiet --progress --strict --topic --fields --config)
       options+=(--resolution --depth --hit --miss --clamp --parents --vote --memory-limit --threads --occupied --free --cut-depth)
-      options+=(--poses --nav --nav-offset --use-calibration --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--poses --nav --nav-source --nav-offset --use-calibration --mount --origin --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     info) options+=(--json --strict --topic --fields) ;;
     compare)
       options+=(--layer --occupied --json --quiet --visible-from --min-range --max-range --beam-height --mount) ;;
     convert)
-      options+=(--output --format --strict --topic --fields --quiet --resolution --z --min-z --max-z --height --occupied --free --cut-depth --echoes)
+      options+=(--output --format --strict --topic --fields --quiet --resolution --z --min-z --max-z --height --occupied --free --cut-depth --echoes --nav-source)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     render)
       options+=(--output --view --from --z --min-z --max-z --occupied --free --cut-depth --path --sweep --show --echoes --between --size --caption --beside)
       options+=(--title --strict --topic --fields --quiet --config --resolution --depth --hit --miss --clamp --vote --memory-limit)
-      options+=(--poses --nav --nav-offset --use-calibration --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
+      options+=(--poses --nav --nav-source --nav-offset --use-calibration --mount --beam --beam-width --beam-height --device --free-share --ray --hit-from --silent)
       options+=(--min-range --min-bin --max-range --sound-speed --water --filter --kernel --sigma --detect --threshold --cfar --background)
       ;;
     simulate)
@@ -42,12 +42,12 @@ _pingvox_options() {
       options+=(--gyro-noise --gyro-drift --depth-noise --nav-delay)
       ;;
     slam)
-      options+=(--output --map --resolution --calibration --covariance --graph --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --matching)
+      options+=(--output --map --resolution --calibration --covariance --graph --json --quiet --nav --nav-source --nav-offset --mount --nav-mount --use-calibration --matching)
       options+=(--causal --seed --strict --topic --fields --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
     locate)
-      options+=(--output --only-sure --map --min-z --max-z --json --quiet --nav --nav-offset --mount --nav-mount --use-calibration --odometry --start)
+      options+=(--output --only-sure --map --min-z --max-z --json --quiet --nav --nav-source --nav-offset --mount --nav-mount --use-calibration --odometry --start)
       options+=(--causal --seed --strict --topic --fields --config --min-range --min-bin --max-range --sound-speed --water)
       options+=(--filter --kernel --sigma --detect --threshold --cfar)
       ;;
@@ -130,7 +130,7 @@ _pingvox() {
   if [[ -z $words ]]; then
     case "$previous" in
       --resolution | --depth | --mount | --min-range | --min-bin | --max-range | --background | --sound-speed | --water | --kernel | --sigma | --threshold | \
-        --nav-mount | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
+        --nav-mount | --nav-source | --nav-offset | --start | --beam-width | --beam-height | --free-share | --hit | --miss | --clamp | --threads | --memory-limit | --seed | --turns | --side | \
         --beams-per-turn | --bins | --bin-length | --speckle | --noise | --range | --speed | --drift | --heading-drift | \
         --dvl-noise | --dvl-outliers | --dvl-lost | --dvl-yaw | --dvl-scale | --compass-deviation | --attitude-noise | --gyro-noise | \
         --gyro-drift | --depth-noise | --nav-delay | --side-lobes | --gain | --compression | --absorption | --ringing | --multipath | --bubbles | --lost | --size | --sweep | --origin | --layer | --occupied | --free | --cut-depth | --z | --min-z | --max-z | --write-every | --beams | --sector | --step | --timeout | --listen | --to | --obstacles | --doubled | --damaged | --rate | --pings | --stall-every | --stall | --caption | --title | --beside)

@@ -17,6 +17,7 @@
 #include "io/readers.hpp"
 #include "io/sonar_messages.hpp"
 #include "pingvox/io/frame_finder.hpp"
+#include "pingvox/nav/nav_frames.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 // The beams in bags: drivers' messages, by their type and fields (docs/formats.md).
@@ -214,8 +215,12 @@ class BagBeams final : public DeviceLog {
     }
     if (beams->empty()) return {};
     const double time_s = topic->time_of(message_, message.time_s);
+    // The angles of a LaserScan are about z of its frame, those of other drivers are the head's own.
+    const bool is_frd =
+        !fields_ && type.beams_in == laser_beam && axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
     for (Beam& beam : *beams) {
       beam.time_s = time_s;
+      if (is_frd) beam.bearing_rad = wrap_bearing(-beam.bearing_rad);
       if (const auto valid = validate(beam); !valid) {
         unusable_.add({kImpossible, valid.error().message}, message.file_byte);
         return {};
@@ -332,7 +337,8 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
     const bool has_stamp = layout->field("header.stamp.sec").has_value();
     const std::string stamp = has_stamp ? "header.stamp." : "transforms.header.stamp.";
     const auto stamp_s = layout->field(stamp + "sec"), stamp_ns = layout->field(stamp + "nanosec");
-    return KnownTopic{0, std::move(layout), std::move(fields), stamp_s, stamp_ns};
+    const auto frame = layout->field("header.frame_id"), child = layout->field("child_frame_id");
+    return KnownTopic{0, std::move(layout), std::move(fields), stamp_s, stamp_ns, frame, child};
   }
   return std::nullopt;
 }

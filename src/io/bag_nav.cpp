@@ -17,28 +17,34 @@
 #include "io/dvl_a50.hpp"
 #include "io/nav_fields.hpp"
 #include "io/nav_sources.hpp"
+#include "io/tf_tree.hpp"
 #include "nav/pressure_unit.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/nav/device_clock.hpp"
+#include "pingvox/nav/nav_frames.hpp"
 
 // The navigation in bags, by type and fields of the messages (docs/formats.md).
 namespace pingvox {
 namespace {
 
+constexpr std::size_t kMaxFramesOfTopic = 16;
+constexpr std::string_view kTooManyFrames = "message in one of more than 16 frames of a topic";
+
 /// What the messages of a topic so far say about later ones.
 struct TopicState {
   double altitude_m = 0.0;               ///< the last one that a receiver knew
   std::vector<DeviceTime> report_times;  ///< of a DVL, where they have a time of the device
+  std::vector<NavOrigin> origins;        ///< of its messages, the first one's first
 };
 
 /// Where the samples of one message go.
 class Samples {
  public:
-  Samples(NavSources& sources, const std::string& name, double time_s, TopicState& state)
-      : sources_(sources), name_(name), time_s_(time_s), state_(state) {}
+  Samples(NavSources& sources, const std::string& name, double time_s, TopicState& state, const NavOrigin& origin)
+      : sources_(sources), name_(name), time_s_(time_s), state_(state), origin_(origin) {}
 
   /// Adds a position by dead reckoning and its attitude.
   void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
@@ -64,7 +70,7 @@ class Samples {
     sample.time_s = time_s_;
     sample.value = value;
     sample.valid = valid;
-    sources_.add(name_, quantity, sample);
+    sources_.add(name_, quantity, sample, origin_);
   }
 
  private:
@@ -72,6 +78,7 @@ class Samples {
   const std::string& name_;
   double time_s_;
   TopicState& state_;
+  const NavOrigin& origin_;
 };
 
 /// Three numbers from the field of the first on.
@@ -195,47 +202,81 @@ void add_usbl(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kPosition, three(message, 0), message.number(3) != 0.0);
 }
 
-/// From the third field on: of tf, whose first two are the names of the frames.
-void add_transform(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kPosition, three(message, 2));
-  add_attitude(message, 5, true, samples);
-}
-
-/// Whether a frame stands still while the vehicle moves (REP 105); "bluerov2/odom" is "odom" of one of several.
-bool is_fixed_frame(std::string_view frame) {
-  const std::string_view name = frame.substr(frame.rfind('/') + 1);  // npos + 1 is 0
-  return name == "map" || name == "odom" || name == "world";
-}
-
 void add_depth(const RosFields& message, Samples& samples) {
   samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
 }
 
+/// What `header.frame_id` of a type of message is.
+enum class FrameId {
+  kNotUsed,      ///< the driver's axes are known
+  kOfPose,       ///< that a pose is in, of something
+  kOfOdometry,   ///< that the vehicle's pose is in; `child_frame_id` is the vehicle, and what its twist is in
+  kOfSensor,     ///< of a sensor on the vehicle
+  kOfTwist,      ///< that a velocity is in, which may be another one than the vehicle's
+  kOfTransforms  ///< of tf: of each of them
+};
+
 struct NavType {
   RosType type;
-  void (*add)(const RosFields& message, Samples& samples);
-  bool is_of_transforms = false;
+  void (*add)(const RosFields& message, Samples& samples);  ///< nullptr: of transforms
+  FrameId frame_id = FrameId::kNotUsed;
 };
+
+NavOrigin origin_of(FrameId frame_id, const KnownTopic& topic, const RosMessage& message) {
+  const std::string frame(topic.frame_of(message)), child(topic.child_of(message));
+  switch (frame_id) {
+    case FrameId::kOfPose:
+      return {NavSubject::kUncertain, frame, {}};
+    case FrameId::kOfOdometry:
+      return {NavSubject::kVehicle, frame, child};
+    case FrameId::kOfSensor:
+      return {NavSubject::kVehicle, {}, frame};
+    case FrameId::kOfTwist:
+      return {NavSubject::kUncertain, {}, frame};
+    case FrameId::kNotUsed:
+    case FrameId::kOfTransforms:
+      break;
+  }
+  return {};
+}
+
+/// Of messages that are read by the fields that a user named: a frame that does not stand still is that of a sensor.
+NavOrigin origin_by_name(const KnownTopic& topic, const RosMessage& message) {
+  const bool is_of_pose = topic.child || is_fixed_frame(topic.frame_of(message));
+  NavOrigin origin = origin_of(is_of_pose ? FrameId::kOfOdometry : FrameId::kOfSensor, topic, message);
+  if (!topic.child && is_of_pose) origin.child = origin.frame;
+  return origin;
+}
+
+constexpr std::array<std::string_view, 10> kTransformFields = {
+    "transforms.header.frame_id",         "transforms.child_frame_id",          "transforms.transform.translation.x",
+    "transforms.transform.translation.y", "transforms.transform.translation.z", "transforms.transform.rotation.x",
+    "transforms.transform.rotation.y",    "transforms.transform.rotation.z",    "transforms.transform.rotation.w"};
 
 constexpr std::array kNavTypes = {
     NavType{{"Imu",
              {"orientation.x", "orientation.y", "orientation.z", "orientation.w", "angular_velocity.x",
               "angular_velocity.y", "angular_velocity.z", "orientation_covariance"}},
-            add_imu},
+            add_imu,
+            FrameId::kOfSensor},
     NavType{{"PoseStamped",
              {"pose.position.x", "pose.position.y", "pose.position.z", "pose.orientation.x", "pose.orientation.y",
               "pose.orientation.z", "pose.orientation.w"}},
-            add_pose},
+            add_pose,
+            FrameId::kOfPose},
     NavType{{"PoseWithCovarianceStamped",
              {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
               "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w"}},
-            add_pose},
+            add_pose,
+            FrameId::kOfPose},
     NavType{{"TwistStamped",
              {"twist.linear.x", "twist.linear.y", "twist.linear.z", "twist.angular.x", "twist.angular.y",
               "twist.angular.z"}},
-            add_twist},
+            add_twist,
+            FrameId::kOfTwist},
     NavType{{"TwistWithCovarianceStamped", {"twist.twist.linear.x", "twist.twist.linear.y", "twist.twist.linear.z"}},
-            add_velocity},
+            add_velocity,
+            FrameId::kOfTwist},
     NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix},
     // Its driver writes the latitude into `lon` and the longitude into `lat`: so in the recordings on the lake of
     // Ratzeburg (53.8 N, 10.8 E; NilsKompe/Bluerov2), the only ones that are known.
@@ -260,15 +301,11 @@ constexpr std::array kNavTypes = {
              {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
               "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w", "twist.twist.linear.x",
               "twist.twist.linear.y", "twist.twist.linear.z"}},
-            add_odometry},
-    NavType{
-        {"TFMessage",
-         {"transforms.header.frame_id", "transforms.child_frame_id", "transforms.transform.translation.x",
-          "transforms.transform.translation.y", "transforms.transform.translation.z", "transforms.transform.rotation.x",
-          "transforms.transform.rotation.y", "transforms.transform.rotation.z", "transforms.transform.rotation.w"},
-         "tf"},
-        add_transform,
-        true},
+            add_odometry,
+            FrameId::kOfOdometry},
+    NavType{{"TFMessage", kTransformFields, "tf"}, nullptr, FrameId::kOfTransforms},
+    NavType{{"TFMessage", kTransformFields, "tf_static"}, nullptr, FrameId::kOfTransforms},
+    NavType{{"tfMessage", kTransformFields, "tf"}, nullptr, FrameId::kOfTransforms},
     NavType{{"SonardyneUSBL2", {"east", "north", "depth", "connected"}}, add_usbl},
     NavType{{"String", {"data"}, "dvl/json_data"}, add_json},
     NavType{{"Float64", {"data"}, "depth"}, add_depth},
@@ -290,8 +327,13 @@ class BagSurvey {
     BagTopicSummary& summary = summaries_[topic.summary];
     using Use = BagTopicSummary::Use;
     const bool is_first = ++summary.messages == 1;
+    summary.from_s = is_first ? message.time_s : std::min(summary.from_s, message.time_s);
+    summary.to_s = is_first ? message.time_s : std::max(summary.to_s, message.time_s);
     if (is_first && summary.use == Use::kBeams && topic.scans && is_scan(*topic.scans, message)) {
       summary.use = Use::kScans;
+    }
+    if (is_first && (summary.use == Use::kBeams || summary.use == Use::kScans)) {
+      summary.frame = frame_in(bag_.topics()[message.topic], message);
     }
     if (!topic.known) return {};
     if (!message_.read(*topic.known->layout, message.bytes)) {
@@ -299,17 +341,24 @@ class BagSurvey {
       return {};
     }
     ++records_;
-    const std::string& name = summaries_[topic.summary].name;
-    for (const NavReader& reader : topic.readers) {
-      reader.add(message_, *topic.known, message.time_s, name, sources_);
-    }
-    if (!topic.readers.empty()) return {};
-    if (kNavTypes[topic.known->type].is_of_transforms) {
+    const NavType* const type = topic.readers.empty() ? &kNavTypes[topic.known->type] : nullptr;
+    if (type != nullptr && type->frame_id == FrameId::kOfTransforms) {
       add_transforms(message, topic);
       return {};
     }
-    Samples samples(sources_, name, topic.known->time_of(message_, message.time_s), topic.state);
-    kNavTypes[topic.known->type].add(RosFields(message_, topic.known->fields), samples);
+    const NavOrigin origin =
+        type != nullptr ? origin_of(type->frame_id, *topic.known, message_) : origin_by_name(*topic.known, message_);
+    const std::optional<std::string> name = name_of_source(topic, origin);
+    if (!name) {
+      add_damage(unusable_, kTooManyFrames, message.file_byte);
+      return {};
+    }
+    for (const NavReader& reader : topic.readers) {
+      reader.add(message_, *topic.known, message.time_s, *name, sources_, origin);
+    }
+    if (type == nullptr) return {};
+    Samples samples(sources_, *name, topic.known->time_of(message_, message.time_s), topic.state, origin);
+    type->add(RosFields(message_, topic.known->fields), samples);
     return {};
   }
 
@@ -320,10 +369,13 @@ class BagSurvey {
     std::vector<NavSource> sources = sources_.take();
     set_times(sources);
     tell_pressures(sources, named_by_fields());
-    add_where_no_other_is(transforms_.take(), sources);
+    for (const auto& [name, tree] : trees_) std::ranges::move(tree.paths(name), std::back_inserter(sources));
+    turn_frames(sources);
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
-    return BagContents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}};
+    BagContents contents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}, {}};
+    add_mounts(contents);
+    return contents;
   }
 
  private:
@@ -334,30 +386,65 @@ class BagSurvey {
     TopicState state;
   };
 
-  /// Adds what the transforms of a message say of where the vehicle is in a fixed frame. REQUIRES that the first of
-  /// them was read.
-  void add_transforms(const BagMessage& message, Topic& topic) {
+  /// The topic; messages in other frames than its first are of another source. nullopt: of too many.
+  std::optional<std::string> name_of_source(Topic& topic, const NavOrigin& origin) const {
+    const std::string& name = summaries_[topic.summary].name;
+    std::vector<NavOrigin>& known = topic.state.origins;
+    const auto same = std::ranges::find_if(
+        known, [&](const NavOrigin& one) { return one.frame == origin.frame && one.child == origin.child; });
+    if (same == known.end() && known.size() >= kMaxFramesOfTopic) return std::nullopt;
+    if (known.empty() || same == known.begin()) {
+      if (known.empty()) known.push_back(origin);
+      return name;
+    }
+    if (same == known.end()) known.push_back(origin);
+    return fmt::format("{}:{}:{}", name, origin.frame, origin.child);
+  }
+
+  static std::string frame_in(const BagTopic& topic, const BagMessage& message) {
+    RosMessage read;
+    const std::optional<KnownTopic> known = topic.is_readable ? topic_with(topic, {}) : std::nullopt;
+    if (!known || !read.read(*known->layout, message.bytes)) return {};
+    return std::string(known->frame_of(read));
+  }
+
+  /// Adds the transforms of a message to the tree of its vehicle. REQUIRES that the first of them was read.
+  void add_transforms(const BagMessage& message, const Topic& topic) {
     constexpr std::size_t kMaxTransforms = 256;
+    constexpr std::string_view kStatic = "_static";
     const KnownTopic& known = *topic.known;
+    std::string name = summaries_[topic.summary].name;
+    const bool is_static = name.ends_with(kStatic);
+    if (is_static) name.resize(name.size() - kStatic.size());
+    TfTree& tree = trees_[name];
     const RosFields transform(message_, known.fields);
     for (std::size_t next = 1; transform.count(2) > 0 && next <= kMaxTransforms; ++next) {
-      const std::string_view parent = transform.text(0), child = transform.text(1);
-      if (is_fixed_frame(parent) && !is_fixed_frame(child)) {
-        const std::string name = fmt::format("{}:{}:{}", summaries_[topic.summary].name, parent, child);
-        Samples samples(transforms_, name, known.time_of(message_, message.time_s), topic.state);
-        add_transform(transform, samples);
+      const auto rotation =
+          rotation_of_quaternion({transform.number(5), transform.number(6), transform.number(7), transform.number(8)});
+      if (rotation) {
+        Pose pose(*rotation);
+        pose.translation() = three(transform, 2);
+        tree.add(without_slash(transform.text(0)), without_slash(transform.text(1)),
+                 known.time_of(message_, message.time_s), pose,
+                 is_static ? TfTree::Link::kStatic : TfTree::Link::kMoving);
       }
       if (!message_.read(*known.layout, message.bytes, next)) return;
     }
   }
 
-  /// tf repeats, often filtered, what other topics tell.
-  static void add_where_no_other_is(std::vector<NavSource> transforms, std::vector<NavSource>& sources) {
-    const auto is_position = [](const NavSource& source) {
-      return source.quantity == NavQuantity::kPosition || source.quantity == NavQuantity::kFix;
-    };
-    if (std::ranges::any_of(sources, is_position)) return;
-    std::ranges::move(transforms, std::back_inserter(sources));
+  /// How the sonars are mounted, and what tf cannot join.
+  void add_mounts(BagContents& contents) const {
+    for (const auto& [name, tree] : trees_) {
+      for (BagTopicSummary& topic : contents.topics) {
+        if (topic.frame.empty() || topic.mount) continue;
+        if (auto mount = tree.mount_of(topic.frame)) {
+          topic.mount = BagTopicSummary::Mount{name, std::move(mount->vehicle), mount->body_from_sensor};
+        }
+      }
+      if (const std::string text = tree.unjoined_text(); !text.empty()) {
+        contents.notes.push_back(fmt::format("{}: {}", name, text));
+      }
+    }
   }
 
   /// The topics whose fields, with their units, were named.
@@ -437,7 +524,8 @@ class BagSurvey {
   std::vector<Topic> topics_;
   std::vector<BagTopicSummary> summaries_;
   std::map<std::string, std::size_t> places_;  ///< in summaries_
-  NavSources sources_, transforms_;
+  NavSources sources_;
+  std::map<std::string, TfTree> trees_;  ///< by the name of their topic
   RosMessage message_;
   std::size_t records_ = 0;
   UnusableMessages unusable_;
@@ -445,7 +533,8 @@ class BagSurvey {
 
 }  // namespace
 
-Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const NavFields> fields) {
+Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const NavFields> fields,
+                             std::size_t max_bytes) {
   const std::string name = stream.name();
   return detail::without_exceptions(name, [&]() -> Result<BagContents> {
     const std::span<const std::uint8_t> beginning = stream.beginning();
@@ -455,7 +544,7 @@ Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const N
     const Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
     if (!bag) return tl::unexpected(bag.error());
     BagSurvey survey(**bag, fields);
-    for (;;) {
+    for (std::size_t bytes = 0;;) {
       const Result<std::optional<BagMessage>> message = (*bag)->next();
       if (!message) return tl::unexpected(message.error());
       if (*message) {
@@ -464,7 +553,8 @@ Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const N
       if (const auto kinds = survey.damage(); damage == Damage::kFail && !kinds.empty()) {
         return fail(Error::Code::kCorrupt, fmt::format("{}: {}", (*bag)->name(), first_damage_text(kinds.front())));
       }
-      if (!*message) return survey.finish();
+      bytes += *message ? (*message)->bytes.size() : 0;
+      if (!*message || bytes >= max_bytes) return survey.finish();
     }
   });
 }

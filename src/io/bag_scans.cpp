@@ -20,6 +20,7 @@
 #include "io/byte_reader.hpp"
 #include "io/scalar.hpp"
 #include "pingvox/io/frame_finder.hpp"
+#include "pingvox/nav/nav_frames.hpp"
 
 namespace pingvox {
 namespace {
@@ -38,6 +39,13 @@ constexpr std::uint64_t kMaxPoints = 10'000'000;
 /// Whether a direction has a point: sensors write NaN, an infinite or no distance where there was no echo.
 bool is_point(const Eigen::Vector3d& point_m) {
   return point_m.allFinite() && !point_m.isZero(0.0);
+}
+
+/// From forward, right, down to ahead, left, up.
+void turn_from_frd(std::vector<PointScan>& scans) {
+  for (PointScan& scan : scans) {
+    for (Eigen::Vector3d& point_m : scan.points_m) point_m = from_ned::body(point_m);
+  }
 }
 
 /// A scan alone, without a copy of its points.
@@ -276,6 +284,7 @@ class BagScans final : public ScanSource {
     }
     if (!looks_around(*topic, message_)) return {};
     const double time_s = topic->time_of(message_, message.time_s);
+    const bool is_frd = axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
     Scans scans = kScanTypes[topic->type].scans_in(message_, *topic, message.bytes, time_s);
     if (!scans) {
       unusable_.add(scans.error(), message.file_byte);
@@ -283,6 +292,7 @@ class BagScans final : public ScanSource {
     }
     if (chosen_.empty()) chosen_ = name;
     if (name != chosen_) return several_topics(*bag_, "scans", may_have_scans);
+    if (is_frd) turn_from_frd(*scans);
     scans_.insert(scans_.end(), std::make_move_iterator(scans->begin()), std::make_move_iterator(scans->end()));
     return {};
   }

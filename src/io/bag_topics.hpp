@@ -42,12 +42,23 @@ class RosFields {
   std::span<const std::size_t> fields_;
 };
 
+/// The name of a frame without the '/' that old drivers begin it with.
+inline std::string_view without_slash(std::string_view frame) {
+  while (frame.starts_with('/')) frame.remove_prefix(1);
+  return frame;
+}
+
 /// A topic of a known type.
 struct KnownTopic {
   std::size_t type = 0;  ///< in the table
   std::shared_ptr<const RosLayout> layout;
   std::vector<std::size_t> fields;
   std::optional<std::size_t> stamp_s, stamp_ns;
+  std::optional<std::size_t> frame, child;  ///< header.frame_id and child_frame_id
+
+  /// As the message names it; empty: it names none.
+  std::string_view frame_of(const RosMessage& message) const { return name_in(message, frame); }
+  std::string_view child_of(const RosMessage& message) const { return name_in(message, child); }
 
   /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording, else the
   /// recording's time.
@@ -56,6 +67,11 @@ struct KnownTopic {
     if (!stamp_s || !stamp_ns) return recorded_s;
     const double time_s = message.number(*stamp_s) + message.number(*stamp_ns) * 1e-9;
     return std::fabs(time_s - recorded_s) <= kNear_s ? time_s : recorded_s;
+  }
+
+ private:
+  static std::string_view name_in(const RosMessage& message, std::optional<std::size_t> field) {
+    return field ? without_slash(message.text(*field)) : std::string_view();
   }
 };
 

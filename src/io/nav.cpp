@@ -16,10 +16,36 @@
 
 namespace pingvox {
 
-NavSample* NavSources::add(const std::string& name, NavQuantity quantity, const NavSample& sample) {
+namespace {
+
+/// A source without samples yet.
+NavSource new_source(const std::string& name, NavQuantity quantity, const NavOrigin& origin) {
+  NavSource source{name, quantity, {}};
+  source.subject = origin.subject;
+  switch (quantity) {
+    case NavQuantity::kPosition:
+    case NavQuantity::kAttitude:
+    case NavQuantity::kHeading:
+      source.frame = origin.frame;
+      source.child = origin.child;
+      break;
+    case NavQuantity::kVelocity:
+    case NavQuantity::kTurnRate:
+      source.frame = origin.child;
+      break;
+    default:
+      break;
+  }
+  return source;
+}
+
+}  // namespace
+
+NavSample* NavSources::add(const std::string& name, NavQuantity quantity, const NavSample& sample,
+                           const NavOrigin& origin) {
   if (!std::isfinite(sample.time_s) || !sample.value.allFinite()) return nullptr;
   const auto [place, is_new] = places_.try_emplace({name, quantity}, sources_.size());
-  if (is_new) sources_.push_back({name, quantity, {}});
+  if (is_new) sources_.push_back(new_source(name, quantity, origin));
   std::vector<NavSample>& samples = sources_[place->second].samples;
   samples.push_back(sample);
   return &samples.back();

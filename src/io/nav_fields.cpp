@@ -99,11 +99,16 @@ Result<void> NavFields::validate() const {
   return {};
 }
 
-std::optional<Eigen::Vector3d> rpy_of_quaternion(const Eigen::Vector4d& xyzw) {
+std::optional<Eigen::Quaterniond> rotation_of_quaternion(const Eigen::Vector4d& xyzw) {
   const Eigen::Quaterniond q(xyzw);
   constexpr double kTolerance = 1e-2;
   if (!(std::fabs(q.norm() - 1.0) <= kTolerance)) return std::nullopt;
-  return rpy_of(q.normalized().toRotationMatrix());
+  return q.normalized();
+}
+
+std::optional<Eigen::Vector3d> rpy_of_quaternion(const Eigen::Vector4d& xyzw) {
+  const auto rotation = rotation_of_quaternion(xyzw);
+  return rotation ? std::optional(rpy_of(rotation->toRotationMatrix())) : std::nullopt;
 }
 
 bool is_of(const NavFields& fields, std::string_view topic, std::string_view type) {
@@ -256,7 +261,7 @@ bool NavReader::is_valid(const RosMessage& message) const {
 }
 
 void NavReader::add(const RosMessage& message, const KnownTopic& topic, double recorded_s, const std::string& source,
-                    NavSources& sources) const {
+                    NavSources& sources, const NavOrigin& origin) const {
   NavSample sample;
   if (time_.size() == 2) {
     sample.time_s = time_[0].in(message) + time_[1].in(message) * 1e-9;
@@ -268,7 +273,7 @@ void NavReader::add(const RosMessage& message, const KnownTopic& topic, double r
   sample.value = value_in(message);
   sample.deviation = deviation_in(message);
   sample.valid = is_valid(message);
-  sources.add(source, quantity_, sample);
+  sources.add(source, quantity_, sample, frame_ == Frame::kByName ? origin : NavOrigin());
 }
 
 }  // namespace pingvox

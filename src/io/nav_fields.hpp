@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +18,9 @@ namespace pingvox {
 /// Roll, pitch, yaw of a rotation.
 Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r);
 
-/// Roll, pitch, yaw of a quaternion x, y, z, w; nullopt: it is none. Drivers without an attitude send zeros.
+/// Rotation by a quaternion x, y, z, w; nullopt: it is none. Drivers without an attitude send zeros.
+std::optional<Eigen::Quaterniond> rotation_of_quaternion(const Eigen::Vector4d& xyzw);
+/// Its roll, pitch, yaw.
 std::optional<Eigen::Vector3d> rpy_of_quaternion(const Eigen::Vector4d& xyzw);
 
 /// Whether a topic's messages are those of the mapping.
@@ -30,8 +33,9 @@ class NavReader {
   static Result<NavReader> make(const NavFields& fields, const RosLayout& layout);
 
   /// Adds the sample of a message, unless one of its numbers is missing.
+  /// @param origin  by the message's names of frames; not used where the mapping says what the frame is
   void add(const RosMessage& message, const KnownTopic& topic, double recorded_s, const std::string& source,
-           NavSources& sources) const;
+           NavSources& sources, const NavOrigin& origin) const;
 
  private:
   struct Number {
@@ -51,7 +55,7 @@ class NavReader {
   bool is_valid(const RosMessage& message) const;
 
   NavQuantity quantity_ = NavQuantity::kVelocity;
-  NavFields::Frame frame_ = NavFields::Frame::kEnu;
+  NavFields::Frame frame_ = NavFields::Frame::kByName;
   NavFields::Spread spread_is_ = NavFields::Spread::kDeviation;
   double unit_ = 1.0, time_unit_s_ = 1.0;
   std::vector<Number> values_, spread_;

@@ -14,6 +14,7 @@
 #include "nav/plausible_values.hpp"
 #include "nav/source_steps.hpp"
 #include "nav/water_column.hpp"
+#include "pingvox/nav/main_source.hpp"
 
 namespace pingvox {
 namespace {
@@ -98,8 +99,23 @@ std::string_view name_of(NavClock clock) {
   return "unknown";
 }
 
+namespace {
+
+/// Notes samples that are late, and a clock that was set back.
+void put_in_order(NavSource& source) {
+  if (std::ranges::is_sorted(source.samples, {}, &NavSample::time_s)) return;
+  TimeOrder order;
+  for (const NavSample& sample : source.samples) order.add(sample.time_s);
+  source.late += order.late();
+  if (const auto step = order.step_back()) source.step_back = step;
+  sort_by_time(source.samples);
+}
+
+}  // namespace
+
 Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
   std::erase_if(sources, [](const NavSource& source) { return source.samples.empty(); });
+  judge_subjects(sources);
   for (NavSource& source : sources) {
     for (std::size_t i = 0; i < source.samples.size(); ++i) {
       const NavSample& sample = source.samples[i];
@@ -107,12 +123,7 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
       return fail(Error::Code::kCorrupt, fmt::format("{} of {}: sample {} has a number that is not finite",
                                                      name_of(source.quantity), source.name, i));
     }
-    if (std::ranges::is_sorted(source.samples, {}, &NavSample::time_s)) continue;
-    TimeOrder order;
-    for (const NavSample& sample : source.samples) order.add(sample.time_s);
-    source.late += order.late();
-    if (const auto step = order.step_back()) source.step_back = step;
-    sort_by_time(source.samples);
+    put_in_order(source);
     check_values(source);
   }
   compare_turns(sources);
@@ -163,6 +174,11 @@ Result<void> check_clock(const NavSource& source) {
                           name_of(source.quantity), source.name, from_s - to_s, from_s, to_s));
 }
 
+/// Whether it may be used if it has samples.
+bool is_taken(const NavSource& source) {
+  return source.subject != NavSubject::kOther && source.fault.empty();
+}
+
 std::string fault_text(const NavSource& source) {
   return fmt::format("the {} of {} cannot be used: {}", name_of(source.quantity), source.name, source.fault);
 }
@@ -176,7 +192,8 @@ bool has_another(const NavLog& log, NavQuantity quantity, std::span<const NavQua
   const bool is_turn = quantity == NavQuantity::kTurnRate || is_one_of(quantity, kHeadingQuantities);
   return std::ranges::any_of(log.sources(), [&](const NavSource& source) {
     const bool tells_turns = is_turn && is_one_of(source.quantity, kHeadingQuantities);
-    return is_one_of(source.quantity, quantities) && (source.quantity == quantity || tells_turns) && is_usable(source);
+    return is_one_of(source.quantity, quantities) && (source.quantity == quantity || tells_turns) && is_taken(source) &&
+           is_usable(source);
   });
 }
 
@@ -190,7 +207,7 @@ Result<void> check_source(const NavSource& source) {
 Result<void> check_sources(const NavLog& log, std::span<const NavQuantity> quantities) {
   std::string faults;
   for (const NavSource& source : log.sources()) {
-    if (!is_one_of(source.quantity, quantities)) continue;
+    if (!is_one_of(source.quantity, quantities) || source.subject == NavSubject::kOther) continue;
     if (const auto checked = check_clock(source); !checked) return checked;
     if (source.fault.empty() || has_another(log, source.quantity, quantities)) continue;
     faults += (faults.empty() ? "" : "; ") + fault_text(source);
@@ -208,22 +225,14 @@ Result<void> check_sources(const NavLog& log) {
 std::string faults_text(const NavLog& log) {
   std::string text;
   for (const NavSource& source : log.sources()) {
-    if (!source.fault.empty()) text += (text.empty() ? "" : "; ") + fault_text(source);
+    if (source.fault.empty() || source.subject == NavSubject::kOther) continue;
+    text += (text.empty() ? "" : "; ") + fault_text(source);
   }
   return text;
 }
 
 const NavSource* NavLog::best(NavQuantity quantity) const {
-  const NavSource* best = nullptr;
-  std::size_t most = 0;
-  for (const NavSource& source : sources_) {
-    if (source.quantity != quantity || !source.fault.empty()) continue;
-    const std::size_t valid = valid_samples(source) + few_left_out(source);
-    if (valid <= most) continue;
-    best = &source;
-    most = valid;
-  }
-  return best;
+  return main_source(*this, quantity);
 }
 
 std::optional<NavSource> depth_source(const NavLog& log) {
@@ -231,7 +240,7 @@ std::optional<NavSource> depth_source(const NavLog& log) {
   const NavSource* chosen = nullptr;
   double highest_pa = kMaxInAir_pa;
   for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kPressure || !source.fault.empty()) continue;
+    if (source.quantity != NavQuantity::kPressure || !is_taken(source)) continue;
     for (const NavSample& sample : source.samples) {
       if (!sample.valid || sample.value.x() <= highest_pa) continue;
       highest_pa = sample.value.x();
@@ -252,7 +261,7 @@ std::optional<WaterAround> water_around(const NavLog& log) {
   constexpr double kNone_c = 0.0, kWarmest_c = 35.0;
   std::optional<double> coldest_c;
   for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kTemperature || !source.fault.empty()) continue;
+    if (source.quantity != NavQuantity::kTemperature || !is_taken(source)) continue;
     const std::optional<double> usual_c = usual_value(source);
     if (!usual_c || *usual_c <= kNone_c || *usual_c > kWarmest_c) continue;
     coldest_c = std::min(*usual_c, coldest_c.value_or(*usual_c));

@@ -3,38 +3,22 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/without_exceptions.hpp"
+#include "pingvox/nav/main_source.hpp"
 
 namespace pingvox {
 namespace {
 
-/// The estimates that an ArduPilot vehicle itself steers by, in its telemetry and in its own log.
-constexpr std::array<std::string_view, 4> kMainEstimates = {"ATTITUDE", "ATT", "LOCAL_POSITION_NED",
-                                                            "GLOBAL_POSITION_INT"};
-
-/// Only its valid samples; nullopt: there are none. kCorrupt when its clock was set back.
-/// @param preferred  name of a source that is taken before all others
-Result<std::optional<NavSource>> main_source(const NavLog& log, NavQuantity quantity, std::string_view preferred = {}) {
-  const NavSource* chosen = log.best(quantity);
-  if (chosen == nullptr) return std::nullopt;
-  for (const NavSource& source : log.sources()) {
-    if (source.quantity != quantity || !is_usable(source)) continue;
-    if (source.name == preferred) {
-      chosen = &source;
-      break;
-    }
-    if (std::ranges::find(kMainEstimates, source.name) != kMainEstimates.end()) chosen = &source;
-  }
-  if (const auto checked = check_source(*chosen); !checked) return tl::unexpected(checked.error());
-  NavSource valid = *chosen;
+/// Only its valid samples. kCorrupt when its clock was set back.
+Result<NavSource> valid_part(const NavSource& source) {
+  if (const auto checked = check_source(source); !checked) return tl::unexpected(checked.error());
+  NavSource valid = source;
   std::erase_if(valid.samples, [](const NavSample& sample) { return !sample.valid; });
   return valid;
 }
@@ -81,14 +65,12 @@ struct PositionSource {
 };
 
 /// nullopt: the log has no position.
-Result<std::optional<PositionSource>> position_source(const NavLog& log) {
-  Result<std::optional<NavSource>> position = main_source(log, NavQuantity::kPosition);
-  if (!position) return tl::unexpected(position.error());
-  if (*position) return PositionSource{*std::move(*position), std::nullopt};
-  Result<std::optional<NavSource>> found = main_source(log, NavQuantity::kFix);
+Result<std::optional<PositionSource>> position_source(const NavLog& log, const NavSource* chosen) {
+  if (chosen == nullptr) return std::nullopt;
+  Result<NavSource> found = valid_part(*chosen);
   if (!found) return tl::unexpected(found.error());
-  if (!*found) return std::nullopt;
-  NavSource& fixes = **found;
+  if (found->quantity == NavQuantity::kPosition) return PositionSource{*std::move(found), std::nullopt};
+  NavSource& fixes = *found;
   const Eigen::Vector3d origin = make_positions(fixes);
   if (auto depth = depth_source(log)) {
     if (const auto checked = check_source(*depth); !checked) return tl::unexpected(checked.error());
@@ -112,20 +94,18 @@ Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
   return detail::without_exceptions([&]() -> Result<NavTrajectory> {
-    const Result<std::optional<PositionSource>> found = position_source(log);
+    const PathSources sources = path_sources(log);
+    const Result<std::optional<PositionSource>> found = position_source(log, sources.position);
     if (!found) return tl::unexpected(found.error());
     const NavSource* position = *found ? &(*found)->source : nullptr;
-    // A source of both has them in one frame, which need not be that of others.
-    const Result<std::optional<NavSource>> turned = main_source(
-        log, NavQuantity::kAttitude, position != nullptr ? std::string_view(position->name) : std::string_view());
-    if (!turned) return tl::unexpected(turned.error());
-    const std::optional<NavSource>& attitude = *turned;
-    if (!attitude || position == nullptr) {
+    if (sources.attitude == nullptr || position == nullptr) {
       constexpr std::array kOfPoses = {NavQuantity::kAttitude, NavQuantity::kPosition, NavQuantity::kFix};
       if (const auto checked = check_sources(log, kOfPoses); !checked) return tl::unexpected(checked.error());
-      return fail(Error::Code::kUnsupported,
-                  fmt::format("has no valid {}: poses need attitude and position", attitude ? "position" : "attitude"));
+      return fail(Error::Code::kUnsupported, fmt::format("has no valid {}: poses need attitude and position",
+                                                         sources.attitude != nullptr ? "position" : "attitude"));
     }
+    const Result<NavSource> attitude = valid_part(*sources.attitude);
+    if (!attitude) return tl::unexpected(attitude.error());
     const Result<Trajectory> rotations = trajectory_of(*attitude, offset_s, [](const Eigen::Vector3d& rpy) {
       return pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z());
     });
@@ -159,7 +139,7 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
 
 Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
   return detail::without_exceptions([&]() -> Result<NavTrajectory> {
-    const Result<std::optional<PositionSource>> found = position_source(log);
+    const Result<std::optional<PositionSource>> found = position_source(log, path_sources(log).position);
     if (!found) return tl::unexpected(found.error());
     if (!*found) {
       constexpr std::array kOfPositions = {NavQuantity::kPosition, NavQuantity::kFix};

@@ -13,6 +13,7 @@
 
 #include "base/median.hpp"
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/nav/main_source.hpp"
 
 namespace pingvox {
 namespace {
@@ -222,12 +223,11 @@ Result<void> check_mounts(const NavLog& log, const std::map<std::string, Pose>& 
   return {};
 }
 
-std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source) {
+std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source,
+                                          const NavSource* velocity) {
   std::optional<HeadingSource> best;
-  for (const NavSource& source : log.sources()) {
-    if (source.quantity != NavQuantity::kHeading && source.quantity != NavQuantity::kAttitude) continue;
-    if (!is_usable(source)) continue;
-    auto heading = heading_source(source, mount_of(body_from_source, source.name));
+  for (const NavSource* source : covering_sources(log, kHeadingQuantities, velocity)) {
+    auto heading = heading_source(*source, mount_of(body_from_source, source->name));
     if (heading && (!best || heading->samples() > best->samples())) best = *std::move(heading);
   }
   return best;

@@ -82,7 +82,8 @@ Result<void> check_mounts(const NavLog& log, const std::map<std::string, Pose>& 
 
 /// The heading or attitude with most samples (HeadingSource::samples), the first of equals.
 /// @param body_from_source  how sources are mounted, by name; the identity for others
-std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source);
+std::optional<HeadingSource> best_heading(const NavLog& log, const std::map<std::string, Pose>& body_from_source,
+                                          const NavSource* velocity = nullptr);
 
 /// Velocity over ground in the frame of the body [m/s], without outliers.
 struct VelocitySource {

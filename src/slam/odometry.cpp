@@ -62,11 +62,11 @@ Result<void> correct(const SlamCalibration& calibration, HeadingSource& heading,
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options) {
   if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return tl::unexpected(checked.error());
   if (const auto known = check_mounts(log, options.body_from_source); !known) return tl::unexpected(known.error());
-  std::optional<HeadingSource> heading = best_heading(log, options.body_from_source);
+  const NavSource* const moves = log.best(NavQuantity::kVelocity);
+  std::optional<HeadingSource> heading = best_heading(log, options.body_from_source, moves);
   if (!heading) return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");
   std::optional<VelocitySource> velocity;
-  if (const NavSource* best = log.best(NavQuantity::kVelocity))
-    velocity = velocity_source(*best, mount_of(options.body_from_source, best->name));
+  if (moves != nullptr) velocity = velocity_source(*moves, mount_of(options.body_from_source, moves->name));
   if (options.calibration) {
     if (const auto done = correct(*options.calibration, *heading, velocity); !done) return tl::unexpected(done.error());
   }

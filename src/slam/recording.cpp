@@ -113,7 +113,7 @@ std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& opt
     headings.push_back(*std::move(heading));
   }
   for (const NavSource& source : log.sources()) {
-    if (!is_usable(source)) continue;
+    if (source.subject == NavSubject::kOther || !is_usable(source)) continue;
     const Pose mount = mount_of(options.body_from_source, source.name);
     if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
       if (auto heading = heading_source(source, mount)) headings.push_back(*std::move(heading));

@@ -110,6 +110,7 @@ Result<void> SlamSmoother::add(const NavLog& log) {
   return detail::without_exceptions([&]() -> Result<void> {
     if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return checked;
     for (NavSource source : log.sources()) {
+      if (source.subject == NavSubject::kOther) continue;
       for (NavSample& sample : source.samples) sample.time_s += state_->options.nav_offset_s;
       add_samples(source, source_in(state_->sources, source.name, source.quantity));
     }

@@ -2,23 +2,31 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "pingvox/io/bag.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
+#include "pingvox/nav/main_source.hpp"
+#include "pingvox/nav/nav_trajectory.hpp"
 #include "support/bag_writer.hpp"
 #include "support/logs.hpp"
+#include "support/ros_messages.hpp"
 
 namespace pingvox {
 namespace {
 
+using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::SizeIs;
 
 /// The samples of a quantity in a message of ROS 2 alone in a bag.
@@ -201,18 +209,216 @@ TEST(BagNav, TheVehicleIsWhatMovesInAFixedFrameOfTf) {
   EXPECT_THAT(sources_in(bag_of_transforms("/tf_static")), SizeIs(0)) << "what does not move";
 }
 
-// Kills a path of tf, which may be filtered or in another frame, instead of the one that was measured.
-TEST(BagNav, TfIsUsedWhereNoOtherTopicHasAPosition) {
+// Kills a path of tf, which may be filtered or in another frame, instead of the one that was measured; and tf that is
+// gone because of a goal that somebody clicked.
+TEST(BagNav, TfIsReadBesideOtherPositions) {
   bags::Mcap mcap = bag_of_transforms("/tf");
-  mcap.topic(2, "/fix", "lab_msgs/msg/NavSatFix",
-             "float64 latitude\nfloat64 longitude\nfloat64 altitude\n"
-             "Status status\n================\nMSG: lab_msgs/Status\nfloat64 status\n");
-  bags::Bytes fix = {0, 1, 0, 0};
-  for (const double number : {60.0, 10.0, 0.0, 0.0}) bags::put(fix, number);
-  mcap.message(2, 1'000'700'000'000U, fix);
+  mcap.topic(2, "/odom", "nav_msgs/msg/Odometry", "");
+  mcap.message(2, 1'000'700'000'000U, bags::odometry(1000.7, "odom", "base_link", bags::pose_numbers(0, 0, 0, 0)));
   const auto sources = sources_in(std::move(mcap));
-  ASSERT_THAT(sources, SizeIs(1));
-  EXPECT_EQ(sources[0].name, "/fix");
+  EXPECT_EQ(std::ranges::count(sources, "/tf:rov/odom:rov/base_link", &NavSource::name), 2);
+  const auto log = NavLog::make(sources, NavClock::kUnix);
+  EXPECT_EQ(path_sources(*log).position->name, "/odom");
+}
+
+constexpr double kPi = std::numbers::pi;
+
+/// A bag with one message of tf each tenth of a second.
+struct TfBag {
+  bags::Mcap mcap;
+  explicit TfBag(std::string_view topic = "/tf") {
+    mcap.topic(1, topic, "tf2_msgs/msg/TFMessage", "");
+    mcap.topic(2, "/tf_static", "tf2_msgs/msg/TFMessage", "");
+  }
+  void add(double time_s, const std::vector<bags::Transform>& all) {
+    mcap.message(1, bags::nanoseconds(time_s), bags::transforms(time_s, all));
+  }
+};
+
+/// "name: place, yaw in degrees" of the first sample of the chosen path.
+std::string path_in(bags::Mcap mcap) {
+  const auto log = NavLog::make(sources_in(std::move(mcap)), NavClock::kUnix);
+  const auto made = nav_trajectory(*log);
+  if (!made) return made.error().message;
+  const Pose& pose = made->trajectory.poses().front().map_from_body;
+  const Eigen::Vector3d at = pose.translation(), rpy = rpy_of(pose.rotation());
+  return fmt::format("{}: {:.3f} {:.3f} {:.3f}, {:.1f}", made->position, at.x() + 0.0, at.y() + 0.0, at.z() + 0.0,
+                     rpy.z() * 180.0 / kPi);
+}
+
+// Of two transforms one was used: the depth of base_link, or the frame map, was lost.
+TEST(BagNav, TransformsOfTfAreJoined) {
+  TfBag footprint, slam;
+  for (double time_s = 1000.0; time_s < 1010.0; time_s += 0.1) {
+    footprint.add(time_s, {{"odom", "base_footprint", bags::pose_numbers(time_s - 1000.0, 0, 0, 0)},
+                           {"base_footprint", "base_link", bags::pose_numbers(0, 0, -5, kPi / 2)}});
+    slam.add(time_s, {{"map", "odom", bags::pose_numbers(10, 0, 0, kPi / 2)}});
+    slam.add(time_s + 0.03, {{"odom", "base_link", bags::pose_numbers(time_s - 999.9, 0, -5, 0)}});
+  }
+  EXPECT_EQ(path_in(footprint.mcap), "/tf:odom:base_link: 0.000 0.000 -5.000, 90.0");
+  EXPECT_EQ(path_in(slam.mcap), "/tf:map:base_link: 10.000 0.100 -5.000, 90.0");
+}
+
+TEST(BagNav, TransformsAreInterpolatedAtTheTimesOfTheOthers) {
+  TfBag bag;
+  bag.mcap.message(2, bags::nanoseconds(1000),
+                   bags::transforms(1000, {{"base", "base_link", bags::pose_numbers(0, 1, 0, 0)}}));
+  for (int i = 0; i <= 10; ++i) {
+    bag.add(1000.0 + i, {{"map", "odom", bags::pose_numbers(2.0 * i, 0, 0, 0)}});
+    bag.add(1000.5 + i, {{"odom", "base", bags::pose_numbers(0, 0, -i, 0)}});
+  }
+  const auto sources = sources_in(bag.mcap);
+  const auto joined = std::ranges::find(sources, "/tf:map:base_link", &NavSource::name);
+  ASSERT_NE(joined, sources.end());
+  ASSERT_EQ(joined->quantity, NavQuantity::kPosition);
+  ASSERT_THAT(joined->samples, SizeIs(20)) << "at the times of both, where both are known";
+  EXPECT_TRUE(joined->samples[0].value.isApprox(Eigen::Vector3d(1, 1, 0))) << "at 1000.5 s";
+  EXPECT_TRUE(joined->samples[1].value.isApprox(Eigen::Vector3d(2, 1, -0.5))) << "at 1001 s";
+  EXPECT_EQ(joined->note, "map -> odom -> base -> base_link");
+}
+
+TEST(BagNav, WhatTfCannotJoinIsSaid) {
+  TfBag bag;
+  bag.add(1000.0, {{"map", "odom", bags::pose_numbers(0, 0, 0, 0)},
+                   {"base_footprint", "base_link", bags::pose_numbers(0, 0, 0, 0)}});
+  bag.mcap.end_chunk();
+  const auto read = read_bag(ByteStream(FileBytes{"dive.mcap", bag.mcap.closed()}));
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->nav.log.sources(), SizeIs(0));
+  EXPECT_THAT(read->notes, ElementsAre("/tf: tf does not join base_link to map"));
+}
+
+// Kills a walk without an end, and one whose time grows with the square of what a bag says.
+TEST(BagNav, TransformsOfManyFramesAndInCirclesEnd) {
+  TfBag bag;
+  std::vector<std::string> names;
+  for (int i = 0; i < 3000; ++i) names.push_back(fmt::format("base_link_{}", i));
+  for (std::size_t i = 0; i + 1 < names.size(); ++i) {
+    bag.add(1000.0 + static_cast<double>(i) * 0.01, {{names[i], names[i + 1], bags::pose_numbers(1, 0, 0, 0)},
+                                                     {names[i + 1], names[i], bags::pose_numbers(1, 0, 0, 0)},
+                                                     {"odom", names[i], bags::pose_numbers(1, 0, 0, 0)},
+                                                     {names[i], "odom", bags::pose_numbers(1, 0, 0, 0)},
+                                                     {"odom", "map", bags::pose_numbers(1, 0, 0, 0)},
+                                                     {"map", "odom", bags::pose_numbers(1, 0, 0, 0)}});
+  }
+  EXPECT_LE(sources_in(bag.mcap).size(), 64U);
+}
+
+TEST(BagNav, ASonarIsMountedAsTfSays) {
+  TfBag bag;
+  bag.mcap.topic(3, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+  bag.mcap.message(2, bags::nanoseconds(1000),
+                   bags::transforms(1000, {{"base_link", "frame_link", bags::pose_numbers(0.25, 0, 0.1, kPi / 2)},
+                                           {"frame_link", "sonar_link", bags::pose_numbers(0.5, 0, -0.4, 0)}}));
+  bag.mcap.message(3, bags::nanoseconds(1000), bags::sonar_echo(1000, "/sonar_link", 0.0F, 10));
+  bag.mcap.end_chunk();
+  const auto read = read_bag(ByteStream(FileBytes{"dive.mcap", bag.mcap.closed()}));
+  ASSERT_TRUE(read);
+  const auto sonar = std::ranges::find(read->topics, "/echo", &BagTopicSummary::name);
+  ASSERT_NE(sonar, read->topics.end());
+  EXPECT_EQ(sonar->frame, "sonar_link");
+  ASSERT_TRUE(sonar->mount);
+  EXPECT_EQ(sonar->mount->vehicle, "base_link");
+  EXPECT_TRUE(sonar->mount->body_from_sensor.isApprox(pose_from_rpy({0.25, 0.5, -0.3}, 0, 0, kPi / 2), 1e-9))
+      << sonar->mount->body_from_sensor.matrix();
+}
+
+/// The path of a bag in which the vehicle stands still at 5 m of depth, heading 30 degrees east of north.
+std::string path_of_odometry(std::string_view frame, std::string_view child, const std::vector<double>& pose) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/pose_gt", "nav_msgs/msg/Odometry", "");
+  for (int i = 0; i < 3; ++i) {
+    mcap.message(1, bags::nanoseconds(1000 + i), bags::odometry(1000 + i, frame, child, pose, {1.0, 0.5, 0.25}));
+  }
+  std::string velocity;
+  for (const NavSource& source : sources_in(mcap)) {
+    if (source.quantity != NavQuantity::kVelocity) continue;
+    const Eigen::Vector3d v = source.samples.front().value;
+    velocity = fmt::format("; {:.2f} {:.2f} {:.2f}", v.x(), v.y(), v.z());
+  }
+  return path_in(mcap) + velocity;
+}
+
+// `pose_gt` of uuv_simulator, which has a `_ned` twin, was mapped at 5 m above the water and turned.
+TEST(BagNav, OdometryInNedIsTheSamePathAsInEnu) {
+  const std::string ours = path_of_odometry("world", "base_link", bags::pose_numbers(3, 2, -5, kPi / 3));
+  EXPECT_EQ(ours, "/pose_gt: 3.000 2.000 -5.000, 60.0; 1.00 0.50 0.25");
+  const std::string turned = "/pose_gt: 3.000 2.000 -5.000, 60.0; 1.00 -0.50 -0.25";
+  const auto ned = bags::pose_numbers(2, 3, 5, kPi / 6);
+  EXPECT_EQ(path_of_odometry("world_ned", "base_link_ned", ned), turned);
+  EXPECT_EQ(path_of_odometry("/rov/odom_ned", "/rov/base_link_frd", ned), turned);
+  EXPECT_EQ(path_of_odometry("world_ned", "base_link", ned), turned) << "upright as forward, right, down";
+  // By the letter: ahead, left, up in north, east, down is on its back.
+  EXPECT_EQ(path_of_odometry("world_ned", "base_link", bags::pose_numbers(2, 3, 5, kPi / 6, true)), ours);
+  EXPECT_EQ(path_of_odometry("odom", "base_link_frd", bags::pose_numbers(3, 2, -5, kPi / 3, true)), turned);
+  EXPECT_THAT(path_of_odometry("odom", "base_link_frd", bags::pose_numbers(3, 2, -5, kPi / 3)),
+              HasSubstr("no valid attitude"));
+}
+
+TEST(BagNav, PosesTwistsAndImusInNedAreTurned) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/pose", "geometry_msgs/msg/PoseStamped", "");
+  mcap.topic(2, "/twist", "geometry_msgs/msg/TwistStamped", "");
+  mcap.topic(3, "/imu", "sensor_msgs/msg/Imu", "");
+  const std::vector<double> north_east_down = bags::pose_numbers(2, 3, 5, kPi / 6);
+  const std::vector<double> rotation(north_east_down.begin() + 3, north_east_down.end());
+  mcap.message(1, bags::nanoseconds(1000), bags::pose_stamped(1000, "map_ned", north_east_down));
+  mcap.message(2, bags::nanoseconds(1000), bags::twist_stamped(1000, "base_link_frd", {1, 2, 3, 0.1, 0.2, 0.3}));
+  mcap.message(3, bags::nanoseconds(1000), bags::imu(1000, "imu_link_ned", rotation, {0.1, 0.2, 0.3}));
+  std::size_t compared = 0;
+  for (const NavSource& source : sources_in(mcap)) {
+    SCOPED_TRACE(source.name);
+    Eigen::Vector3d right(3, 2, -5);
+    if (source.quantity == NavQuantity::kAttitude) right = {0, 0, kPi / 3};
+    if (source.quantity == NavQuantity::kVelocity) right = {1, -2, -3};
+    if (source.quantity == NavQuantity::kTurnRate) right = {0.1, -0.2, -0.3};
+    EXPECT_LT((source.samples.front().value - right).norm(), 1e-9) << source.samples.front().value.transpose();
+    ++compared;
+  }
+  EXPECT_EQ(compared, 6U);
+}
+
+// A hint at navigation in a bag read all of it once more.
+TEST(BagNav, TheBeginningOfABagCanBeReadAlone) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/pose", "geometry_msgs/msg/PoseStamped", "");
+  const bags::Bytes pose = bags::pose_stamped(1000, "map", bags::pose_numbers(0, 0, 0, 0));
+  for (int i = 0; i < 100; ++i) mcap.message(1, bags::nanoseconds(1000 + i), pose);
+  mcap.end_chunk();
+  const FileBytes file{"dive.mcap", mcap.closed()};
+  EXPECT_EQ(read_bag(ByteStream(file))->topics[0].messages, 100U);
+  EXPECT_EQ(read_bag(ByteStream(file), Damage::kSkip, {}, 10 * pose.size())->topics[0].messages, 10U);
+}
+
+// Kills a path that jumps between two publishers of one topic.
+TEST(BagNav, MessagesOfOneTopicInTwoFramesAreTwoSources) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/pose", "geometry_msgs/msg/PoseStamped", "");
+  for (int i = 0; i < 6; ++i) {
+    const std::string_view frame = i % 2 == 0 ? "map" : "odom";
+    mcap.message(1, bags::nanoseconds(1000 + i), bags::pose_stamped(1000 + i, frame, bags::pose_numbers(i, 0, 0, 0)));
+  }
+  const auto sources = sources_in(mcap);
+  ASSERT_THAT(sources, SizeIs(4));
+  EXPECT_EQ(sources[0].name, "/pose");
+  EXPECT_THAT(sources[0].samples, SizeIs(3));
+  EXPECT_EQ(std::ranges::count(sources, "/pose:odom:", &NavSource::name), 2);
+}
+
+// Kills thousands of sources, each compared with all others.
+TEST(BagNav, ATopicHasAFewFramesAndTheRestIsDamage) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/pose", "geometry_msgs/msg/PoseStamped", "");
+  for (int i = 0; i < 100; ++i) {
+    const std::string frame = fmt::format("map_{}", i);
+    mcap.message(1, bags::nanoseconds(1000 + i), bags::pose_stamped(1000 + i, frame, bags::pose_numbers(i, 0, 0, 0)));
+  }
+  mcap.end_chunk();
+  const auto nav = read_nav(FileBytes{"dive.mcap", mcap.closed()});
+  ASSERT_TRUE(nav);
+  EXPECT_THAT(nav->log.sources(), SizeIs(32));
+  ASSERT_THAT(nav->damage, SizeIs(1));
+  EXPECT_EQ(nav->damage[0].count, 84U);
 }
 
 TEST(BagNav, TurnsADvlThatLooksDown) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "pingvox/io/beams.hpp"
 #include "support/bag_writer.hpp"
 #include "support/logs.hpp"
+#include "support/ros_messages.hpp"
 
 namespace pingvox {
 namespace {
@@ -99,6 +101,36 @@ TEST(BagScans, DirectionsThatWereLookedAtInTurnHaveTimesOfTheirOwn) {
   EXPECT_THAT(read.items[2].points_m, SizeIs(0)) << "nearer than the sensor can see";
   ASSERT_THAT(read.items[3].points_m, SizeIs(1));
   EXPECT_TRUE(read.items[3].points_m[0].isApprox(8.0 * Vector3d(std::cos(1.0), std::sin(1.0), 0.0)));
+}
+
+// Kills points that are mirrored: z of `_frd` and `_ned` points down.
+TEST(BagScans, PointsInAFrameThatPointsDownAreTurned) {
+  for (const std::string_view frame : {"sonar_frd", "rov/base_link_ned", "sonar"}) {
+    SCOPED_TRACE(frame);
+    const double sense = frame == "sonar" ? 1.0 : -1.0;
+    bags::Cdr scan, cloud;
+    scan.header(1000.0, frame);
+    for (const float number : {0.5F, 1.5F, 1.0F, 0.0F, 0.0F, 0.5F, 20.0F}) scan.number(number);
+    scan.number(std::uint32_t{2}).number(4.0F).number(8.0F).number(std::uint32_t{0});
+    const auto rays = scans_of(bag_of(kLaser, scan.bytes()));
+    ASSERT_THAT(rays.items, SizeIs(1)) << rays.error;
+    ASSERT_THAT(rays.items[0].points_m, SizeIs(2));
+    EXPECT_TRUE(rays.items[0].points_m[0].isApprox(4.0 * Vector3d(std::cos(0.5), sense * std::sin(0.5), 0.0), 1e-6));
+    cloud.header(1000.0, frame).number(std::uint32_t{1}).number(1.0F).number(2.0F).number(3.0F);
+    cloud.number(std::uint32_t{0});
+    const auto points = scans_of(bag_of("sensor_msgs/msg/PointCloud", cloud.bytes()));
+    ASSERT_THAT(points.items, SizeIs(1)) << points.error;
+    EXPECT_THAT(points.items[0].points_m, testing::ElementsAre(Vector3d(1.0, sense * 2.0, sense * 3.0)));
+    // In one direction it is a beam.
+    bags::Cdr beam;
+    beam.header(1000.0, frame);
+    for (const float number : {0.5F, 0.5F, 0.0F, 0.0F, 0.0F, 0.5F, 20.0F}) beam.number(number);
+    beam.number(std::uint32_t{0}).number(std::uint32_t{3});
+    for (const float intensity : {1.0F, 2.0F, 200.0F}) beam.number(intensity);
+    const auto beams = all_beams({"beam.mcap", bag_of(kLaser, beam.bytes())});
+    ASSERT_THAT(beams.items, SizeIs(1)) << beams.error;
+    EXPECT_NEAR(std::remainder(beams.items[0].bearing_rad - sense * 0.5, 2.0 * std::numbers::pi), 0.0, 1e-6);
+  }
 }
 
 // A fast scan is one: its rays vote once for each cell.

@@ -149,6 +149,33 @@ TEST(NavFields, ReadsAttitudesInEitherFrameAndForm) {
   EXPECT_TRUE(by_quaternion[0].value.isApprox(expected, 1e-9)) << by_quaternion[0].value.transpose();
 }
 
+// Kills a frame that is named and not turned, and one that is turned against what the mapping says.
+TEST(NavFields, FollowsTheNameOfTheFrameWhereNothingElseIsSaid) {
+  const auto velocity = [](std::string_view frame, NavFields::Frame said) {
+    bags::Ros1 bag;
+    bag.topic(1, "/unknown", "lab_msgs/Thing",
+              std::string(kHeader) + "float64 x\nfloat64 y\nfloat64 z\n" + std::string(kStamps));
+    bags::Bytes bytes;
+    for (const std::uint32_t number : {7U, 1000U, 0U}) bags::put(bytes, number);
+    bags::put_text(bytes, frame);
+    for (const double number : {1.0, 2.0, 3.0}) bags::put(bytes, number);
+    bag.message(1, 1000, 0, bytes);
+    bag.end_chunk();
+    NavFields fields = fields_of(NavQuantity::kVelocity, {"x", "y", "z"});
+    fields.frame = said;
+    const auto read = read_bag(ByteStream(FileBytes{"dive.bag", bag.file()}), Damage::kSkip, std::vector{fields});
+    EXPECT_TRUE(read);
+    return read ? read->nav.log.sources().at(0).samples.at(0).value : Eigen::Vector3d(0, 0, 0);
+  };
+  using Frame = NavFields::Frame;
+  const Eigen::Vector3d as_is(1, 2, 3), turned(1, -2, -3);
+  EXPECT_EQ(velocity("dvl", Frame::kByName), as_is);
+  EXPECT_EQ(velocity("dvl_frd", Frame::kByName), turned);
+  EXPECT_EQ(velocity("ned", Frame::kByName), turned);
+  EXPECT_EQ(velocity("dvl_frd", Frame::kEnu), as_is);
+  EXPECT_EQ(velocity("dvl_flu", Frame::kNed), turned);
+}
+
 TEST(NavFields, TurnsWhatIsInTheWorld) {
   NavFields heading = fields_of(NavQuantity::kHeading, {"a"});
   heading.frame = NavFields::Frame::kNed;

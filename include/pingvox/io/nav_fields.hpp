@@ -13,8 +13,9 @@ namespace pingvox {
 /// "velocity.x" or "covariance[7]"; a minus before a path turns the sign.
 struct NavFields {
   enum class Frame {
-    kEnu,  ///< ROS REP-103: x ahead, y left, z up in x east, y north, z up
-    kNed   ///< forward, right, down in north, east, down
+    kByName,  ///< as the messages' frame_id says (nav_frames.hpp): kEnu where it says nothing
+    kEnu,     ///< ROS REP-103: x ahead, y left, z up in x east, y north, z up
+    kNed      ///< forward, right, down in north, east, down
   };
   enum class Spread { kDeviation, kVariance };
   /// Value of `time`: when the message was recorded.
@@ -26,7 +27,7 @@ struct NavFields {
   /// position or a fix may be left out: 0.
   std::vector<std::string> values;
   double unit = 1.0;  ///< of the values (of a fix: of its angles), in that of the quantity
-  Frame frame = Frame::kEnu;
+  Frame frame = Frame::kByName;
   std::vector<std::string> spread;  ///< one for all numbers, or one for each, in `unit`; empty: not known
   Spread spread_is = Spread::kDeviation;
   std::string valid;  ///< "PATH": not valid where it is 0; "PATH >= 1" (also >, <, <=, ==, !=); empty: always valid

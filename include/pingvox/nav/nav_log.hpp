@@ -58,6 +58,14 @@ struct SourceStep {
   double left_from_s = 0.0, left_to_s = 0.0;  ///< times of the first and last sample that are left out
 };
 
+/// Whose place, attitude or motion a source tells; those that come first are preferred (main_source.hpp).
+enum class NavSubject {
+  kVehicle,     ///< the vehicle's: its log says so, or it is a sensor of the vehicle
+  kTransforms,  ///< the vehicle's by tf, in the frame at the root; it repeats what other sources tell, often filtered
+  kUncertain,   ///< perhaps the vehicle's: a pose that does not say of what it is, or another one of tf
+  kOther        ///< not the vehicle's, or not in a frame that can be used: only where it is chosen by its name
+};
+
 /// The samples of one quantity by one sensor, in order of time.
 struct NavSource {
   std::string name;  ///< as the log names it: "ATTITUDE", "DISTANCE_SENSOR 1/194"
@@ -69,7 +77,14 @@ struct NavSource {
   /// Why its values cannot be used, as in "latitude of 54.3 rad is beyond pi/2: is it in degrees?"; empty: nothing is
   /// wrong with them. Nothing is computed from a source with a fault.
   std::string fault = {};
-  std::string note = {};  ///< how it was read, where its format leaves that open, as in "read as kPa"; empty: as always
+  NavSubject subject = NavSubject::kVehicle;
+  /// Name of the frame that the values are in: "odom"; of a velocity and a turn rate that of the body. Empty: not
+  /// named.
+  std::string frame = {};
+  std::string child = {};  ///< of a position and an attitude: name of the frame whose pose they are, "base_link"
+  /// How it was read, where its format leaves that open ("read as kPa", "turned from world_ned"), or why it is not the
+  /// vehicle's; empty: nothing is to be said.
+  std::string note = {};
 };
 
 /// Whether something can be computed from it: it has no fault and at least one valid sample.
@@ -90,15 +105,17 @@ class NavLog {
   /// clock was set back is noted. Sources without samples are left out. A single value that cannot be true (a yaw
   /// beyond 2 pi, a latitude beyond pi/2) is marked as invalid; where they are not single, the source gets a fault. Of
   /// positions, depths and headings that step faster than a vehicle moves, the samples that are not in the frame of
-  /// most others become invalid (SourceStep).
+  /// most
+  /// others become invalid (SourceStep). Sources whose subject is uncertain are looked at (judge_subjects).
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 
   const std::vector<NavSource>& sources() const { return sources_; }
   NavClock clock() const { return clock_; }
 
-  /// The source of a quantity with most valid samples and few_left_out, without a fault, the first of equals; nullptr:
-  /// there is none.
+  /// The source of a quantity that tells most of the vehicle: of those without a fault that are known for at least half
+  /// as long as the one that is known longest, the one with most valid samples and few_left_out; of equals the one that
+  /// begins first, then by name, so that the order of files does not matter. nullptr: there is none.
   const NavSource* best(NavQuantity quantity) const;
 
  private:
@@ -134,7 +151,7 @@ inline constexpr std::array kHeadingQuantities = {NavQuantity::kHeading, NavQuan
 inline constexpr std::array kReckoningQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude,
                                                     NavQuantity::kTurnRate, NavQuantity::kVelocity};
 
-/// Depth by the source with most valid samples; in a log without depth by the highest pressure, if it exceeds 1100 hPa,
+/// Depth by the best source; in a log without depth by the highest pressure, if it exceeds 1100 hPa,
 /// which is not that of air: as metres of sea water (1025 kg/m3) below 1013.25 hPa. nullopt: neither is known.
 std::optional<NavSource> depth_source(const NavLog& log);
 

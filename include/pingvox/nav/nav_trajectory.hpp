@@ -24,10 +24,8 @@ struct NavTrajectory {
   std::optional<Eigen::Vector3d> origin_fix;
 };
 
-/// Sources: of the attitude the one that comes with the position, if any; else of each quantity the estimate of the
-/// autopilot's main filter, else the source with most valid samples. A position in metres is used unchanged; without
-/// one, fixes become metres east and north of the first fix, at the depth if the log has it, else at the altitude
-/// relative to that fix.
+/// The sources are those of `path_sources`. A position in metres is used unchanged; fixes become metres east and north
+/// of the first fix, at the depth if the log has it, else at the altitude relative to that fix.
 /// @param offset_s  added to all times
 /// @return kUnsupported when the log has no valid attitude or position, or never both at a time; kCorrupt when the
 ///         clock of one that is used was set back
