@@ -82,12 +82,14 @@ std::optional<std::size_t> impossible_number(const std::array<ValueLimit, 3>& li
   return std::nullopt;
 }
 
-/// "yaw of 90 rad is beyond 2 pi: is it in degrees?"
+/// "latitude of 54.3 rad is beyond pi/2: is it in degrees?"
 std::string text_of(const ValueLimit& limit, double number) {
   constexpr double kMaxDegrees = 400.0;  // gradians, too
   std::string text = fmt::format("{} of {:.6g} {} is beyond {}", limit.name, number, limit.unit, limit.limit);
   const bool is_angle = limit.unit.starts_with("rad");
-  if (is_angle && std::fabs(number) <= kMaxDegrees) return text + ": is it in degrees?";
+  if (is_angle && std::fabs(number) <= kMaxDegrees) {
+    return text + (limit.name == "yaw" ? ": is it in degrees, or does it count turns?" : ": is it in degrees?");
+  }
   if (limit.unit == "degrees C" && number > 0.0) return text + ": is it in kelvins?";
   return text + ": is it in another unit?";
 }

@@ -273,7 +273,7 @@ TEST(Nav, InDegreesIsRefusedByName) {
   here.simulate_tank();
   here.write("nav.csv", nav_in_degrees());
   const std::string latitude = "the fix of GPS cannot be used: latitude of 54.3 rad is beyond pi/2: is it in degrees?",
-                    yaw = "the attitude of AHRS cannot be used: yaw of 90 rad is beyond 2 pi: is it in degrees?";
+                    yaw = "the attitude of AHRS cannot be used: yaw of 90 rad is beyond 2 pi: is it in degrees";
   expect_error(here.call({"map", "tank.csv", "--nav", "nav.csv", "-o", "o.bt"}), 1, {"nav.csv", latitude, yaw});
   expect_error(here.call({"convert", "nav.csv", "-o", "o.tum"}), 1, {"nav.csv", yaw});
   expect_error(here.call({"slam", "tank.csv", "--nav", "nav.csv", "--nav-offset", "0", "-o", "o.tum"}), 1, {yaw});
