@@ -155,7 +155,7 @@ void shift_times(NavSource& source, double offset_s) {
     source.step_back->to_s += offset_s;
   }
   for (SourceStep& step : source.steps) {
-    for (double* time_s : {&step.from_s, &step.to_s, &step.left_from_s, &step.left_to_s}) *time_s += offset_s;
+    for (double* const time_s : {&step.from_s, &step.to_s, &step.left_from_s, &step.left_to_s}) *time_s += offset_s;
   }
 }
 

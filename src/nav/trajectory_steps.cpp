@@ -44,7 +44,7 @@ CutTrajectory cut_at_steps(const Trajectory& trajectory) {
     return size_of(piece) == largest || is_lasting(size_of(piece), seconds);
   };
   CutTrajectory cut{trajectory, {}};
-  /// The step to a pose, and the poses [begin, end) that are left out with it.
+  // The step to a pose, and the poses [begin, end) that are left out with it.
   const auto note = [&](std::size_t to, std::size_t begin, std::size_t end) {
     SourceStep step = source_step(PoseStep::between(sample_of(poses[to - 1]), sample_of(poses[to])), false);
     step.left_out = end - begin;

@@ -151,7 +151,7 @@ TEST(Steps, OfPosesCutThePath) {
   const Outcome info = here.call({"info", "poses.tum", "--json"});
   EXPECT_THAT(info.out, AllOf(HasSubstr(R"("poses": 301)"), HasSubstr(R"("left_out": 1)")));
   here.write("smooth.tum", tum_of([](int) { return 0.0; }));
-  EXPECT_EQ(map_with(here, "--poses", "smooth.tum").err, "");
+  EXPECT_THAT(map_with(here, "--poses", "smooth.tum").err, Not(HasSubstr("jumps")));
 }
 
 // A TUM of one pose mapped one beam of a thousand.

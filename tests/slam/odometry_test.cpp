@@ -156,9 +156,10 @@ TEST(Odometry, HasAGapWhereItsSourcesAreSilent) {
   }
   const NavSource silent_velocity = silent("dvl", NavQuantity::kVelocity, {0.5, 0.0, 0.0});
   const NavSource silent_heading = silent("compass", NavQuantity::kHeading, {0.0, 0.0, 0.0});
+  using Case = std::tuple<const char*, const NavSource*, const NavSource*>;
   for (const auto& [name, of, yaw] :
-       {std::tuple("both", &silent_velocity, &silent_heading), std::tuple("velocity", &silent_velocity, &long_heading),
-        std::tuple("heading", &long_velocity, &silent_heading)}) {
+       {Case("both", &silent_velocity, &silent_heading), Case("velocity", &silent_velocity, &long_heading),
+        Case("heading", &long_velocity, &silent_heading)}) {
     const auto odometry = odometry_of(log_of({*of, *yaw}), {});
     ASSERT_TRUE(odometry) << odometry.error().message;
     EXPECT_EQ(odometry->odometry_from_body.gaps(), 1U) << name;

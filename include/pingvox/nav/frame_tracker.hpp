@@ -77,7 +77,7 @@ class FrameTracker {
   void remember(const PoseStep& step);
 
   struct Usual {
-    double seconds, speed_m_s, turn_rad_s;
+    double seconds = 0.0, speed_m_s = 0.0, turn_rad_s = 0.0;
   };
   static constexpr std::size_t kUsual = 15;
 
