@@ -412,8 +412,8 @@ Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
       .add("duration_s", duration_s)
       .add("length_m", length_m)
       .add("bounds", bounds_json(bounds))
-      .add("left_out", left_out(cut.steps))
-      .add("steps", steps_json(cut.steps));
+      .add("left_out", left_out(cut.steps));
+  if (!cut.steps.empty()) summary.json.add("steps", steps_json(cut.steps));
   summary.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
                  report_line("duration", duration_text(poses.front().time_s, poses.back().time_s)) +
                  report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));

@@ -379,9 +379,9 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("to_s", summary.to_s)
         .add("late", source.late)
         .add("left_out", left_out(source.steps))
-        .add("steps", steps_json(source.steps))
         .add("frame", source.frame)
         .add("note", source.note);
+    if (!source.steps.empty()) json_of_source.add("steps", steps_json(source.steps));
     if (!source.fault.empty()) json_of_source.add("fault", source.fault);
   }
   json.add("clock", name_of(nav.log.clock()))
