@@ -59,7 +59,8 @@ std::string empty_map_text(const std::string& output) {
 std::string date_text(double time_s) {
   constexpr double kYear2000_s = 946'684'800.0, kYear2100_s = 4'102'444'800.0;
   if (!(time_s >= kYear2000_s && time_s < kYear2100_s)) return "";
-  return fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(time_s)));
+  constexpr double kHalf_s = 0.0005;  // of a millisecond: 19:24:38.9999999 is 19:24:39
+  return fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(time_s + kHalf_s)));
 }
 
 std::string duration_text(double from_s, double to_s) {

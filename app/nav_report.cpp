@@ -191,8 +191,7 @@ std::vector<NavLogClock> clocks_of(const std::vector<NavPart>& parts) {
     const NavClock own = part.log().clock();
     if (const std::optional<NavClockOffset>& aligned = part.aligned ? part.aligned : first.aligned) {
       clock.deviation_s = aligned->deviation_s;
-      clock.from = aligned->by == NavClockOffset::By::kDevice ? "the clock of the autopilot, which both have"
-                                                              : "how the vehicle turns in both";
+      clock.from = aligned->by == NavClockOffset::By::kDevice ? "the clock of the autopilot" : "how the vehicle turns";
     } else if (own != first.log().clock() || own == NavClock::kUnknown) {
       clock.from = "taken as one clock";
     } else {
@@ -407,7 +406,7 @@ std::string dates_text(const NavLog& log) {
   }
   const std::string from = date_text(from_s), to = date_text(to_s);
   if (from_s < kFirstDate_s) {
-    return fmt::format(", {:.3f} s since 1970 to {} UTC: the clock was not set at first", from_s, to);
+    return fmt::format(", {:.3f} s since 1970 to {} UTC: the clock was not set all the time", from_s, to);
   }
   return from.empty() || to.empty() ? "" : fmt::format(", {} to {} UTC", from, to);
 }
