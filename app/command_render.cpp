@@ -8,9 +8,7 @@
 #include <map>
 #include <numbers>
 #include <set>
-#include <span>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,7 +21,6 @@
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "pingvox/analysis/slice.hpp"
-#include "pingvox/io/byte_stream.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/maps.hpp"
@@ -191,38 +188,11 @@ Result<double> sound_speed_ratio_of(const PanelCommand& panel, const RenderComma
   return water_of(water_around(nav->log), *panel.nav_salinity).map(sound_speed_ratio);
 }
 
-/// The bytes of an input. Of a bag only the beginning, which shows its format: it is opened again, as it may be several
-/// files, or have changes beside it.
-Result<FileBytes> read_input(const std::string& path) {
-  Result<ByteStream> stream = ByteStream::open(path);
-  if (!stream) return tl::unexpected(stream.error());
-  const std::span<const std::uint8_t> beginning = stream->beginning();
-  const std::optional<Format> format = streamed_format_of(beginning);
-  if (format && is_bag(*format) && stream->path()) {
-    return FileBytes{stream->name(), {beginning.begin(), beginning.end()}};
-  }
-  return ByteStream::whole(*std::move(stream));
-}
-
-/// The log in an input that was read.
-Result<Log> open_input(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
-  const std::size_t size = std::min(file.bytes.size(), ByteStream::kBeginning);
-  const std::optional<Format> format = streamed_format_of(file.view().first(size));
-  std::error_code error;
-  const bool is_readable_again = !std::filesystem::is_other(panel.input, error) && panel.input != "-";
-  if (format && is_bag(*format) && is_readable_again) {
-    return ByteStream::open(panel.input).and_then([&](ByteStream stream) {
-      return open_log(std::move(stream), command.damage, std::nullopt, command.bag.beams);
-    });
-  }
-  return open_log(std::move(file), command.damage, std::nullopt, command.bag.beams);
-}
-
 template <class Gatherer>
 Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const RenderCommand& command) {
   const std::string name = file.name;
   if (const auto ranges = check_ranges(panel.build); !ranges) return tl::unexpected(ranges.error());
-  Result<Log> log = open_input(std::move(file), panel, command);
+  Result<Log> log = open_input(std::move(file), panel.input, command.damage, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
   Result<std::unique_ptr<BeamSource>> source = only_beams(*std::move(log), name);
   if (!source) return fail(source.error().code, source.error().message + ": --view above draws their map");
@@ -274,7 +244,7 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : path->warnings) console.say(warning);
   const std::string name = file.name;
-  Result<Log> log = open_input(std::move(file), panel, command);
+  Result<Log> log = open_input(std::move(file), panel.input, command.damage, command.bag.beams);
   if (!log) return tl::unexpected(log.error());
   if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) {
     Result<std::unique_ptr<BeamSource>> source =

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -141,6 +143,28 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
                           : kind == FormatKind::kNav        ? ": give it with --nav"
                           : kind == FormatKind::kTrajectory ? ": 'map' and 'render' take it by --poses"
                                                             : ""));
+}
+
+Result<FileBytes> read_input(const std::string& path) {
+  Result<ByteStream> stream = ByteStream::open(path);
+  if (!stream) return tl::unexpected(stream.error());
+  const std::span<const std::uint8_t> beginning = stream->beginning();
+  const std::optional<Format> format = streamed_format_of(beginning);
+  if (format && is_bag(*format) && stream->path()) {
+    return FileBytes{stream->name(), {beginning.begin(), beginning.end()}};
+  }
+  return ByteStream::whole(*std::move(stream));
+}
+
+Result<Log> open_input(FileBytes file, const std::string& path, Damage damage, const BeamTopic& topic) {
+  const std::size_t size = std::min(file.bytes.size(), ByteStream::kBeginning);
+  const std::optional<Format> format = streamed_format_of(file.view().first(size));
+  std::error_code error;
+  if (format && is_bag(*format) && path != "-" && !std::filesystem::is_other(path, error)) {
+    return ByteStream::open(path).and_then(
+        [&](ByteStream stream) { return open_log(std::move(stream), damage, std::nullopt, topic); });
+  }
+  return open_log(std::move(file), damage, std::nullopt, topic);
 }
 
 Result<std::unique_ptr<BeamSource>> only_beams(Log log, const std::string& name) {

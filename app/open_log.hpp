@@ -34,6 +34,12 @@ using Log = BagLog;
 Result<Log> open_log(ByteStream stream, Damage damage,
                      const std::optional<Eigen::Vector3d>& cloud_origin_m = std::nullopt, const BeamTopic& topic = {});
 
+/// The bytes of a file that may be a log. Of a bag only the beginning, which shows its format: `open_input` opens it
+/// again, as it may be several files, or have changes beside it.
+Result<FileBytes> read_input(const std::string& path);
+/// The log in a file that was read by `read_input(path)`. @see open_log
+Result<Log> open_input(FileBytes file, const std::string& path, Damage damage, const BeamTopic& topic);
+
 /// The beams of a log. kUnsupported naming it when it holds scans.
 Result<std::unique_ptr<BeamSource>> only_beams(Log log, const std::string& name);
 

@@ -291,7 +291,11 @@ Result<std::unique_ptr<Bag>> open_sqlite_bag(ByteStream stream) {
   }
   set_limits(opened, size);
   auto bag = std::make_unique<SqliteBag>(name, std::move(held), std::move(database), size);
-  if (const Result<void> started = bag->start(); !started) return tl::unexpected(started.error());
+  if (const Result<void> started = bag->start(); !started) {
+    Error error = started.error();
+    if (error.code == Error::Code::kIo && path) error.message += ", with the log of changes beside it (-wal)";
+    return tl::unexpected(std::move(error));
+  }
   return bag;
 }
 
