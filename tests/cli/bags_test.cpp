@@ -90,6 +90,25 @@ TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   expect_error(here.call({"map", "lidar.mcap", "-o", "o.bt"}), 1, {"without beams"});
 }
 
+// A log of Ping Viewer's successor was "a ROS bag without beams".
+TEST(Bags, MessagesInAnotherEncodingAreNamed) {
+  const Workplace here;
+  bags::Mcap mcap;
+  mcap.topic(1, "/device_1/Ping360", "bluerobotics_ping::ping360::AutoDeviceDataStruct", "{}", "json");
+  mcap.message(1, 1'000'000'000'000U, {'{', '}'});
+  mcap.end_chunk();
+  const bags::Bytes file = mcap.closed();
+  here.write("device.mcap", std::string(file.begin(), file.end()));
+  const std::string text = "device.mcap: holds JSON messages of Ping Viewer, which are not read yet";
+  const Outcome info = here.call({"info", "device.mcap", "--json"});
+  EXPECT_EQ(info.status, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("\"no_beams\": \"" + text));
+  expect_error(here.call({"map", "device.mcap", "-o", "o.bt"}), 1, {text});
+  expect_error(here.call({"map", "device.mcap", "-o", "o.bt", "--topic", "/device_1/Ping360", "--fields",
+                          "angle=angle,bin=sample_period,intensities=data"}),
+               1, {text});
+}
+
 /// The beginning of a message in CDR, with an empty frame.
 bags::Bytes header_at(std::uint32_t seconds) {
   bags::Bytes header = {0, 1, 0, 0};

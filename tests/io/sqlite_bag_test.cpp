@@ -262,7 +262,7 @@ TEST(SqliteBag, ReadsMessagesThatAreCompressedOneByOne) {
   const bags::Bytes packed = bags::packed("zstd", from_hex(bags::kSonarEcho));
   add_echoes(database, 3, hex_of(packed));
   add_messages(database, 1, bags::kSonarEcho);
-  // Cut; with a wrong bit; and one that unpacks to more than a file of this size can.
+  // One that is cut, and one that unpacks to more than a file of this size can.
   add_messages(database, 1, hex_of({packed.begin(), packed.end() - 4}));
   add_messages(database, 1, hex_of(bags::packed("zstd", bags::Bytes(150'000'000))));
   database.close();
