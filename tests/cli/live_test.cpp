@@ -95,8 +95,8 @@ TEST(Live, ASecondSignalRightAfterTheFirstSaysTheSame) {
 TEST(Live, ALaterSignalEndsAtOnce) {
   const Head head;
   const Workplace here;
-  const FullPipe status(here.path("status"));  // for whose reader the last object waits
-  const pid_t child = here.start(live(head.address(), {"--quiet", "--json"}), {.out_path = here.path("status")});
+  const FullPipe report(here.path("report"));  // for whose reader the last object waits
+  const pid_t child = here.start(live(head.address(), {"--quiet", "--json"}), {.out_path = here.path("report")});
   EXPECT_TRUE(wait_until([&] { return here.has("dive.bin") && here.read("dive.bin").size() > 40'000; }));
   int status = 0;
   EXPECT_TRUE(wait_until([&] {
