@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::uintmax_t size_of(const Workplace& here, const std::string& name) {
+std::uintmax_t bytes_in(const Workplace& here, const std::string& name) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(here.path(name), error);
   return error ? 0 : size;
@@ -28,8 +28,8 @@ std::uintmax_t size_of(const Workplace& here, const std::string& name) {
 
 /// Waits until a recording has so many bytes more than now.
 bool waits_for_more(const Workplace& here, const std::string& recording, std::uintmax_t more) {
-  const std::uintmax_t before = size_of(here, recording);
-  return wait_until([&] { return size_of(here, recording) >= before + more; });
+  const std::uintmax_t before = bytes_in(here, recording);
+  return wait_until([&] { return bytes_in(here, recording) >= before + more; });
 }
 
 // A status line on a full disk, or in a terminal that is gone, ended the dive within a second.
@@ -49,7 +49,7 @@ TEST(LiveOutput, AFullPipeForMessagesHoldsNothingUp) {
   const Workplace here;
   const FullPipe messages(here.path("messages"));
   const pid_t child = here.start(live(head.address(), {"--progress", "always"}), {.err_path = here.path("messages")});
-  EXPECT_TRUE(wait_until([&] { return size_of(here, "dive.bin") > 40'000; }));
+  EXPECT_TRUE(wait_until([&] { return bytes_in(here, "dive.bin") > 40'000; }));
   ::kill(child, SIGTERM);
   EXPECT_EQ(status_in_time(child), 0);
   EXPECT_TRUE(here.has("live.bt"));
@@ -62,7 +62,7 @@ TEST(LiveOutput, AFullPipeForTheReportCostsTheReportOnly) {
   const FullPipe report(here.path("report"));
   const pid_t child =
       here.start(live(head.address(), {"--json"}), {.out_path = here.path("report"), .err_path = here.path("notes")});
-  EXPECT_TRUE(wait_until([&] { return size_of(here, "dive.bin") > 40'000; }));
+  EXPECT_TRUE(wait_until([&] { return bytes_in(here, "dive.bin") > 40'000; }));
   ::kill(child, SIGTERM);
   EXPECT_EQ(status_in_time(child), 1);
   EXPECT_TRUE(here.has("live.bt"));
@@ -99,7 +99,7 @@ TEST(LiveSignals, AClosedTerminalFinishesRecordingAndMap) {
   const Head head;
   const Workplace here;
   const pid_t child = here.start(live(head.address(), {"--quiet"}));
-  EXPECT_TRUE(wait_until([&] { return size_of(here, "dive.bin") > 40'000; }));
+  EXPECT_TRUE(wait_until([&] { return bytes_in(here, "dive.bin") > 40'000; }));
   ::kill(child, SIGHUP);
   EXPECT_EQ(status_in_time(child), 0);
   EXPECT_TRUE(here.has("live.bt"));
@@ -109,7 +109,7 @@ TEST(LiveSignals, UnderNohupItGoesOn) {
   const Head head;
   const Workplace here;
   const pid_t child = here.start(live(head.address(), {"--quiet"}), {.ignores_hangup = true});
-  EXPECT_TRUE(wait_until([&] { return size_of(here, "dive.bin") > 40'000; }));
+  EXPECT_TRUE(wait_until([&] { return bytes_in(here, "dive.bin") > 40'000; }));
   ::kill(child, SIGHUP);
   EXPECT_TRUE(waits_for_more(here, "dive.bin", 40'000));
   ::kill(child, SIGTERM);
@@ -129,7 +129,7 @@ Taken dive_without_its_folder(const Workplace& here, const TakeAway& take_away, 
   const pid_t child = here.start({"live", head.address(), "-o", "live.bt", "--record", "dives/dive.bin", "--range", "4",
                                   "--step", "18", "--resolution", "0.1", "--json"},
                                  {.out_path = here.path("report"), .err_path = here.path("notes")});
-  EXPECT_TRUE(wait_until([&] { return size_of(here, "dives/dive.bin") > 40'000; }));
+  EXPECT_TRUE(wait_until([&] { return bytes_in(here, "dives/dive.bin") > 40'000; }));
   take_away();
   EXPECT_TRUE(wait_until([&] { return here.read("notes").find(expected) != std::string::npos; })) << here.read("notes");
   ::kill(child, SIGTERM);
