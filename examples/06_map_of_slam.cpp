@@ -51,7 +51,9 @@ int main(int argc, char** argv) {
     if (!sonar) return tl::unexpected(sonar.error());
     const auto nav = read_file(argv[2]).and_then([](const FileBytes& bytes) { return read_nav(bytes); });
     if (!nav) return tl::unexpected(nav.error());
-    auto map = RebuiltMap::make({.model = beam_of_head((*sonar)->device())}, {.resolution_m = 0.1});
+    BuildOptions options;
+    options.model = beam_of_head((*sonar)->device());
+    auto map = RebuiltMap::make(options, {.resolution_m = 0.1});
     if (!map) return tl::unexpected(map.error());
     if (const auto dived = dive(**sonar, nav->log, *map); !dived) return dived;
     return write_file(argv[3], [&](std::ostream& out) { return write_map(map->map(), Format::kBt, "", out); });

@@ -160,7 +160,7 @@ Result<Row> follow_recorded_tank() {
   take(assembler.finish());
   OccupancyMap map({.resolution_m = 0.05});
   BeamsInMemory source(std::move(mapped));
-  const BuildOptions rays{.model = {.shape = BeamShape::kRay}};
+  const BuildOptions rays{.filter = {}, .echo = {}, .model = {.shape = BeamShape::kRay}};
   if (const auto built = build_map(source, Trajectory::still(Pose::Identity()), rays, map); !built) {
     return tl::unexpected(built.error());
   }

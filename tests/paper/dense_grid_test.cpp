@@ -14,7 +14,7 @@ TEST(DenseGrid, HoldsWhatTheOctreeHolds) {
   const Trajectory still = Trajectory::still(Pose::Identity());
   OccupancyMap map;
   BeamsInMemory beams(log.beams);
-  ASSERT_TRUE(build_map(beams, still, {.model = {.shape = BeamShape::kRay}}, map));
+  ASSERT_TRUE(build_map(beams, still, {.filter = {}, .echo = {}, .model = {.shape = BeamShape::kRay}}, map));
   DenseGrid grid(map.lattice(), *map.bounds());
   for (const PlacedSweep& sweep : place_sweeps(log.beams, still)) grid.add(sweep);
   std::size_t cells = 0;

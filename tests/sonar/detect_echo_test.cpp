@@ -234,7 +234,8 @@ TEST(Detection, KeepsItsPromisesOnAnyBeam) {
     ASSERT_LT(echo->last, bins.size());
     EXPECT_EQ(echo->intensity, bins[echo->peak]);
     EXPECT_GE(echo->intensity, *options.threshold);
-    EXPECT_GE(kWideBin_m * static_cast<double>(echo->first), *options.min_range_m - 1e-9);
+    EXPECT_GE(kWideBin_m * static_cast<double>(echo->peak), *options.min_range_m - 1e-9);
+    EXPECT_GE(echo->range_m, *options.min_range_m - 1e-9);
     EXPECT_GT(echo->range_m, kWideBin_m * static_cast<double>(echo->first));
     EXPECT_LT(echo->range_m, kWideBin_m * static_cast<double>(echo->last + 1));
     EXPECT_LE(echo->range_m, options.max_range_m);

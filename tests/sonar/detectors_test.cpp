@@ -236,8 +236,10 @@ TEST(Detectors, KeepTheirPromisesOnAnySweepWithAnyOptions) {
       ASSERT_LT(echo.last, sweep.beams[n].intensities.size());
       EXPECT_LE(echo.first, echo.peak);
       EXPECT_LE(echo.peak, echo.last);
-      EXPECT_GE(echo.first, options.min_bin);
-      EXPECT_GE(kBinLength_m * static_cast<double>(echo.first), options.min_range_m.value_or(0.0) - 1e-9);
+      const std::size_t nearest = options.detector == Detector::kRise ? echo.peak : echo.first;
+      EXPECT_GE(nearest, options.min_bin);
+      EXPECT_GE(kBinLength_m * static_cast<double>(nearest), options.min_range_m.value_or(0.0) - 1e-9);
+      EXPECT_GE(echo.range_m, options.min_range_m.value_or(0.0) - 1e-9);
       EXPECT_EQ(echo.intensity, sweep.beams[n].intensities[echo.peak]);
       EXPECT_GT(echo.range_m, kBinLength_m * static_cast<double>(echo.first));
       EXPECT_LT(echo.range_m, kBinLength_m * static_cast<double>(echo.last + 1));
