@@ -85,8 +85,7 @@ Result<SlamSolution> solve_in_map(Recording recording, const NavLog& log, const 
     if (turned) headings.insert(headings.begin(), *std::move(turned));
   }
   SlamProblem problem(*std::move(times_s), recording.navigation.velocity, std::move(headings), options.calibration);
-  Unknowns start = begin_near(
-      problem, near, mount_of(options.body_from_source, recording.navigation.velocity.name).translation().head<2>());
+  Unknowns start = begin_near(problem, near, place_of_velocity(recording.navigation.velocity, options).head<2>());
   Before before;
   before.prior = prior_in_map(problem, start);
   SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start), std::move(before));

@@ -51,9 +51,14 @@ SonarMount sonar_mount(const Pose& pose) {
   return {pose.translation().head<2>(), std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0))};
 }
 
+Eigen::Vector3d place_of_velocity(const VelocitySource& velocity, const SlamOptions& options) {
+  if (velocity.by_sonar) return Eigen::Vector3d::Zero();
+  return mount_of(options.body_from_source, velocity.name).translation();
+}
+
 SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options) {
-  const Eigen::Vector3d place = mount_of(options.body_from_source, velocity.name).translation();
-  return sonar_mount(Pose(Eigen::Translation3d(-place)) * options.body_from_sonar);
+  const Eigen::Translation3d source_from_body(-place_of_velocity(velocity, options));
+  return sonar_mount(Pose(source_from_body) * options.body_from_sonar);
 }
 
 HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {

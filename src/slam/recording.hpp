@@ -26,6 +26,8 @@ inline constexpr double kKnotsOfSweep = 4.0;
 /// How the sonar is mounted in the plane, where bearings run counter-clockwise.
 SonarMount sonar_mount(const Pose& body_from_sonar);
 
+/// Where the velocity is measured on the body. By the sonar it is the body's own.
+Eigen::Vector3d place_of_velocity(const VelocitySource& velocity, const SlamOptions& options);
 /// How the sonar is mounted, seen from the source of the velocity.
 SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options);
 

@@ -72,7 +72,8 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
   assert(knot_times_s_.size() >= 2 && !headings_.empty());
   if (velocity_.by_sonar) calibration_.velocity_yaw_rad = calibration_.velocity_scale = {0.0, kHeld};
   for (const HeadingSource& source : headings_) {
-    HeadingPrior prior{usual_heading(), source.name == velocity_.name};
+    const bool is_of_velocity = source.name == velocity_.name && source.by_sonar == velocity_.by_sonar;
+    HeadingPrior prior{usual_heading(), is_of_velocity};
     if (const HeadingCalibration* known = calibration_.heading(source.name)) {
       prior.deviation = *known;
     } else if (const double mean_rad = mean_angle(source, headings_.front()); std::abs(mean_rad) > kRelative_rad) {

@@ -114,7 +114,7 @@ void report_velocity(const VelocitySource& velocity, const Span& span, SlamRepor
 
 std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamProblem& problem, const Unknowns& unknowns,
                                   const std::optional<TimeSeries>& depth, const SlamOptions& options) {
-  const Eigen::Vector3d velocity_place = mount_of(options.body_from_source, problem.velocity().name).translation();
+  const Eigen::Vector3d velocity_m = place_of_velocity(problem.velocity(), options);
   const HeadingSource& main = problem.headings().front();
   const std::vector<SlamProblem::Way> ways = problem.ways(unknowns);
   std::vector<StampedPose> poses;
@@ -128,7 +128,7 @@ std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamPro
                               main.roll_rad ? main.roll_rad->at(time_s) : 0.0,
                               main.pitch_rad ? main.pitch_rad->at(time_s) : 0.0, main.yaw_rad.at(time_s) + state.z());
     // The knots are where the velocity is measured.
-    const Eigen::Vector3d offset = pose.rotation() * Eigen::Vector3d(velocity_place.x(), velocity_place.y(), 0.0);
+    const Eigen::Vector3d offset = pose.rotation() * Eigen::Vector3d(velocity_m.x(), velocity_m.y(), 0.0);
     pose.translation().head<2>() -= offset.head<2>();
     poses.push_back({time_s, pose});
   }
@@ -137,14 +137,13 @@ std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamPro
 
 std::vector<PoseCovariance> covariances_of(const SlamSolver& solver, const std::vector<Eigen::Matrix3d>& of_knots,
                                            const SlamOptions& options) {
-  const Eigen::Vector2d velocity_place =
-      mount_of(options.body_from_source, solver.problem().velocity().name).translation().head<2>();
+  const Eigen::Vector2d velocity_m = place_of_velocity(solver.problem().velocity(), options).head<2>();
   std::vector<PoseCovariance> covariances;
   for (std::size_t k = 0; k < of_knots.size(); ++k) {
     const double time_s = solver.problem().knot_times_s()[k];
     const double yaw_rad = solver.problem().main_yaw_rad(time_s) + solver.unknowns().knots[k].z();
     Eigen::Matrix3d body_by_knot = Eigen::Matrix3d::Identity();
-    body_by_knot.block<2, 1>(0, 2) = -quarter_turn(rotation2(yaw_rad) * velocity_place);
+    body_by_knot.block<2, 1>(0, 2) = -quarter_turn(rotation2(yaw_rad) * velocity_m);
     covariances.push_back({time_s, body_by_knot * of_knots[k] * body_by_knot.transpose()});
   }
   return covariances;

@@ -66,6 +66,28 @@ TEST_F(InARoom, FromAPlaceBesideThePillarTheWallBehindItIsSeen) {
   EXPECT_TRUE(seen({kOrigin, beside}).at(Vector3d(5.05, 0.05, 0.05)));
 }
 
+// Kills views that are taken for the one before them: near it, or at its place and turned.
+TEST_F(InARoom, SeveralViewsSeeWhatEachOfThemSees) {
+  const ViewOptions narrow{.max_range_m = 6.0, .height_rad = 4.0 * kDegree_rad};
+  const std::vector<Pose> poses = {kOrigin, Pose(Eigen::Translation3d(0.0, 0.0, 1.0)),
+                                   pose_from_rpy({0.0, 0.0, 1.0}, 30.0 * kDegree_rad, 0.0, 0.0),
+                                   pose_from_rpy({0.0, 0.2, 1.0}, 30.0 * kDegree_rad, 0.0, 0.0)};
+  const OccupancyMap all = seen(poses, narrow);
+  std::size_t more = 0;
+  for (const Pose& pose : poses) {
+    const OccupancyMap one = seen({pose}, narrow);
+    EXPECT_FALSE(one.empty());
+    for (double z_m = -2.45; z_m < 2.5; z_m += 0.1) {
+      for (double y_m = -4.95; y_m < 5.0; y_m += 0.1) {
+        const Vector3d cell_m(-5.05, y_m, z_m);
+        EXPECT_TRUE(!one.at(cell_m) || all.at(cell_m)) << cell_m.transpose();
+        more += all.at(cell_m) && !one.at(cell_m) ? 1U : 0U;
+      }
+    }
+  }
+  EXPECT_GT(more, 100U);
+}
+
 TEST_F(InARoom, OnlyWhatIsInTheBeamIsSeen) {
   const OccupancyMap visible = seen({kOrigin});
   const double edge_m = 5.0 * std::tan(17.5 * kDegree_rad);  // 1.58 m up the wall at 5 m

@@ -133,6 +133,47 @@ TEST(MicronDriver, WaitsForTheHeadConfiguresItAndAsksForLines) {
   EXPECT_TRUE(is_request(driver.message(1.2)));
 }
 
+// Kills parameters that are sent again while the head finds its centre.
+TEST(MicronDriver, LeavesTheHeadTenSecondsToFindItsCentre) {
+  MicronDriver driver({.timeout_s = 0.5});
+  driver.message(0.0);
+  driver.take(kAliveWithoutParameters);
+  driver.message(0.0);
+  driver.take(user_data(264, 1));
+  ASSERT_EQ(seanet_message(*driver.message(20.0)), SeanetMessage::kHeadCommand);
+  for (double now_s = 20.0; now_s < 30.0; now_s += 1.0) {
+    driver.take(kAliveWithoutParameters);
+    EXPECT_FALSE(driver.message(now_s)) << now_s;
+  }
+  EXPECT_EQ(driver.unanswered(), 0U);
+  const auto again = driver.message(30.0);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(seanet_message(*again), SeanetMessage::kHeadCommand);
+  EXPECT_EQ(driver.unanswered(), 1U);
+}
+
+// Kills a pulse that does not grow with the range, or is longer or shorter than heads take.
+TEST(MicronDriver, SendsAPulseAsLongAsTheRangeAsks) {
+  struct Case {
+    double range_m;
+    int pulse_us;
+  };
+  for (const auto& [range_m, pulse_us] :
+       {Case{0.5, 37}, Case{2.0, 37}, Case{10.0, 50}, Case{30.0, 100}, Case{75.0, 212}, Case{300.0, 350}}) {
+    MicronDriver driver({.range_m = range_m});
+    driver.message(0.0);
+    driver.take(kAliveWithoutParameters);
+    driver.message(0.0);
+    driver.take(user_data(264, 1));
+    const auto command = driver.message(0.0);
+    ASSERT_TRUE(command);
+    const auto parameters = micron_command_in(seanet_payload(*command));
+    ASSERT_TRUE(parameters);
+    EXPECT_EQ(parameters->pulse_us, pulse_us) << range_m;
+    EXPECT_EQ(parameters->range_dm, 10.0 * range_m) << range_m;
+  }
+}
+
 // Kills a head that never gets its parameters since it was ready, with older ones, before they were sent.
 TEST(MicronDriver, AHeadThatSaysThatItIsReadyBeforeItWasConfiguredIsConfigured) {
   MicronDriver driver({});

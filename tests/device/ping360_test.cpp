@@ -426,6 +426,24 @@ TEST(ReplaySource, KeepsTheRhythmOfTheLogAtItsSpeed) {
   EXPECT_THAT(heard_s, ElementsAre(10.0, 10.25, 11.0, 11.0, 11.25, 11.25));
 }
 
+// Kills a replay that sleeps where the recording was paused, or that hurries through what was heard.
+TEST(ReplaySource, WaitsForAMinuteAtMost) {
+  for (const double speed : {1.0, 4.0, 0.5}) {
+    for (const double step_s : {0.04, 1.0, 59.0, 61.0, 300.0, 1e6}) {
+      SCOPED_TRACE(testing::Message() << step_s << " s at speed " << speed);
+      const std::vector<Beam> log = {{1000.0, 0.0, 0.1, {1, 2}}, {1000.0 + step_s, 0.0, 0.1, {1, 2}}};
+      const auto source = replay_source(std::make_unique<BeamsInMemory>(log), speed);
+      std::vector<Beam> beams;
+      ASSERT_TRUE(source->step(5.0, beams));
+      ASSERT_EQ(beams.size(), 1U);
+      ASSERT_TRUE(source->step(5.0, beams));
+      EXPECT_EQ(beams.size(), step_s > 60.0 ? 2U : 1U);
+      if (step_s > 60.0) continue;
+      EXPECT_NEAR(source->due_s(), 5.0 + step_s / speed, 1e-9);
+    }
+  }
+}
+
 TEST(Link, RefusesAddressesThatItDoesNotKnow) {
   for (const char* address :
        {"", "http://a:1", "tcp://a", "udp://", "udp://127.0.0.1", "udp://127.0.0.1:x", "udp://127.0.0.1:70000",

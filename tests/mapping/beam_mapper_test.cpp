@@ -201,34 +201,6 @@ TEST(BeamMapper, GoesOnAfterAnErrorWithANewSweep) {
   EXPECT_TRUE(mapper->finish()) << "nothing waits any more";
 }
 
-// Kills a complete sweep that is not counted since beams before an error had no pose.
-TEST(BeamMapper, CountsTheSweepAfterAnError) {
-  BuildOptions options = options_of(BeamShape::kRay, Vote::kPerBeam);
-  options.timing = Timing::kByBeam;
-  options.echo.min_range_m = 0.5;
-  OccupancyMap still;
-  const std::vector<Beam> beams = room(900);
-  {
-    auto mapper = BeamMapper::make(options, still);
-    ASSERT_TRUE(mapper);
-    for (const Beam& beam : beams) ASSERT_TRUE(mapper->add(beam, Pose::Identity()));
-  }
-  OccupancyMap map({.memory_limit_bytes = still.memory_bytes() + 100'000});
-  auto mapper = BeamMapper::make(options, map);
-  ASSERT_TRUE(mapper);
-  std::size_t last_refused = 0;
-  for (std::size_t n = 0; n < beams.size(); ++n) {
-    std::optional<Pose> pose = Pose::Identity();
-    if (n >= 250 && n < 260) pose.reset();
-    if (n >= 260 && n < 380) pose->translation().x() = 100.0 * static_cast<double>(n);
-    if (!mapper->add(beams[n], pose)) last_refused = n;
-  }
-  ASSERT_GE(last_refused, 260U);
-  ASSERT_LT(last_refused, 450U);
-  EXPECT_EQ(mapper->report().no_pose.count, 10U);
-  EXPECT_EQ(mapper->report().sweeps, 1 + (beams.size() - last_refused - 2) / 200);
-}
-
 // One damaged number ended the run, or freed the world up to the horizon.
 TEST(BeamMapper, ABeamOutOfAllProportionCostsThatBeam) {
   const BuildOptions options = options_of(BeamShape::kRay, Vote::kPerSweep);

@@ -176,7 +176,7 @@ TEST(RebuiltMapThreads, AMapThatCannotBeRebuiltStays) {
 
 // Kills complete sweeps that are counted again after an error.
 TEST(RebuiltMapThreads, CountsTheSweepsBeforeAndAfterAnError) {
-  const std::vector<Beam> beams = room(6 * 60 + 2);
+  const std::vector<Beam> beams = room(6 * 60);
   const auto stays = trajectory_of(beams, 1, 0.0).poses().front().map_from_body;
   const Batch small = batch(beams, Trajectory::still(stays), cones());
   auto map =

@@ -145,6 +145,19 @@ TEST(LivePoses, SayWhatIsMissing) {
   EXPECT_TRUE(poses.has(NavQuantity::kPosition));
 }
 
+// Kills poses that are said to be known until the source that goes on, and not until the one that fell silent.
+TEST(LivePoses, AreKnownUntilTheSourceThatFellSilent) {
+  const std::vector<NavSource> sources = turning_vehicle(10.0);
+  for (std::size_t silent = 0; silent < sources.size(); ++silent) {
+    LivePoses poses;
+    add_until(poses, sources, 0.0, 5.0);
+    add_until(poses, {sources[1 - silent]}, 5.0, 10.0);
+    EXPECT_NEAR(*poses.known_until_s(), 4.95, 0.06);
+    EXPECT_TRUE(poses.at(*poses.known_until_s()));
+    EXPECT_FALSE(poses.at(*poses.known_until_s() + 0.01));
+  }
+}
+
 TEST(LivePoses, LeaveOutWhatSaysNothing) {
   LivePoses poses;
   const std::vector<NavSource> sources = turning_vehicle(10.0);

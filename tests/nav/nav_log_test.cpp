@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -124,6 +125,75 @@ TEST(DepthSource, IsThatOfThePressureInWaterWhereThereIsNoDepth) {
   EXPECT_EQ(depth_source(*NavLog::make({outside, depths("bar", {1, 2})}, NavClock::kBoot))->name, "bar");
 }
 
+// Kills a step that is not the one back to the sample that is farthest behind.
+TEST(NavLog, NotesTheStepToTheSampleThatIsFarthestBehind) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::vector<double> times_s;
+    for (int i = 0; i < 12; ++i) times_s.push_back(0.25 * static_cast<double>(random() % 40));
+    double latest_s = times_s.front(), farthest_s = 0.0;
+    std::size_t late = 0;
+    for (const double time_s : times_s) {
+      latest_s = std::max(latest_s, time_s);
+      farthest_s = std::max(farthest_s, latest_s - time_s);
+      if (latest_s - time_s > kMaxLate_s) ++late;
+    }
+    const auto log = NavLog::make({depths("a", times_s)}, NavClock::kBoot);
+    ASSERT_TRUE(log);
+    const auto& step = log->sources()[0].step_back;
+    ASSERT_EQ(step.has_value(), late > 0);
+    if (!step) continue;
+    EXPECT_EQ(step->late, late);
+    EXPECT_EQ(step->from_s - step->to_s, farthest_s);
+  }
+}
+
+// Kills the first gauge that is under water instead of the deepest, whatever their order.
+TEST(DepthSource, IsThatOfTheHighestPressure) {
+  const std::vector<NavSource> gauges = {source_of_values("low", NavQuantity::kPressure, {101'325, 120'000}),
+                                         source_of_values("high", NavQuantity::kPressure, {101'325, 151'325}),
+                                         source_of_values("middle", NavQuantity::kPressure, {101'325, 140'000})};
+  for (std::size_t first = 0; first < gauges.size(); ++first) {
+    std::vector<NavSource> turned;
+    for (std::size_t i = 0; i < gauges.size(); ++i) turned.push_back(gauges[(first + i) % gauges.size()]);
+    const auto depth = depth_source(*NavLog::make(turned, NavClock::kBoot));
+    ASSERT_TRUE(depth);
+    EXPECT_EQ(depth->name, "high");
+  }
+}
+
+// Kills a deviation of a depth that is one of a pressure.
+TEST(DepthSource, HasTheDeviationOfItsMetres) {
+  NavSource gauge = source_of_values("bar", NavQuantity::kPressure, {101'325, 111'325, 151'325});
+  for (NavSample& sample : gauge.samples) sample.deviation.x() = 10'000.0;
+  const auto depth = depth_source(*NavLog::make({gauge}, NavClock::kBoot));
+  ASSERT_TRUE(depth);
+  const double metres = depth->samples[1].value.x() - depth->samples[0].value.x();  // of 10,000 Pa
+  for (const NavSample& sample : depth->samples) EXPECT_NEAR(sample.deviation.x(), metres, 1e-9);
+}
+
+// Kills a step back of a part that is forgotten when the parts of a source are joined, or made by joining them.
+TEST(NavLog, PartsOfASourceKeepTheirStepBack) {
+  const auto made = [](const std::vector<double>& times_s) {
+    return NavLog::make({depths("a", times_s)}, NavClock::kUnix)->sources().front();
+  };
+  const NavSource early = made({0, 1, 2}), late = made({10, 11, 12}), back = made({20, 25, 21, 26});
+  ASSERT_TRUE(back.step_back);
+  for (const NavSource& other : {early, late}) {
+    NavSource joined = other;
+    add_samples(back, joined);
+    EXPECT_FALSE(check_clock(joined));
+    joined = back;
+    add_samples(other, joined);
+    EXPECT_FALSE(check_clock(joined));
+  }
+  NavSource joined = late;
+  add_samples(early, joined);
+  EXPECT_TRUE(check_clock(joined));
+  EXPECT_EQ(joined.samples.front().time_s, 0.0);
+}
+
 // Kills the inside of the hull as water, and the air before the dive.
 TEST(WaterAround, IsAsWarmAsTheColdestSensorUsuallyIs) {
   using enum NavQuantity;
@@ -154,6 +224,19 @@ TEST(NavSummary, CountsGapsAndIgnoresRepeatedTimes) {
   EXPECT_EQ(summary.to_s, 5.2);
   EXPECT_EQ(summary_of(depths("one", {7})).rate_hz, 0.0);
   EXPECT_EQ(summary_of(depths("still", {7, 7})).rate_hz, 0.0);
+}
+
+// Kills short pauses of quick sensors that are gaps, and long ones of slow sensors.
+TEST(NavSummary, AGapIsAtLeastHalfASecondAndFiveSteps) {
+  for (const double step_s : {0.01, 0.05, 0.1, 0.5, 2.0}) {
+    SCOPED_TRACE(step_s);
+    const double limit_s = std::max(0.5, 5.0 * step_s);
+    for (const double share : {0.9, 1.1}) {
+      std::vector<double> times_s;
+      for (int i = 0; i < 20; ++i) times_s.push_back(i * step_s + (i >= 10 ? share * limit_s - step_s : 0.0));
+      EXPECT_EQ(summary_of(depths("a", times_s)).gaps, share > 1.0 ? 1U : 0U) << share;
+    }
+  }
 }
 
 TEST(NavQuantity, IsFoundByItsName) {

@@ -89,6 +89,19 @@ TEST(NavTrajectory, HasAGapWhereTheSlowerSourceHasOne) {
   for (const double time_s : {25.01, 40.0, 59.99, 65.1}) EXPECT_FALSE(made->trajectory.at(time_s)) << time_s;
 }
 
+// Kills a gap of the quicker source that is bridged since the slower one pauses as long.
+TEST(NavTrajectory, HasAGapWhereTheQuickerSourceHasOne) {
+  NavSource quick{"ahrs", NavQuantity::kAttitude, {}}, slow{"usbl", NavQuantity::kPosition, {}};
+  for (int i = 0; i <= 100; ++i) slow.samples.push_back({.time_s = static_cast<double>(i)});
+  for (int i = 0; i <= 1000; ++i) {
+    if (i <= 400 || i >= 430) quick.samples.push_back({.time_s = i * 0.1});
+  }
+  const auto made = trajectory_of({quick, slow});
+  ASSERT_TRUE(made) << made.error().message;
+  for (const double time_s : {39.95, 40.0, 43.0, 43.05}) EXPECT_TRUE(made->trajectory.at(time_s)) << time_s;
+  for (const double time_s : {40.05, 41.0, 42.5, 42.95}) EXPECT_FALSE(made->trajectory.at(time_s)) << time_s;
+}
+
 TEST(NavTrajectory, PrefersTheMainFilterToWhatSpeaksMoreOften) {
   const auto made =
       trajectory_of({source_of("AHRS2", NavQuantity::kAttitude, {{0, {0, 0, 1}}, {1, {0, 0, 1}}, {2, {0, 0, 1}}}),
@@ -131,6 +144,17 @@ TEST(NavTrajectory, PutsFixesAtTheDepthOfTheirTime) {
                                    source_of("bar", NavQuantity::kDepth, {{0.5, {4, 0, 0}}, {1.5, {6, 0, 0}}})});
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_THAT(times_of(made->trajectory), testing::ElementsAre(1)) << "at 0 nobody knows the depth";
+  EXPECT_NEAR(made->trajectory.at(1)->translation().z(), -5.0, 1e-12);
+}
+
+// Kills a depth that its device marked as invalid.
+TEST(NavTrajectory, PutsNoFixAtADepthThatIsInvalid) {
+  const NavSource fixes = source_of("usbl", NavQuantity::kFix, {{0.8, {0.8, 0, 50}}, {1, {0.8, 0, 52}}});
+  const auto made = trajectory_of(
+      {kLevel, fixes,
+       source_of("bar", NavQuantity::kDepth, {{0.5, {4, 0, 0}}, {0.9, {900, 0, 0}, false}, {1.5, {6, 0, 0}}})});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_NEAR(made->trajectory.at(0.8)->translation().z(), -4.6, 1e-12);
   EXPECT_NEAR(made->trajectory.at(1)->translation().z(), -5.0, 1e-12);
 }
 

@@ -249,11 +249,13 @@ TEST(CausalSlam, ASourceMayHaveTheNameOfOdometryByTheSonar) {
     return slam.finish();
   };
   const auto usual = told_with_names("dvl", "compass");
-  const auto other = told_with_names("sonar odometry", "sonar odometry");
-  ASSERT_TRUE(usual && other);
-  expect_same(usual->trajectory, other->trajectory);
-  EXPECT_FALSE(other->report.by_sonar);
-  EXPECT_EQ(other->report.velocity, "sonar odometry");
+  const auto velocity = told_with_names("sonar odometry", "compass");
+  const auto heading = told_with_names("dvl", "sonar odometry");
+  ASSERT_TRUE(usual && velocity && heading);
+  expect_same(usual->trajectory, velocity->trajectory);
+  expect_same(usual->trajectory, heading->trajectory);
+  EXPECT_FALSE(velocity->report.by_sonar);
+  EXPECT_EQ(velocity->report.velocity, "sonar odometry");
 }
 
 TEST(CausalSlam, RefusesBeamsThatGoBackInTime) {

@@ -135,7 +135,7 @@ TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
 }
 
 /// Standard deviation of the way over all knots, 4 s apart, where the velocity is silent for 1000 s.
-double deviation_after_gap(double turn_rad_s) {
+double deviation_after_gap(double (*yaw_rad_at)(double time_s)) {
   const auto two = [](double first, double second) {
     return TimeSeries({0.0, 1.0, 2.0, 1002.0, 1003.0, 1004.0}, {first, first, first, second, second, second});
   };
@@ -143,7 +143,7 @@ double deviation_after_gap(double turn_rad_s) {
   for (double time_s = 0.0; time_s <= 1004.0; time_s += 4.0) knots_s.push_back(time_s);
   for (double time_s = 0.0; time_s <= 1004.0; time_s += 0.5) {
     times_s.push_back(time_s);
-    yaws_rad.push_back(turn_rad_s * time_s);
+    yaws_rad.push_back(yaw_rad_at(time_s));
   }
   const SlamProblem problem(knots_s, {"dvl", two(0.5, 0.5), two(0.0, 0.0), two(0.02, 0.02)},
                             {{"imu", TimeSeries(times_s, yaws_rad), {}, {}}});
@@ -154,9 +154,15 @@ double deviation_after_gap(double turn_rad_s) {
 
 // Kills errors that average out over a gap: on a straight way 0.1 m/s that is the same all the time adds up.
 TEST(SlamProblem, AGapOfTheVelocityIsAsUncertainAsAVehicleThatMovesSteadily) {
-  EXPECT_NEAR(deviation_after_gap(0.0), 100.0, 1.0);
+  EXPECT_NEAR(deviation_after_gap([](double) { return 0.0; }), 100.0, 1.0);
   // Going round in a circle, 0.3 m/s from knot to knot.
-  EXPECT_NEAR(deviation_after_gap(0.1), 0.3 * 4.0 * std::sqrt(250.0), 0.5);
+  EXPECT_NEAR(deviation_after_gap([](double time_s) { return 0.1 * time_s; }), 0.3 * 4.0 * std::sqrt(250.0), 0.5);
+}
+
+// Kills a gap that is as certain as where it ends: a vehicle that came back was far away meanwhile.
+TEST(SlamProblem, AGapIsAsUncertainAsTheFarthestPlaceInIt) {
+  const auto there_and_back = [](double time_s) { return time_s < 502.0 ? 0.0 : std::numbers::pi; };
+  EXPECT_NEAR(deviation_after_gap(there_and_back), 50.0, 1.0);
 }
 
 TEST(SlamProblem, TheBulgeBringsTheWayBackToTheIntegratedVelocity) {

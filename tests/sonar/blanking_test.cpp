@@ -85,6 +85,27 @@ TEST(BlankingRange, EndsWhereTheRingingHasFaded) {
   EXPECT_LE(found_m, 50.0 * kFineBin_m);
 }
 
+// Kills a wall next to the head, which most beams hear but not all, that is taken for ringing.
+TEST(BlankingRange, DoesNotEndBehindAWallThatFourOfFiveBeamsHear) {
+  std::mt19937_64 random(13);
+  Sweep sweep = ringing_turn(random, 10, 100);
+  for (std::size_t n = 0; n < sweep.beams.size(); ++n) {
+    if (n % 5 == 0) continue;
+    for (std::size_t i = 10; i < 30; ++i) sweep.beams[n].intensities[i] = 100;
+  }
+  EXPECT_LT(blanking_range_m(PolarImage(sweep), sweep), 20.0 * kFineBin_m);
+}
+
+// Kills a range that ends where ringing has fallen to less than half, though it goes on at that.
+TEST(BlankingRange, GoesOnOverRingingOfTwoParts) {
+  std::mt19937_64 random(17);
+  Sweep sweep = ringing_turn(random, 10, 200);
+  for (Beam& beam : sweep.beams) {
+    for (std::size_t i = 10; i < 30; ++i) beam.intensities[i] = static_cast<std::uint8_t>(80 + random() % 4);
+  }
+  EXPECT_GE(blanking_range_m(PolarImage(sweep), sweep), 30.0 * kFineBin_m - 1e-9);
+}
+
 TEST(BlankingRange, IsNoneWithoutRingingAndUsualInAFewBeams) {
   std::mt19937_64 random(5);
   const Sweep silent = ringing_turn(random, 0, 0);

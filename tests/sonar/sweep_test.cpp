@@ -203,6 +203,31 @@ TEST(SweepAssembler, CutsWhenTheBinLengthChangesButNotForItsRounding) {
   EXPECT_THAT(cuts_of(beams), ElementsAre(Cut{Extent::kCut, 100}, Cut{Extent::kTurn, 200}));
 }
 
+// Kills a small change of the range within a sweep, whose bins would not be of one range in the image.
+TEST(SweepAssembler, CutsWhereTheBinLengthChangesByMoreThanAHundredth) {
+  for (const double change : {-0.3, -0.02, -0.005, 0.005, 0.02, 0.3}) {
+    SCOPED_TRACE(change);
+    std::vector<Beam> beams;
+    for (int i = 0; i < 200; ++i) beams.push_back(beam_at(1.8 * i, 3, i < 100 ? 0.02 : 0.02 * (1.0 + change)));
+    if (std::abs(change) < 0.01) {
+      EXPECT_THAT(cuts_of(beams), ElementsAre(Cut{Extent::kTurn, 200}));
+    } else {
+      EXPECT_THAT(cuts_of(beams), ElementsAre(Cut{Extent::kCut, 100}, Cut{Extent::kCut, 100}));
+    }
+  }
+}
+
+// Kills a turn that ends early since beams were lost some steps before.
+TEST(SweepAssembler, DoesNotEndATurnEarlyAfterAGapNearItsEnd) {
+  for (int gap = 2; gap < 44; ++gap) {
+    SCOPED_TRACE(gap);
+    // The gap ends nine steps before the turn does.
+    const std::vector<double> degrees = run(0.0, 1.0, 352 - gap) + run(351.0, 1.0, 9) + run(0.0, 1.0, 10);
+    EXPECT_THAT(cuts_of_bearings(degrees),
+                ElementsAre(Cut{Extent::kTurn, static_cast<std::size_t>(361 - gap)}, Cut{Extent::kCut, 10}));
+  }
+}
+
 TEST(SweepAssembler, CutsAHeadThatStandsStill) {
   EXPECT_THAT(cuts_of_bearings(std::vector(SweepAssembler::kMaxBeams + 5, 12.0)),
               ElementsAre(Cut{Extent::kCut, SweepAssembler::kMaxBeams}, Cut{Extent::kCut, 5}));
