@@ -250,8 +250,9 @@ TEST(Info, KnowsPointScansAndTrajectories) {
   FlatJson scans = json_with(here.call({"info", "a.txt", "--json"}),
                              {"kind", "format", "scans", "points", "bounds.min", "bounds.max", "skipped"});
   EXPECT_EQ(scans["points"], "2");
-  FlatJson poses = json_with(here.call({"info", "poses.txt", "--json"}),
-                             {"kind", "format", "poses", "duration_s", "length_m", "bounds.min", "bounds.max"});
+  FlatJson poses =
+      json_with(here.call({"info", "poses.txt", "--json"}),
+                {"kind", "format", "poses", "duration_s", "length_m", "bounds.min", "bounds.max", "left_out"});
   EXPECT_EQ(poses["length_m"], "5");
 }
 
