@@ -41,8 +41,7 @@ std::pair<std::vector<double>, std::string> read(std::vector<double> times_s) {
 // Kills a beam that is left out or comes twice, and a log that is refused for swapped messages.
 TEST(BeamsInOrder, SwappedOnesGoToTheirPlaces) {
   using Times = std::vector<double>;
-  EXPECT_EQ(read({0, 0.5, 1, 3, 1.5, 2, 3.5, 9, 9.5}),
-            std::pair(Times({0, 0.5, 1, 1.5, 2, 3, 3.5, 9, 9.5}), std::string()));
+  EXPECT_EQ(read({0, 0.5, 1, 3, 1.5, 3.5, 9, 9.5}), std::pair(Times({0, 0.5, 1, 1.5, 3, 3.5, 9, 9.5}), std::string()));
   EXPECT_EQ(read({}), std::pair(Times(), std::string()));
   EXPECT_EQ(read({5}), std::pair(Times({5}), std::string()));
 }
