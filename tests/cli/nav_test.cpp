@@ -417,7 +417,7 @@ TEST(Nav, SeveralTimeZonesAreNamed) {
   const Outcome mapped = here.call({"map", "20260101-120010000.csv", "--nav", "nav.csv", "-o", "map.bt"});
   expect_error(mapped, 1,
                {"its name says 2026-01-01 12:00:10 to 2026-01-01 12:00:",
-                "--nav is of 2026-01-01 09:00:00 to 2026-01-01 12:59:50: in UTC+0:00 --nav-offset -1767268810.000, "
+                "--nav is of 2026-01-01 09:00:00 to 2026-01-01 13:00:00: in UTC+0:00 --nav-offset -1767268810.000, "
                 "in UTC+1:00 --nav-offset -1767265210.000, in UTC+2:00 "});
 }
 
