@@ -133,7 +133,6 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   const Result<NavFiles> nav =
       read_navs(command.navs, command.damage, command.bag.nav, {.log = {}, .topic = {}, .chosen = command.nav_sources});
   if (!nav) return tl::unexpected(nav.error());
-  for (const std::string& warning : nav->warnings) console.say(warning);
   Result<NavOffset> offset =
       nav_offset(command.nav_offset_s, *nav, {command.logs.front(), command.bag.beams, command.slam.body_from_sonar},
                  command.damage);
@@ -160,6 +159,7 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   SlamSmoother smoother(options);
   const Result<Read> all = read_all(smoother, *nav, command, std::move(first));
   if (!all) return tl::unexpected(all.error());
+  for (const std::string& warning : nav->warnings) console.say(warning);
   inputs.skipped = all->skipped;
   for (const std::string& note : all->notes) console.say(note);
   seconds.read = read.seconds();

@@ -62,7 +62,10 @@ bool tells_path(const NavLog& nav) {
 std::string unused_text(const NavLog& nav, std::span<const std::string> notes) {
   std::vector<std::string> taken;
   for (const NavSource& source : nav.sources()) {
-    if (source.subject != NavSubject::kOther) taken.push_back(source.name);
+    const bool is_taken = std::ranges::none_of(nav.sources(), [&](const NavSource& other) {
+      return other.name == source.name && other.subject == NavSubject::kOther;
+    });
+    if (is_taken) taken.push_back(source.name);
   }
   constexpr std::array kAll = {NavQuantity::kPosition, NavQuantity::kFix, NavQuantity::kAttitude, NavQuantity::kHeading,
                                NavQuantity::kVelocity};
@@ -195,7 +198,11 @@ Result<VehiclePath> vehicle_path(const PathArgs& path, const SonarLog& log, cons
               sonar_moved_m, VehiclePath::kNavMustCover};
         })
         .map(with_warnings)
-        .map_error(name_files);
+        .map_error(name_files)
+        .map_error([&](Error error) {
+          error.message += unused_text(nav->log, nav->notes);
+          return error;
+        });
   }
   if (path.calibration) {
     return fail(Error::Code::kBadOption,

@@ -167,8 +167,7 @@ tl::expected<NavOffset, std::string> by_dates(const TimeSpan& nav, const SonarLo
   }
   const bool has_dates = span.from_s >= kFirstDate_s;
   const std::optional<double> zero_s = has_dates ? 0.0 : zero_in_name(sonar.name, times.clock);
-  const std::string not_set =
-      nav.to_s < kFirstDate_s ? fmt::format(" ({:.0f} s since 1970, of a clock that was not set)", nav.to_s) : "";
+  const std::string not_set = nav.to_s < kFirstDate_s ? "; --nav is of a clock that was not set" : "";
   constexpr const char* kUnknown = "the offset between its clock and that of --nav is not known";
   if (!zero_s) return tl::unexpected(fmt::format("{} ({}{})", kUnknown, apart_text(span, nav), not_set));
   // Programs without a time zone write local time.

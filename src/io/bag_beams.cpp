@@ -164,8 +164,8 @@ class BagBeams final : public DeviceLog {
     HeldBeams held = *std::exchange(held_, std::nullopt);
     const AngleUnit documented = held.angle().unit;
     const std::optional<AngleUnit> unit = held.units().unit();
-    const std::string wrong =
-        fmt::format("the angles in {}, {}, cannot be {}", chosen_, held.units().range_text(), name_of(documented));
+    const std::string wrong = fmt::format("the angles in {}, {}, cannot be {}", on_one_line(chosen_),
+                                          held.units().range_text(), name_of(documented));
     if (!unit) {
       return fail(Error::Code::kUnsupported,
                   fmt::format("{}: {}: they may be degrees or gradians, and nothing says which", bag_->name(), wrong));
@@ -215,12 +215,8 @@ class BagBeams final : public DeviceLog {
     }
     if (beams->empty()) return {};
     const double time_s = topic->time_of(message_, message.time_s);
-    // The angles of a LaserScan are about z of its frame, those of other drivers are the head's own.
-    const bool is_frd =
-        !fields_ && type.beams_in == laser_beam && axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
     for (Beam& beam : *beams) {
       beam.time_s = time_s;
-      if (is_frd) beam.bearing_rad = wrap_bearing(-beam.bearing_rad);
       if (const auto valid = validate(beam); !valid) {
         unusable_.add({kImpossible, valid.error().message}, message.file_byte);
         return {};
@@ -230,7 +226,10 @@ class BagBeams final : public DeviceLog {
     if (name != chosen_) return several_topics(*bag_, "beams", is_sonar);
     if (!fields_) device_ = find_device(type.device);
     if (fields_) return add_turned(std::move(beams->front()), values.number(0) - fields_->ahead, by_fields(), message);
-    if (type.angle) return add_turned(std::move(beams->front()), values.number(0), *type.angle, message);
+    // The angles of a LaserScan are about z of its frame, those of other drivers are the head's own.
+    const bool is_frd = type.type.name == "LaserScan" && axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
+    const double angle = is_frd ? -values.number(0) : values.number(0);
+    if (type.angle) return add_turned(std::move(beams->front()), angle, *type.angle, message);
     beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
     return {};
   }
@@ -364,7 +363,7 @@ std::string first_damage_of(const Bag& bag, const UnusableMessages& unusable) {
 std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&)) {
   std::set<std::string> names;
   for (const BagTopic& topic : bag.topics()) {
-    if (is_of_kind(topic)) names.insert(fmt::format("{} ({})", topic.name, topic.type));
+    if (is_of_kind(topic)) names.insert(on_one_line(fmt::format("{} ({})", topic.name, topic.type)));
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }

@@ -350,7 +350,7 @@ class BagSurvey {
         type != nullptr ? origin_of(type->frame_id, *topic.known, message_) : origin_by_name(*topic.known, message_);
     const std::optional<std::string> name = name_of_source(topic, origin);
     if (!name) {
-      add_damage(unusable_, kTooManyFrames, message.file_byte);
+      unusable_.add({kTooManyFrames}, message.file_byte);
       return {};
     }
     for (const NavReader& reader : topic.readers) {

@@ -208,10 +208,27 @@ class TlogNav {
 
 }  // namespace
 
+namespace {
+
+/// Whether frames follow each other without the time between them that a telemetry log has.
+bool is_without_times(std::span<const std::uint8_t> bytes) {
+  const auto is_right = [](const MavlinkRead& read) {
+    return read.frame && read.frame->check == MavlinkFrame::Check::kRight;
+  };
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    const MavlinkRead read = read_mavlink(bytes.subspan(at));
+    if (is_right(read)) return is_right(read_mavlink(bytes.subspan(at + read.length)));
+  }
+  return false;
+}
+
+}  // namespace
+
 bool looks_like_tlog(std::span<const std::uint8_t> bytes) {
   // A log may begin in the middle of a record, so a record near its beginning suffices.
   constexpr std::size_t kNear = 2048;
   std::vector<DamageKind> damage;
+  if (is_without_times(bytes.first(std::min(bytes.size(), kNear)))) return false;
   bool found = false;
   for_each_tlog_record(bytes.first(std::min(bytes.size(), kNear)), damage, [&](const TlogRecord& record) {
     found = found || record.frame.check == MavlinkFrame::Check::kRight;

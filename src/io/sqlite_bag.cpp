@@ -89,9 +89,9 @@ void set_limits(sqlite3* database, std::uint64_t size) {
        {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW}) {
     sqlite3_db_config(database, forbidden, 0, nullptr);
   }
-  // Without the last one SQLite refuses a file that is shorter than its header says.
-  for (const int wanted :
-       {SQLITE_DBCONFIG_DEFENSIVE, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, SQLITE_DBCONFIG_WRITABLE_SCHEMA}) {
+  // Without the last one SQLite refuses a file that is shorter than its header says; it has no effect together with
+  // SQLITE_DBCONFIG_DEFENSIVE, which only forbids what writes.
+  for (const int wanted : {SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, SQLITE_DBCONFIG_WRITABLE_SCHEMA}) {
     sqlite3_db_config(database, wanted, 1, nullptr);
   }
   sqlite3_drop_modules(database, nullptr);  // those of virtual tables
@@ -232,7 +232,7 @@ class SqliteBag final : public Bag {
     return fail(is_damage ? Error::Code::kCorrupt : Error::Code::kIo,
                 fmt::format("{}: cannot be read: {}", name_,
                             error == SQLITE_INTERRUPT ? "its tables take more steps than its size explains"
-                                                      : sqlite3_errmsg(database_.get())));
+                                                      : printable(sqlite3_errmsg(database_.get()))));
   }
 
   std::string name_;

@@ -82,13 +82,17 @@ std::optional<std::string_view> cut_word(std::string_view& rest) {
   return word;
 }
 
-std::string printable(std::string_view text) {
-  constexpr std::size_t kMaxLength = 40;
-  std::string shown(text.substr(0, kMaxLength));
+std::string on_one_line(std::string_view text) {
+  std::string shown(text);
   for (char& c : shown) {
     if (c < ' ' || c > '~') c = '?';
   }
-  return text.size() > kMaxLength ? shown + "..." : shown;
+  return shown;
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMaxLength = 40;
+  return on_one_line(text.substr(0, kMaxLength)) + (text.size() > kMaxLength ? "..." : "");
 }
 
 std::optional<double> number_in(std::string_view text) {

@@ -45,7 +45,9 @@ std::optional<std::string_view> cut_field(std::string_view& rest, char separator
 /// Cuts the next word, between blanks, tabs and commas, off the front of `rest`. nullopt: none is left.
 std::optional<std::string_view> cut_word(std::string_view& rest);
 
-/// The first characters of text from a file, for messages: without line breaks and control characters.
+/// Text from a file, for messages: without line breaks and control characters.
+std::string on_one_line(std::string_view text);
+/// Its first characters.
 std::string printable(std::string_view text);
 
 /// Parses all of `text` as a finite decimal number, independent of the locale, rounded once. nullopt: invalid.

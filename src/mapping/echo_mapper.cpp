@@ -28,21 +28,6 @@ double freed_range_m(const EchoBeam& beam) {
   return beam.echo ? beam.echo->range_m : range_of(beam);
 }
 
-/// Ranges beyond are out of all proportion to the others of the sweep: those of damaged numbers. Infinity: all are
-/// plausible, as those after the range was set anew.
-double longest_range_m(std::span<const EchoBeam> beams) {
-  constexpr double kPlausible = 10.0, kNone = std::numeric_limits<double>::infinity();
-  constexpr std::size_t kFewBeams = 10;
-  if (beams.size() < kFewBeams) return kNone;
-  std::vector<double> ranges_m;
-  std::ranges::transform(beams, std::back_inserter(ranges_m), range_of);
-  const auto middle = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 2);
-  std::ranges::nth_element(ranges_m, middle);
-  const double longest_m = kPlausible * *middle;
-  const auto beyond = std::ranges::count_if(ranges_m, [&](double range_m) { return range_m > longest_m; });
-  return static_cast<std::size_t>(beyond) * kFewBeams <= beams.size() ? longest_m : kNone;
-}
-
 }  // namespace
 
 EchoBeams echo_beams(const std::vector<EchoStream::BeamWithEcho>& heard, std::uint64_t first,
@@ -92,12 +77,42 @@ Result<void> EchoMapper::add(const EchoBeams& heard, std::span<const std::option
 
 void EchoMapper::restart(const BuildReport& report) {
   no_pose_before_ = report.no_pose.count;
+  recent_ranges_m_.clear();
+  too_long_in_row_ = 0;
   scan_.clear();
+}
+
+/// Ranges beyond are out of all proportion to those of the beams before and with them: those of damaged numbers.
+/// Infinity: all are plausible, as those after the range was set anew.
+double EchoMapper::longest_range_m(std::span<const EchoBeam> beams) {
+  constexpr double kPlausible = 10.0, kNone = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kFewBeams = 10, kRecentBeams = 100;
+  std::vector<double> ranges_m = recent_ranges_m_;
+  std::ranges::transform(beams, std::back_inserter(ranges_m), range_of);
+  double longest_m = kNone;
+  if (ranges_m.size() >= kFewBeams) {
+    std::vector<double> sorted_m = ranges_m;
+    const auto middle = sorted_m.begin() + static_cast<std::ptrdiff_t>(sorted_m.size() / 2);
+    std::ranges::nth_element(sorted_m, middle);
+    longest_m = kPlausible * *middle;
+  }
+  const auto is_beyond = [&](double range_m) { return range_m > longest_m; };
+  const auto beyond = static_cast<std::size_t>(std::ranges::count_if(beams, is_beyond, range_of));
+  too_long_in_row_ = beyond > 0 ? too_long_in_row_ + beyond : 0;
+  const bool is_set_anew = too_long_in_row_ >= kFewBeams && beyond * kFewBeams > beams.size();
+  std::erase_if(ranges_m, [&](double range_m) { return is_beyond(range_m) != is_set_anew; });
+  if (is_set_anew) {
+    too_long_in_row_ = 0;
+    longest_m = kNone;
+  }
+  const std::size_t old = ranges_m.size() - std::min(ranges_m.size(), kRecentBeams);
+  recent_ranges_m_.assign(ranges_m.begin() + static_cast<std::ptrdiff_t>(old), ranges_m.end());
+  return longest_m;
 }
 
 /// Each beam where it was heard: de-skew. Those without a pose are left out.
 Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
-                                             BuildReport& report) const {
+                                             BuildReport& report) {
   Placed placed;
   placed.beams.reserve(heard.beams.size());
   placed.heard.reserve(heard.beams.size());

@@ -59,8 +59,8 @@ class EchoMapper {
     std::vector<const EchoBeam*> heard;
   };
 
-  Result<Placed> place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body,
-                       BuildReport& report) const;
+  Result<Placed> place(const EchoBeams& heard, std::span<const std::optional<Pose>> map_from_body, BuildReport& report);
+  double longest_range_m(std::span<const EchoBeam> beams);
   bool is_blocked(const PlacedBeam& beam) const;
   double length_of(const EchoBeam& beam) const;
   double cells_of(const EchoBeam& beam) const;
@@ -74,7 +74,9 @@ class EchoMapper {
   std::vector<BeamTracer> tracers_;  ///< one for each thread
   ScanUpdate scan_;
   ScanParts parts_;
-  std::size_t no_pose_before_ = 0;  ///< beams left out before this sweep
+  std::size_t no_pose_before_ = 0;       ///< beams left out before this sweep
+  std::vector<double> recent_ranges_m_;  ///< of beams before, without those that are too long
+  std::size_t too_long_in_row_ = 0;
   Stopwatch watch_;
 };
 

@@ -122,8 +122,11 @@ bool is_candidate(const NavSource& source) {
 /// How well a source is suited, by what it is; less is better. What never changes its place may be no more than the
 /// attitude of something.
 int class_of(const NavSource& source) {
-  enum : int { kVehicles, kOfTf, kInFixedFrame, kFixes, kStill, kElsewhere };
-  if (source.subject == NavSubject::kVehicle) return source.quantity == NavQuantity::kFix ? kFixes : kVehicles;
+  enum : int { kVehicles, kOfTf, kInFixedFrame, kOfPart, kFixes, kStill, kElsewhere };
+  if (source.subject == NavSubject::kVehicle) {
+    if (source.quantity == NavQuantity::kFix) return kFixes;
+    return is_on_vehicle(source.child) && !is_vehicle_frame(source.child) ? kOfPart : kVehicles;
+  }
   const bool is_of_tf = source.subject == NavSubject::kTransforms;
   if (!is_of_tf && !is_fixed_frame(source.frame)) return kElsewhere;
   if (source.quantity == NavQuantity::kPosition && never_changes(source)) return kStill;

@@ -91,7 +91,7 @@ Result<NavClockOffset> nav_clock_offset(const NavLog& dated, std::span<const Dev
   // Checks the clocks of both.
   const Result<std::vector<YawChange>> changes = yaw_changes(dated);
   if (!changes) return tl::unexpected(changes.error());
-  if (const auto right = check_clocks(from_start, kHeadingQuantities); !right) return tl::unexpected(right.error());
+  if (const auto right = check_sources(from_start, kHeadingQuantities); !right) return tl::unexpected(right.error());
   const std::optional<HeadingSource> heading = best_heading(dated, {}), other = best_heading(from_start, {});
   if (!heading || !other) {
     return fail(Error::Code::kUnsupported, "the navigation has no valid heading or attitude");

@@ -226,13 +226,16 @@ Result<SlamSolution> solve_batch(Recording recording, const SonarChecks& checks,
   return solution;
 }
 
+constexpr std::array kVelocityQuantities = {NavQuantity::kVelocity};
+
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
 Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::span<const HeardSweep> sweeps,
                                           const SlamOptions& options) {
   const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
-  if (options.motion == MotionSource::kVelocity && velocity_of(*log, options)) {
-    return MotionSources{std::move(sources)};
+  if (options.motion == MotionSource::kVelocity) {
+    if (velocity_of(*log, options)) return MotionSources{std::move(sources)};
+    if (const auto checked = check_sources(*log, kVelocityQuantities); !checked) return tl::unexpected(checked.error());
   }
   if (sweeps.size() < 2) {
     return fail(Error::Code::kUnsupported,
@@ -270,6 +273,9 @@ Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::spa
     if (const auto checked = check_headings(headings, beam_times_s); !checked) return tl::unexpected(checked.error());
   }
   const std::optional<VelocitySource> velocity = velocity_of(*log, options);
+  if (!velocity && options.motion == MotionSource::kVelocity) {
+    if (const auto checked = check_sources(*log, kVelocityQuantities); !checked) return tl::unexpected(checked.error());
+  }
   if (!velocity) options.motion = MotionSource::kSonar;
   CausalEstimator estimator(options);
   auto beam = beam_times_s.begin();

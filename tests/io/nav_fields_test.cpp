@@ -93,8 +93,8 @@ TEST(NavFields, TurnsAForwardRightDownVelocityAndItsUnit) {
 }
 
 TEST(NavFields, KnowsWhatTheDeviceMarksAsInvalid) {
-  const std::vector<bags::Bytes> messages = {message(1.0F, std::int8_t{-1}), message(2.0F, std::int8_t{0}),
-                                             message(3.0F, std::int8_t{2})};
+  const std::vector<bags::Bytes> messages = {message(1.0F, std::int8_t{-1}), message(1.1F, std::int8_t{0}),
+                                             message(1.2F, std::int8_t{2})};
   const auto valid = [&](const std::string& condition) {
     NavFields fields = fields_of(NavQuantity::kDepth, {"down"});
     fields.valid = condition;

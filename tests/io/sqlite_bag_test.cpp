@@ -263,7 +263,7 @@ TEST(SqliteBag, ReadsMessagesThatAreCompressedOneByOne) {
   add_echoes(database, 3, hex_of(packed));
   add_messages(database, 1, bags::kSonarEcho);
   // One that is cut, and one that unpacks to more than a file of this size can.
-  add_messages(database, 1, hex_of({packed.begin(), packed.end() - 4}));
+  add_messages(database, 1, hex_of(bags::Bytes(packed.begin(), packed.end() - 4)));
   add_messages(database, 1, hex_of(bags::packed("zstd", bags::Bytes(150'000'000))));
   database.close();
   const auto source = open_beams(*ByteStream::open(database.file()));

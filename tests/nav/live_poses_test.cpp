@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ std::vector<NavSource> turning_vehicle(double duration_s) {
   NavSource position{"LOCAL_POSITION_NED", NavQuantity::kPosition, {}};
   for (int i = 0; 0.1 * i < duration_s; ++i) {
     const double time_s = 0.1 * i;
-    attitude.samples.push_back(at(time_s, {0.01, -0.02, 0.3 * time_s}));
+    attitude.samples.push_back(at(time_s, {0.01, -0.02, std::remainder(0.3 * time_s, 2.0 * std::numbers::pi)}));
     position.samples.push_back(at(time_s + 0.03, {time_s, 0.5 * time_s, -1.0}));
   }
   return {attitude, position};
@@ -135,13 +136,13 @@ TEST(LivePoses, SayWhatIsMissing) {
   poses.add("VFR_HUD", NavQuantity::kDepth, at(0.0, {2.0, 0.0, 0.0}));
   EXPECT_FALSE(poses.has(NavQuantity::kAttitude));
   EXPECT_FALSE(poses.has(NavQuantity::kPosition));
-  NavSample invalid = at(0.0, {63.4, 10.4, 0.0});
+  NavSample invalid = at(0.0, {1.1, 0.18, 0.0});
   invalid.valid = false;
   poses.add("GPS_RAW_INT", NavQuantity::kFix, invalid);
   poses.add("ATTITUDE", NavQuantity::kAttitude, at(0.0, {0.0, 0.0, 0.0}));
   EXPECT_TRUE(poses.has(NavQuantity::kAttitude));
   EXPECT_FALSE(poses.has(NavQuantity::kPosition));
-  poses.add("GPS_RAW_INT", NavQuantity::kFix, at(0.2, {63.4, 10.4, 0.0}));
+  poses.add("GPS_RAW_INT", NavQuantity::kFix, at(0.2, {1.1, 0.18, 0.0}));
   EXPECT_TRUE(poses.has(NavQuantity::kPosition));
 }
 

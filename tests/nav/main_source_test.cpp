@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,10 +24,12 @@ NavSource sampled(std::string name, NavQuantity quantity, double from_s, double 
   const long count = std::lround((to_s - from_s) / step_s);
   for (long i = 0; i <= count; ++i) {
     const double time_s = from_s + step_s * static_cast<double>(i);
-    const bool is_attitude = quantity == NavQuantity::kAttitude;
-    source.samples.push_back(
-        {.time_s = time_s,
-         .value = is_attitude ? Eigen::Vector3d(0.01, 0.0, 0.1 * time_s) : Eigen::Vector3d(0.0, 0.2 * time_s, -5.0)});
+    const double yaw_rad = std::remainder(0.1 * time_s, 2.0 * std::numbers::pi);
+    const double radius_m = quantity == NavQuantity::kFix ? 6.4e6 : 1.0;
+    source.samples.push_back({.time_s = time_s,
+                              .value = quantity == NavQuantity::kAttitude
+                                           ? Eigen::Vector3d(0.01, 0.0, yaw_rad)
+                                           : Eigen::Vector3d(0.0, 0.2 * time_s / radius_m, -5.0)});
   }
   return source;
 }

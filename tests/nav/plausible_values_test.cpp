@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
-using enum NavQuantity;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -53,43 +52,55 @@ TEST(PlausibleValues, ValuesInAnotherUnitAreAFault) {
   const auto all = [](const Vector3d& value) {
     return [value](double time_s) -> Vector3d { return value + Vector3d::Constant(1e-3 * time_s); };
   };
-  EXPECT_EQ(fault_of(source_of("gps", kFix, 50, all({54.25, 10.0, 0.0}))),
+  EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, all({54.25, 10.0, 0.0}))),
             "latitude of 54.25 rad is beyond pi/2: is it in degrees?");
-  EXPECT_THAT(fault_of(source_of("gps", kFix, 50, all({0.5, 103.8, 0.0}))), HasSubstr("longitude of 103.8 rad"));
-  EXPECT_THAT(fault_of(source_of("gps", kFix, 50, all({9.4e6, 1.8e6, 0.0}))), HasSubstr("is it in another unit?"));
-  EXPECT_THAT(fault_of(source_of("ahrs", kAttitude, 50, all({0.0, 0.0, 90.0}))),
+  EXPECT_THAT(fault_of(source_of("gps", NavQuantity::kFix, 50, all({0.5, 103.8, 0.0}))),
+              HasSubstr("longitude of 103.8 rad"));
+  EXPECT_THAT(fault_of(source_of("gps", NavQuantity::kFix, 50, all({9.4e6, 1.8e6, 0.0}))),
+              HasSubstr("is it in another unit?"));
+  EXPECT_THAT(fault_of(source_of("ahrs", NavQuantity::kAttitude, 50, all({0.0, 0.0, 90.0}))),
               HasSubstr("yaw of 90 rad is beyond 2 pi: is it in degrees, or does it count turns?"));
-  EXPECT_THAT(fault_of(source_of("ahrs", kAttitude, 50, all({12.0, 0.0, 1.0}))), HasSubstr("roll of 12 rad"));
-  EXPECT_THAT(fault_of(source_of("compass", kHeading, 50, all({200.0, 0.0, 0.0}))), HasSubstr("yaw of 200 rad"));
-  EXPECT_THAT(fault_of(source_of("imu", kTurnRate, 50, all({0.0, 0.0, 21.0}))), HasSubstr("turn rate of 21 rad/s"));
-  EXPECT_THAT(fault_of(source_of("dvl", kVelocity, 50, all({400.0, 0.0, 0.0}))), HasSubstr("velocity of 400 m/s"));
-  EXPECT_THAT(fault_of(source_of("bar", kDepth, 50, all({50'000.0, 0.0, 0.0}))), HasSubstr("depth of 50000 m"));
-  EXPECT_THAT(fault_of(source_of("bar", kTemperature, 50, all({283.0, 0.0, 0.0}))), HasSubstr("is it in kelvins?"));
-  EXPECT_THAT(fault_of(source_of("usbl", kPosition, 50, all({5e9, 0.0, 0.0}))), HasSubstr("position of 5e+09 m"));
+  EXPECT_THAT(fault_of(source_of("ahrs", NavQuantity::kAttitude, 50, all({12.0, 0.0, 1.0}))),
+              HasSubstr("roll of 12 rad"));
+  EXPECT_THAT(fault_of(source_of("compass", NavQuantity::kHeading, 50, all({200.0, 0.0, 0.0}))),
+              HasSubstr("yaw of 200 rad"));
+  EXPECT_THAT(fault_of(source_of("imu", NavQuantity::kTurnRate, 50, all({0.0, 0.0, 21.0}))),
+              HasSubstr("turn rate of 21 rad/s"));
+  EXPECT_THAT(fault_of(source_of("dvl", NavQuantity::kVelocity, 50, all({400.0, 0.0, 0.0}))),
+              HasSubstr("velocity of 400 m/s"));
+  EXPECT_THAT(fault_of(source_of("bar", NavQuantity::kDepth, 50, all({50'000.0, 0.0, 0.0}))),
+              HasSubstr("depth of 50000 m"));
+  EXPECT_THAT(fault_of(source_of("bar", NavQuantity::kTemperature, 50, all({283.0, 0.0, 0.0}))),
+              HasSubstr("is it in kelvins?"));
+  EXPECT_THAT(fault_of(source_of("usbl", NavQuantity::kPosition, 50, all({5e9, 0.0, 0.0}))),
+              HasSubstr("position of 5e+09 m"));
   for (const Vector3d& good : {Vector3d(0.9, 3.1, 40.0), Vector3d(-1.5, -3.1, 0.0)}) {
-    EXPECT_EQ(fault_of(source_of("gps", kFix, 50, all(good))), "");
+    EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, all(good))), "");
   }
-  EXPECT_EQ(fault_of(source_of("ahrs", kAttitude, 50, all({-3.1, 1.5, 6.27}))), "");
+  EXPECT_EQ(fault_of(source_of("ahrs", NavQuantity::kAttitude, 50, all({-3.1, 1.5, 6.27}))), "");
 }
 
 // A heading in degrees is small for some time. Kills a verdict by the median or by the first samples.
 TEST(PlausibleValues, DegreesThatBeginAtZeroAreAFault) {
-  EXPECT_NE(fault_of(source_of("compass", kHeading, 100, [](double time_s) { return Vector3d(0.5 * time_s, 0, 0); })),
+  EXPECT_NE(fault_of(source_of("compass", NavQuantity::kHeading, 100,
+                               [](double time_s) { return Vector3d(0.5 * time_s, 0, 0); })),
             "");
 }
 
 // In radians this is 3 turns, in degrees 18 degrees: nothing tells them apart. Kills a guess.
 TEST(PlausibleValues, AYawThatCountsTurnsIsRefusedByName) {
-  EXPECT_THAT(fault_of(source_of("ahrs", kAttitude, 300, [](double time_s) { return Vector3d(0, 0, 0.3 * time_s); })),
+  EXPECT_THAT(fault_of(source_of("ahrs", NavQuantity::kAttitude, 300,
+                                 [](double time_s) { return Vector3d(0, 0, 0.3 * time_s); })),
               HasSubstr("or does it count turns?"));
 }
 
 // Kills a dive that ends by one damaged number, or by a device's word for "not known".
 TEST(PlausibleValues, SingleOnesAreInvalidSamples) {
-  NavSource yaw = source_of("ahrs", kAttitude, 100, [](double time_s) { return Vector3d(0, 0, yaw_at(time_s)); });
+  NavSource yaw =
+      source_of("ahrs", NavQuantity::kAttitude, 100, [](double time_s) { return Vector3d(0, 0, yaw_at(time_s)); });
   yaw.samples[40].value.z() = 90.0;
   yaw.samples[41].value.z() = -3e20;
-  NavSource fix = source_of("gps", kFix, 100, [](double) { return Vector3d(0.9, 0.2, 0.0); });
+  NavSource fix = source_of("gps", NavQuantity::kFix, 100, [](double) { return Vector3d(0.9, 0.2, 0.0); });
   for (std::size_t i = 0; i < 30; ++i) fix.samples[i].value = {91.0 * kDegree, 181.0 * kDegree, 0.0};
   const NavLog log = log_of({yaw, fix});
   for (const NavSource& source : log.sources()) EXPECT_EQ(source.fault, "") << source.name;
@@ -99,21 +110,24 @@ TEST(PlausibleValues, SingleOnesAreInvalidSamples) {
 }
 
 TEST(PlausibleValues, NothingIsComputedFromAFault) {
-  const auto position = source_of("dvl", kPosition, 100, [](double time_s) { return Vector3d(time_s, 0, 0); });
-  const auto good = source_of("imu", kAttitude, 50, [](double time_s) { return Vector3d(0, 0, yaw_at(time_s)); });
-  const auto bad = source_of("ahrs", kAttitude, 100, [](double time_s) { return Vector3d(0, 0, 90.0 + time_s); });
+  const auto position =
+      source_of("dvl", NavQuantity::kPosition, 100, [](double time_s) { return Vector3d(time_s, 0, 0); });
+  const auto good =
+      source_of("imu", NavQuantity::kAttitude, 50, [](double time_s) { return Vector3d(0, 0, yaw_at(time_s)); });
+  const auto bad =
+      source_of("ahrs", NavQuantity::kAttitude, 100, [](double time_s) { return Vector3d(0, 0, 90.0 + time_s); });
   const auto path = nav_trajectory(log_of({position, bad, good}));
   ASSERT_TRUE(path) << path.error().message;
   EXPECT_EQ(path->attitude, "imu") << "though it has less samples";
-  EXPECT_EQ(log_of({bad, good}).best(kAttitude)->name, "imu");
-  EXPECT_EQ(log_of({bad}).best(kAttitude), nullptr);
+  EXPECT_EQ(log_of({bad, good}).best(NavQuantity::kAttitude)->name, "imu");
+  EXPECT_EQ(log_of({bad}).best(NavQuantity::kAttitude), nullptr);
 
   const auto none = nav_trajectory(log_of({position, bad}));
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().message,
             "the attitude of ahrs cannot be used: yaw of 90 rad is beyond 2 pi: is it in degrees, or does it "
             "count turns?");
-  const auto fixes = source_of("gps", kFix, 100, [](double) { return Vector3d(54.3, 10.0, 0.0); });
+  const auto fixes = source_of("gps", NavQuantity::kFix, 100, [](double) { return Vector3d(54.3, 10.0, 0.0); });
   const auto nowhere = nav_positions(log_of({fixes}));
   ASSERT_FALSE(nowhere);
   EXPECT_THAT(nowhere.error().message, HasSubstr("the fix of gps cannot be used: latitude of 54.3 rad"));
@@ -129,16 +143,17 @@ TEST(PlausibleValues, NothingIsComputedFromAFault) {
 
 // Most rates of a slow vehicle are below any limit, in degrees per second as well.
 TEST(PlausibleValues, TurnRatesInDegreesAreAFault) {
-  const auto in_degrees = source_of(
-      "imu", kTurnRate, 500, [](double time_s) { return Vector3d(0.1, 0, yaw_rate_at(time_s) / kDegree / 1.2); });
+  const auto in_degrees = source_of("imu", NavQuantity::kTurnRate, 500, [](double time_s) {
+    return Vector3d(0.1, 0, yaw_rate_at(time_s) / kDegree / 1.2);
+  });
   EXPECT_THAT(fault_of(in_degrees), HasSubstr("rad/s on average"));
 
   const auto rate = [](std::string name, double scale) {
-    return source_of(std::move(name), kTurnRate, 500,
+    return source_of(std::move(name), NavQuantity::kTurnRate, 500,
                      [scale](double time_s) { return Vector3d(0, 0, scale * yaw_rate_at(time_s)); });
   };
   const auto yaw = [](std::string name, double scale) {
-    return source_of(std::move(name), kHeading, 500,
+    return source_of(std::move(name), NavQuantity::kHeading, 500,
                      [scale](double time_s) { return Vector3d(scale * yaw_at(time_s), 0, 0); });
   };
   constexpr double kSlow = 0.1;  // 0.9 degrees per second at most
@@ -160,7 +175,7 @@ TEST(PlausibleValues, TurnRatesInDegreesAreAFault) {
 
 // Kills a yaw that is wrapped into the turn before anybody sees it.
 TEST(PlausibleValues, AHeadingInDegreesStaysVisible) {
-  NavSource source{"ahrs", kAttitude, {}};
+  NavSource source{"ahrs", NavQuantity::kAttitude, {}};
   for (int i = 0; i < 20; ++i) {
     NavSample sample;
     sample.time_s = i;
@@ -176,9 +191,9 @@ TEST(LivePoses, LeavesOutWhatIsNotPossible) {
   for (int i = 0; i < 30; ++i) {
     sample.time_s = 0.1 * i;
     sample.value = i == 0 ? Vector3d(54.0, 10.0, 0.0) : Vector3d(0.9, 0.2, 0.0);
-    poses.add("gps", kFix, sample);
+    poses.add("gps", NavQuantity::kFix, sample);
     sample.value = {0.0, 0.0, 1.0};
-    poses.add("imu", kAttitude, sample);
+    poses.add("imu", NavQuantity::kAttitude, sample);
   }
   const auto pose = poses.at(2.0);
   ASSERT_TRUE(pose);

@@ -138,7 +138,7 @@ TEST(SourceSteps, EachQuantityHasItsLimit) {
   }
   for (const NavQuantity quantity : {NavQuantity::kVelocity, NavQuantity::kTurnRate, NavQuantity::kRange}) {
     const NavSource free =
-        made(source_of(quantity, 300, [](int i) { return Eigen::Vector3d(i >= 200 ? 40.0 : 0.0, 0.0, 0.0); }));
+        made(source_of(quantity, 300, [](int i) { return Eigen::Vector3d(i >= 200 ? 14.0 : 0.0, 0.0, 0.0); }));
     EXPECT_THAT(left_out_of(free), IsEmpty()) << name_of(quantity);
   }
 }

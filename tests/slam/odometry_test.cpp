@@ -92,7 +92,7 @@ NavLog round_way(const SlamCalibration& errors) {
   for (int i = 0; i <= 400; ++i) {
     NavSample sample;
     sample.time_s = 0.25 * i;
-    const double yaw = 0.1 * sample.time_s;
+    const double yaw = std::remainder(0.1 * sample.time_s, 2.0 * std::numbers::pi);
     sample.value << measured, 0.0;
     velocity.samples.push_back(sample);
     sample.value << 0.0, 0.0,

@@ -16,18 +16,18 @@ namespace pingvox {
 namespace {
 
 constexpr double kBin_m = 0.025;
-constexpr std::size_t kBins = 200;
+constexpr std::size_t kBinsOfNearField = 200;
 
 /// What one beam hears, in units of full scale, to be sampled at a gain.
 class Heard {
  public:
   /// Ringing that decays to a third in `decay_m`.
   void add_ringing(double amplitude, double decay_m) {
-    for (std::size_t i = 0; i < kBins; ++i) bins_[i] += amplitude * std::exp(-range_of(i) / decay_m);
+    for (std::size_t i = 0; i < kBinsOfNearField; ++i) bins_[i] += amplitude * std::exp(-range_of(i) / decay_m);
   }
   /// An echo that rises from `begin_m` to two thirds in 0.1 m, then slowly to its crest, and fades within `fade_m`.
   void add_echo(double begin_m, double crest_m, double fade_m, double amplitude) {
-    for (std::size_t i = 0; i < kBins; ++i) {
+    for (std::size_t i = 0; i < kBinsOfNearField; ++i) {
       const double range_m = range_of(i);
       if (range_m < begin_m || range_m > crest_m + fade_m) continue;
       const double steep = std::min(1.0, (range_m - begin_m) / 0.1) * 2.0 / 3.0;
@@ -51,7 +51,7 @@ class Heard {
  private:
   static double range_of(std::size_t bin) { return (static_cast<double>(bin) + 0.5) * kBin_m; }
 
-  std::vector<double> bins_ = std::vector<double>(kBins);
+  std::vector<double> bins_ = std::vector<double>(kBinsOfNearField);
 };
 
 /// Beams 1.8 degrees apart, of a sector or (200) of a turn.

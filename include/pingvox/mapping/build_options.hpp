@@ -59,7 +59,7 @@ struct BuildReport {
   std::size_t skipped = 0;  ///< damaged, without a pose, blocked, too long, or outside
   LeftOut no_pose;          ///< of those skipped, those at times without a pose
   LeftOut blocked;          ///< of those skipped, those with an obstacle of the map nearer than the blanking range
-  LeftOut too_long;  ///< of those skipped, those of ten times the usual range of their sweep, or of too many cells
+  LeftOut too_long;  ///< of those skipped, those of ten times the usual range of the beams around, or of too many cells
   LeftOut outside;   ///< of those skipped, those that are partly outside of the lattice; they count as mapped too
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
   std::optional<double> first_s, last_s;            ///< least and greatest time of a beam, mapped or not
