@@ -16,6 +16,7 @@
 #include "io/device_log.hpp"
 #include "io/readers.hpp"
 #include "io/sonar_messages.hpp"
+#include "io/text.hpp"
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/nav/nav_frames.hpp"
 #include "pingvox/sonar/device_profile.hpp"

@@ -221,7 +221,7 @@ TEST(RosBag, SaysWhereTheDamageIsWhenItMust) {
   EXPECT_THAT(lenient.items, SizeIs(20));
   EXPECT_EQ(lenient.skipped, 1U);
   const auto strict = all_beams({"dive.bag", bytes}, Damage::kFail);
-  EXPECT_THAT(strict.items, IsEmpty()) << "before the damage too few angles tell their unit";
+  EXPECT_THAT(strict.items, testing::IsEmpty()) << "before the damage too few angles tell their unit";
   EXPECT_EQ(strict.error, "dive.bag: byte " + std::to_string(second - 8) + ": unknown compression");
 }
 
