@@ -12,7 +12,7 @@ constexpr std::size_t kLag_bins = 6, kShortLag_bins = 3;
 
 /// Median of integers, interpolated. REQUIRES at least one.
 /// @param counts  how often 0, 1, 2, ... occur
-double median_of(std::span<const std::size_t> counts, std::size_t total) {
+double median_of_counts(std::span<const std::size_t> counts, std::size_t total) {
   const double half = 0.5 * static_cast<double>(total);
   double below = 0.0;
   std::size_t value = 0;
@@ -29,7 +29,7 @@ double noise_of(std::span<const std::uint8_t> bins) {
   for (std::size_t i = kLag_bins; i < bins.size(); ++i) {
     ++counts[static_cast<std::size_t>(std::abs(bins[i] - bins[i - kLag_bins]))];
   }
-  return median_of(counts, bins.size() - kLag_bins);
+  return median_of_counts(counts, bins.size() - kLag_bins);
 }
 
 double noise_on_slopes_of(std::span<const std::uint8_t> bins) {
@@ -39,7 +39,7 @@ double noise_on_slopes_of(std::span<const std::uint8_t> bins) {
     ++counts[static_cast<std::size_t>(std::abs(bins[i] - 2 * bins[i - kShortLag_bins] + bins[i - 2 * kShortLag_bins]))];
   }
   // Of independent bins, the variance of this sum is three times that of a difference.
-  return median_of(counts, bins.size() - 2 * kShortLag_bins) / std::sqrt(3.0);
+  return median_of_counts(counts, bins.size() - 2 * kShortLag_bins) / std::sqrt(3.0);
 }
 
 }  // namespace pingvox
