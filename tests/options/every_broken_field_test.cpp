@@ -247,8 +247,7 @@ TEST(BrokenOptions, OfPicturesAreAllNamed) {
                                              {"beam_width_rad", [](auto& o) { o.beam_width_rad = 7.0; }}});
   expect_all_named<MapPictureOptions>({{"target_px", [](auto& o) { o.target_px = 1; }},
                                        {"min_z_m must be below", [](auto& o) { o.min_z_m = kNaN; }},
-                                       {"layer_z_m", [](auto& o) { o.layer_z_m = kNaN; }},
-                                       {"paths", [](auto& o) { o.paths.resize(MapPictureOptions::kMaxPaths + 1); }}});
+                                       {"layer_z_m", [](auto& o) { o.layer_z_m = kNaN; }}});
 }
 
 }  // namespace
