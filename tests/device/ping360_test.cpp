@@ -145,6 +145,27 @@ TEST(Ping360Driver, TurnsAroundAtTheEndsOfASectorAndWrapsInFullTurns) {
   EXPECT_EQ(turn[20], 0);
 }
 
+// Kills a head that turns around a step before the end of its sector.
+TEST(Ping360Driver, PingsBothEndsOfASector) {
+  constexpr int kFirst_grad = 390, kTurn = 400;
+  for (const int step_grad : {1, 3, 20}) {
+    for (const int steps : {1, 2, 7}) {
+      SCOPED_TRACE(testing::Message() << steps << " steps of " << step_grad);
+      Ping360Settings settings;
+      settings.step_grad = step_grad;
+      settings.sector = Ping360Settings::Sector{.first_grad = kFirst_grad, .width_grad = steps * step_grad};
+      int nearest_grad = kTurn, farthest_grad = 0;
+      for (const int angle_grad : angles_of(settings, 4 * steps)) {
+        const int place_grad = (angle_grad - kFirst_grad + kTurn) % kTurn;
+        nearest_grad = std::min(nearest_grad, place_grad);
+        farthest_grad = std::max(farthest_grad, place_grad);
+      }
+      EXPECT_EQ(nearest_grad, 0);
+      EXPECT_EQ(farthest_grad, steps * step_grad);
+    }
+  }
+}
+
 // Virtual time and no line: 300 pings in order, whatever the line does to single bytes.
 TEST(Ping360Driver, GetsEachPingOverALineThatLosesDoublesAndDamagesBytes) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
