@@ -18,13 +18,13 @@
 #include "io/nav_fields.hpp"
 #include "io/nav_sources.hpp"
 #include "io/tf_tree.hpp"
-#include "nav/pressure_unit.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/frame_finder.hpp"
 #include "pingvox/nav/device_clock.hpp"
 #include "pingvox/nav/nav_frames.hpp"
+#include "pingvox/nav/pressure_unit.hpp"
 
 // The navigation in bags, by type and fields of the messages (docs/formats.md).
 namespace pingvox {

@@ -11,8 +11,8 @@
 #include "io/nav_readers.hpp"
 #include "io/nav_sources.hpp"
 #include "io/text.hpp"
-#include "nav/pressure_unit.hpp"
 #include "pingvox/io/frame_finder.hpp"
+#include "pingvox/nav/pressure_unit.hpp"
 
 // Navigation as text: a first line that names the columns, then a sample in each line (docs/formats.md).
 namespace pingvox {

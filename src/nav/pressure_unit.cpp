@@ -1,4 +1,4 @@
-#include "nav/pressure_unit.hpp"
+#include "pingvox/nav/pressure_unit.hpp"
 
 #include <fmt/format.h>
 

@@ -44,7 +44,7 @@ PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance) {
 Result<void> SlamOptions::validate() const {
   OptionErrors errors;
   errors.require(std::isfinite(nav_offset_s), "nav_offset_s", "finite", nav_offset_s);
-  if (!is_level(body_from_sonar)) {
+  if (!body_from_sonar.matrix().allFinite() || !is_level(body_from_sonar)) {
     errors.add(
         "body_from_sonar, the mount of the sonar, must be finite and level within 45 degrees, upside down or not");
   }

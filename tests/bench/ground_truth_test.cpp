@@ -69,7 +69,7 @@ class OfPerfectRanges : public testing::Test {
       echo->range_m += bias_m;
       echo->first = static_cast<std::size_t>(echo->range_m / recording_.sonar.bin_length_m);
     }
-    return *world_->score(*map_echoes(recording_, echoes, {}, 0.05));
+    return *world_->score(*map_echoes(recording_, echoes, {.shape = BeamShape::kRay}, 0.05));
   }
 
   Recording recording_ = tank(2);

@@ -52,31 +52,51 @@ std::vector<std::uint8_t> mavlink_frame(std::uint8_t message, std::uint8_t extra
 /// A vehicle that heads north 3 m north, 2 m east and 1 m below its origin, and says so 20 times a second.
 class Vehicle {
  public:
-  explicit Vehicle(std::uint16_t port) : sender_([this, port] { send(port); }) {}
+  /// @param own_port  that it sends from; 0: any
+  explicit Vehicle(std::uint16_t port, std::uint16_t own_port = 0)
+      : socket_(::socket(AF_INET, SOCK_DGRAM, 0)),
+        own_port_(bind_to(own_port)),
+        sender_([this, port] { send(port); }) {}
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
   ~Vehicle() {
     stops_ = true;
     sender_.join();
+    ::close(socket_);
   }
 
+  std::uint16_t own_port() const { return own_port_; }
+
  private:
+  static sockaddr_in address_of(std::uint16_t port) {
+    sockaddr_in address = {};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    return address;
+  }
+
+  std::uint16_t bind_to(std::uint16_t port) const {
+    sockaddr_in own = address_of(port);
+    socklen_t size = sizeof own;
+    EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&own), size), 0);
+    EXPECT_EQ(::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size), 0);
+    return ntohs(own.sin_port);
+  }
+
   void send(std::uint16_t port) const {
-    const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
-    sockaddr_in to = {};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const sockaddr_in to = address_of(port);
     for (std::uint32_t boot_ms = 5000; !stops_; boot_ms += 50) {
       std::vector<std::uint8_t> datagram = mavlink_frame(30, 39, boot_ms, {});
       const std::vector<std::uint8_t> position = mavlink_frame(32, 185, boot_ms, {3.0F, 2.0F, 1.0F});
       datagram.insert(datagram.end(), position.begin(), position.end());
-      ::sendto(socket, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+      ::sendto(socket_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    ::close(socket);
   }
 
+  int socket_;
+  std::uint16_t own_port_;
   std::atomic<bool> stops_ = false;
   std::thread sender_;
 };
@@ -141,15 +161,17 @@ TEST(Live, SaysThatAnAutopilotWasStartedAnew) {
                                  {.out_path = here.path("said"), .err_path = here.path("notes")});
   const std::uint16_t port = listening_port(here);
   const auto notes_say = [&](const char* text) { return here.read("notes").find(text) != std::string::npos; };
+  std::uint16_t own_port = 0;
   {
     const Vehicle first(port);
+    own_port = first.own_port();
     EXPECT_TRUE(wait_until([&] { return notes_say("position of LOCAL_POSITION_NED"); }));
     // The clock of the second one begins further back than messages overtake each other.
     std::this_thread::sleep_for(std::chrono::seconds(2));
   }
   EXPECT_FALSE(notes_say("started anew"));
   {
-    const Vehicle second(port);
+    const Vehicle second(port, own_port);
     EXPECT_TRUE(wait_until([&] { return notes_say("the sender of LOCAL_POSITION_NED was started anew"); }));
   }
   ::kill(child, SIGTERM);

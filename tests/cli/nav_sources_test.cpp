@@ -126,8 +126,9 @@ TEST(NavSources, AMarkerIsNotThePathUnlessItIsChosen) {
   Outcome mapped = map_with_itself(here, "box.mcap", {"--json"});
   ASSERT_EQ(mapped.status, 0) << mapped.err;
   EXPECT_THAT(mapped.out, HasSubstr(R"("attitude": "/odom", "position": "/odom")"));
-  EXPECT_THAT(mapped.out, HasSubstr(R"("others": [{"name": "/box/pose", "samples": 540, "frame": "camera_optical", )"
-                                    R"("note": "camera_optical moves with the vehicle"}])"));
+  EXPECT_THAT(mapped.out, HasSubstr("\"others\": [\n"
+                                    R"({"name": "/box/pose", "samples": 540, "frame": "camera_optical", )"
+                                    R"("note": "camera_optical moves with the vehicle"})"));
   mapped = map_with_itself(here, "box.mcap", {"--nav-source", "/box/pose"});
   EXPECT_THAT(mapped.out, HasSubstr("poses from /box/pose\n")) << mapped.err;
   EXPECT_THAT(mapped.out, HasSubstr("nav others  /odom (270 samples"));
@@ -194,7 +195,8 @@ TEST(NavSources, AMountThatTfTellsIsNamedWhereNoneWasGiven) {
   EXPECT_THAT(map_with_itself(here, "mount.mcap").err,
               HasSubstr("/tf has the sonar's frame sonar_link on base_link, which is not used: --mount "
                         "0.25,0,-0.5,0,0,90\n"));
-  EXPECT_EQ(map_with_itself(here, "mount.mcap", {"--mount", "0.25,0,-0.5,0,0,90"}).err, "");
+  EXPECT_THAT(map_with_itself(here, "mount.mcap", {"--mount", "0.25,0,-0.5,0,0,90"}).err,
+              Not(HasSubstr("the sonar's frame")));
 }
 
 /// Samples of a CSV log at 10 Hz.
