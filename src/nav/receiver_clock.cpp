@@ -17,7 +17,7 @@ constexpr double kLongestDelay_s = 60.0;
 using Messages = std::span<const ReceivedMessage>;
 
 /// A message before which the clock may have been set.
-struct Candidate {
+struct ClockSettingCandidate {
   std::size_t first;     ///< with the new time
   bool is_sure = false;  ///< delays do not explain it
 };
@@ -37,8 +37,8 @@ std::size_t longest_step(Messages messages, std::size_t from, std::size_t to) {
   return longest;
 }
 
-std::vector<Candidate> candidates_in(Messages messages) {
-  std::vector<Candidate> found;
+std::vector<ClockSettingCandidate> candidates_in(Messages messages) {
+  std::vector<ClockSettingCandidate> found;
   std::optional<std::size_t> last;  // of the device
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (i > 0 && is_sure_setting(messages[i - 1].received_s, messages[i].received_s)) found.push_back({i, true});
@@ -52,10 +52,10 @@ std::vector<Candidate> candidates_in(Messages messages) {
     }
     last = i;
   }
-  std::ranges::sort(found, [](const Candidate& a, const Candidate& b) {
+  std::ranges::sort(found, [](const ClockSettingCandidate& a, const ClockSettingCandidate& b) {
     return a.first != b.first ? a.first < b.first : a.is_sure && !b.is_sure;
   });
-  const auto again = std::ranges::unique(found, {}, &Candidate::first);
+  const auto again = std::ranges::unique(found, {}, &ClockSettingCandidate::first);
   found.erase(again.begin(), again.end());
   return found;
 }
@@ -103,7 +103,7 @@ struct Setting {
 };
 
 /// nullopt: the clock was not set there.
-std::optional<Setting> setting_at(Messages messages, const Candidate& candidate, std::size_t from) {
+std::optional<Setting> setting_at(Messages messages, const ClockSettingCandidate& candidate, std::size_t from) {
   constexpr double kStays_s = 20.0;
   const Delays before = delays_before(messages, candidate.first, from), after = delays_after(messages, candidate.first);
   const bool is_told = before.has_any() && after.has_any() && after.nearest_s >= before.nearest_s - kOutOfOrder_s;
@@ -116,7 +116,7 @@ std::optional<Setting> setting_at(Messages messages, const Candidate& candidate,
 
 std::vector<Setting> settings_in(Messages messages) {
   std::vector<Setting> settings;
-  for (const Candidate& candidate : candidates_in(messages)) {
+  for (const ClockSettingCandidate& candidate : candidates_in(messages)) {
     const auto setting = setting_at(messages, candidate, settings.empty() ? 0 : settings.back().first);
     if (setting) settings.push_back(*setting);
   }
