@@ -190,7 +190,7 @@ tl::expected<NavOffset, std::string> by_dates(const TimeSpan& nav, const SonarLo
 }
 
 Result<NavOffset> estimated_offset(const NavLog& nav, const SonarLog& sonar, Damage damage) {
-  const NavOffset one_clock{0.0, std::nullopt, "taken as one clock", {}};
+  NavOffset one_clock{0.0, std::nullopt, "taken as one clock", {}};
   const std::optional<TimeSpan> nav_span = span_of(nav);
   if (sonar.name == "-" || !nav_span) return one_clock;  // a pipe is read once
   const Result<std::optional<SonarTimes>> times = times_of(sonar, damage, Want::kSpan, nav_span);
