@@ -138,13 +138,4 @@ Result<CalibrationFile> read_calibration(const std::string& path) {
   return file;
 }
 
-Result<Eigen::Vector3d> use_calibration(const std::string& path, OdometryOptions& options) {
-  Result<CalibrationFile> file = read_calibration(path);
-  if (!file) return tl::unexpected(file.error());
-  options.body_from_source.insert(file->body_from_source.begin(), file->body_from_source.end());
-  Eigen::Vector3d moved_m(file->calibration.sonar_x_m.value, file->calibration.sonar_y_m.value, 0.0);
-  options.calibration = std::move(file->calibration);
-  return moved_m;
-}
-
 }  // namespace pingvox::app

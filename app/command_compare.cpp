@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "io/internal/unknown_file.hpp"
 #include "json.hpp"
-#include "map_log.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
@@ -23,7 +23,7 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/trajectory_score.hpp"
-#include "unknown_file.hpp"
+#include "recording_report.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
@@ -28,6 +27,7 @@
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "recording_report.hpp"
 #include "step_report.hpp"
 
 namespace pingvox::app {
@@ -161,15 +161,24 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
 
 /// Writes the poses of a navigation log. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command, Console& console) {
-  const Result<VehiclePath> path =
-      vehicle_positions(std::move(stream), command.damage, command.bag.nav, command.nav_sources);
-  if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : path->warnings) console.say(warning);
+  const std::string name = stream.name();
+  const Result<BagContents> contents = read_nav_log(std::move(stream), command.damage, command.bag.nav);
+  if (!contents) return tl::unexpected(contents.error());
+  const NavLog& log = contents->nav.log;
+  const Result<VehiclePath> path = positions_of(*contents, name, command.nav_sources);
+  if (!path) {
+    Error error = path.error();
+    if (!tells_path(log) && log.best(NavQuantity::kVelocity) != nullptr) {
+      error.message += "; 'pingvox slam --matching none' reckons them from velocity and heading";
+    }
+    return tl::unexpected(std::move(error));
+  }
+  for (const std::string& step : step_texts(log)) console.say(fmt::format("{}: {}", name, step));
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
   if (!written) return tl::unexpected(written.error());
-  const std::string others = path->nav->others.text();
-  return nav_text(*path) + (others.empty() ? "" : "; others: " + others);
+  const std::string others = text_of(path->nav->others);
+  return nav_text(*path, damaged_records(contents->nav)) + (others.empty() ? "" : "; others: " + others);
 }
 
 Error with_name(Error error, const std::string& name) {

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "device/internal/link.hpp"
+#include "device/internal/micron_emulator.hpp"
+#include "device/internal/ping360_emulator.hpp"
 #include "option_values.hpp"
-#include "pingvox/device/link.hpp"
-#include "pingvox/device/micron_emulator.hpp"
-#include "pingvox/device/ping360_emulator.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "stop_signals.hpp"
 #include "stopwatch.hpp"

@@ -22,6 +22,7 @@
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
+#include "pingvox/nav/trajectory_steps.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
 #include "pingvox/nav/time_order.hpp"
@@ -346,7 +347,7 @@ Result<Summary> summarize(ScanSource& source, const std::string& name, Format fo
 
 Result<Summary> summarize_log(ByteStream stream, Format format, Damage damage, const BeamTopic& topic = {}) {
   const std::string name = stream.name();
-  const Result<Log> log = open_log(std::move(stream), damage, std::nullopt, topic);
+  const Result<Log> log = open_file_log(std::move(stream), damage, topic);
   if (!log) return tl::unexpected(log.error());
   return std::visit([&](const auto& source) { return summarize(*source, name, format); }, *log);
 }
@@ -417,7 +418,8 @@ Result<Summary> summarize_trajectory(const FileBytes& file, Format format) {
   summary.text = headline(file.name, format) + report_line("poses", fmt::format("{}", poses.size())) +
                  report_line("duration", duration_text(poses.front().time_s, poses.back().time_s)) +
                  report_line("length", fmt::format("{:.6g} m", length_m)) + report_line("bounds", bounds_text(bounds));
-  for (const std::string& step : step_texts(cut)) summary.text += report_line("step", step);
+  for (const std::string& step : step_texts(cut.steps, cut.trajectory.poses().size() + left_out(cut.steps)))
+    summary.text += report_line("step", step);
   return summary;
 }
 

@@ -463,7 +463,8 @@ Result<int> run(const LiveCommand& command, Console& console) {
       if (device.listens()) console.say(fmt::format("{}: listening", device.name()));
     }
   }
-  const BuildOptions options = command.head.apply_to(command.build, (*source)->device());
+  BuildOptions options = command.build;
+  options.model = command.head.apply_to(command.build.model, (*source)->device());
   Result<BeamMapper> mapper = BeamMapper::make(options, *map);
   if (!mapper) return tl::unexpected(mapper.error());
   std::optional<ObstacleSender> obstacles;

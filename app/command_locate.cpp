@@ -9,34 +9,21 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "locate_files.hpp"
 #include "locate_report.hpp"
 #include "map_report.hpp"
 #include "nav_clock.hpp"
+#include "nav_report.hpp"
 #include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
 #include "pingvox/io/tum.hpp"
-#include "pingvox/slam/locate_recording.hpp"
+#include "pingvox/recording/recording.hpp"
 #include "progress.hpp"
+#include "recording_report.hpp"
+#include "step_report.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
 namespace {
-
-/// Pose of the odometry at the first beam that has one; nullopt: there is no odometry.
-/// @return kUnsupported when none has
-Result<std::optional<Pose>> first_pose(const RecordedMotion& motion, const std::vector<Beam>& beams,
-                                       const std::string& log) {
-  const auto& odometry = motion.odometry_from_body;
-  if (!odometry) return std::nullopt;
-  for (const Beam& beam : beams) {
-    if (auto pose = odometry->at(beam.time_s)) return pose;
-  }
-  return fail(Error::Code::kUnsupported,
-              fmt::format("{}: beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, "
-                          "the navigation is from {:.3f} to {:.3f} s",
-                          log, beams.front().time_s, beams.back().time_s, odometry->poses().front().time_s,
-                          odometry->poses().back().time_s));
-}
 
 /// kBadOption when --start is outside of the map.
 Result<void> check_start(const LocateCommand& command, const OccupancyMap& map) {
@@ -52,24 +39,25 @@ Result<void> check_start(const LocateCommand& command, const OccupancyMap& map) 
                                                    at.y(), command.map, bounds_text(bounds)));
 }
 
-/// The distance field of the layer of the map around the sonar at the first beam.
-Result<DistanceField> field_of(const OccupancyMap& map, const LocateCommand& command, const Pose& first) {
-  constexpr double kHalf_m = 0.5;
-  const double z_m = (first * command.localizer.body_from_sonar.translation()).z();
-  const DistanceFieldOptions layer{command.min_z_m.value_or(z_m - kHalf_m), command.max_z_m.value_or(z_m + kHalf_m)};
-  return DistanceField::make(map, layer).map_error([&](const Error& error) {
-    return Error{error.code, fmt::format("{}: {}; the map has {}, and the sonar is at z = {:.2f} m at the first beam: "
-                                         "give the layer to use with --min-z and --max-z",
-                                         command.map, error.message, bounds_text(map.bounds()), z_m)};
+/// The recording of a command.
+Result<Recording> recording_of(const LocateCommand& command) {
+  const PathArgs path{.poses = command.odometry,
+                      .navs = command.navs,
+                      .nav_offset_s = command.nav_offset_s,
+                      .nav_sources = command.nav_sources,
+                      .calibration = command.calibration};
+  return recording_options(path, command.bag, command.damage).and_then([&](RecordingOptions options) {
+    options.nav_mounts = command.nav.body_from_source;
+    options.body_from_sonar = command.localizer.body_from_sonar;
+    options.nav_salinity = command.nav_salinity;
+    return open_recording(input_files(command.logs), std::move(options));
   });
 }
 
-LocateOptions options_of(const LocateCommand& command, const LocateMotion& motion) {
-  LocateOptions options{command.localizer, command.start, command.estimation};
-  options.localizer.noise = motion.noise;
-  options.localizer.body_from_sonar.pretranslate(motion.sonar_moved_m);
-  if (motion.water) options.localizer.sound_speed_ratio = sound_speed_ratio(*motion.water);
-  return options;
+Result<OccupancyMap> map_in(const std::string& name) {
+  return read_file(name).and_then([](const FileBytes& file) { return read_map(file); }).map([](MapFile map) {
+    return std::move(map.map);
+  });
 }
 
 /// nullopt: none is sure.
@@ -90,58 +78,46 @@ Result<std::optional<Trajectory>> found_trajectory(const LocatedRecording& found
 Result<int> run(const LocateCommand& command, Console& console) {
   const Stopwatch total;
   LocateSeconds seconds;
-  const Stopwatch read;
-  const Result<OccupancyMap> map = read_map_file(command.map);
+  const Result<OccupancyMap> map = map_in(command.map);
   if (!map) return tl::unexpected(map.error());
   if (const auto inside = check_start(command, *map); !inside) return tl::unexpected(inside.error());
-  Result<LocateMotion> motion = read_motion(command);
-  if (!motion) return tl::unexpected(motion.error());
-  for (const std::string& warning : motion->warnings) console.say(warning);
-  LocateInputs inputs{.motion = *std::move(motion)};
-  inputs.skipped = inputs.motion.skipped;
-  Result<std::vector<Beam>> beams = read_beams(command, inputs.skipped);
-  if (!beams) return tl::unexpected(beams.error());
-  inputs.beams = beams->size();
-  inputs.recorded_s = beams->back().time_s - beams->front().time_s;
-  seconds.read = read.seconds();
+  const Result<Recording> recording = recording_of(command);
+  if (!recording) return tl::unexpected(recording.error());
+  for (const std::string& warning : nav_warnings(*recording)) console.say(warning);
+  if (const std::string hint = mount_hint(*recording); !hint.empty()) console.say(hint);
+  seconds.read = total.seconds();
 
-  const auto first = first_pose(inputs.motion.recorded, *beams, command.logs.front());
-  if (!first) return tl::unexpected(first.error());
-  const Stopwatch making;
-  const Result<DistanceField> field = field_of(*map, command, first->value_or(Pose::Identity()));
-  if (!field) return tl::unexpected(field.error());
-  inputs.field_bytes = field->memory_bytes();
-  seconds.field = making.seconds();
-
-  const Stopwatch locating;
-  const LocateOptions options = options_of(command, inputs.motion);
-  inputs.sound_speed_m_s = options.localizer.sound_speed_ratio * kAssumedSoundSpeed_m_s;
   ProgressBar bar(command.output_options);
-  const Result<LocatedRecording> found =
-      locate_recording(*std::move(beams), inputs.motion.recorded, *field, options, [&](double share) {
-        if (bar.is_due()) bar.draw(share, "locating");
-      });
+  const RecordingLocateOptions options{
+      {command.localizer, command.start, command.estimation}, command.min_z_m, command.max_z_m};
+  const Result<RecordingLocation> location = locate(*recording, *map, options, [&](double share) {
+    if (bar.is_due()) bar.draw(share, "locating");
+  });
   bar.clear();
-  if (!found)
-    return fail(found.error().code, fmt::format("{}: {}", name_of_input(command.logs.front()), found.error().message));
-  seconds.locate = locating.seconds();
-
-  if (found->clock_check && found->clock_check->is_apart()) {
+  if (!location) return tl::unexpected(location.error());
+  seconds.read += location->read_s;
+  const LocatedRecording& found = location->found;
+  for (const std::string& step : step_texts(location->steps, location->odometry_poses)) {
+    console.say(fmt::format("{}: {}", *command.odometry, step));
+  }
+  if (found.clock_check && found.clock_check->is_apart()) {
     const char* const option = command.odometry ? "the clock of --odometry" : "--nav-offset";
     console.say(
-        fmt::format("{}: {}", name_of_input(command.logs.front()), wrong_clock_text(*found->clock_check, option)));
+        fmt::format("{}: {}", name_of_input(command.logs.front()), wrong_clock_text(*found.clock_check, option)));
   }
-  const Result<std::optional<Trajectory>> trajectory = found_trajectory(*found, command, console);
+  const Result<std::optional<Trajectory>> trajectory = found_trajectory(found, command, console);
   if (!trajectory) return tl::unexpected(trajectory.error());
+  std::size_t written = 0;
   if (*trajectory) {
-    inputs.written = (*trajectory)->poses().size();
+    written = (*trajectory)->poses().size();
     const auto done = write_file(command.output, [&](std::ostream& out) { return write_tum(**trajectory, out); });
     if (!done) return tl::unexpected(done.error());
   }
   seconds.total = total.seconds();
-  const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(locate_json(*found, inputs, seconds))
-                                   : console.summarise(locate_text(*found, command, inputs, seconds), command.output);
+  const Result<void> summary =
+      command.output_options.report == Report::kJson
+          ? console.print(locate_json(*recording, *location, written, seconds))
+          : console.summarise(locate_text(*recording, *location, command, written, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (!*trajectory) {
     return fail(Error::Code::kUnsupported,

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -13,9 +12,9 @@
 
 #include "commands.hpp"
 #include "json.hpp"
-#include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
+#include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"
@@ -24,10 +23,10 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
+#include "recording_report.hpp"
 #include "shell_words.hpp"
 #include "stopwatch.hpp"
 #include "threshold_range.hpp"
-#include "watched_beams.hpp"
 #include "watched_cloud.hpp"
 
 namespace pingvox::app {
@@ -45,48 +44,28 @@ struct Totals {
   };
   std::vector<UsedBeam> used_beams;  ///< of logs of beams, those that differ
   double sound_speed_m_s = kAssumedSoundSpeed_m_s;
-  std::optional<Water> nav_water;  ///< by the navigation log, where it was asked
   /// By how much the clock of the poses is off, by the turning of the sonar's picture: the greatest of all logs.
   std::optional<ClockOffset> clock_check;
   double write_s = 0.0, total_s = 0.0;
 
-  void add(const MappedLog& mapped, const Log& source, const std::string& name) {
-    const BuildReport& log = mapped.report;
+  void add(const MappedLog& mapped, const OpenedLog& source) {
+    pingvox::add(mapped.report, report);
     damaged += mapped.damaged;
-    if (log.min_threshold) {
-      report.min_threshold = std::min(report.min_threshold.value_or(*log.min_threshold), *log.min_threshold);
-      report.max_threshold = std::max(report.max_threshold.value_or(*log.max_threshold), *log.max_threshold);
-    }
     const auto is_same = [&](const UsedBeam& used) {
       return used.model.width_rad == mapped.beam.width_rad && used.model.height_rad == mapped.beam.height_rad &&
              used.is_assumed == mapped.assumes_beam;
     };
-    if (std::holds_alternative<std::unique_ptr<BeamSource>>(source) && std::ranges::none_of(used_beams, is_same)) {
-      used_beams.push_back({name, mapped.beam, mapped.assumes_beam});
+    if (source.scans() != nullptr) {
+      scans += mapped.report.sweeps;
+      points += mapped.report.beams;
+    } else if (std::ranges::none_of(used_beams, is_same)) {
+      used_beams.push_back({mapped.name, mapped.beam, mapped.assumes_beam});
     }
-    if (std::holds_alternative<std::unique_ptr<ScanSource>>(source)) {
-      scans += log.sweeps;
-      points += log.beams;
-    }
-    report.beams += log.beams;
-    report.sweeps += log.sweeps;
-    report.echoes += log.echoes;
-    report.skipped += log.skipped;
-    report.no_pose.count += log.no_pose.count;
-    report.blocked.count += log.blocked.count;
-    report.too_long.count += log.too_long.count;
-    report.outside.count += log.outside.count;
-    report.cells_freed += log.cells_freed;
-    report.cells_hit += log.cells_hit;
-    report.seconds.read += log.seconds.read;
-    report.seconds.detect += log.seconds.detect;
-    report.seconds.trace += log.seconds.trace;
-    report.seconds.apply += log.seconds.apply;
   }
 };
 
-std::optional<double> share_read(const Log& log) {
-  return std::visit([](const auto& source) { return source->share_read(); }, log);
+std::optional<double> share_read(const OpenedLog& log) {
+  return std::visit([](const auto& source) { return source->share_read(); }, log.log);
 }
 
 std::string_view name_of(BeamShape shape) {
@@ -120,23 +99,26 @@ JsonObject threshold_json(const BuildReport& report) {
   return json.add("min", *report.min_threshold).add("max", *report.max_threshold);
 }
 
-JsonObject nav_json(const VehiclePath& path, const std::optional<ClockOffset>& clock_check) {
+JsonObject nav_json(const Recording& recording, const VehiclePath& path,
+                    const std::optional<ClockOffset>& clock_check) {
+  const std::vector<std::string> warnings = warnings_of(recording, path);
   JsonObject json;
   json.add("attitude", path.nav->attitude)
       .add("position", path.nav->position)
       .add("poses", path.trajectory.poses().size())
       .add("gaps", path.trajectory.gaps())
-      .add("skipped", path.nav->damaged)
+      .add("skipped", recording.nav().damaged)
       .add("velocity", path.nav->velocity)
-      .add("clock", json_of(path.nav->offset))
-      .add("logs", nav_logs_json(path.nav->offset))
+      .add("clock", json_of(recording.nav_offset()))
+      .add("logs", nav_logs_json(recording.nav().clocks))
       .add("frame", frame_text(*path.nav));
-  if (!path.warnings.empty()) json.add("warnings", fmt::format("{}", fmt::join(path.warnings, "; ")));
+  if (!warnings.empty()) json.add("warnings", fmt::format("{}", fmt::join(warnings, "; ")));
   clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
-  return json.add("others", path.nav->others.json());
+  return json.add("others", json_of(path.nav->others));
 }
 
-std::string report_json(const Totals& totals, const VehiclePath& path, const OccupancyMap& map) {
+std::string report_json(const Totals& totals, const Recording& recording, const VehiclePath& path,
+                        const OccupancyMap& map) {
   const BuildReport& report = totals.report;
   const MapCounts counts = map.counts();
   JsonObject seconds;
@@ -179,11 +161,12 @@ std::string report_json(const Totals& totals, const VehiclePath& path, const Occ
       .add("seconds", seconds)
       .add("map", held);
   if (!other_beams.empty()) json.add("other_beams", other_beams);
-  if (path.nav) json.add("nav", nav_json(path, totals.clock_check));
+  if (path.nav) json.add("nav", nav_json(recording, path, totals.clock_check));
   return json.text() + "\n";
 }
 
-std::string text_of(const Totals& totals, const VehiclePath& path, const OccupancyMap& map, const MapCommand& command) {
+std::string map_report_text(const Totals& totals, const Recording& recording, const VehiclePath& path,
+                            const OccupancyMap& map, const MapCommand& command) {
   const std::string& output = command.output;
   const BuildReport& report = totals.report;
   const auto& s = report.seconds;
@@ -209,11 +192,12 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
     const ThresholdRange thresholds{report.min_threshold, report.max_threshold};
     beams += report_line("threshold", thresholds.text(command.build.echo.threshold));
   }
-  beams += totals.nav_water ? report_line("water", water_text(*totals.nav_water)) : sound_line(totals.sound_speed_m_s);
+  beams +=
+      recording.water() ? report_line("water", water_text(*recording.water())) : sound_line(totals.sound_speed_m_s);
   return name + "\n" + report_line("read", read) +
-         (path.nav ? report_line("nav", nav_text(path)) + others_line(path.nav->others) +
-                         report_line("nav clock", text_of(path.nav->offset, totals.clock_check)) +
-                         nav_logs_text(path.nav->offset) + report_line("frame", frame_text(*path.nav))
+         (path.nav ? report_line("nav", nav_text(path, recording.nav().damaged)) + others_line(path.nav->others) +
+                         report_line("nav clock", text_of(recording.nav_offset(), totals.clock_check)) +
+                         nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(*path.nav))
                    : "") +
          (stands_still ? report_line("vehicle", "stands still: no --poses, no --nav") : "") + beams +
          map_text(map, map.counts()) +
@@ -226,9 +210,10 @@ std::string text_of(const Totals& totals, const VehiclePath& path, const Occupan
 /// Maps the logs of a command, one by one.
 class LogMapper {
  public:
-  LogMapper(const MapCommand& command, const VehiclePath& path, const BuildOptions& build, OccupancyMap& map,
-            Totals& totals, Console& console)
+  LogMapper(const MapCommand& command, const Recording& recording, const VehiclePath& path, const BuildOptions& build,
+            OccupancyMap& map, Totals& totals, Console& console)
       : command_(command),
+        recording_(recording),
         path_(path),
         build_(build),
         map_(map),
@@ -237,48 +222,27 @@ class LogMapper {
         bar_(command.output_options) {}
 
   /// Maps the next log.
-  Result<void> add(const std::string& file) {
-    ++opened_;
+  Result<void> add_next() {
+    const std::size_t number = opened_++;
     const Stopwatch read;
-    Result<ByteStream> stream = ByteStream::open(file);
-    if (!stream) return tl::unexpected(stream.error());
-    const std::string name = stream->name();
-    if (stream->beginning().empty() && command_.logs.size() > 1) {
-      nothing_.push_back(fmt::format("{}: is empty", name));
-      return check_options_used();
+    if (command_.logs.size() > 1) {
+      const Result<bool> is_empty = is_empty_file(number);
+      if (!is_empty) return tl::unexpected(is_empty.error());
+      if (*is_empty) {
+        nothing_.push_back(fmt::format("{}: is empty", command_.logs[number]));
+        return check_options_used();
+      }
     }
-    const Result<Format> format = identify_format(*stream);
-    if (!format) return tl::unexpected(format.error());
-    Result<Log> log = open_log(std::move(*stream), command_.damage, command_.cloud_origin_m, command_.bag.beams);
+    Result<OpenedLog> log = open_log_of(recording_, number);
     if (!log) return tl::unexpected(log.error());
-    add_kinds(*log, *format);
+    add_kinds(*log);
     if (const auto used = check_options_used(); !used) return used;
+    if (log->beams() != nullptr) {
+      if (const auto ranges = check_ranges(build_); !ranges) return ranges;
+    }
     if (const auto done = subtract_background_from(*log); !done) return done;
     totals_.report.seconds.read += read.seconds();
-
-    WatchedBeams* const watched = watch_turns(*log);
-    const WatchedCloud* const cloud = watch_cloud(*log, *format);
-    const Progress progress = [&](const BuildReport& done) { draw(share_read(*log), done.beams); };
-    const Result<MappedLog> mapped = map_log(*log, name, path_, build_, command_.head, map_, progress);
-    if (!mapped) return tl::unexpected(mapped.error());
-    totals_.add(*mapped, *log, name);
-    if (watched != nullptr) check_clock(*watched, name);
-    if (mapped->is_nothing) {
-      nothing_.push_back(text_of_nothing(*mapped, name));
-      if (cloud != nullptr && mapped->report.outside.count > 0) {
-        nothing_.back() += "; they are " + cloud->origin_text() + ", and --depth 32 (.pvx) reaches farther";
-      }
-      return {};
-    }
-    say_what_is_odd(*mapped, name);
-    if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", name, cloud->origin_text()));
-    const bool is_on_vehicle = std::holds_alternative<std::unique_ptr<BeamSource>>(*log) || is_bag(*format);
-    if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {
-      if (const std::string hint = hint_at_path(name, *format); !hint.empty()) {
-        say(fmt::format("{}: mapped as if the vehicle did not move; {}", name, hint));
-      }
-    }
-    return {};
+    return map(*log);
   }
 
   /// Names the logs of which nothing is on the map; kCorrupt when these are all of them.
@@ -292,11 +256,48 @@ class LogMapper {
     if (std::ranges::find(kinds_, kind) == kinds_.end()) kinds_.push_back(std::move(kind));
   }
 
+  /// Standard input is read once.
+  Result<bool> is_empty_file(std::size_t number) const {
+    const InputFile& file = recording_.logs()[number];
+    if (file.is_standard_input()) return false;
+    return file.open().map([](const ByteStream& stream) { return stream.beginning().empty(); });
+  }
+
+  Result<void> map(OpenedLog& log) {
+    const bool is_of_beams = log.beams() != nullptr;
+    const WatchedCloud* const cloud = watch_cloud(log);
+    const Progress progress = [&](const BuildReport& done) { draw(share_read(log), done.beams); };
+    const Result<MappedLog> mapped = map_log(recording_, log, path_, build_, map_, progress);
+    if (!mapped) return tl::unexpected(mapped.error());
+    totals_.add(*mapped, log);
+    if (mapped->clock_check) note_clock(*mapped->clock_check, log.name);
+    const std::string skipped = skipped_text(*mapped, is_of_beams ? "beam" : "point", path_.trajectory,
+                                             gap_advice(recording_, path_), map_.lattice());
+    if (mapped->is_nothing()) {
+      nothing_.push_back(text_of_nothing(log.name, skipped));
+      if (cloud != nullptr && mapped->report.outside.count > 0) {
+        nothing_.back() += "; they are " + cloud->origin_text() + ", and --depth 32 (.pvx) reaches farther";
+      }
+      return {};
+    }
+    if (!mapped->note.empty()) say(fmt::format("{}: {}", log.name, mapped->note));
+    if (!skipped.empty()) say(fmt::format("{}: skipped {}", log.name, skipped));
+    say_what_is_odd(*mapped);
+    if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", log.name, cloud->origin_text()));
+    const bool is_on_vehicle = is_of_beams || is_bag(log.format);
+    if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {
+      if (const std::string hint = hint_at_path(log.name, log.format); !hint.empty()) {
+        say(fmt::format("{}: mapped as if the vehicle did not move; {}", log.name, hint));
+      }
+    }
+    return {};
+  }
+
   /// Kinds of a log, which options may be limited to.
-  void add_kinds(const Log& log, Format format) {
-    const bool is_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(log);
-    const bool is_bag_of_scans = is_bag(format) && !is_beams;
-    add_kind(kind_text(is_bag_of_scans ? FormatKind::kScans : kind_of(format)));
+  void add_kinds(const OpenedLog& log) {
+    const bool is_beams = log.beams() != nullptr;
+    const bool is_bag_of_scans = is_bag(log.format) && !is_beams;
+    add_kind(kind_text(is_bag_of_scans ? FormatKind::kScans : kind_of(log.format)));
     if (is_bag_of_scans) add_kind(std::string(kBagScans));
     if (is_beams && build_.model.shape == BeamShape::kRay) add_kind(std::string(kRayBeams));
   }
@@ -310,12 +311,11 @@ class LogMapper {
   }
 
   /// The background is learned from all logs, as each of them may be short.
-  Result<void> subtract_background_from(Log& log) {
-    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
+  Result<void> subtract_background_from(OpenedLog& log) {
+    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log.log);
     if (beams == nullptr || !command_.background_m) return {};
     if (!background_) {
-      Result<Background> background =
-          learn_background(command_.logs, *command_.background_m, command_.damage, command_.bag.beams);
+      Result<Background> background = learn_background(recording_, *command_.background_m);
       if (!background) return tl::unexpected(background.error());
       background_ = *std::move(background);
     }
@@ -331,39 +331,25 @@ class LogMapper {
                                  bytes_text(map_.memory_bytes())));
   }
 
-  /// Where there are poses. nullptr: else.
-  WatchedBeams* watch_turns(Log& log) const {
-    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log);
-    if (beams == nullptr || path_.trajectory.poses().size() < 2) return nullptr;
-    auto watched = std::make_unique<WatchedBeams>(std::move(*beams), build_.body_from_sensor);
-    WatchedBeams* const source = watched.get();
-    *beams = std::move(watched);
-    return source;
-  }
-
   /// A cloud whose origin was not given. nullptr: else.
-  const WatchedCloud* watch_cloud(Log& log, Format format) const {
-    auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&log);
-    if (scans == nullptr || kind_of(format) != FormatKind::kCloud || command_.cloud_origin_m) return nullptr;
+  const WatchedCloud* watch_cloud(OpenedLog& log) const {
+    auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&log.log);
+    if (scans == nullptr || kind_of(log.format) != FormatKind::kCloud || command_.cloud_origin_m) return nullptr;
     auto watched = std::make_unique<WatchedCloud>(std::move(*scans), build_.echo.max_range_m, map_.lattice());
     const WatchedCloud* const source = watched.get();
     *scans = std::move(watched);
     return source;
   }
 
-  void check_clock(WatchedBeams& watched, const std::string& name) {
-    const std::optional<ClockOffset> error = watched.clock_error_of(path_.trajectory);
-    if (!error) return;
+  void note_clock(const ClockOffset& error, const std::string& name) {
     std::optional<ClockOffset>& greatest = totals_.clock_check;
-    if (!greatest || std::abs(error->offset_s) > std::abs(greatest->offset_s)) greatest = error;
-    if (!error->is_apart()) return;
+    if (!greatest || std::abs(error.offset_s) > std::abs(greatest->offset_s)) greatest = error;
+    if (!error.is_apart()) return;
     const char* const option = path_.nav ? "--nav-offset" : "the clock of --poses";
-    say(fmt::format("{}: {}", name, wrong_clock_text(*error, option)));
+    say(fmt::format("{}: {}", name, wrong_clock_text(error, option)));
   }
 
-  void say_what_is_odd(const MappedLog& mapped, const std::string& name) {
-    if (!mapped.note.empty()) say(fmt::format("{}: {}", name, mapped.note));
-    if (!mapped.skipped_text.empty()) say(fmt::format("{}: skipped {}", name, mapped.skipped_text));
+  void say_what_is_odd(const MappedLog& mapped) {
     if (!command_.path.poses) return;
     for (const std::string& odd :
          {odd_times_text(path_.trajectory, mapped.report), odd_attitudes_text(path_.trajectory)}) {
@@ -377,6 +363,7 @@ class LogMapper {
   }
 
   const MapCommand& command_;
+  const Recording& recording_;
   const VehiclePath& path_;
   const BuildOptions& build_;
   OccupancyMap& map_;
@@ -396,25 +383,26 @@ Result<int> run(const MapCommand& command, Console& console) {
   const Stopwatch total;
   Result<OccupancyMap> map = OccupancyMap::make(command.map);
   if (!map) return tl::unexpected(map.error());
-  const SonarLog first{command.logs.front(), command.bag.beams, command.build.body_from_sensor};
-  const Result<VehiclePath> path = vehicle_path(command.path, first, command.bag, command.damage);
+  Result<RecordingOptions> options = recording_options(command.path, command.bag, command.damage);
+  if (!options) return tl::unexpected(options.error());
+  options->head = command.head;
+  options->body_from_sonar = command.build.body_from_sensor;
+  options->nav_salinity = command.nav_salinity;
+  options->cloud_origin_m = command.cloud_origin_m;
+  const Result<Recording> recording = open_recording(input_files(command.logs), *std::move(options));
+  if (!recording) return tl::unexpected(recording.error());
+  const Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : path->warnings) console.say(warning);
+  for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
   BuildOptions build = command.build;
+  if (recording->water()) build.sound_speed_ratio = sound_speed_ratio(*recording->water());
   Totals totals;
-  if (command.nav_salinity) {
-    assert(path->nav);
-    const Result<Water> water = water_of(path->nav->water, *command.nav_salinity);
-    if (!water) return tl::unexpected(water.error());
-    totals.nav_water = *water;
-    build.sound_speed_ratio = sound_speed_ratio(*water);
-  }
   totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
 
   {
-    LogMapper mapper(command, *path, build, *map, totals, console);
-    for (const std::string& log : command.logs) {
-      if (const auto added = mapper.add(log); !added) return tl::unexpected(added.error());
+    LogMapper mapper(command, *recording, *path, build, *map, totals, console);
+    for (std::size_t i = 0; i < command.logs.size(); ++i) {
+      if (const auto added = mapper.add_next(); !added) return tl::unexpected(added.error());
     }
     if (const auto done = mapper.finish(); !done) return tl::unexpected(done.error());
   }
@@ -426,9 +414,10 @@ Result<int> run(const MapCommand& command, Console& console) {
   totals.write_s = write.seconds();
   totals.total_s = total.seconds();
 
-  const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(report_json(totals, *path, *map))
-                                   : console.summarise(text_of(totals, *path, *map, command), command.output);
+  const Result<void> summary =
+      command.output_options.report == Report::kJson
+          ? console.print(report_json(totals, *recording, *path, *map))
+          : console.summarise(map_report_text(totals, *recording, *path, *map, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (map->empty()) {
     console.say(empty_map_text(command.output));

@@ -15,7 +15,6 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "map_log.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
@@ -26,6 +25,7 @@
 #include "pingvox/io/maps.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
+#include "recording_report.hpp"
 #include "threshold_range.hpp"
 
 namespace pingvox::app {
@@ -179,13 +179,26 @@ class CartesianCollector {
   std::pair<double, std::size_t> fullness_;  ///< directions times range, and beams, of the chosen one
 };
 
+/// A panel's log and its navigation.
+Result<RecordingOptions> panel_options(const PanelCommand& panel, const RenderCommand& command) {
+  return recording_options(panel.path, command.bag, command.damage).map([&](RecordingOptions options) {
+    options.head = panel.head;
+    options.body_from_sonar = panel.build.body_from_sensor;
+    options.nav_salinity = panel.nav_salinity;
+    options.background_m = panel.background_m;
+    return options;
+  });
+}
+
 /// By the options, or by the water that the navigation logs tell of.
 Result<double> sound_speed_ratio_of(const PanelCommand& panel, const RenderCommand& command) {
   if (!panel.nav_salinity) return panel.build.sound_speed_ratio;
-  const Result<NavFiles> nav = read_navs(panel.path.navs, command.damage, command.bag.nav,
-                                         {panel.input, command.bag.beams.name, panel.path.nav_sources});
-  if (!nav) return tl::unexpected(nav.error());
-  return water_of(water_around(nav->log), *panel.nav_salinity).map(sound_speed_ratio);
+  Result<RecordingOptions> options = panel_options(panel, command);
+  if (!options) return tl::unexpected(options.error());
+  options->nav_offset_s = 0.0;  // the water is the same at any time
+  return open_recording({panel.input}, *std::move(options)).map([](const Recording& recording) {
+    return sound_speed_ratio(*recording.water());
+  });
 }
 
 template <class Gatherer>
@@ -199,10 +212,11 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
   const Result<double> ratio = sound_speed_ratio_of(panel, command);
   if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;
-  of_head.build = panel.head.apply_to(panel.build, (*source)->device());
+  of_head.build.model = panel.head.apply_to(panel.build.model, (*source)->device());
   if (panel.background_m && panel.image == ShownImage::kBackground) {
     const Result<Background> background =
-        learn_background({&panel.input, 1}, *panel.background_m, command.damage, command.bag.beams);
+        Recording::open({panel.input}, {.damage = command.damage, .topic = command.bag.beams})
+            .and_then([&](const Recording& recording) { return learn_background(recording, *panel.background_m); });
     if (!background) return tl::unexpected(background.error());
     source = std::make_unique<BeamsInMemory>(background->beams());
     of_head.marks = EchoMarks::kOff;
@@ -237,32 +251,16 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
 
 Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
                                 Console& console) {
-  Result<OccupancyMap> map = OccupancyMap::make(panel.map);
-  if (!map) return map;
-  const SonarLog sonar{panel.input, command.bag.beams, panel.build.body_from_sensor};
-  const Result<VehiclePath> path = vehicle_path(panel.path, sonar, command.bag, command.damage);
+  Result<RecordingOptions> options = panel_options(panel, command);
+  if (!options) return tl::unexpected(options.error());
+  const Result<Recording> recording = open_recording({input_file(std::move(file), panel.input)}, *std::move(options));
+  if (!recording) return tl::unexpected(recording.error());
+  Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : path->warnings) console.say(warning);
-  const std::string name = file.name;
-  Result<Log> log = open_input(std::move(file), panel.input, command.damage, command.bag.beams);
-  if (!log) return tl::unexpected(log.error());
-  if (auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&*log)) {
-    Result<std::unique_ptr<BeamSource>> source =
-        subtract_own_background(std::move(*beams), panel.input, panel.background_m, command.damage, command.bag.beams);
-    if (!source) return tl::unexpected(source.error());
-    *beams = *std::move(source);
-  }
-  BuildOptions build = panel.build;
-  if (panel.nav_salinity) {
-    assert(path->nav);
-    const Result<Water> water = water_of(path->nav->water, *panel.nav_salinity);
-    if (!water) return tl::unexpected(water.error());
-    build.sound_speed_ratio = sound_speed_ratio(*water);
-  }
-  const Result<MappedLog> report = map_log(*log, name, *path, build, panel.head, *map);
-  if (!report) return tl::unexpected(report.error());
-  if (report->is_nothing) return fail(Error::Code::kCorrupt, text_of_nothing(*report, name));
-  return map;
+  for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
+  Result<RecordingMap> mapped = build_map(*recording, *std::move(path), panel.map, panel.build);
+  if (!mapped) return tl::unexpected(mapped.error());
+  return std::move(mapped->map);
 }
 
 /// A map and its viewpoint.

@@ -11,7 +11,7 @@
 
 #include "calibration_file.hpp"
 #include "commands.hpp"
-#include "map_log.hpp"
+#include "io/internal/unknown_file.hpp"
 #include "option_values.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"
@@ -20,7 +20,7 @@
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/tum.hpp"
-#include "unknown_file.hpp"
+#include "recording_report.hpp"
 #include "world_map.hpp"
 
 namespace pingvox::app {

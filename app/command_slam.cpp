@@ -12,16 +12,12 @@
 #include "calibration_file.hpp"
 #include "commands.hpp"
 #include "console.hpp"
-#include "map_log.hpp"
 #include "mapping_options.hpp"
-#include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
-#include "pingvox/io/beams_in_order.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/io/nav.hpp"
-#include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
+#include "recording_report.hpp"
 #include "slam_files.hpp"
 #include "slam_report.hpp"
 #include "slam_scans.hpp"
@@ -39,83 +35,31 @@ std::string inputs_text(const SlamCommand& command) {
   return text;
 }
 
-struct Read {
-  std::size_t beams = 0, skipped = 0;
-  std::vector<std::string> notes = {};  ///< of the logs
-};
-
-/// Gives the smoother all beams and navigation.
-/// @param first  the first log, opened
-Result<Read> read_all(SlamSmoother& smoother, const NavFiles& nav, const SlamCommand& command,
-                      std::unique_ptr<BeamSource> first) {
-  if (const auto added = smoother.add(nav.log); !added) {
-    return fail(added.error().code, fmt::format("{}: {}", fmt::join(command.navs, ", "), added.error().message));
-  }
-  Read read{.skipped = nav.damaged};
-  for (const std::string& name : command.logs) {
-    auto log = first ? std::exchange(first, nullptr) : open_slam_beams(name, command);
-    if (!log) return tl::unexpected(log.error());
-    if (!command.navs.empty()) {
-      if (const auto has = check_has_times(**log, name); !has) return tl::unexpected(has.error());
-    }
-    const std::unique_ptr<BeamSource> beams = in_order(*std::move(log), name);
-    for (;;) {
-      Result<std::optional<Beam>> beam = beams->next();
-      if (!beam) return tl::unexpected(beam.error());
-      if (!*beam) break;
-      smoother.add(std::move(**beam));
-      ++read.beams;
-    }
-    read.skipped += beams->skipped();
-    if (const std::string note = beams->note(); !note.empty()) read.notes.push_back(fmt::format("{}: {}", name, note));
-  }
-  return read;
-}
-
-/// Adds all logs to the map, along the trajectory.
-/// @param calibration  of the sonar's place on the vehicle, which the trajectory goes with; nullptr: it is as mounted
-Result<MappedBeams> map_along(const Trajectory& trajectory, const SlamCalibration* calibration,
-                              const SlamCommand& command, const SlamOptions& slam, OccupancyMap& map,
+/// Adds all logs to the map, along the path.
+Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& slam, OccupancyMap& map,
                               Console& console) {
-  VehiclePath path{trajectory, std::nullopt};
-  path.advice = VehiclePath::kNavMustCover;
-  if (calibration != nullptr) {
-    path.sonar_moved_m = {calibration->sonar_x_m.value, calibration->sonar_y_m.value, 0.0};
-  }
+  const VehiclePath path = slam.path();
   BuildOptions build;
-  build.filter = slam.filter;
-  build.echo = slam.echo;
-  build.sound_speed_ratio = slam.sound_speed_ratio;
-  build.body_from_sensor = slam.body_from_sonar;
+  build.filter = slam.options.filter;
+  build.echo = slam.options.echo;
+  build.sound_speed_ratio = slam.options.sound_speed_ratio;
   MappedBeams all;
   std::vector<std::string> nothing;
-  for (const std::string& name : command.logs) {
-    auto beams = open_slam_beams(name, command);
-    if (!beams) return tl::unexpected(beams.error());
-    const Result<MappedLog> mapped = map_log(Log(std::move(*beams)), name, path, build, {}, map);
+  for (std::size_t i = 0; i < recording.logs().size(); ++i) {
+    Result<OpenedLog> log = open_log_of(recording, i);
+    if (!log) return tl::unexpected(log.error());
+    const Result<MappedLog> mapped = map_log(recording, *log, path, build, map);
     if (!mapped) return tl::unexpected(mapped.error());
-    if (mapped->is_nothing) {
-      nothing.push_back(text_of_nothing(*mapped, name));
-    } else if (!mapped->skipped_text.empty()) {
-      console.say(fmt::format("{}: left out of the map: {}", name, mapped->skipped_text));
+    const std::string skipped = skipped_text(*mapped, "beam", path.trajectory, kNavMustCover, map.lattice());
+    if (mapped->is_nothing()) {
+      nothing.push_back(text_of_nothing(log->name, skipped));
+    } else if (!skipped.empty()) {
+      console.say(fmt::format("{}: left out of the map: {}", log->name, skipped));
     }
     all.beams += mapped->report.beams;
     all.skipped += mapped->report.skipped;
   }
-  return say_nothing_mapped(nothing, command.logs.size(), console).map([&] { return all; });
-}
-
-/// What is known of the sensors; mounts of the command line win.
-Result<void> use_calibration(const std::string& path, const NavLog& log, SlamOptions& options) {
-  Result<CalibrationFile> file = read_calibration(path);
-  if (!file) return tl::unexpected(file.error());
-  for (const auto& [source, pose] : file->body_from_source) {
-    if (std::ranges::find(log.sources(), source, &NavSource::name) != log.sources().end()) {
-      options.body_from_source.emplace(source, pose);
-    }
-  }
-  options.calibration = std::move(file->calibration);
-  return {};
+  return say_nothing_mapped(nothing, recording.logs().size(), console).map([&] { return all; });
 }
 
 std::vector<std::string> used_sources(const SlamSolution& solution) {
@@ -124,68 +68,52 @@ std::vector<std::string> used_sources(const SlamSolution& solution) {
   return used;
 }
 
-Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> first, Console& console) {
+/// The recording of a command.
+Result<Recording> recording_of(const SlamCommand& command) {
+  const PathArgs path{.poses = {},
+                      .navs = command.navs,
+                      .nav_offset_s = command.nav_offset_s,
+                      .nav_sources = command.nav_sources,
+                      .calibration = command.known_calibration};
+  return recording_options(path, command.bag, command.damage).and_then([&](RecordingOptions options) {
+    options.nav_mounts = command.slam.body_from_source;
+    options.body_from_sonar = command.slam.body_from_sonar;
+    options.nav_salinity = command.nav_salinity;
+    return open_recording(input_files(command.logs), std::move(options));
+  });
+}
+
+/// What to do where SLAM failed.
+Error advise_on_slam(Error error, const SlamCommand& command) {
+  if (!command.navs.empty() || error.code != Error::Code::kUnsupported) return error;
+  const std::string in_bag = hint_at_nav(command.logs.front());
+  error.message +=
+      in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;
+  return error;
+}
+
+Result<int> run_beams(const SlamCommand& command, const Recording& recording, OpenedLog first, Console& console) {
   const Stopwatch total;
   SlamSeconds seconds;
   Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
   if (!map) return tl::unexpected(map.error());
-  const Stopwatch read;
-  const Result<NavFiles> nav =
-      read_navs(command.navs, command.damage, command.bag.nav, {.log = {}, .topic = {}, .chosen = command.nav_sources});
-  if (!nav) return tl::unexpected(nav.error());
-  Result<NavOffset> offset =
-      nav_offset(command.nav_offset_s, *nav, {command.logs.front(), command.bag.beams, command.slam.body_from_sonar},
-                 command.damage);
-  if (!offset) return tl::unexpected(offset.error());
-  if (command.slam.body_from_sonar.matrix().isIdentity(0.0)) {
-    const std::string hint = mount_hint(nav->bags, command.logs.front(), command.bag.beams.name);
-    if (!hint.empty()) console.say(hint);
-  }
-  SlamInputs inputs;
-  inputs.nav_offset = *std::move(offset);
-  SlamOptions options = command.slam;
-  options.nav_offset_s = inputs.nav_offset.offset_s;
-  if (command.nav_salinity) {
-    const Result<Water> water = water_of(water_around(nav->log), *command.nav_salinity);
-    if (!water) return tl::unexpected(water.error());
-    inputs.nav_water = *water;
-    options.sound_speed_ratio = sound_speed_ratio(*water);
-  }
-  if (command.known_calibration) {
-    if (const auto known = use_calibration(*command.known_calibration, nav->log, options); !known) {
-      return tl::unexpected(known.error());
-    }
-  }
-  SlamSmoother smoother(options);
-  const Result<Read> all = read_all(smoother, *nav, command, std::move(first));
-  if (!all) return tl::unexpected(all.error());
-  for (const std::string& warning : nav->warnings) console.say(warning);
-  inputs.skipped = all->skipped;
-  for (const std::string& note : all->notes) console.say(note);
-  seconds.read = read.seconds();
-
+  if (const std::string hint = mount_hint(recording); !hint.empty()) console.say(hint);
   ProgressBar bar(command.output_options);
   bar.draw(std::nullopt, "solving");
-  const Stopwatch solve;
-  const Result<SlamSolution> solution = smoother.solve();
-  if (!solution) {
-    std::string advice;
-    if (command.navs.empty() && all->beams > 0 && solution.error().code == Error::Code::kUnsupported) {
-      const std::string in_bag = hint_at_nav(command.logs.front());
-      advice = in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;
-    }
-    return fail(solution.error().code, fmt::format("{}: {}{}", inputs_text(command), solution.error().message, advice));
-  }
-  seconds.solve = solve.seconds();
-  inputs.nav_others = NavOthers(nav->log, kMotionQuantities, used_sources(*solution));
+  const Result<RecordingSlam> found = slam(recording, command.slam, std::move(first));
+  bar.clear();
+  if (!found) return tl::unexpected(advise_on_slam(found.error(), command));
+  const SlamSolution& solution = found->solution;
+  for (const std::string& warning : nav_warnings(recording)) console.say(warning);
+  for (const auto& [file, note] : found->notes) console.say(fmt::format("{}: {}", file, note));
+  seconds.read = found->read_s;
+  seconds.solve = found->solve_s;
+  SlamInputs inputs{.others = other_sources(recording.nav().log, kMotionQuantities, used_sources(solution))};
 
   if (command.map) {
     bar.draw(std::nullopt, "mapping");
     const Stopwatch mapping;
-    const std::optional<SlamCalibration>& known = options.calibration;
-    const SlamCalibration* calibration =
-        options.matching == Matching::kPairs ? &solution->calibration : (known ? &*known : nullptr);
-    const Result<MappedBeams> mapped = map_along(solution->trajectory, calibration, command, options, *map, console);
+    const Result<MappedBeams> mapped = map_along(recording, *found, *map, console);
     if (!mapped) return tl::unexpected(mapped.error());
     inputs.mapped = *mapped;
     seconds.map = mapping.seconds();
@@ -193,29 +121,30 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
   bar.clear();
 
   const Stopwatch write;
-  const auto written = write_slam_results(solution->trajectory, *map, command);
+  const auto written = write_slam_results(solution.trajectory, *map, command);
   if (!written) return tl::unexpected(written.error());
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
-      out << calibration_toml({solution->calibration, options.body_from_source});
+      out << calibration_toml({solution.calibration, found->options.body_from_source});
       return {};
     });
     if (!calibrated) return tl::unexpected(calibrated.error());
   }
   if (command.covariance) {
-    if (const auto done = write_covariances(*solution, *command.covariance); !done) return tl::unexpected(done.error());
+    if (const auto done = write_covariances(solution, *command.covariance); !done) return tl::unexpected(done.error());
   }
   seconds.write = write.seconds();
   seconds.total = total.seconds();
-  if (const auto& implausible = solution->report.implausible; !implausible.empty()) {
+  if (const auto& implausible = solution.report.implausible; !implausible.empty()) {
     console.say(
         fmt::format("{}: implausible: {}: far from what was expected; are --mount, --nav-mount and --nav-offset "
                     "right?",
                     inputs_text(command), fmt::join(implausible, ", ")));
   }
-  const Result<void> summary = command.output_options.report == Report::kJson
-                                   ? console.print(slam_json(*solution, command, inputs, options, seconds))
-                                   : console.summarise(slam_text(*solution, command, inputs, seconds), command.output);
+  const Result<void> summary =
+      command.output_options.report == Report::kJson
+          ? console.print(slam_json(recording, *found, command, inputs, seconds))
+          : console.summarise(slam_text(recording, *found, command, inputs, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   return 0;
 }
@@ -223,15 +152,17 @@ Result<int> run_beams(const SlamCommand& command, std::unique_ptr<BeamSource> fi
 }  // namespace
 
 Result<int> run(const SlamCommand& command, Console& console) {
-  Result<Log> first = open_slam_log(command.logs.front(), command);
+  const Result<Recording> recording = recording_of(command);
+  if (!recording) return tl::unexpected(recording.error());
+  Result<OpenedLog> first = open_log_of(*recording, 0);
   if (!first) return tl::unexpected(first.error());
-  const bool is_beams = std::holds_alternative<std::unique_ptr<BeamSource>>(*first);
+  const bool is_beams = first->beams() != nullptr;
   if (const auto used = check_limited(command.limited, {kind_text(is_beams ? FormatKind::kBeams : FormatKind::kScans)});
       !used) {
     return fail(used.error().code, fmt::format("slam: {}", used.error().message));
   }
-  return is_beams ? run_beams(command, std::get<std::unique_ptr<BeamSource>>(std::move(*first)), console)
-                  : run_scans(command, std::get<std::unique_ptr<ScanSource>>(std::move(*first)), console);
+  return is_beams ? run_beams(command, *recording, *std::move(first), console)
+                  : run_scans(command, std::get<std::unique_ptr<ScanSource>>(std::move(first->log)), console);
 }
 
 }  // namespace pingvox::app

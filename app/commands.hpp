@@ -8,12 +8,12 @@
 
 #include "bag_args.hpp"
 #include "console.hpp"
+#include "device/internal/head_emulator.hpp"
+#include "device/internal/nav_emulator.hpp"
 #include "option_table.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
-#include "pingvox/device/head_emulator.hpp"
 #include "pingvox/device/micron_driver.hpp"
-#include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -21,6 +21,7 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
+#include "pingvox/mapping/head_options.hpp"
 #include "pingvox/nav/main_source.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
@@ -44,24 +45,6 @@ namespace pingvox::app {
 struct ShowText {
   OutputOptions output_options;
   std::string text;
-};
-
-/// Options of the sonar head. The rest follows from the device of the log.
-struct HeadArgs {
-  const DeviceProfile* device = nullptr;  ///< nullptr: that of the log
-  std::optional<double> beam_width_rad, beam_height_rad;
-
-  /// Whether neither the options nor the log tell the size of the beam.
-  bool assumes_beam(const DeviceProfile* of_log) const {
-    return device == nullptr && of_log == nullptr && !(beam_width_rad && beam_height_rad);
-  }
-  /// Sets width and height of the beam: as given, else of the device, else unchanged.
-  BuildOptions apply_to(BuildOptions options, const DeviceProfile* of_log) const {
-    options.model = beam_of_head(device != nullptr ? device : of_log, options.model);
-    options.model.width_rad = beam_width_rad.value_or(options.model.width_rad);
-    options.model.height_rad = beam_height_rad.value_or(options.model.height_rad);
-    return options;
-  }
 };
 
 /// Interpretation of a map: thresholds for occupied and free, and the deepest level.
@@ -101,7 +84,7 @@ struct MapCommand {
   MapOptions map;
   OccupancyArgs occupancy;  ///< of the finished map
   BuildOptions build;
-  HeadArgs head;
+  HeadOptions head;
   std::optional<double> background_m;  ///< range of the background to subtract
   std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
   std::vector<LimitedOption> limited;
@@ -173,7 +156,7 @@ struct PanelCommand {
   MapOptions map;           ///< for logs that are mapped
   OccupancyArgs occupancy;  ///< of the map that is drawn
   BuildOptions build;
-  HeadArgs head;
+  HeadOptions head;
   std::optional<double> background_m;
   PathArgs path;
   std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
@@ -284,7 +267,7 @@ struct LiveCommand {
   double write_every_s = 10.0;
   MapOptions map;
   BuildOptions build;
-  HeadArgs head;
+  HeadOptions head;
   std::string made_by;  ///< the command line, written into the file
 };
 

@@ -100,11 +100,4 @@ std::string name_of_input(const std::string& path) {
   return path == "-" ? std::string(ByteStream::kStandardInput) : path;
 }
 
-std::string on_one_line(std::string_view text) {
-  std::string line(text);
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  std::replace_if(line.begin(), line.end(), is_control, '?');
-  return line;
-}
-
 }  // namespace pingvox::app

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/words.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox::app {
@@ -57,8 +58,5 @@ void write_what_fits(int descriptor, std::string_view text);
 
 /// A file of the command line as messages name it: "-" is standard input.
 std::string name_of_input(const std::string& path);
-
-/// Replaces control characters (a file name may contain line breaks) by '?'.
-std::string on_one_line(std::string_view text);
 
 }  // namespace pingvox::app

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "pingvox/device/a50_receiver.hpp"
-#include "pingvox/device/mavlink_receiver.hpp"
+#include "device/internal/a50_receiver.hpp"
+#include "device/internal/mavlink_receiver.hpp"
 #include "pingvox/nav/device_clock.hpp"
 #include "pingvox/nav/live_poses.hpp"
 #include "pingvox/result.hpp"

@@ -6,12 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "io/internal/clock.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
 #include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/io/clock.hpp"
+#include "pingvox/sonar/device_profile.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
@@ -57,13 +58,32 @@ std::string sure_text(const LocatedRecording& found) {
   return text;
 }
 
+double sound_speed_of(const RecordingLocation& location) {
+  return location.options.localizer.sound_speed_ratio * kAssumedSoundSpeed_m_s;
+}
+
+/// What is known of the motion.
+std::string motion_text(const Recording& recording, const RecordingLocation& location) {
+  const RecordingOptions& options = recording.options();
+  if (options.poses) {
+    return fmt::format("{} of {}", counted(location.odometry_poses, "pose"), on_one_line(options.poses->name()));
+  }
+  if (options.nav.empty()) return "none: the vehicle is assumed to move little";
+  const std::string heading = on_one_line(location.heading);
+  return location.velocity.empty()
+             ? fmt::format("heading of {}, no velocity: the vehicle is assumed to move little", heading)
+             : fmt::format("velocity of {} along the heading of {}", on_one_line(location.velocity), heading);
+}
+
 }  // namespace
 
 std::size_t unsure_poses(const LocatedRecording& found) {
   return static_cast<std::size_t>(std::ranges::count(found.poses, false, &LocatedPose::is_known));
 }
 
-std::string locate_json(const LocatedRecording& found, const LocateInputs& inputs, const LocateSeconds& seconds) {
+std::string locate_json(const Recording& recording, const RecordingLocation& location, std::size_t written,
+                        const LocateSeconds& seconds) {
+  const LocatedRecording& found = location.found;
   std::vector<JsonObject> hypotheses, spans;
   for (const PoseHypothesis& h : found.hypotheses) hypotheses.push_back(hypothesis_json(h));
   const std::vector<TimeSpan> sure = sure_spans(found);
@@ -71,19 +91,20 @@ std::string locate_json(const LocatedRecording& found, const LocateInputs& input
   JsonObject particles, took, json;
   particles.add("mean", found.mean_particles).add("max", found.most_particles);
   took.add("read", round_to_us(seconds.read))
-      .add("field", round_to_us(seconds.field))
-      .add("locate", round_to_us(seconds.locate))
+      .add("field", round_to_us(location.field_s))
+      .add("locate", round_to_us(location.locate_s))
       .add("total", round_to_us(seconds.total));
-  json.add("poses", inputs.written)
+  json.add("poses", written)
       .add("unsure", unsure_poses(found))
       .add("smoothed", smoothed_poses(found))
-      .add("beams", inputs.beams)
-      .add("skipped", inputs.skipped)
-      .add("sound_speed_m_s", inputs.sound_speed_m_s)
-      .add("motion", inputs.motion.text)
-      .add("nav_others", inputs.motion.others.json());
-  inputs.motion.clock ? json.add("nav_clock", json_of(*inputs.motion.clock)) : json.add_null("nav_clock");
-  json.add("nav_logs", inputs.motion.clock ? nav_logs_json(*inputs.motion.clock) : std::vector<JsonObject>());
+      .add("beams", location.beams)
+      .add("skipped", location.skipped)
+      .add("sound_speed_m_s", sound_speed_of(location))
+      .add("motion", motion_text(recording, location))
+      .add("nav_others", json_of(location.others));
+  const bool has_nav = !recording.options().nav.empty();
+  has_nav ? json.add("nav_clock", json_of(recording.nav_offset())) : json.add_null("nav_clock");
+  json.add("nav_logs", nav_logs_json(recording.nav().clocks));
   found.clock_check ? json.add("clock_check", json_of(*found.clock_check)) : json.add_null("clock_check");
   json.add_truth("sure", found.is_sure()).add("hypotheses", hypotheses).add("sure_spans", spans);
   if (sure.empty()) {
@@ -92,28 +113,30 @@ std::string locate_json(const LocatedRecording& found, const LocateInputs& input
     json.add("converged_at_s", sure.front().from_s);
   }
   json.add("particles", particles)
-      .add("field_bytes", inputs.field_bytes)
-      .add("recorded_s", inputs.recorded_s)
+      .add("field_bytes", location.field_bytes)
+      .add("recorded_s", location.recorded_s)
       .add("seconds", took);
   return json.text() + "\n";
 }
 
-std::string locate_text(const LocatedRecording& found, const LocateCommand& command, const LocateInputs& inputs,
-                        const LocateSeconds& seconds) {
-  const LocateMotion& motion = inputs.motion;
-  std::string text = inputs.written == 0     ? "no trajectory is written\n"
+std::string locate_text(const Recording& recording, const RecordingLocation& location, const LocateCommand& command,
+                        std::size_t written, const LocateSeconds& seconds) {
+  const LocatedRecording& found = location.found;
+  std::string text = written == 0            ? "no trajectory is written\n"
                      : command.output == "-" ? "standard output\n"
                                              : on_one_line(command.output) + "\n";
-  text += report_line("motion", motion.text) + others_line(motion.others);
-  if (motion.clock) {
-    text += report_line("nav clock", text_of(*motion.clock, found.clock_check)) + nav_logs_text(*motion.clock);
+  text += report_line("motion", motion_text(recording, location)) + others_line(location.others);
+  if (!recording.options().nav.empty()) {
+    text += report_line("nav clock", text_of(recording.nav_offset(), found.clock_check)) +
+            nav_logs_text(recording.nav().clocks);
   }
-  text += motion.water ? report_line("water", water_text(*motion.water)) : sound_line(inputs.sound_speed_m_s);
+  text +=
+      recording.water() ? report_line("water", water_text(*recording.water())) : sound_line(sound_speed_of(location));
   text += report_line(
       "trajectory", fmt::format("{} of {}, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",
-                                counted(inputs.written, "pose"), counted(inputs.beams, "beam"), unsure_poses(found),
-                                inputs.written == found.poses.size() ? "may be wrong" : "left out",
-                                smoothed_poses(found), found.mean_particles, found.most_particles));
+                                counted(written, "pose"), counted(location.beams, "beam"), unsure_poses(found),
+                                written == found.poses.size() ? "may be wrong" : "left out", smoothed_poses(found),
+                                found.mean_particles, found.most_particles));
   for (const PoseHypothesis& h : std::span(found.hypotheses).first(std::min(kShown, found.hypotheses.size()))) {
     text += report_line("at the end",
                         fmt::format("{:.3f} {:.3f} m +- {:.3f}, {:.1f} +- {:.1f} degrees, weight {:.3f}", h.x_m, h.y_m,
@@ -125,7 +148,7 @@ std::string locate_text(const LocatedRecording& found, const LocateCommand& comm
   text += report_line("sure", sure_text(found));
   return text +
          report_line("seconds", fmt::format("{:.3f} = {:.3f} read + {:.3f} distance field + {:.3f} locate + rest",
-                                            seconds.total, seconds.read, seconds.field, seconds.locate));
+                                            seconds.total, seconds.read, location.field_s, location.locate_s));
 }
 
 }  // namespace pingvox::app

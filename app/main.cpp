@@ -11,6 +11,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "option_names.hpp"
 #include "vectors.hpp"
 
 namespace {
@@ -74,6 +75,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& exception) {
     error.message = exception.what();
   }
-  app::print_error(error.message);
+  app::print_error(app::with_option_names(error.message));
   return status_of(error, args);
 }

@@ -1,9 +1,8 @@
 #include "map_report.hpp"
 
-#include <fmt/chrono.h>
+#include <fmt/format.h>
 
 #include <cmath>
-#include <ctime>
 
 #include "console.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -37,10 +36,6 @@ double rounded_degrees(double angle_rad) {
   return std::round(angle_rad / kDegree_rad * 1e6) / 1e6;
 }
 
-std::string counted(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : noun.ends_with('o') ? "es" : "s");
-}
-
 std::string beams_text(std::size_t beams, std::size_t sweeps, std::size_t echoes) {
   return fmt::format("{}, {}, {}", counted(beams, "beam"), counted(sweeps, "complete sweep"), counted(echoes, "echo"));
 }
@@ -54,13 +49,6 @@ std::string empty_map_text(const std::string& output) {
       "{}: the map is empty: no echoes and no free space in range (see --min-range, --max-range, "
       "--threshold and --silent)",
       output);
-}
-
-std::string date_text(double time_s) {
-  constexpr double kYear2000_s = 946'684'800.0, kYear2100_s = 4'102'444'800.0;
-  if (!(time_s >= kYear2000_s && time_s < kYear2100_s)) return "";
-  constexpr double kHalf_s = 0.0005;  // of a millisecond: 19:24:38.9999999 is 19:24:39
-  return fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(time_s + kHalf_s)));
 }
 
 std::string duration_text(double from_s, double to_s) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/words.hpp"
+#include "io/internal/clock.hpp"
 #include "json.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 
@@ -21,8 +23,6 @@ std::string bytes_text(std::size_t bytes);
 /// Degrees, rounded to a millionth: 90 is not 90.00000000000001.
 double rounded_degrees(double angle_rad);
 
-/// "1 beam", "2 echoes": a number with a noun.
-std::string counted(std::size_t count, std::string_view noun);
 /// "4000 beams, 10 complete sweeps, 3900 echoes"
 std::string beams_text(std::size_t beams, std::size_t sweeps, std::size_t echoes);
 
@@ -31,8 +31,6 @@ std::string damage_text(std::size_t records, std::string_view first);
 
 /// What is said of an empty map.
 std::string empty_map_text(const std::string& output);
-/// "2023-05-04 17:22:21" of seconds since 1970; "" of the times of clocks that do not count from there.
-std::string date_text(double time_s);
 /// "12.500 s, from 3.000 s", with the date where the time has one.
 std::string duration_text(double from_s, double to_s);
 /// A line of a report, with the values aligned.

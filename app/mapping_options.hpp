@@ -12,6 +12,7 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
+#include "pingvox/mapping/head_options.hpp"
 #include "pingvox/sonar/background.hpp"
 #include "pingvox/sonar/sound_speed.hpp"
 
@@ -49,7 +50,7 @@ struct EchoArgs {
 struct BuildArgs {
   MapOptions map;
   BuildOptions build;  ///< filter and echo: see `echoes`
-  HeadArgs head;
+  HeadOptions head;
   EchoArgs echoes;
   std::string poses;
   std::vector<std::string> navs;
@@ -58,7 +59,8 @@ struct BuildArgs {
   std::string calibration;
 
   BuildOptions build_options() const {
-    BuildOptions all = head.apply_to(build, nullptr);
+    BuildOptions all = build;
+    all.model = head.apply_to(build.model, nullptr);
     all.filter = echoes.filter_options();
     all.echo = echoes.echo;
     all.sound_speed_ratio = echoes.sound_speed_ratio();

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "pingvox/io/mavlink.hpp"
-#include "pingvox/io/mavlink_obstacles.hpp"
+#include "io/internal/mavlink.hpp"
+#include "io/internal/mavlink_obstacles.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "pingvox/device/link.hpp"
+#include "device/internal/link.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/obstacle_sectors.hpp"

@@ -11,12 +11,12 @@
 #include <system_error>
 
 #include "command_files.hpp"
-#include "map_log.hpp"
+#include "device/internal/link.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
-#include "pingvox/device/link.hpp"
+#include "recording_report.hpp"
 #include "shared_options.hpp"
 #include "shell_words.hpp"
 

@@ -12,15 +12,6 @@
 
 namespace pingvox::app {
 
-Result<Log> open_slam_log(const std::string& file, const SlamCommand& command) {
-  return ByteStream::open(file).and_then(
-      [&](ByteStream stream) { return open_log(std::move(stream), command.damage, std::nullopt, command.bag.beams); });
-}
-
-Result<std::unique_ptr<BeamSource>> open_slam_beams(const std::string& file, const SlamCommand& command) {
-  return open_slam_log(file, command).and_then([&](Log log) { return only_beams(std::move(log), file); });
-}
-
 Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command) {
   auto written = write_file(command.output, [&](std::ostream& out) { return write_tum(trajectory, out); });
   if (!written || !command.map) return written;

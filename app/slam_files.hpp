@@ -1,22 +1,14 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "commands.hpp"
-#include "open_log.hpp"
 #include "pingvox/geometry/trajectory.hpp"
-#include "pingvox/io/beams.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 
 namespace pingvox::app {
-
-/// Opens a log of `slam`.
-Result<Log> open_slam_log(const std::string& file, const SlamCommand& command);
-/// The same, of beams.
-Result<std::unique_ptr<BeamSource>> open_slam_beams(const std::string& file, const SlamCommand& command);
 
 /// Writes the trajectory, and the map if one is asked for.
 Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command);

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "json.hpp"
-#include "map_log.hpp"
 #include "map_report.hpp"
+#include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "pingvox/geometry/degree.hpp"
+#include "recording_report.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
@@ -154,8 +155,9 @@ std::string not_known_text(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::string slam_json(const SlamSolution& solution, const SlamCommand& command, const SlamInputs& inputs,
-                      const SlamOptions& slam, const SlamSeconds& seconds) {
+std::string slam_json(const Recording& recording, const RecordingSlam& slam, const SlamCommand& command,
+                      const SlamInputs& inputs, const SlamSeconds& seconds) {
+  const SlamSolution& solution = slam.solution;
   const SlamReport& report = solution.report;
   JsonObject loops, submap_loops, velocity, largest, json;
   loops.add("found", report.loops_found).add("kept", report.loops_kept);
@@ -187,8 +189,8 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
       .add("beams", report.beams)
       .add("sweeps", report.sweeps)
       .add("echoes", report.echoes)
-      .add("skipped", inputs.skipped)
-      .add("sound_speed_m_s", slam.sound_speed_ratio * kAssumedSoundSpeed_m_s)
+      .add("skipped", slam.skipped)
+      .add("sound_speed_m_s", slam.options.sound_speed_ratio * kAssumedSoundSpeed_m_s)
       .add("knots", report.knots)
       .add("pairs", report.pairs)
       .add("pair_median_m", report.pair_median_m)
@@ -197,9 +199,9 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
       .add("velocity", velocity)
       .add("heading", report.heading)
       .add("frame", frame_text(report.heading))
-      .add("nav_clock", json_of(inputs.nav_offset))
-      .add("nav_logs", nav_logs_json(inputs.nav_offset))
-      .add("nav_others", inputs.nav_others.json());
+      .add("nav_clock", json_of(recording.nav_offset()))
+      .add("nav_logs", nav_logs_json(recording.nav().clocks))
+      .add("nav_others", json_of(inputs.others));
   report.clock_check ? json.add("clock_check", json_of(*report.clock_check)) : json.add_null("clock_check");
   command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
@@ -226,18 +228,19 @@ std::string slam_json(const SlamSolution& solution, const SlamCommand& command, 
   return json.text() + "\n";
 }
 
-std::string slam_text(const SlamSolution& solution, const SlamCommand& command, const SlamInputs& inputs,
-                      const SlamSeconds& seconds) {
+std::string slam_text(const Recording& recording, const RecordingSlam& slam, const SlamCommand& command,
+                      const SlamInputs& inputs, const SlamSeconds& seconds) {
+  const SlamSolution& solution = slam.solution;
   const SlamReport& report = solution.report;
   std::string text = title_of(command);
   std::string read = beams_text(report.beams, report.sweeps, report.echoes);
-  if (inputs.skipped > 0) read += fmt::format("; skipped {}", counted(inputs.skipped, "damaged record"));
+  if (slam.skipped > 0) read += fmt::format("; skipped {}", counted(slam.skipped, "damaged record"));
   text += report_line("read", read);
-  text += report_line("nav clock", text_of(inputs.nav_offset, report.clock_check));
-  text += nav_logs_text(inputs.nav_offset);
-  text += inputs.nav_water ? report_line("water", water_text(*inputs.nav_water))
-                           : sound_line(command.slam.sound_speed_ratio * kAssumedSoundSpeed_m_s);
-  text += report_line("velocity", velocity_text(report)) + others_line(inputs.nav_others);
+  text += report_line("nav clock", text_of(recording.nav_offset(), report.clock_check));
+  text += nav_logs_text(recording.nav().clocks);
+  text += recording.water() ? report_line("water", water_text(*recording.water()))
+                            : sound_line(slam.options.sound_speed_ratio * kAssumedSoundSpeed_m_s);
+  text += report_line("velocity", velocity_text(report)) + others_line(inputs.others);
   const std::size_t poses = solution.trajectory.poses().size();
   std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));
   if (report.in_pauses > 0) trajectory += fmt::format(", {} of them in pauses of the sonar", report.in_pauses);

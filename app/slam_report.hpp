@@ -3,13 +3,11 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
-#include "nav_clock.hpp"
-#include "nav_report.hpp"
+#include "pingvox/recording/recording.hpp"
 #include "pingvox/slam/scan_slam.hpp"
-#include "pingvox/slam/slam_smoother.hpp"
-#include "pingvox/sonar/sound_speed.hpp"
 
 namespace pingvox::app {
 
@@ -18,13 +16,10 @@ struct MappedBeams {
   std::size_t beams = 0, skipped = 0;
 };
 
-/// What was read besides beams, velocity and headings.
+/// What else there is to report.
 struct SlamInputs {
-  NavOffset nav_offset;
-  std::optional<Water> nav_water;     ///< by the navigation log, where it was asked
-  NavOthers nav_others;               ///< sources of velocity and heading that were not used
-  std::size_t skipped = 0;            ///< records
-  std::optional<MappedBeams> mapped;  ///< nullopt: there is no map
+  std::vector<OtherSource> others;                   ///< sources of velocity and heading that were not used
+  std::optional<MappedBeams> mapped = std::nullopt;  ///< nullopt: there is no map
 };
 
 /// Of wall time.
@@ -33,10 +28,10 @@ struct SlamSeconds {
 };
 
 /// Result of `slam` on beams, as JSON and as text.
-std::string slam_json(const SlamSolution& solution, const SlamCommand& command, const SlamInputs& inputs,
-                      const SlamOptions& slam, const SlamSeconds& seconds);
-std::string slam_text(const SlamSolution& solution, const SlamCommand& command, const SlamInputs& inputs,
-                      const SlamSeconds& seconds);
+std::string slam_json(const Recording& recording, const RecordingSlam& slam, const SlamCommand& command,
+                      const SlamInputs& inputs, const SlamSeconds& seconds);
+std::string slam_text(const Recording& recording, const RecordingSlam& slam, const SlamCommand& command,
+                      const SlamInputs& inputs, const SlamSeconds& seconds);
 
 /// Result of `slam` on scans of points.
 std::string scan_slam_json(const ScanSlamReport& report, std::size_t skipped, const SlamSeconds& seconds);

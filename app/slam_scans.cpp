@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "console.hpp"
+#include "open_log.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/g2o.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -45,7 +46,9 @@ class MovedScans : public ScanSource {
 };
 
 Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command, OccupancyMap& map) {
-  Result<Log> log = open_slam_log(command.logs.front(), command);
+  Result<Log> log = ByteStream::open(command.logs.front()).and_then([&](ByteStream stream) {
+    return open_file_log(std::move(stream), command.damage, command.bag.beams);
+  });
   if (!log) return tl::unexpected(log.error());
   auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
   if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));

@@ -62,10 +62,10 @@ std::vector<std::string> step_texts(const NavLog& log) {
   return texts;
 }
 
-std::vector<std::string> step_texts(const CutTrajectory& cut) {
+std::vector<std::string> step_texts(const std::vector<SourceStep>& steps, std::size_t poses) {
   std::vector<std::string> texts;
   std::vector<SourceStep> cuts, outliers;
-  for (const SourceStep& step : cut.steps) (step.left_out > 0 ? outliers : cuts).push_back(step);
+  for (const SourceStep& step : steps) (step.left_out > 0 ? outliers : cuts).push_back(step);
   if (!cuts.empty()) {
     const SourceStep& step = main_step(cuts);
     texts.push_back(fmt::format("its path {} at {:.3f} s{}: no pose is assumed in between", step_text(step), step.to_s,
@@ -75,8 +75,7 @@ std::vector<std::string> step_texts(const CutTrajectory& cut) {
     const SourceStep& step = main_step(outliers);
     const std::size_t count = left_out(outliers);
     texts.push_back(fmt::format("its path {} at {:.3f} s{}: {} of {} are left out", step_text(step), step.to_s,
-                                others_text(outliers.size()), count,
-                                counted(count + cut.trajectory.poses().size(), "pose")));
+                                others_text(outliers.size()), count, counted(poses, "pose")));
   }
   return texts;
 }

@@ -6,7 +6,6 @@
 
 #include "json.hpp"
 #include "pingvox/nav/nav_log.hpp"
-#include "pingvox/nav/trajectory_steps.hpp"
 
 namespace pingvox::app {
 
@@ -16,8 +15,8 @@ std::string step_text(const SourceStep& step);
 /// A line for each source with samples that are left out: "position of LOCAL_POSITION_NED jumps by 40.0 m in 0.10 s at
 /// 115.000 s: 150 of 300 samples are left out, those from 115.000 to 129.900 s".
 std::vector<std::string> step_texts(const NavLog& log);
-/// The same of a trajectory: where it is cut, and poses that are left out.
-std::vector<std::string> step_texts(const CutTrajectory& cut);
+/// The same of a trajectory of `poses` poses: where it is cut, and poses that are left out.
+std::vector<std::string> step_texts(const std::vector<SourceStep>& steps, std::size_t poses);
 
 /// Samples or poses that are left out.
 std::size_t left_out(const std::vector<SourceStep>& steps);

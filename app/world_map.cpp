@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/geometry/triangle_cells.hpp"
+#include "geometry/internal/triangle_cells.hpp"
 
 namespace pingvox::app {
 namespace {

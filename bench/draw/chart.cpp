@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "pingvox/geometry/ray_bresenham.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_bresenham.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"

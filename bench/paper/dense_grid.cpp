@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 
 namespace pingvox::bench {

@@ -10,7 +10,7 @@
 #include "bench/paired_timing.hpp"
 #include "claim.hpp"
 #include "cube.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 
 namespace pingvox::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "pingvox/geometry/ray_bresenham.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_bresenham.hpp"
+#include "geometry/internal/ray_dda.hpp"
 
 namespace pingvox::bench {
 namespace {

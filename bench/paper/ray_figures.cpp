@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/draw/render_ray.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "paper_dda.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
 
 namespace pingvox::bench {

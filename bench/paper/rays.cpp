@@ -8,9 +8,9 @@
 
 #include "bench/paired_timing.hpp"
 #include "claim.hpp"
+#include "geometry/internal/ray_bresenham.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "paper_dda.hpp"
-#include "pingvox/geometry/ray_bresenham.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
 #include "ray_cells.hpp"
 
 namespace pingvox::bench {

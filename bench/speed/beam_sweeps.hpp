@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "mapping/internal/beam_tracer.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "pingvox/mapping/beam_tracer.hpp"
 #include "tank_echoes.hpp"
 
 namespace pingvox::bench {

@@ -11,9 +11,9 @@
 #include "bench/paired_timing.hpp"
 #include "bench/process.hpp"
 #include "pingvox/analysis/compare.hpp"
+#include "pingvox/geometry/random.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
-#include "pingvox/sim/random.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "silent_stderr.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "map_benchmark.hpp"
 #include "peer.hpp"
-#include "pingvox/sim/random.hpp"
+#include "pingvox/geometry/random.hpp"
 
 namespace pingvox::bench {
 namespace {

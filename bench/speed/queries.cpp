@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "bench/paired_timing.hpp"
+#include "pingvox/geometry/random.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
-#include "pingvox/sim/random.hpp"
 #include "tank_maps.hpp"
 
 namespace pingvox::bench {

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "bench/paired_timing.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
-#include "pingvox/sim/random.hpp"
+#include "geometry/internal/ray_dda.hpp"
+#include "pingvox/geometry/random.hpp"
 
 namespace pingvox::bench {
 namespace {

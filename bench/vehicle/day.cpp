@@ -12,7 +12,7 @@
 
 #include "bench/paired_timing.hpp"
 #include "bench/vehicle/tank_head.hpp"
-#include "pingvox/device/link.hpp"
+#include "device/internal/link.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 

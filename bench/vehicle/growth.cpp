@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "bench/paired_timing.hpp"
+#include "mapping/internal/insonified_volume.hpp"
 #include "pingvox/analysis/compare.hpp"
+#include "pingvox/geometry/random.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "pingvox/mapping/insonified_volume.hpp"
-#include "pingvox/sim/random.hpp"
 
 namespace pingvox::bench {
 namespace {

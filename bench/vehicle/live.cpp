@@ -16,10 +16,10 @@
 
 #include "bench/paired_timing.hpp"
 #include "bench/vehicle/tank_head.hpp"
+#include "device/internal/link.hpp"
+#include "device/internal/ping360_emulator.hpp"
 #include "pingvox/analysis/compare.hpp"
-#include "pingvox/device/link.hpp"
 #include "pingvox/device/live_source.hpp"
-#include "pingvox/device/ping360_emulator.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/build_map.hpp"

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "bench/paired_timing.hpp"
+#include "io/internal/ping_frame.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/io/ping_frame.hpp"
 
 namespace pingvox::bench {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pingvox/device/ping360_emulator.hpp"
+#include "device/internal/ping360_emulator.hpp"
 
 namespace pingvox::bench {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "fuzz/bodies/require.hpp"
-#include "pingvox/io/mavlink.hpp"
+#include "io/internal/mavlink.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 

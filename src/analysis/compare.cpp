@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "pingvox/geometry/cell_counts.hpp"
+#include "geometry/internal/cell_counts.hpp"
 
 namespace pingvox {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pingvox/geometry/cell_counts.hpp"
+#include "geometry/internal/cell_counts.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "pingvox/geometry/triangle_cells.hpp"
+#include "geometry/internal/triangle_cells.hpp"
 
 namespace pingvox {
 namespace {

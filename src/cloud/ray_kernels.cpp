@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 
 // Highway compiles what follows up to HWY_AFTER_NAMESPACE once for each kind of machine.
 #undef HWY_TARGET_INCLUDE

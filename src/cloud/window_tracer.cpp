@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pingvox/geometry/tree_order.hpp"
+#include "geometry/internal/tree_order.hpp"
 
 namespace pingvox::detail {
 namespace {

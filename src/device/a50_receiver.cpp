@@ -1,4 +1,4 @@
-#include "pingvox/device/a50_receiver.hpp"
+#include "device/internal/a50_receiver.hpp"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
-#include "pingvox/device/head_emulator.hpp"
+#include "device/internal/head_emulator.hpp"
 
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 
 namespace pingvox {
 

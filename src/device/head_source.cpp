@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "device/internal/guarded_recorder.hpp"
+#include "device/internal/link.hpp"
 #include "device/read_limit.hpp"
-#include "pingvox/device/guarded_recorder.hpp"
-#include "pingvox/device/link.hpp"
+#include "io/internal/frame_finder.hpp"
+#include "io/internal/ping_frame.hpp"
+#include "io/internal/seanet_frame.hpp"
 #include "pingvox/device/live_source.hpp"
-#include "pingvox/io/frame_finder.hpp"
-#include "pingvox/io/ping_frame.hpp"
-#include "pingvox/io/seanet_frame.hpp"
 
 namespace pingvox {
 namespace {

@@ -1,4 +1,4 @@
-#include "pingvox/device/link.hpp"
+#include "device/internal/link.hpp"
 
 #include <arpa/inet.h>
 #include <fcntl.h>

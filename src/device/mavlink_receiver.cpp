@@ -1,4 +1,4 @@
-#include "pingvox/device/mavlink_receiver.hpp"
+#include "device/internal/mavlink_receiver.hpp"
 
 #include <fmt/core.h>
 

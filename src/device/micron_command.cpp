@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "device/ping_fields.hpp"
-#include "pingvox/io/seanet_frame.hpp"
+#include "io/internal/seanet_frame.hpp"
 
 namespace pingvox {
 namespace {

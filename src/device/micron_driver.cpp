@@ -7,9 +7,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/option_errors.hpp"
 #include "device/micron_command.hpp"
-#include "pingvox/io/seanet_frame.hpp"
-#include "pingvox/option_errors.hpp"
+#include "io/internal/seanet_frame.hpp"
 #include "pingvox/sonar/beam.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 

@@ -1,4 +1,4 @@
-#include "pingvox/device/micron_emulator.hpp"
+#include "device/internal/micron_emulator.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -6,7 +6,7 @@
 
 #include "device/micron_command.hpp"
 #include "device/ping_fields.hpp"
-#include "pingvox/io/seanet_frame.hpp"
+#include "io/internal/seanet_frame.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {

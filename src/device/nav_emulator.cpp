@@ -1,4 +1,4 @@
-#include "pingvox/device/nav_emulator.hpp"
+#include "device/internal/nav_emulator.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 #include <string_view>
 #include <utility>
 
+#include "base/option_errors.hpp"
+#include "io/internal/mavlink.hpp"
 #include "pingvox/geometry/pose.hpp"
-#include "pingvox/io/mavlink.hpp"
 #include "pingvox/nav/nav_log.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {

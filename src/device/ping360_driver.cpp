@@ -10,9 +10,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/option_errors.hpp"
 #include "device/ping_fields.hpp"
-#include "pingvox/io/ping_frame.hpp"
-#include "pingvox/option_errors.hpp"
+#include "io/internal/ping_frame.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {

@@ -1,4 +1,4 @@
-#include "pingvox/device/ping360_emulator.hpp"
+#include "device/internal/ping360_emulator.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "device/ping_fields.hpp"
-#include "pingvox/io/ping_frame.hpp"
+#include "io/internal/ping_frame.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 
 namespace pingvox {

@@ -1,4 +1,4 @@
-#include "pingvox/geometry/triangle_cells.hpp"
+#include "geometry/internal/triangle_cells.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

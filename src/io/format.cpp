@@ -6,12 +6,12 @@
 #include <cmath>
 #include <utility>
 
-#include "io/bag.hpp"
-#include "io/byte_reader.hpp"
-#include "io/nav_readers.hpp"
-#include "io/ply_header.hpp"
+#include "io/bags/bag.hpp"
+#include "io/bytes/byte_reader.hpp"
+#include "io/bytes/text.hpp"
+#include "io/clouds/ply_header.hpp"
+#include "io/nav/nav_readers.hpp"
 #include "io/readers.hpp"
-#include "io/text.hpp"
 #include "pingvox/io/byte_stream.hpp"
 
 namespace pingvox {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "geometry/internal/ray_dda.hpp"
 #include "map/entry_walk.hpp"
 #include "map/map_access.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
 
 namespace pingvox {
 namespace {

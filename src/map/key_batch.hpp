@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/internal/tree_order.hpp"
 #include "map/bits.hpp"
 #include "map/brick_tree.hpp"
 #include "map/pool.hpp"
 #include "pingvox/geometry/key.hpp"
-#include "pingvox/geometry/tree_order.hpp"
 
 namespace pingvox::detail {
 

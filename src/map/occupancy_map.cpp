@@ -10,15 +10,15 @@
 #include <utility>
 #include <variant>
 
+#include "base/option_errors.hpp"
+#include "geometry/internal/cell_counts.hpp"
+#include "geometry/internal/tree_order.hpp"
 #include "map/bits.hpp"
 #include "map/key_batch.hpp"
 #include "map/map_access.hpp"
 #include "map/page_updates.hpp"
-#include "pingvox/geometry/cell_counts.hpp"
-#include "pingvox/geometry/tree_order.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {

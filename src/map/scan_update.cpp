@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/internal/tree_order.hpp"
 #include "map/bits.hpp"
-#include "pingvox/geometry/tree_order.hpp"
 
 namespace pingvox {
 namespace {

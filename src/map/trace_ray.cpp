@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "pingvox/geometry/ray_bresenham.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_bresenham.hpp"
+#include "geometry/internal/ray_dda.hpp"
 
 namespace pingvox {
 namespace {

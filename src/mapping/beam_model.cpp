@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/option_errors.hpp"
 #include "mapping/bundle_grid.hpp"
+#include "mapping/internal/beam_tracer.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/mapping/beam_tracer.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 Result<void> BeamModelOptions::validate() const {

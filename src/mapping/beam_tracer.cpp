@@ -1,4 +1,4 @@
-#include "pingvox/mapping/beam_tracer.hpp"
+#include "mapping/internal/beam_tracer.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -6,7 +6,7 @@
 
 #include "mapping/add_hits.hpp"
 #include "mapping/bundle_grid.hpp"
-#include "pingvox/mapping/insonified_volume.hpp"
+#include "mapping/internal/insonified_volume.hpp"
 
 namespace pingvox {
 namespace {

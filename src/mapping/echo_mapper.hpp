@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "mapping/internal/beam_tracer.hpp"
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
-#include "pingvox/mapping/beam_tracer.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 

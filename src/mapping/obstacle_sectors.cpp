@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/option_errors.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "pingvox/nav/nav_frames.hpp"
+#include "nav/internal/nav_frames.hpp"
 
 namespace pingvox {
 namespace {

@@ -1,4 +1,4 @@
-#include "pingvox/nav/pressure_unit.hpp"
+#include "nav/internal/pressure_unit.hpp"
 
 #include <fmt/format.h>
 

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/option_errors.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/random.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {

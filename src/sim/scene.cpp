@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/option_errors.hpp"
-#include "pingvox/sim/random.hpp"
+#include "base/option_errors.hpp"
+#include "pingvox/geometry/random.hpp"
 #include "pingvox/sim/sonar.hpp"
 
 namespace pingvox {

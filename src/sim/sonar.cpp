@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 
 namespace pingvox {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 
 namespace pingvox {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "pingvox/option_errors.hpp"
-#include "pingvox/sim/random.hpp"
+#include "base/option_errors.hpp"
+#include "pingvox/geometry/random.hpp"
 
 namespace pingvox {
 namespace {

@@ -9,9 +9,9 @@
 #include <memory>
 #include <numbers>
 
+#include "base/option_errors.hpp"
 #include "base/without_exceptions.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {

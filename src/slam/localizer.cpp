@@ -11,11 +11,11 @@
 #include <numeric>
 #include <utility>
 
+#include "base/option_errors.hpp"
 #include "base/without_exceptions.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/geometry/random.hpp"
-#include "pingvox/option_errors.hpp"
 #include "pingvox/sonar/echo_stream.hpp"
 #include "slam/beam_likelihood.hpp"
 #include "slam/particles.hpp"

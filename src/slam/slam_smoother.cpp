@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "base/option_errors.hpp"
 #include "base/without_exceptions.hpp"
-#include "pingvox/option_errors.hpp"
 #include "slam/causal_estimator.hpp"
 #include "slam/level_head.hpp"
 #include "slam/map_solution.hpp"

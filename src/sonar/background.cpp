@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "pingvox/sonar/beam_source_decorator.hpp"
+#include "sonar/internal/beam_source_decorator.hpp"
 
 namespace pingvox {
 namespace {

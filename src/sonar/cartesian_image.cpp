@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/option_errors.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/option_errors.hpp"
 
 namespace pingvox {
 namespace {

@@ -9,13 +9,13 @@
 #include <limits>
 #include <span>
 
-#include "pingvox/option_errors.hpp"
-#include "pingvox/sonar/blanking.hpp"
+#include "base/option_errors.hpp"
 #include "sonar/beam_rises.hpp"
 #include "sonar/bin_window.hpp"
 #include "sonar/canny.hpp"
 #include "sonar/cfar.hpp"
 #include "sonar/contrast.hpp"
+#include "sonar/internal/blanking.hpp"
 #include "sonar/near_field.hpp"
 #include "sonar/noise_floor.hpp"
 #include "sonar/ringing_arc.hpp"

@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 
 namespace pingvox {
 namespace {

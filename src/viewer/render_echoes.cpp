@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/option_errors.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
-#include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/echo_legend.hpp"

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/option_errors.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
-#include "pingvox/option_errors.hpp"
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"

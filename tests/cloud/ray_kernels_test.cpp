@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "support/exact_segment.hpp"
 #include "support/kernels.hpp"
 #include "support/rounds.hpp"

@@ -1,4 +1,4 @@
-#include "pingvox/cloud/trace_rays.hpp"
+#include "cloud/internal/trace_rays.hpp"
 
 #include <gtest/gtest.h>
 

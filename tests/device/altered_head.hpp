@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/device/head_emulator.hpp"
+#include "device/internal/head_emulator.hpp"
 
 /// A head whose answers are right by their checksums, but not what was asked for.
 namespace pingvox::test {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "pingvox/device/link.hpp"
+#include "device/internal/link.hpp"
 #include "pingvox/device/live_source.hpp"
 
 /// A source of live beams and the emulator of its head, at the two ends of a real line.

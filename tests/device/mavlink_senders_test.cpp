@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/device/link.hpp"
-#include "pingvox/device/mavlink_receiver.hpp"
+#include "device/internal/link.hpp"
+#include "device/internal/mavlink_receiver.hpp"
+#include "io/internal/mavlink.hpp"
 #include "pingvox/io/file.hpp"
-#include "pingvox/io/mavlink.hpp"
 #include "pingvox/io/nav.hpp"
 #include "tests/device/recording.hpp"
 

@@ -10,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
+#include "device/internal/link.hpp"
+#include "device/internal/micron_emulator.hpp"
 #include "device/micron_command.hpp"
-#include "pingvox/device/link.hpp"
+#include "io/internal/seanet_frame.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/micron_driver.hpp"
-#include "pingvox/device/micron_emulator.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/io/seanet_frame.hpp"
 #include "pingvox/io/seanet_recorder.hpp"
 #include "tests/device/dialogue.hpp"
 #include "tests/device/recording.hpp"

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/device/a50_receiver.hpp"
-#include "pingvox/device/link.hpp"
+#include "device/internal/a50_receiver.hpp"
+#include "device/internal/link.hpp"
 #include "pingvox/device/live_source.hpp"
 
 namespace {

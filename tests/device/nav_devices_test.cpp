@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/device/a50_receiver.hpp"
-#include "pingvox/device/link.hpp"
+#include "device/internal/a50_receiver.hpp"
+#include "device/internal/link.hpp"
+#include "device/internal/mavlink_receiver.hpp"
+#include "device/internal/nav_emulator.hpp"
 #include "pingvox/device/live_source.hpp"
-#include "pingvox/device/mavlink_receiver.hpp"
-#include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/nav/live_poses.hpp"

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "pingvox/device/link.hpp"
+#include "device/internal/link.hpp"
+#include "device/internal/ping360_emulator.hpp"
+#include "io/internal/ping_frame.hpp"
 #include "pingvox/device/live_source.hpp"
 #include "pingvox/device/ping360_driver.hpp"
-#include "pingvox/device/ping360_emulator.hpp"
-#include "pingvox/io/ping_frame.hpp"
 #include "pingvox/io/ping_viewer_recorder.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "tests/device/dialogue.hpp"

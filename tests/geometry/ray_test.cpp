@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "pingvox/geometry/ray_bresenham.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_bresenham.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "support/cells_as_text.hpp"
 #include "support/differences.hpp"
 #include "support/exact_segment.hpp"

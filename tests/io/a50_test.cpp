@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/dvl_a50.hpp"
+#include "io/nav/dvl_a50.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"

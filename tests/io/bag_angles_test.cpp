@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/angle_units.hpp"
+#include "io/beams/angle_units.hpp"
 #include "pingvox/io/beam_topic.hpp"
 #include "pingvox/io/beams.hpp"
 #include "support/bag_writer.hpp"

@@ -1,4 +1,4 @@
-#include "pingvox/io/beams_in_order.hpp"
+#include "io/internal/beams_in_order.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

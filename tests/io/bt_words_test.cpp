@@ -1,4 +1,4 @@
-#include "io/bt_words.hpp"
+#include "io/maps/bt_words.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pingvox/io/clock.hpp"
+#include "io/internal/clock.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/dataflash.hpp"
+#include "io/nav/dataflash.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

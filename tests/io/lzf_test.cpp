@@ -1,4 +1,4 @@
-#include "io/lzf.hpp"
+#include "io/clouds/lzf.hpp"
 
 #include <gtest/gtest.h>
 

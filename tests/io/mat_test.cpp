@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "io/mat5.hpp"
+#include "io/beams/mat5.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/file.hpp"
 #include "support/logs.hpp"

@@ -1,4 +1,4 @@
-#include "pingvox/io/mavlink_obstacles.hpp"
+#include "io/internal/mavlink_obstacles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pingvox/io/mavlink.hpp"
+#include "io/internal/mavlink.hpp"
 
 namespace pingvox {
 namespace {

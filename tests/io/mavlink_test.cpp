@@ -1,4 +1,4 @@
-#include "pingvox/io/mavlink.hpp"
+#include "io/internal/mavlink.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "io/internal/ping_frame.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
-#include "pingvox/io/ping_frame.hpp"
 #include "support/frames.hpp"
 #include "support/logs.hpp"
 

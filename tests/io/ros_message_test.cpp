@@ -1,4 +1,4 @@
-#include "io/ros_message.hpp"
+#include "io/bags/ros_message.hpp"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>

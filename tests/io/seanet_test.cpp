@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "io/internal/seanet_frame.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
-#include "pingvox/io/seanet_frame.hpp"
 #include "support/frames.hpp"
 #include "support/logs.hpp"
 

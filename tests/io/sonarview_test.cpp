@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "io/internal/ping_frame.hpp"
 #include "pingvox/io/format.hpp"
-#include "pingvox/io/ping_frame.hpp"
 #include "support/frames.hpp"
 #include "support/logs.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/tlog.hpp"
+#include "io/nav/tlog.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "io/internal/mavlink.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
-#include "pingvox/io/mavlink.hpp"
 #include "pingvox/io/nav.hpp"
 #include "support/logs.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/unpack.hpp"
+#include "io/bags/unpack.hpp"
 
 #include <bzlib.h>
 #include <gtest/gtest.h>

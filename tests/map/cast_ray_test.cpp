@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "support/rounds.hpp"
 
 using namespace pingvox;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "geometry/internal/ray_dda.hpp"
 #include "pingvox/cloud/trace_points.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"

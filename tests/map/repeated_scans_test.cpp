@@ -2,8 +2,8 @@
 
 #include <random>
 
+#include "geometry/internal/tree_order.hpp"
 #include "map/map_access.hpp"
-#include "pingvox/geometry/tree_order.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "support/differences.hpp"
 #include "support/oracle_map.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "support/random_segments.hpp"
 #include "support/scan_cells.hpp"

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include "mapping/internal/beam_tracer.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/map/occupancy_map.hpp"
-#include "pingvox/mapping/beam_tracer.hpp"
 #include "support/rounds.hpp"
 #include "support/uniform.hpp"
 

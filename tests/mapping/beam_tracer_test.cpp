@@ -1,4 +1,4 @@
-#include "pingvox/mapping/beam_tracer.hpp"
+#include "mapping/internal/beam_tracer.hpp"
 
 #include <gtest/gtest.h>
 

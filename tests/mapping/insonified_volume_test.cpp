@@ -1,4 +1,4 @@
-#include "pingvox/mapping/insonified_volume.hpp"
+#include "mapping/internal/insonified_volume.hpp"
 
 #include <gtest/gtest.h>
 

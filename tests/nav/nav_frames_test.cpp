@@ -1,4 +1,4 @@
-#include "pingvox/nav/nav_frames.hpp"
+#include "nav/internal/nav_frames.hpp"
 
 #include <gtest/gtest.h>
 

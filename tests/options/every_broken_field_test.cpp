@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "device/internal/head_emulator.hpp"
+#include "device/internal/nav_emulator.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
-#include "pingvox/device/head_emulator.hpp"
 #include "pingvox/device/micron_driver.hpp"
-#include "pingvox/device/nav_emulator.hpp"
 #include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"

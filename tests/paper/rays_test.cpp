@@ -6,7 +6,7 @@
 
 #include "bench/paper/paper_dda.hpp"
 #include "bench/paper/ray_cells.hpp"
-#include "pingvox/geometry/ray_dda.hpp"
+#include "geometry/internal/ray_dda.hpp"
 
 namespace pingvox::bench {
 namespace {

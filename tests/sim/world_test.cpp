@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/sim/random.hpp"
+#include "pingvox/geometry/random.hpp"
 
 namespace pingvox {
 namespace {

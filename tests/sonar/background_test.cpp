@@ -10,7 +10,7 @@
 #include <span>
 
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/sonar/blanking.hpp"
+#include "sonar/internal/blanking.hpp"
 #include "support/tank_recording.hpp"
 
 namespace pingvox {

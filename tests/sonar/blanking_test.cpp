@@ -1,4 +1,4 @@
-#include "pingvox/sonar/blanking.hpp"
+#include "sonar/internal/blanking.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pingvox/io/frame_finder.hpp"
+#include "io/internal/frame_finder.hpp"
 
 namespace pingvox {
 

@@ -8,9 +8,9 @@
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/geometry/random.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/result.hpp"
-#include "pingvox/sim/random.hpp"
 #include "pingvox/sim/world.hpp"
 #include "pingvox/sonar/beam.hpp"
 

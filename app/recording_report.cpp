@@ -1,0 +1,256 @@
+#include "recording_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "calibration_file.hpp"
+#include "map_report.hpp"
+#include "nav_report.hpp"
+#include "open_log.hpp"
+#include "pingvox/geometry/degree.hpp"
+#include "pingvox/io/bag.hpp"
+#include "shell_words.hpp"
+#include "step_report.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// The format of a file that could not be used; nullopt: standard input, or it is unknown.
+std::optional<Format> format_of_file(const InputFile& file) {
+  if (file.is_standard_input()) return std::nullopt;
+  const Result<Format> format = file.open().and_then([](ByteStream stream) { return identify_format(stream); });
+  return format ? std::optional(*format) : std::nullopt;
+}
+
+/// Says by which option a trajectory among the navigation is taken.
+Error advise_on_trajectory(Error error, const std::vector<InputFile>& files) {
+  if (error.code != Error::Code::kUnsupported) return error;
+  const bool has_trajectory = std::ranges::any_of(files, [](const InputFile& file) {
+    const std::optional<Format> format = format_of_file(file);
+    return format && kind_of(*format) == FormatKind::kTrajectory;
+  });
+  if (has_trajectory) error.message += ": 'map' and 'render' take it by --poses, 'locate' by --odometry";
+  return error;
+}
+
+}  // namespace
+
+Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& bag, Damage damage) {
+  RecordingOptions options;
+  options.nav = input_files(path.navs);
+  options.nav_offset_s = path.nav_offset_s;
+  options.nav_sources = path.nav_sources;
+  if (path.calibration) {
+    Result<CalibrationFile> calibration = read_calibration(*path.calibration);
+    if (!calibration) return tl::unexpected(calibration.error());
+    options.calibration = *std::move(calibration);
+  }
+  if (path.poses) options.poses = *path.poses;
+  options.damage = damage;
+  options.topic = bag.beams;
+  options.nav_fields = bag.nav;
+  return options;
+}
+
+std::vector<InputFile> input_files(const std::vector<std::string>& paths) {
+  return {paths.begin(), paths.end()};
+}
+
+Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options) {
+  const std::vector<InputFile> navs = options.nav;
+  return Recording::open(std::move(logs), std::move(options)).map_error([&](Error error) {
+    return advise_on_trajectory(std::move(error), navs);
+  });
+}
+
+Result<OpenedLog> open_log_of(const Recording& recording, std::size_t number) {
+  return recording.open_log(number).map_error([&](Error error) {
+    const std::optional<Format> format = format_of_file(recording.logs()[number]);
+    return format ? advise_on_log(std::move(error), *format) : std::move(error);
+  });
+}
+
+Result<VehiclePath> path_of(const Recording& recording) {
+  const RecordingOptions& options = recording.options();
+  return recording.path().map_error([&](Error error) {
+    if (error.code != Error::Code::kUnsupported) return error;
+    if (options.poses) {
+      const std::optional<Format> format = format_of_file(*options.poses);
+      if (format && (kind_of(*format) == FormatKind::kNav || is_bag(*format))) error.message += ": give it with --nav";
+    } else if (!tells_path(recording.nav().log) && has_turns(recording.nav().log)) {
+      error.message += "; 'pingvox slam' estimates the path from sonar and heading, for --poses";
+    }
+    return error;
+  });
+}
+
+Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::string_view nav_advice) {
+  if (!poses) return Trajectory::still(Pose::Identity());
+  return read_trajectory(*poses).map_error([&](Error error) {
+    if (error.code != Error::Code::kUnsupported) return error;
+    const std::optional<Format> format = format_of_file(*poses);
+    const bool is_nav = format && (kind_of(*format) == FormatKind::kNav || is_bag(*format));
+    if (is_nav) error.message += fmt::format(": {}", nav_advice);
+    return error;
+  });
+}
+
+std::vector<std::string> warnings_of(const Recording& recording, const VehiclePath& path) {
+  std::vector<std::string> warnings = nav_warnings(recording);
+  if (const std::string hint = mount_hint(recording); !hint.empty()) warnings.push_back(hint);
+  if (!recording.options().poses) return warnings;
+  const std::size_t poses = path.trajectory.poses().size() + left_out(path.steps);
+  for (const std::string& step : step_texts(path.steps, poses)) {
+    warnings.push_back(fmt::format("{}: {}", recording.options().poses->name(), step));
+  }
+  return warnings;
+}
+
+std::string nav_text(const VehiclePath& path, std::size_t damaged) {
+  assert(path.nav);
+  const std::string &attitude = path.nav->attitude, &position = path.nav->position, &velocity = path.nav->velocity;
+  std::string sources = on_one_line(attitude.empty() ? position : attitude);
+  if (!velocity.empty()) {
+    sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));
+  } else if (attitude.empty()) {
+    sources += ", not turned: no attitude is known";
+  } else if (attitude != position) {
+    sources += " and " + on_one_line(position);
+  }
+  std::string text = fmt::format("{} from {}", counted(path.trajectory.poses().size(), "pose"), sources);
+  if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
+    text += ", " + counted(gaps, "gap");
+  }
+  if (damaged > 0) text += fmt::format("; skipped {}", counted(damaged, "damaged record"));
+  return text;
+}
+
+std::string frame_text(const VehiclePath::Nav& nav) {
+  if (nav.position.empty()) return frame_text(nav.attitude);
+  if (!nav.origin_fix) {
+    return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position,
+                                   nav.frame_note.empty() ? "" : ": " + nav.frame_note));
+  }
+  return fmt::format("x east, y north of latitude {:.7f}, longitude {:.7f} degrees", nav.origin_fix->x() / kDegree_rad,
+                     nav.origin_fix->y() / kDegree_rad);
+}
+
+std::string frame_text(std::string_view heading) {
+  return fmt::format("origin at the first pose; x east, y north as far as {} points north", on_one_line(heading));
+}
+
+Result<void> check_ranges(const BuildOptions& options) {
+  const double nearest_m = options.echo.min_range_m.value_or(0.0);
+  if (options.echo.max_range_m > nearest_m) return {};
+  return fail(Error::Code::kBadOption,
+              fmt::format("--max-range: must be above --min-range ({:.6g} m{}), is {:.6g} m", nearest_m,
+                          nearest_m == EchoOptions::kDefaultBlanking_m ? " by default" : "", options.echo.max_range_m));
+}
+
+std::string_view gap_advice(const Recording& recording, const VehiclePath& path) {
+  const auto& sources = recording.nav().log.sources();
+  const bool has_steps = !path.steps.empty() ||
+                         std::ranges::any_of(sources, [](const NavSource& source) { return !source.steps.empty(); });
+  if (has_steps) return "what lies behind a jump is left out";
+  return path.nav ? kNavMustCover : "--poses must cover the log, with times in seconds of the same clock";
+}
+
+std::string skipped_text(const MappedLog& mapped, std::string_view unit, const Trajectory& trajectory,
+                         std::string_view gap_advice, const Lattice& lattice) {
+  std::string text;
+  const auto& [no_pose, blocked, too_long, outside] =
+      std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.too_long, mapped.report.outside);
+  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count + too_long.count;
+  const auto add = [&text, all, unit](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
+    if (left_out.count == 0) return;
+    text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit, reason);
+    if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
+    text += fmt::format(" ({})", advice);
+  };
+  const auto& poses = trajectory.poses();
+  add(no_pose,
+      fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
+                  trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
+      gap_advice);
+  add(blocked, "towards an obstacle of the map that is nearer than --min-range",
+      "they would record its second echo, or what lies around it");
+  add(too_long, "with ten times the range of the others, or of too many cells",
+      "their range may be damaged; a shorter --max-range or a larger --resolution may do");
+  add(outside,
+      fmt::format("outside of the map, which reaches {:.3g} m from its origin",
+                  std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
+      "lengths are in metres; a larger --resolution reaches farther");
+  if (mapped.damaged > 0) {
+    text += (text.empty() ? "" : "; ") + damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
+  }
+  return text;
+}
+
+std::string text_of_nothing(const std::string& name, const std::string& skipped) {
+  return fmt::format("{}: nothing could be mapped: {}", name, skipped.empty() ? "it is empty" : skipped);
+}
+
+Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size_t logs, Console& console) {
+  if (texts.size() == logs) return fail(Error::Code::kCorrupt, texts.front());
+  for (const std::string& text : texts) console.say(text);
+  return {};
+}
+
+std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
+  // More than 100 times as long: likely in milliseconds.
+  constexpr double kTooLong = 100.0;
+  if (!report.first_s || !report.last_s) return {};
+  const double poses_s = trajectory.poses().back().time_s - trajectory.poses().front().time_s;
+  const double log_s = *report.last_s - *report.first_s;
+  if (!(log_s > 0.0 && poses_s > kTooLong * log_s)) return {};
+  return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", poses_s, log_s);
+}
+
+std::string odd_attitudes_text(const Trajectory& trajectory) {
+  constexpr std::size_t kMany = 10;
+  const auto& poses = trajectory.poses();
+  const auto turns = [&](const StampedPose& pose) {
+    return pose.map_from_body.linear() != poses.front().map_from_body.linear();
+  };
+  const auto moves = [&](const StampedPose& pose) {
+    return (pose.map_from_body.translation() - poses.front().map_from_body.translation()).norm() > 1.0;
+  };
+  if (poses.size() < kMany || std::ranges::any_of(poses, turns) || std::ranges::none_of(poses, moves)) return {};
+  return "its poses move but never turn: is the attitude known?";
+}
+
+std::string hint_at_path(const std::string& log, Format format) {
+  if (log == "-") return {};
+  const std::string beside = std::filesystem::path(log).replace_extension(".tum").string();
+  std::error_code error;
+  if (std::filesystem::is_regular_file(beside, error)) {
+    return "its trajectory may be --poses " + quote_for_shell(beside);
+  }
+  // Named as `live` does.
+  std::string navs;
+  for (const std::string_view suffix : {".tlog", "-2.tlog", ".jsonl"}) {
+    std::filesystem::path nav = std::filesystem::path(log).replace_extension();
+    nav += suffix;
+    if (std::filesystem::is_regular_file(nav, error)) navs += " --nav " + quote_for_shell(nav.string());
+  }
+  if (!navs.empty()) return "its navigation may be" + navs;
+  return is_bag(format) ? hint_at_nav(log) : "";
+}
+
+std::string hint_at_nav(const std::string& log) {
+  if (log == "-") return {};
+  // Of a long bag the beginning tells enough.
+  constexpr std::size_t kBeginning_bytes = 32'000'000;
+  const Result<BagContents> bag = ByteStream::open(log).and_then(
+      [](ByteStream stream) { return read_bag(std::move(stream), Damage::kSkip, {}, kBeginning_bytes); });
+  return bag && tells_path(bag->nav.log) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
+}
+
+}  // namespace pingvox::app

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/mapping/build_options.hpp"
+#include "pingvox/recording/recording.hpp"
+#include "pingvox/result.hpp"
+
+/// Opens recordings by the options of the command line, and says what was found in them.
+namespace pingvox::app {
+
+/// What of a command says how its files are read and where the vehicle was.
+/// @return errors of reading the calibration
+Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& bag, Damage damage);
+/// Recording::open, with advice in its errors.
+Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options);
+/// Paths of the command line as files.
+std::vector<InputFile> input_files(const std::vector<std::string>& paths);
+/// Recording::open_log, with advice in its errors.
+Result<OpenedLog> open_log_of(const Recording& recording, std::size_t number);
+/// Recording::path, with advice in its errors.
+Result<VehiclePath> path_of(const Recording& recording);
+
+/// The trajectory in a file of TUM lines, as it is; without one the vehicle stays at the origin.
+/// @param nav_advice  what to do with a file of navigation
+Result<Trajectory> trajectory_of(const std::optional<std::string>& poses,
+                                 std::string_view nav_advice = "'pingvox convert' makes one of positions");
+
+/// What is to be said of the navigation or the poses, and of the mount. Each begins with the name of a file.
+std::vector<std::string> warnings_of(const Recording& recording, const VehiclePath& path);
+
+/// "6037 poses from ATTITUDE and LOCAL_POSITION_NED, 2 gaps". REQUIRES a path from navigation.
+/// @param damaged  records of the navigation that could not be read
+std::string nav_text(const VehiclePath& path, std::size_t damaged);
+/// What the axes of the map are. REQUIRES a path from navigation.
+std::string frame_text(const VehiclePath::Nav& nav);
+/// The same of a path that begins at 0, 0 and is turned as a heading says.
+std::string frame_text(std::string_view heading);
+
+/// Checks that --max-range is above --min-range: kBadOption names the options.
+Result<void> check_ranges(const BuildOptions& options);
+
+/// What to do where beams have no pose.
+inline constexpr std::string_view kNavMustCover = "--nav must cover the log; --nav-offset corrects its clock";
+std::string_view gap_advice(const Recording& recording, const VehiclePath& path);
+/// "3036 of 4000 beams outside the time of the poses, 0.000 s to 24.000 s, the first at 24.043 s (--poses must cover
+/// the log, with times in seconds of the same clock)"; empty: none was skipped.
+/// @param unit  of what the log holds: "beam" or "point"
+std::string skipped_text(const MappedLog& mapped, std::string_view unit, const Trajectory& trajectory,
+                         std::string_view gap_advice, const Lattice& lattice);
+/// "dive.csv: nothing could be mapped: it is empty". @param skipped  as skipped_text has it
+std::string text_of_nothing(const std::string& name, const std::string& skipped);
+/// Names the logs of which nothing is on the map; kCorrupt when these are all of them.
+/// @param texts  one for each of these logs
+Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size_t logs, Console& console);
+
+/// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
+std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
+/// "its poses move but never turn: is the attitude known?"; empty: nothing is odd.
+std::string odd_attitudes_text(const Trajectory& trajectory);
+
+/// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum" or
+/// "its navigation may be --nav dive.tlog" (files beside it), or "navigation in the bag is used with --nav dive.db3";
+/// empty: nowhere. Reads the beginning of a bag.
+std::string hint_at_path(const std::string& log, Format format);
+/// The same of a log that is a bag; empty also for others and for standard input.
+std::string hint_at_nav(const std::string& log);
+
+}  // namespace pingvox::app

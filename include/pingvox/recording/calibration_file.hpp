@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/slam/slam_calibration.hpp"
+
+namespace pingvox {
+
+/// What SLAM found of the sensors of a vehicle, for other recordings of it.
+struct CalibrationFile {
+  SlamCalibration calibration;
+  /// How the sources of navigation were said to be mounted: what the calibration is relative to.
+  std::map<std::string, Pose> body_from_source;
+};
+
+/// What is added to the place of the sonar on the vehicle [m].
+inline Eigen::Vector3d sonar_moved_by(const SlamCalibration& calibration) {
+  return {calibration.sonar_x_m.value, calibration.sonar_y_m.value, 0.0};
+}
+
+}  // namespace pingvox

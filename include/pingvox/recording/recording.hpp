@@ -1,0 +1,203 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/io/beam_topic.hpp"
+#include "pingvox/io/beams.hpp"
+#include "pingvox/io/format.hpp"
+#include "pingvox/io/input_file.hpp"
+#include "pingvox/io/nav_fields.hpp"
+#include "pingvox/io/open_log.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/mapping/build_map.hpp"
+#include "pingvox/mapping/build_options.hpp"
+#include "pingvox/mapping/head_options.hpp"
+#include "pingvox/nav/main_source.hpp"
+#include "pingvox/recording/calibration_file.hpp"
+#include "pingvox/recording/nav_offset.hpp"
+#include "pingvox/recording/navigation.hpp"
+#include "pingvox/recording/vehicle_path.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/clock_offset.hpp"
+#include "pingvox/slam/locate_recording.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+#include "pingvox/sonar/background.hpp"
+#include "pingvox/sonar/sound_speed.hpp"
+
+/// What was recorded on a dive as one value, and what is made of it.
+namespace pingvox {
+
+struct RecordingOptions {
+  std::vector<InputFile> nav = {};                            ///< navigation logs, in any order
+  std::optional<double> nav_offset_s = std::nullopt;          ///< added to their times; nullopt: to be found
+  std::vector<NamedSource> nav_sources = {};                  ///< of them, that are taken instead of others
+  std::map<std::string, Pose> nav_mounts = {};                ///< body_from_source by its name; the identity for others
+  std::optional<CalibrationFile> calibration = std::nullopt;  ///< of their sensors, and of the sonar's place
+  /// TUM lines instead of navigation: the path, or to `locate` odometry in a frame that may drift.
+  std::optional<InputFile> poses = std::nullopt;
+  HeadOptions head = {};
+  Pose body_from_sonar = Pose::Identity();            ///< the mount of the head
+  std::optional<double> nav_salinity = std::nullopt;  ///< of water whose temperature and depth the navigation tells
+  std::optional<double> background_m = std::nullopt;  ///< range of the background that is subtracted; nullopt: none
+  Damage damage = Damage::kSkip;
+  BeamTopic topic = {};                                          ///< of beams in a ROS bag
+  std::vector<NavFields> nav_fields = {};                        ///< of messages with navigation in ROS bags
+  std::optional<Eigen::Vector3d> cloud_origin_m = std::nullopt;  ///< as for open_scans
+
+  /// kBadOption: poses together with navigation, or what needs navigation without any.
+  Result<void> validate() const;
+};
+
+/// A log of a recording, opened.
+struct OpenedLog {
+  std::string name;
+  Format format = Format::kCsv;
+  Log log;
+
+  BeamSource* beams() const;  ///< nullptr: it is of scans
+  ScanSource* scans() const;  ///< nullptr: it is of beams
+};
+
+/// What was recorded on one dive: logs of a sonar, the head that made them and how it is mounted, and the navigation of
+/// the vehicle on the sonar's clock. Const functions read files, but change nothing; logs can be read again and again,
+/// but for standard input and pipes.
+class Recording {
+ public:
+  /// Reads the navigation, and finds how its clock and that of the first log are offset.
+  /// @param logs  of beams or scans, at least one
+  /// @return kBadOption when the options do not validate; kUnsupported when the navigation cannot be joined; errors of
+  ///         reading, which name the file
+  static Result<Recording> open(std::vector<InputFile> logs, RecordingOptions options = {});
+
+  const std::vector<InputFile>& logs() const { return logs_; }
+  const RecordingOptions& options() const { return options_; }
+  /// The logs of navigation as one; without any it has no sources.
+  const NavFiles& nav() const { return nav_; }
+  /// "dive.tlog, dvl.csv"
+  std::string nav_names() const;
+  const NavOffset& nav_offset() const { return nav_offset_; }
+  /// nullopt: the ranges are as the device reckons them.
+  const std::optional<Water>& water() const { return water_; }
+
+  /// Opens a log as it is.
+  /// @return kUnsupported when it is no log, kBadOption for an option that does not fit it
+  Result<OpenedLog> open_log(std::size_t number) const;
+
+  /// Where the vehicle was: by the poses, else by the navigation, else at the origin all the time.
+  /// @return as read_path and path_of
+  Result<VehiclePath> path() const;
+
+ private:
+  Recording(std::vector<InputFile> logs, RecordingOptions options, NavFiles nav)
+      : logs_(std::move(logs)), options_(std::move(options)), nav_(std::move(nav)) {}
+
+  std::vector<InputFile> logs_;
+  RecordingOptions options_;
+  NavFiles nav_;
+  NavOffset nav_offset_;
+  std::optional<Water> water_;
+};
+
+/// What each direction of a recording always hears near the head, learned from all its logs, as each may be short.
+/// @return kBadOption for standard input, which cannot be read once more; kUnsupported when there are too few beams
+Result<Background> learn_background(const Recording& recording, double range_m);
+
+/// What was mapped of a log.
+struct MappedLog {
+  std::string name;
+  BuildReport report;
+  BeamModelOptions beam;      ///< as used: width and height may be those of the log's device
+  bool assumes_beam = false;  ///< width or height are defaults: neither options nor log tell them
+  std::size_t damaged = 0;    ///< records that could not be read
+  std::string first_damage;   ///< place and reason of the first one
+  std::string note;           ///< how its beams are read, where that is not as its format says; empty: as it says
+  /// By how much the clock of the poses is off, by the turning of the sonar's picture. nullopt: it cannot be told.
+  std::optional<ClockOffset> clock_check;
+
+  bool is_nothing() const;  ///< no beam or point of it is on the map
+};
+
+/// Adds a log to a map, reading it to its end.
+/// @param build  all but the size of the beam and the mount, which are the recording's
+/// @return kUnsupported when the path is of navigation and the log has no times; errors of build_map
+Result<MappedLog> map_log(const Recording& recording, OpenedLog& log, const VehiclePath& path,
+                          const BuildOptions& build, OccupancyMap& map, const Progress& progress = {});
+
+/// Adds what was mapped of another log. First and last time are those of all.
+void add(const BuildReport& log, BuildReport& all);
+
+/// A map of a recording, and how it was made.
+struct RecordingMap {
+  OccupancyMap map;
+  BuildReport report;  ///< of all logs together
+  VehiclePath path;
+  std::vector<MappedLog> logs;
+};
+
+/// Maps all logs of a recording along its path (Recording::path).
+/// @param build  filter, echoes, votes: size of the beam, mount, speed of sound in known water and background are the
+///               recording's
+/// @return kCorrupt when nothing of any log is on the map; errors of Recording::path and map_log
+Result<RecordingMap> build_map(const Recording& recording, const MapOptions& map = {}, const BuildOptions& build = {},
+                               const Progress& progress = {});
+/// The same along another path, as that of `slam`.
+Result<RecordingMap> build_map(const Recording& recording, VehiclePath path, const MapOptions& map = {},
+                               const BuildOptions& build = {}, const Progress& progress = {});
+
+/// What SLAM found in a recording.
+struct RecordingSlam {
+  SlamSolution solution;
+  SlamOptions options;                     ///< as used
+  std::size_t skipped = 0;                 ///< records that could not be read
+  std::vector<NavFiles::Note> notes = {};  ///< how the logs are read, where that is not as their formats say
+  double read_s = 0.0, solve_s = 0.0;      ///< of wall time
+
+  /// For build_map, with the place of the sonar as it was found.
+  VehiclePath path() const;
+};
+
+/// Where the vehicle was, by a SlamSmoother over all beams and navigation.
+/// @param options  their mount, mounts and offset of the navigation, calibration and speed of sound in known water are
+///                 the recording's
+/// @param first    the first log, where it was opened already: standard input is read once
+/// @return as SlamSmoother::solve; kUnsupported for scans; errors of reading
+Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& options = {},
+                           std::optional<OpenedLog> first = std::nullopt);
+
+struct RecordingLocateOptions {
+  LocateOptions locate = {};  ///< mount, noise and speed of sound in known water are the recording's
+  /// Heights of the map that are used; nullopt: half a metre around the sonar at the first beam.
+  std::optional<double> min_z_m = std::nullopt, max_z_m = std::nullopt;
+};
+
+/// Where the vehicle was in a known map.
+struct RecordingLocation {
+  LocatedRecording found;
+  LocateOptions options;  ///< as used
+  /// Names of the sources of the motion; both empty: none, or that of `RecordingOptions::poses`.
+  std::string velocity, heading;
+  std::vector<OtherSource> others;                     ///< sources of velocity and heading that were not used
+  std::vector<SourceStep> steps;                       ///< of `RecordingOptions::poses`, that no vehicle makes
+  std::size_t odometry_poses = 0;                      ///< of `RecordingOptions::poses`
+  std::size_t beams = 0, skipped = 0;                  ///< skipped: records that could not be read
+  double recorded_s = 0.0;                             ///< from the first to the last beam
+  std::size_t field_bytes = 0;                         ///< of the distance field
+  double read_s = 0.0, field_s = 0.0, locate_s = 0.0;  ///< of wall time
+};
+
+/// @param progress  called with the share that is done, in 0..1
+/// @return as locate_recording; kUnsupported also when beams and navigation do not overlap in time, or the map has no
+///         walls at the height of the sonar
+Result<RecordingLocation> locate(const Recording& recording, const OccupancyMap& map,
+                                 const RecordingLocateOptions& options = {},
+                                 const std::function<void(double)>& progress = nullptr);
+
+}  // namespace pingvox

@@ -1,3 +1,0 @@
-#pragma once
-
-#include "pingvox/geometry/random.hpp"  // where it is now

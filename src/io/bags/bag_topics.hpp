@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/bags/bag.hpp"
+#include "io/bags/ros_message.hpp"
+
+namespace pingvox {
+
+/// What a kind of message is: the name of its type without the package, and the fields that we need of it. Packages are
+/// renamed more often than messages.
+struct RosType {
+  std::string_view name;
+  std::array<std::string_view, 10> fields;  ///< empty ones are none
+  std::string_view topic_end = {};          ///< end of the topic's name, for numbers that only it explains
+  std::string_view package = {};            ///< for fields that mean something else in one package; empty: any
+};
+
+/// The wanted fields of one message.
+class RosFields {
+ public:
+  RosFields(const RosMessage& message, std::span<const std::size_t> fields) : message_(message), fields_(fields) {}
+
+  double number(std::size_t field, std::size_t i = 0) const { return message_.number(fields_[field], i); }
+  std::size_t count(std::size_t field) const { return message_.count(fields_[field]); }
+  std::string_view text(std::size_t field) const { return message_.text(fields_[field]); }
+  std::vector<std::uint8_t> bytes(std::size_t field) const { return message_.bytes(fields_[field]); }
+
+ private:
+  const RosMessage& message_;
+  std::span<const std::size_t> fields_;
+};
+
+/// The name of a frame without the '/' that old drivers begin it with.
+inline std::string_view without_slash(std::string_view frame) {
+  while (frame.starts_with('/')) frame.remove_prefix(1);
+  return frame;
+}
+
+/// A topic of a known type.
+struct KnownTopic {
+  std::size_t type = 0;  ///< in the table
+  std::shared_ptr<const RosLayout> layout;
+  std::vector<std::size_t> fields;
+  std::optional<std::size_t> stamp_s, stamp_ns;
+  std::optional<std::size_t> frame, child;  ///< header.frame_id and child_frame_id
+
+  /// As the message names it; empty: it names none.
+  std::string_view frame_of(const RosMessage& message) const { return name_in(message, frame); }
+  std::string_view child_of(const RosMessage& message) const { return name_in(message, child); }
+
+  /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording, else the
+  /// recording's time.
+  double time_of(const RosMessage& message, double recorded_s) const {
+    constexpr double kNear_s = 60.0;
+    if (!stamp_s || !stamp_ns) return recorded_s;
+    const double time_s = message.number(*stamp_s) + message.number(*stamp_ns) * 1e-9;
+    return std::fabs(time_s - recorded_s) <= kNear_s ? time_s : recorded_s;
+  }
+
+ private:
+  static std::string_view name_in(const RosMessage& message, std::optional<std::size_t> field) {
+    return field ? without_slash(message.text(*field)) : std::string_view();
+  }
+};
+
+/// A topic whose messages have these fields, up to the first empty one; nullopt: they lack one.
+std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std::string_view> paths);
+
+/// nullopt: the topic is of none of these types, or has other fields.
+template <class Types>
+std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types) {
+  if (!topic.is_readable) return std::nullopt;
+  const std::string_view type = topic.type;
+  const std::string_view name = type.substr(type.rfind('/') + 1);  // npos + 1 is 0
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    const RosType& wanted = types[i].type;
+    if (name != wanted.name || !topic.name.ends_with(wanted.topic_end) || !type.starts_with(wanted.package)) {
+      continue;
+    }
+    if (auto known = topic_with(topic, wanted.fields)) {
+      known->type = i;
+      return known;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A whole number in its range; nullopt: it is none.
+template <class T>
+std::optional<T> whole(double number) {
+  const bool is_in = number >= std::numeric_limits<T>::min() && number <= std::numeric_limits<T>::max();
+  return is_in ? std::optional(static_cast<T>(number)) : std::nullopt;
+}
+
+/// Kinds of damage: messages that cannot be used.
+inline constexpr std::string_view kNoFit = "message that does not fit its definition",
+                                  kImpossible = "impossible values",
+                                  kContradiction = "numbers that contradict each other";
+
+/// Why a message cannot be used.
+struct Unusable {
+  std::string_view kind;  ///< lives as long as the program
+  std::string why = {};   ///< with the numbers, as in "1 range does not fit ..."; empty: the kind says all
+};
+
+/// The messages of a bag that cannot be used.
+class UnusableMessages {
+ public:
+  void add(const Unusable& message, std::optional<std::uint64_t> file_byte);
+
+  const std::vector<DamageKind>& kinds() const { return kinds_; }
+  bool empty() const { return kinds_.empty(); }
+  /// Place and reason of the first one, as in "byte 4117: 1 range does not fit ..."; empty: there is none.
+  const std::string& first_text() const { return first_text_; }
+
+ private:
+  std::vector<DamageKind> kinds_;
+  std::string first_text_;
+};
+
+/// That of the bag, then its messages that cannot be used.
+std::vector<DamageKind> damage_of(const Bag& bag, const UnusableMessages& unusable);
+/// Place and reason of the first of them; empty: there is none.
+std::string first_damage_of(const Bag& bag, const UnusableMessages& unusable);
+
+/// "/left (sensor_msgs/LaserScan), /right (sensor_msgs/LaserScan)": the topics so far that are of a kind.
+std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&));
+
+/// The error where nothing says which topic is meant. @param what  that they hold: "beams"
+tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool (*is_of_kind)(const BagTopic&));
+
+/// Whether messages of the topic are beams.
+bool is_sonar(const BagTopic& topic);
+
+}  // namespace pingvox

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "io/nav/coordinates.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// Header of a cloud whose points have x, y, z and other fields, each of these a float.
+std::string ply_header(std::string_view comment, std::uint64_t points, Coordinates coordinates,
+                       std::initializer_list<std::string_view> others);
+
+/// Writes the occupied leaves of a map as points, binary little-endian: x, y, z (centre of the leaf) [m], as floats or
+/// doubles (Coordinates), log_odds, and size of the leaf [m].
+Result<void> write_ply(const OccupancyMap& map, std::ostream& out);
+
+}  // namespace pingvox
