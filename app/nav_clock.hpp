@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "json.hpp"
+#include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
 #include "pingvox/recording/nav_offset.hpp"
 #include "pingvox/recording/navigation.hpp"
-#include "pingvox/slam/clock_offset.hpp"
 
 namespace pingvox::app {
 

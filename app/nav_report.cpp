@@ -17,7 +17,7 @@
 #include "open_log.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/format.hpp"
-#include "pingvox/slam/clock_offset.hpp"
+#include "pingvox/nav/clock_offset.hpp"
 #include "step_report.hpp"
 
 namespace pingvox::app {

@@ -71,15 +71,18 @@ endfunction()
 # Layers that look at raw bytes or memory. No other may cast pointers (tests/layers).
 set(PINGVOX_RAW_LAYERS map cloud io device)
 
-# pingvox_layer(NAME [DEPENDS LAYER...]): one folder of src/ and include/pingvox/ as one target. Headers for users are in
-# include/pingvox/NAME, those for other layers and the program in src/NAME/internal, which are not installed.
+# pingvox_layer(NAME [DEPENDS LAYER...]): one folder of src/, with those in it, and of include/pingvox/, as one target.
+# Headers for users are in include/pingvox/NAME, those for other layers and the program in src/NAME/internal, which are
+# not installed.
 function(pingvox_layer name)
   cmake_parse_arguments(LAYER "" "" "DEPENDS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp")
   set(kernels ${sources})
-  list(FILTER kernels INCLUDE REGEX "/kernels/")
-  # Highway includes each once for every kind of vector.
-  set_source_files_properties(${kernels} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  list(FILTER kernels INCLUDE REGEX "/kernels/[^/]+$")
+  if(kernels)
+    # Highway includes each once for every kind of vector.
+    set_source_files_properties(${kernels} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   list(TRANSFORM LAYER_DEPENDS PREPEND pingvox_)
   if(sources)
     add_library(pingvox_${name} STATIC ${sources})

@@ -22,7 +22,7 @@
 #include "pingvox/slam/odometry.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/sweep.hpp"
-#include "slam/beam_likelihood.hpp"
+#include "slam/localisation/beam_likelihood.hpp"
 #include "tank_beams.hpp"
 
 namespace pingvox::bench {

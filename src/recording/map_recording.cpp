@@ -8,8 +8,9 @@
 #include <utility>
 #include <variant>
 
+#include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/recording/recording.hpp"
-#include "pingvox/slam/clock_offset.hpp"
+#include "pingvox/slam/picture_turns.hpp"
 #include "sonar/internal/beam_source_decorator.hpp"
 
 namespace pingvox {

@@ -13,9 +13,10 @@
 
 #include "io/internal/clock.hpp"
 #include "pingvox/io/open_log.hpp"
+#include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
-#include "pingvox/slam/clock_offset.hpp"
+#include "pingvox/slam/picture_turns.hpp"
 
 namespace pingvox {
 namespace {

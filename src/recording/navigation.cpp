@@ -13,7 +13,7 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/open_log.hpp"
-#include "pingvox/slam/clock_offset.hpp"
+#include "pingvox/nav/clock_offset.hpp"
 
 namespace pingvox {
 namespace {

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "nav/internal/navigation.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/basin.hpp"
-#include "slam/echo_runs.hpp"
-#include "slam/navigation.hpp"
-#include "slam/slam_solver.hpp"
+#include "slam/smoother/slam_solver.hpp"
+#include "slam/sweeps/echo_runs.hpp"
 
 // What is heard and measured in the basin, as the estimation of motion takes it.
 namespace pingvox::test {

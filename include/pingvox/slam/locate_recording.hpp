@@ -7,9 +7,9 @@
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/distance_field.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
-#include "pingvox/slam/distance_field.hpp"
 #include "pingvox/slam/localizer.hpp"
 #include "pingvox/slam/odometry.hpp"
 #include "pingvox/slam/slam_smoother.hpp"

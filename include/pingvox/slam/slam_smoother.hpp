@@ -12,10 +12,10 @@
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/distance_field.hpp"
+#include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
-#include "pingvox/slam/clock_offset.hpp"
-#include "pingvox/slam/distance_field.hpp"
 #include "pingvox/slam/slam_calibration.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"

@@ -1,0 +1,273 @@
+#include "slam/causal/causal_estimator.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "slam/odometry/velocity_gaps.hpp"
+#include "slam/smoother/solution.hpp"
+
+namespace pingvox {
+namespace {
+
+constexpr std::array<double, 3> kSweepGates_m = {3.0, 2.0, 1.5};
+/// For so long the compasses' deviations are found, and the frame of the poses turns with them.
+constexpr double kSettle_s = 600.0;
+/// Samples so long before the window tell noise and outliers at its beginning.
+constexpr double kBefore_s = 60.0;
+
+/// Samples until a time, from some time before another on: those that tell noise and outliers at that time.
+/// REQUIRES samples in order.
+std::vector<NavSource> sources_within(const std::vector<NavSource>& sources, double from_s, double to_s,
+                                      double before_s) {
+  constexpr std::ptrdiff_t kSamplesBefore = 16;  // at least: a source that falls silent stays known
+  std::vector<NavSource> within;
+  for (const NavSource& source : sources) {
+    const auto& samples = source.samples;
+    const auto end = std::ranges::upper_bound(samples, to_s, {}, &NavSample::time_s);
+    auto first = std::ranges::lower_bound(samples.begin(), end, from_s - before_s, {}, &NavSample::time_s);
+    first -= std::min(kSamplesBefore, first - samples.begin());
+    within.push_back({source.name, source.quantity, {first, end}});
+  }
+  return within;
+}
+
+/// The turn and move that brings places nearest to others, in the mean square.
+Pose2 align(const std::vector<Eigen::Vector3d>& places, const std::vector<Eigen::Vector3d>& to) {
+  const auto count = static_cast<double>(places.size());
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero(), mean_to = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    mean += places[k].head<2>() / count;
+    mean_to += to[k].head<2>() / count;
+  }
+  double cosine = 0.0, sine = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Eigen::Vector2d a = places[k].head<2>() - mean, b = to[k].head<2>() - mean_to;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const double yaw_rad = std::atan2(sine, cosine);
+  return {mean_to - rotation2(yaw_rad) * mean, yaw_rad};
+}
+
+/// The knots of the window, and new ones until the end of what was recorded.
+Result<std::vector<double>> window_knot_times(const CausalWindow& window, const SlamInput& recording) {
+  const bool is_first = window.times_s.empty();
+  const Span span{is_first ? recording.span.from_s : window.times_s.back(), recording.span.to_s};
+  Result<std::vector<double>> added = knot_times(span, recording.sweeps, recording.beam_times_s.size());
+  if (!added || is_first) return added;
+  std::vector<double> times_s = window.times_s;
+  times_s.insert(times_s.end(), added->begin() + 1, added->end());
+  return times_s;
+}
+
+}  // namespace
+
+CausalEstimator::CausalEstimator(SlamOptions options) : options_(std::move(options)), window_(options_.seed) {
+  options_.estimation = Estimation::kCausal;
+}
+
+void CausalEstimator::add_beam(double time_s) {
+  beam_times_s_.push_back(time_s);
+  ++beams_;
+}
+
+void CausalEstimator::add_sweep(HeardSweep sweep) {
+  if (sweep.extent != Sweep::Extent::kCut) ++complete_sweeps_;
+  sweeps_.push_back(std::move(sweep));
+  ++all_sweeps_;
+}
+
+Result<void> CausalEstimator::add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample) {
+  return pingvox::add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
+}
+
+Result<void> CausalEstimator::solve() {
+  return sweeps_.empty() ? Result<void>() : solve_until(sweeps_.back().to_s);
+}
+
+MotionSources CausalEstimator::sources_of_window(double nav_until_s) {
+  const double from_s = window_.times_s.empty() ? -kInfinity : window_.times_s.front();
+  MotionSources sources{sources_within(sources_, from_s, nav_until_s, kBefore_s)};
+  if (options_.motion == MotionSource::kVelocity) return sources;
+  const Result<NavLog> log = NavLog::make(sources.measured, NavClock::kUnknown);
+  if (!log) return sources;
+  const std::vector<HeadingSource> headings = headings_of(*log, options_);
+  odometry_.extend(sweeps_, sonar_mount(options_.body_from_sonar), headings.empty() ? nullptr : &headings.front());
+  if (odometry_.tells()) {
+    sources.by_sonar = odometry_.sources();
+  } else {
+    std::erase_if(sources.measured, [](const NavSource& s) { return s.quantity == NavQuantity::kVelocity; });
+  }
+  return sources;
+}
+
+Result<void> CausalEstimator::solve_until(double nav_until_s) {
+  const auto end = std::ranges::upper_bound(beam_times_s_, sweeps_.back().to_s) - beam_times_s_.begin();
+  Result<Navigation> navigation = navigation_of(sources_of_window(nav_until_s), options_);
+  if (navigation) fill_gaps(*navigation);
+  const Result<SlamInput> recording = std::move(navigation).and_then([&](Navigation part) {
+    return slam_input_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)), sweeps_, std::move(part));
+  });
+  const bool goes_on = recording && (window_.times_s.empty() || recording->span.to_s > window_.times_s.back());
+  Result<std::vector<double>> times_s =
+      recording.and_then([&](const SlamInput& part) { return window_knot_times(window_, part); });
+  if (!goes_on || !times_s) {
+    // Too early for velocity and heading, or they are silent: these beams have no pose yet.
+    if (!times_s) missing_ = times_s.error();
+    return {};
+  }
+  SlamProblem problem(*std::move(times_s), recording->navigation.velocity, recording->navigation.headings,
+                      options_.calibration);
+  const bool is_first = !solver_;
+  const Unknowns start = is_first ? problem.dead_reckoning() : window_.continue_in(problem);
+  Before before{window_.first_sweep, window_.prior_in(problem, start), &window_.held};
+  SlamSolver solver = solver_of(std::move(problem), *recording, options_, start, std::move(before));
+  std::vector<StampedPose> poses = new_poses(solver, *recording);
+  SweepLoops found;
+  if (options_.matching == Matching::kPairs) {
+    bool determined = !is_first || solver.step(std::nullopt);
+    std::optional<SweepLoops> loops;
+    if (determined) loops = close_new_loops(solver);
+    determined = determined && loops;
+    const double widest_m = kGateOfReach * solver.reach_m();
+    for (const double gate_m : kSweepGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
+    if (!determined) return not_determined();
+    found = *loops;
+  }
+  const bool settles = !window_.prior;
+  const auto left = window_.keep(solver, sweeps_, options_.causal_sweeps);
+  if (!left) return not_determined();
+  // Nothing of a solution that fails is kept: the next one begins where the last one ended.
+  poses_.insert(poses_.end(), poses.begin(), poses.end());
+  loops_.found += found.found;
+  loops_.kept += found.kept;
+  if (settles && !poses_.empty() && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
+    frame_ = frame_ * align(solver.unknowns().knots, start.knots);
+  sweeps_.erase(sweeps_.begin(), sweeps_.begin() + static_cast<std::ptrdiff_t>(*left));
+  solver_.emplace(std::move(solver));
+  forget();
+  return {};
+}
+
+void CausalEstimator::fill_gaps(Navigation& navigation) {
+  VelocitySource& velocity = navigation.velocity;
+  if (options_.matching == Matching::kNone || velocity.by_sonar) return;
+  const Span span{velocity.ahead.from_s(), solver_ ? sweeps_.back().to_s : velocity.ahead.to_s()};
+  for (const TimeSeries::Gap& gap : fill_velocity_gaps(sweeps_, span, velocity_from_sonar(velocity, options_),
+                                                       navigation.headings.front(), velocity)) {
+    filled_s_ += std::max(0.0, gap.to_s - std::max(gap.from_s, filled_until_s_));
+    filled_until_s_ = std::max(filled_until_s_, gap.to_s);
+  }
+}
+
+std::vector<StampedPose> CausalEstimator::new_poses(const SlamSolver& solver, const SlamInput& recording) const {
+  const double after_s = poses_.empty() ? -kInfinity : poses_.back().time_s;
+  const auto first = std::ranges::upper_bound(recording.beam_times_s, after_s);
+  std::vector<StampedPose> poses = poses_at({first, recording.beam_times_s.end()}, solver.problem(), solver.unknowns(),
+                                            recording.navigation.depth, options_);
+  for (StampedPose& pose : poses) pose.map_from_body = in_frame(pose.map_from_body);
+  return poses;
+}
+
+Result<void> CausalEstimator::not_determined() {
+  missing_ = {Error::Code::kUnsupported, "the recording does not determine the trajectory"};
+  return tl::unexpected(missing_);
+}
+
+bool CausalEstimator::tells_enough() const {
+  return odometry_.matched() >= odometry_.min_matched(all_sweeps_ - 1);
+}
+
+/// What is before the window.
+void CausalEstimator::forget() {
+  const double from_s = window_.times_s.front();
+  sources_ = sources_within(sources_, from_s, kInfinity, kBefore_s);
+  odometry_.forget_before(from_s);
+  beam_times_s_.erase(beam_times_s_.begin(), std::ranges::lower_bound(beam_times_s_, from_s));
+}
+
+Pose CausalEstimator::in_frame(const Pose& pose) const {
+  Pose moved = Eigen::AngleAxisd(frame_.yaw_rad, Eigen::Vector3d::UnitZ()) * pose;
+  moved.translation().head<2>() += frame_.place_m;
+  return moved;
+}
+
+std::optional<StampedPose> CausalEstimator::pose() const {
+  if (!solver_ || poses_.empty()) return std::nullopt;
+  if (odometry_.tells() && !(odometry_.tells_now() && tells_enough())) return std::nullopt;
+  const double from_s = window_.times_s.back();
+  MotionSources sources{sources_within(sources_, from_s, kInfinity, 0.0)};
+  if (odometry_.tells()) sources.by_sonar = odometry_.sources();
+  Result<Navigation> navigation = navigation_of(std::move(sources), options_);
+  if (!navigation) return std::nullopt;
+  // The window's last error of the heading is that of its main one.
+  std::vector<HeadingSource>& headings = navigation->headings;
+  const auto main = std::ranges::find(headings, window_.headings.front(), &HeadingSource::name);
+  if (main == headings.end()) return std::nullopt;
+  std::rotate(headings.begin(), main, main + 1);
+  // By the sonar the velocity is known at the end of a sweep, or was in a gap, and goes on.
+  const bool is_in_gap = navigation->velocity.ahead.to_s() < from_s;
+  if (is_in_gap) navigation->velocity = solver_->problem().velocity();
+  const double known_s = is_in_gap || navigation->velocity.by_sonar ? kInfinity : navigation->velocity.ahead.to_s();
+  const double to_s = std::min(known_s, headings.front().yaw_rad.to_s());
+  StampedPose pose = poses_.back();
+  if (to_s > from_s) {
+    const SlamProblem problem({from_s, to_s}, std::move(navigation->velocity), std::move(headings),
+                              options_.calibration);
+    CausalWindow end(options_.seed);
+    end.times_s = {from_s};
+    end.poses = {window_.poses.back()};
+    end.headings = window_.headings;
+    end.globals = window_.globals;
+    const std::vector<StampedPose> poses =
+        poses_at(std::span(&to_s, 1), problem, end.continue_in(problem), navigation->depth, options_);
+    pose = {to_s, in_frame(poses.front().map_from_body)};
+  }
+  pose.map_from_body.translation().head<2>() -= poses_.front().map_from_body.translation().head<2>();
+  return pose;
+}
+
+Result<SlamSolution> CausalEstimator::finish() {
+  if (sweeps_.empty() && !solver_) return fail(Error::Code::kUnsupported, "there are no beams");
+  if (!sweeps_.empty()) {
+    if (const auto solved = solve_until(kInfinity); !solved) return tl::unexpected(solved.error());
+  }
+  if (!solver_) {
+    Error missing = missing_;
+    if (options_.motion == MotionSource::kSonar)
+      missing.message += ", and the sonar does not tell how the vehicle moved";
+    return tl::unexpected(std::move(missing));
+  }
+  if (odometry_.tells() && !tells_enough()) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("there is no velocity over ground, and the sonar does not tell how the vehicle "
+                            "moved: {} of {} sweeps match those before them",
+                            odometry_.matched(), all_sweeps_ - 1));
+  }
+  begin_at_origin(poses_);
+  Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(poses_));
+  if (!solution) return solution;
+  solution->report.beams = beams_;
+  solution->report.sweeps = complete_sweeps_;
+  solution->report.knots = window_.left_knots + window_.times_s.size();
+  solution->report.echoes = window_.left_echoes + window_.echoes;
+  solution->report.largest = window_.largest;
+  solution->report.gaps_by_sonar_s = filled_s_;
+  solution->report.submap_loops_found = loops_.found;
+  solution->report.submap_loops_kept = loops_.kept;
+  if (solution->report.by_sonar) {
+    SonarMotion& motion = *solution->report.by_sonar;
+    motion.matched = odometry_.matched();
+    const std::vector<StampedPose>& told = solution->trajectory.poses();
+    motion.drift_m = motion.noise_m_sqrt_s * std::sqrt(told.back().time_s - told.front().time_s);
+  }
+  return solution;
+}
+
+}  // namespace pingvox

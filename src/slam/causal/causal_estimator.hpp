@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "pingvox/geometry/pose2.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+#include "slam/causal/causal_window.hpp"
+#include "slam/odometry/sonar_odometry.hpp"
+#include "slam/smoother/slam_input.hpp"
+#include "slam/smoother/sweep_loops.hpp"
+
+namespace pingvox {
+
+/// Estimates each pose from what was recorded until then: after some sweeps the poses of their beams by dead reckoning
+/// from the last solution, then a new solution of a window of the last sweeps.
+class CausalEstimator {
+ public:
+  /// REQUIRES valid options.
+  explicit CausalEstimator(SlamOptions options);
+  // Solutions point to the window.
+  CausalEstimator(const CausalEstimator&) = delete;
+  CausalEstimator& operator=(const CausalEstimator&) = delete;
+
+  /// @param time_s  not before that of the last one
+  void add_beam(double time_s);
+  /// Takes a sweep whose beams were added.
+  void add_sweep(HeardSweep sweep);
+  /// Takes a sample on the clock of the navigation. @return kCorrupt when a number is not finite
+  Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample);
+
+  /// Solves with the sweeps until now, and navigation until the end of the last one. What is missing may come later.
+  /// @return kUnsupported when the recording does not determine the poses, which are as before then: these sweeps are
+  ///         solved with the next ones; kCorrupt when times jump
+  Result<void> solve();
+  /// @see CausalSlam::pose
+  std::optional<StampedPose> pose() const;
+  /// Solves with all navigation.
+  Result<SlamSolution> finish();
+
+ private:
+  Result<void> solve_until(double nav_until_s);
+  /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
+  /// moved.
+  MotionSources sources_of_window(double nav_until_s);
+  /// Puts what the sonar tells where the velocity is missing, once there is a trajectory until its end as well.
+  void fill_gaps(Navigation& navigation);
+  /// Of the beams since the last solution, by what a new one begins with.
+  std::vector<StampedPose> new_poses(const SlamSolver& solver, const SlamInput& recording) const;
+  Result<void> not_determined();
+  void forget();
+  /// Whether enough of all sweeps match, where the vehicle moves by its sonar.
+  bool tells_enough() const;
+  Pose in_frame(const Pose& pose) const;
+
+  SlamOptions options_;
+  /// Of the window, and what waits.
+  std::vector<double> beam_times_s_;
+  std::vector<HeardSweep> sweeps_;
+  std::vector<NavSource> sources_;  ///< with some samples before, in order
+  std::size_t beams_ = 0, all_sweeps_ = 0, complete_sweeps_ = 0;
+
+  GrowingOdometry odometry_;
+
+  CausalWindow window_;
+  SweepLoops loops_;                                     ///< that moved the poses, of all solutions
+  std::optional<SlamSolver> solver_;                     ///< of the last solution
+  Error missing_{};                                      ///< why there is no later one
+  double filled_s_ = 0.0, filled_until_s_ = -kInfinity;  ///< where the velocity was missing and the sonar told it
+  std::vector<StampedPose> poses_;
+  /// Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
+  /// those before, or their map would bend. What left the window keeps its frame.
+  Pose2 frame_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "nav/internal/navigation.hpp"
+#include "slam/smoother/echo_pairs.hpp"
+#include "slam/smoother/slam_input.hpp"
+#include "slam/smoother/slam_solver.hpp"
+
+namespace pingvox {
+
+/// Puts what the sonar says of the motion where a measured velocity is missing for longer than a sweep takes, and where
+/// sweeps match.
+/// @param span  before the first and after the last sample the velocity is missing within this, as far as the heading
+///              is known
+/// @param velocity_from_sonar  seen from where the velocity is measured
+/// @return where that was
+std::vector<TimeSeries::Gap> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const Span& span,
+                                                const SonarMount& velocity_from_sonar, const HeadingSource& heading,
+                                                VelocitySource& velocity);
+
+}  // namespace pingvox

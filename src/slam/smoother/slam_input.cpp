@@ -1,0 +1,214 @@
+#include "slam/smoother/slam_input.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "base/median.hpp"
+#include "slam/odometry/sonar_odometry.hpp"
+#include "slam/sweeps/echo_runs.hpp"
+#include "slam/sweeps/level_head.hpp"
+
+namespace pingvox {
+namespace {
+
+/// As many samples as around, but earlier ones.
+constexpr OutlierWindow kEarlier = {10, 0};
+constexpr double kFastest_m_s = 30.0;
+
+/// Median over the samples.
+double usual_speed_m_s(const VelocitySource& velocity) {
+  std::vector<double> speeds_m_s;
+  for (std::size_t i = 0; i < velocity.ahead.size(); ++i) {
+    speeds_m_s.push_back(std::hypot(velocity.ahead.values()[i], velocity.left.values()[i]));
+  }
+  return median(std::move(speeds_m_s));
+}
+
+/// The time that is common to all that is needed.
+Result<Span> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
+  const Span beams{beam_times_s.front(), beam_times_s.back()};
+  Span span = beams;
+  const auto cut = [&](const TimeSeries& series, const std::string& what) -> Result<void> {
+    if (!overlap(span, series)) return no_overlap(beams, series, what);
+    span = {std::max(span.from_s, series.from_s()), std::min(span.to_s, series.to_s())};
+    return {};
+  };
+  if (const auto done = cut(navigation.velocity.ahead, "velocity of " + navigation.velocity.name); !done) {
+    return tl::unexpected(done.error());
+  }
+  const HeadingSource& main = navigation.headings.front();
+  if (const auto done = cut(main.yaw_rad, "heading of " + main.name); !done) return tl::unexpected(done.error());
+  return span;
+}
+
+}  // namespace
+
+SonarMount sonar_mount(const Pose& pose) {
+  return {pose.translation().head<2>(), std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0))};
+}
+
+Eigen::Vector3d place_of_velocity(const VelocitySource& velocity, const SlamOptions& options) {
+  if (velocity.by_sonar) return Eigen::Vector3d::Zero();
+  return mount_of(options.body_from_source, velocity.name).translation();
+}
+
+SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options) {
+  const Eigen::Translation3d source_from_body(-place_of_velocity(velocity, options));
+  return sonar_mount(Pose(source_from_body) * options.body_from_sonar);
+}
+
+HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
+  HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
+                   echo_runs(sweep, options.filter, options.echo)};
+  const double sense = is_upside_down(options.body_from_sonar) ? -1.0 : 1.0;
+  for (EchoRun& run : heard.runs) {
+    run.bearing_rad *= sense;
+    run.range_m *= options.sound_speed_ratio;
+    run.half_length_m *= options.sound_speed_ratio;
+  }
+  return heard;
+}
+
+double sweep_duration_s(std::span<const HeardSweep> sweeps) {
+  std::vector<double> complete_s, all_s;
+  for (const HeardSweep& sweep : sweeps) {
+    const double duration_s = sweep.to_s - sweep.from_s;
+    if (sweep.extent != Sweep::Extent::kCut) complete_s.push_back(duration_s);
+    all_s.push_back(duration_s);
+  }
+  return median(complete_s.empty() ? std::move(all_s) : std::move(complete_s));
+}
+
+NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, NavQuantity quantity) {
+  const auto known =
+      std::ranges::find_if(sources, [&](const NavSource& s) { return s.quantity == quantity && s.name == name; });
+  return known != sources.end() ? *known : sources.emplace_back(NavSource{std::string(name), quantity, {}});
+}
+
+Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
+                        std::vector<NavSource>& sources) {
+  if (!std::isfinite(sample.time_s) || !sample.value.allFinite()) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{} of {}: a sample has a number that is not finite", name_of(quantity), source));
+  }
+  NavSource& to = source_in(sources, source, quantity);
+  NavSample added = sample;
+  added.time_s += offset_s;
+  // A late one goes to its place.
+  const auto place = std::ranges::upper_bound(to.samples, added.time_s, {}, &NavSample::time_s);
+  to.samples.insert(place, added);
+  return {};
+}
+
+std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options) {
+  const NavSource* fastest = log.best(NavQuantity::kVelocity);
+  if (fastest == nullptr) return std::nullopt;
+  const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
+  return velocity_source(*fastest, mount_of(options.body_from_source, fastest->name), window);
+}
+
+std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options, const NavSource* by_sonar) {
+  std::vector<HeadingSource> headings, turns;
+  if (auto heading = by_sonar != nullptr ? heading_source(*by_sonar, Pose::Identity()) : std::nullopt) {
+    heading->drifts = heading->by_sonar = true;
+    headings.push_back(*std::move(heading));
+  }
+  for (const NavSource& source : log.sources()) {
+    if (source.subject == NavSubject::kOther || !is_usable(source)) continue;
+    const Pose mount = mount_of(options.body_from_source, source.name);
+    if (source.quantity == NavQuantity::kHeading || source.quantity == NavQuantity::kAttitude) {
+      if (auto heading = heading_source(source, mount)) headings.push_back(*std::move(heading));
+    } else if (source.quantity == NavQuantity::kTurnRate) {
+      if (auto heading = turned_heading(source, mount)) turns.push_back(*std::move(heading));
+    }
+  }
+  if (headings.empty()) headings = std::move(turns);
+  std::ranges::sort(headings, [](const HeadingSource& a, const HeadingSource& b) {
+    return std::tuple(b.samples(), a.name) < std::tuple(a.samples(), b.name);
+  });
+  return headings;
+}
+
+Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options) {
+  const Result<NavLog> made = NavLog::make(std::move(sources.measured), NavClock::kUnknown);
+  if (!made) return tl::unexpected(made.error());
+  const NavLog& log = *made;
+  if (const auto known = check_mounts(log, options.body_from_source); !known) return tl::unexpected(known.error());
+  const std::optional<SonarSources>& by_sonar = sources.by_sonar;
+  std::optional<VelocitySource> velocity = by_sonar ? sonar_velocity(by_sonar->velocity) : velocity_of(log, options);
+  std::vector<HeadingSource> headings =
+      headings_of(log, options, by_sonar && by_sonar->heading ? &*by_sonar->heading : nullptr);
+  if (!velocity || headings.empty()) {
+    if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return tl::unexpected(checked.error());
+    return fail(Error::Code::kUnsupported,
+                fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
+                                                              : !velocity                   ? "velocity over ground"
+                                                                                            : "heading or attitude"));
+  }
+  if (const double speed_m_s = usual_speed_m_s(*velocity); !(speed_m_s < kFastest_m_s)) {
+    return fail(Error::Code::kUnsupported, fmt::format("the velocity of {} is {:.3g} m/s in the median: no vehicle "
+                                                       "that a scanning sonar follows is as fast",
+                                                       velocity->name, speed_m_s));
+  }
+  if (options.calibration && options.calibration->velocity != velocity->name) {
+    return fail(Error::Code::kBadOption, fmt::format("the calibration is of the velocity of {}, not of {}",
+                                                     options.calibration->velocity, velocity->name));
+  }
+  Navigation navigation{*std::move(velocity), std::move(headings), std::nullopt};
+  if (const auto depth = depth_source(log)) {
+    if (const auto checked = check_source(*depth); !checked) return tl::unexpected(checked.error());
+    navigation.depth = number_source(*depth);
+  }
+  return navigation;
+}
+
+bool overlap(const Span& span, const TimeSeries& series) {
+  return series.from_s() < span.to_s && series.to_s() > span.from_s;
+}
+
+tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, const std::string& what) {
+  return fail(Error::Code::kUnsupported,
+              fmt::format("beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, the "
+                          "{} is from {:.3f} to {:.3f} s",
+                          beams.from_s, beams.to_s, what, series.from_s(), series.to_s()));
+}
+
+Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                                Navigation navigation) {
+  const Result<Span> span = common_span(beam_times_s, navigation);
+  if (!span) return tl::unexpected(span.error());
+  return SlamInput{beam_times_s, sweeps, std::move(navigation), *span};
+}
+
+Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+                                MotionSources sources, const SlamOptions& options) {
+  Result<Navigation> navigation = navigation_of(std::move(sources), options);
+  if (!navigation) return tl::unexpected(navigation.error());
+  return slam_input_of(beam_times_s, sweeps, *std::move(navigation));
+}
+
+Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSweep> sweeps, std::size_t beams) {
+  const double step_s = sweep_duration_s(sweeps) / kKnotsOfSweep;
+  if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
+  const double steps = std::max(1.0, std::ceil((span.to_s - span.from_s) / step_s));
+  if (!(steps <= static_cast<double>(beams) + kKnotsOfSweep)) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{} beams over {:.6g} s: their times jump", beams, span.to_s - span.from_s));
+  }
+  std::vector<double> times_s;
+  for (double i = 0.0; i < steps; i += 1.0) times_s.push_back(span.from_s + (span.to_s - span.from_s) * i / steps);
+  times_s.push_back(span.to_s);
+  return times_s;
+}
+
+SlamSolver solver_of(SlamProblem problem, const SlamInput& recording, const SlamOptions& options, Unknowns start,
+                     Before before) {
+  const SonarMount mount = velocity_from_sonar(recording.navigation.velocity, options);
+  return SlamSolver(std::move(problem), mount, recording.sweeps, options.seed, std::move(start), std::move(before));
+}
+
+}  // namespace pingvox

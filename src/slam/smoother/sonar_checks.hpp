@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "nav/internal/navigation.hpp"
+#include "pingvox/nav/clock_offset.hpp"
+#include "pingvox/slam/picture_turns.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
+#include "slam/odometry/sonar_odometry.hpp"
+#include "slam/smoother/slam_solver.hpp"
+
+namespace pingvox {
+
+/// What the sonar says of the navigation. nullopt: it cannot tell, or echoes are not matched.
+struct SonarChecks {
+  std::optional<VelocityCheck> velocity;
+  std::optional<ClockOffset> clock;  ///< of the heading
+
+  bool contradict_velocity() const { return velocity && velocity->contradicts; }
+};
+
+/// @param heading  the main one
+/// @param turns    of the same beams as the sweeps
+SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const HeardSweep> sweeps,
+                      PictureTurns turns, const SlamOptions& options);
+
+/// REQUIRES a report that names the velocity and the heading.
+void report_checks(const SonarChecks& checks, SlamReport& report);
+
+}  // namespace pingvox
