@@ -21,7 +21,7 @@ constexpr std::size_t kTileCells = kTile * kTile;
 constexpr std::size_t kMaxTiles = std::size_t{1} << 14;
 constexpr double kMaxBoxTiles = 1 << 22;
 
-enum : std::uint8_t { kNothing = 0, kFree = 1, kOccupied = 2 };
+enum : std::uint8_t { kNoCell = 0, kFreeCell = 1, kOccupiedCell = 2 };
 
 /// Columns from `first` up to, not including, `end` on both axes.
 struct Square {
@@ -140,14 +140,14 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
     field.tiles_.assign(field.tiles_x_ * static_cast<std::size_t>(tiles_y), 0);
 
     // What is known, tile by tile.
-    std::vector<std::uint8_t> states(kTileCells, kNothing);
+    std::vector<std::uint8_t> states(kTileCells, kNoCell);
     std::vector<bool> has_occupied(1, false);
     const auto tile_at = [&](std::size_t place) {
       std::uint32_t& tile = field.tiles_[place];
       if (tile == 0 && has_occupied.size() <= kMaxTiles) {
         tile = static_cast<std::uint32_t>(has_occupied.size());
         has_occupied.push_back(false);
-        states.resize(states.size() + kTileCells, kNothing);
+        states.resize(states.size() + kTileCells, kNoCell);
       }
       return tile;
     };
@@ -161,7 +161,7 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
           fits = tile != 0;
           if (!fits) return;
           if (is_occupied) has_occupied[tile] = true;
-          const std::uint8_t state = is_occupied ? kOccupied : kFree;
+          const std::uint8_t state = is_occupied ? kOccupiedCell : kFreeCell;
           for (std::int64_t y = std::max(y0, ty * kTile); y < std::min(y0 + s.size, (ty + 1) * kTile); ++y) {
             for (std::int64_t x = std::max(x0, tx * kTile); x < std::min(x0 + s.size, (tx + 1) * kTile); ++x) {
               std::uint8_t& cell =
@@ -196,7 +196,7 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
     }
     field.values_.resize(states.size());
     std::ranges::transform(states, field.values_.begin(), [](std::uint8_t state) {
-      return static_cast<std::uint8_t>(kFar + (state == kNothing ? kUnknown : 0));
+      return static_cast<std::uint8_t>(kFar + (state == kNoCell ? kUnknown : 0));
     });
     // A tile that is not near has nothing occupied beside it.
     field.clear_cells_.resize(has_occupied.size() * kBlocks * kBlocks, kTile - 2);
@@ -207,7 +207,8 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
           const std::size_t other = place + (ty - 1) * field.tiles_x_ + tx - 1;
           const std::size_t tile = other < field.tiles_.size() ? field.tiles_[other] : 0;
           for (std::size_t i = 0; i < kTileCells; ++i) {
-            (*occupied)[ty * kTile + i / kTile][tx * kTile + i % kTile] = states[tile * kTileCells + i] == kOccupied;
+            (*occupied)[ty * kTile + i / kTile][tx * kTile + i % kTile] =
+                states[tile * kTileCells + i] == kOccupiedCell;
           }
         }
       }
@@ -220,7 +221,7 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
         std::uint8_t& least = field.clear_cells_[field.block_of(field.tiles_[place], i % kTile, i / kTile)];
         least = static_cast<std::uint8_t>(std::clamp<double>(clear, 0.0, least));
         const std::uint8_t distance = square < steps.size() ? steps[square] : kFar;
-        field.values_[first + i] = static_cast<std::uint8_t>(distance + (states[first + i] == kNothing ? kUnknown : 0));
+        field.values_[first + i] = static_cast<std::uint8_t>(distance + (states[first + i] == kNoCell ? kUnknown : 0));
       }
     }
     return field;

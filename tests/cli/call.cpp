@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -42,6 +43,11 @@ void redirect(const char* path, int flags, int fd) {
 
 }  // namespace
 
+std::string tested_program() {
+  const char* const other = std::getenv("PINGVOX_PROGRAM");
+  return other != nullptr ? other : PINGVOX_PROGRAM;
+}
+
 Workplace::Workplace() : folder_(fresh_folder()), streams_(fresh_folder()) {}
 
 Workplace::~Workplace() {
@@ -52,7 +58,7 @@ Workplace::~Workplace() {
 
 pid_t Workplace::start(const std::vector<std::string>& words, const Streams& streams) const {
   put(streams_ / "in", streams.in);
-  std::vector<std::string> texts = {PINGVOX_PROGRAM};
+  std::vector<std::string> texts = {tested_program()};
   texts.insert(texts.end(), words.begin(), words.end());
   std::vector<char*> argv;
   for (std::string& text : texts) argv.push_back(text.data());

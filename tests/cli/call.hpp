@@ -26,6 +26,13 @@ struct Streams {
   bool ignores_hangup = false;                           ///< as under nohup
 };
 
+/// The program that is tested: that of this build, or the one that the environment names in PINGVOX_PROGRAM, as
+/// `./check` does with one that the sanitizers watch.
+std::string tested_program();
+/// For a test that would take too long with that one, and that others beside it cover.
+#define PINGVOX_SKIP_WITH_OTHER_PROGRAM() \
+  if (tested_program() != PINGVOX_PROGRAM) GTEST_SKIP() << "too slow with another program, and covered beside it"
+
 /// A folder of its own for one test, in which the program is called. Gone when the test is over.
 class Workplace {
  public:

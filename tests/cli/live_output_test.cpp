@@ -177,8 +177,8 @@ TEST(LiveRecording, AFolderThatIsMovedIsNoticedAndRecordedTo) {
 TEST(LiveCounts, BeamsAreMappedOrNotMapped) {
   const Head head;
   const Workplace here;
-  // The map reaches 3.2 m from its origin.
-  const Outcome outcome = here.call({"live", head.address(), "-o", "live.pvx", "--depth", "6", "--resolution", "0.1",
+  // The map reaches 1.6 m from its origin.
+  const Outcome outcome = here.call({"live", head.address(), "-o", "live.pvx", "--depth", "5", "--resolution", "0.1",
                                      "--range", "8", "--step", "18", "--beams", "50", "--json"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::istringstream report(outcome.out);

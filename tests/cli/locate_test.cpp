@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "call.hpp"
-#include "tests/support/rounds.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -155,7 +154,7 @@ TEST(Locate, NavigationOnAnotherClockIsMovedOrRefused) {
 }
 
 TEST(Locate, NamesAnOffsetOfTheClockThatTheSonarContradicts) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
+  PINGVOX_SKIP_WITH_OTHER_PROGRAM();
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "harbour", "-o", "a.csv", "--trajectory", "loop", "--nav", "nav.csv", "--nav-delay",
                        "0", "--truth", "t", "--resolution", "0.1"})

@@ -14,7 +14,6 @@
 #include "pingvox/geometry/pose.hpp"
 #include "tests/slam/basin.hpp"
 #include "tests/slam/scanned_drive.hpp"
-#include "tests/support/rounds.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -77,7 +76,7 @@ TEST(Slam, OfAVehicleThatStandsStillNamesWhatIsNotKnown) {
 
 // The DVL of the basin is turned and its compass deviates: kills a calibration that is read and not used.
 TEST(Slam, CalibrationIsReadBackByMapRenderLocateAndSlam) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
+  PINGVOX_SKIP_WITH_OTHER_PROGRAM();
   const Workplace here;
   write_basin(here);
   const std::vector<std::string> dive = {"beams.csv", "--nav", "nav.csv", "--mount", "0,0,0,0,0,40.1"};
@@ -135,7 +134,7 @@ double number_in(const std::string& toml, const std::string& name) {
 
 // The sonar of the basin is at 0, 0. Kills a map along the trajectory whose sonar is not where the trajectory has it.
 TEST(Slam, MapsFromTheSonarsEstimatedPlace) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
+  PINGVOX_SKIP_WITH_OTHER_PROGRAM();
   const Workplace here;
   write_basin(here);
   const std::vector<std::string> dive = {"slam", "beams.csv", "--nav", "nav.csv", "--mount", "0.4,-0.3,0,0,0,40.1"};
@@ -361,7 +360,7 @@ double error_m(const Workplace& here, const std::string& trajectory, const std::
 // Kills gates of pairs that are wider than the way from one boulder to the next: 1.5 m, where dead reckoning has 0.74
 // m.
 TEST(Slam, DoesNotTakeOneBoulderForTheNext) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
+  PINGVOX_SKIP_WITH_OTHER_PROGRAM();
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "seabed", "-o", "s.csv", "--trajectory", "loop", "--nav", "n.csv", "--truth", "t",
                        "--resolution", "1", "--seed", "2"})
@@ -373,7 +372,7 @@ TEST(Slam, DoesNotTakeOneBoulderForTheNext) {
 
 // Kills gates that are wide wherever the DVL is silent for twenty seconds: 1.2 m.
 TEST(Slam, ALostBottomLockDoesNotLeadToWrongWalls) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
+  PINGVOX_SKIP_WITH_OTHER_PROGRAM();
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "harbour", "-o", "h.csv", "--trajectory", "by-hand", "--turns", "50", "--nav",
                        "n.csv", "--truth", "t", "--resolution", "1", "--seed", "11"})
