@@ -264,10 +264,14 @@ std::optional<Echo> echo_of_mean(const EchoSearch& search, const SearchedBeam& b
   return nearer;
 }
 
-/// The same echo in the beam's own bins. Its peak is beyond the blanking range.
-Echo echo_of_beam(const SearchedBeam& beam, const Echo& of_mean) {
+/// The same echo in the beam's own bins. Its peak is beyond the blanking range. nullopt: the beam itself is fainter
+/// there than an echo.
+std::optional<Echo> echo_of_beam(const EchoSearch& search, const SearchedBeam& beam, const NearField& near,
+                                 const Echo& of_mean) {
   Echo own = of_mean;
   own.peak = std::max(of_mean.first, beam.heard.begin);
+  if (loudest(beam.bins, own.peak, of_mean.last + 1) < std::max(near.level, search.threshold_of(beam, own.first)))
+    return std::nullopt;
   for (std::size_t i = own.peak; i < beam.heard.end; ++i) {
     if (i > of_mean.last && has_ended(beam.bins, own.peak, i, beam.contrast)) break;
     if (beam.bins[i] > beam.bins[own.peak]) own.peak = i;
@@ -283,8 +287,8 @@ struct SearchedNearField {
 };
 
 /// The mean of the beams around says what a loud near field is, as speckle differs from beam to beam:
-/// - It rises to a crest beyond the blanking range, and nothing behind is louder: a near wall. What is behind a wall
-///   has lost more; what is louder has passed a part of the vehicle.
+/// - It rises to a crest beyond the blanking range, the beam itself is as loud there as an echo, and nothing behind is
+///   louder: a near wall. What is behind a wall has lost more; what is louder has passed a part of the vehicle.
 /// - Its crest is within the blanking range, but the ringing had ended before: something near, at an unknown range.
 ///   Unless something behind is louder, the beam says nothing.
 /// - It only falls: ringing or reverberation. If the beam alone rises in it, that is speckle, and unless what comes
@@ -295,9 +299,9 @@ SearchedNearField search_near_field(const EchoSearch& search, const SearchedBeam
   const SearchedNearField no_wall{.wall = std::nullopt, .search_from = heard.begin};
   const std::optional<Echo> echo = echo_of_mean(search, beam, near);
   if (echo && echo->peak >= heard.begin) {
-    const Echo own = echo_of_beam(beam, *echo);
-    if (beam.bins[own.peak] < loudest(beam.bins, own.last + 1, heard.end)) return no_wall;
-    return {.wall = own, .search_from = own.last + 1};
+    const std::optional<Echo> own = echo_of_beam(search, beam, near, *echo);
+    if (!own || beam.bins[own->peak] < loudest(beam.bins, own->last + 1, heard.end)) return no_wall;
+    return {.wall = own, .search_from = own->last + 1};
   }
   const int fainter = loudest(beam.bins, heard.begin, near.end) - loudest(beam.bins, near.end, heard.end);
   if (echo && near.begin >= near.ringing_end && fainter >= 0) return nothing;

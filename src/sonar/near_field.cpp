@@ -25,7 +25,7 @@ std::vector<std::uint8_t> mean_of_beams(const PolarImage& image, const Sweep& sw
 
 NearField near_field_of(std::vector<std::uint8_t> mean, std::size_t nearest, int level) {
   const auto is_loud = [level](std::uint8_t intensity) { return intensity >= level; };
-  NearField near{.mean = std::move(mean), .ringing_end = 0, .begin = nearest, .end = nearest};
+  NearField near{.mean = std::move(mean), .level = level, .ringing_end = 0, .begin = nearest, .end = nearest};
   while (!is_loud(near.mean[near.ringing_end])) ++near.ringing_end;
   while (near.ringing_end < near.mean.size() && is_loud(near.mean[near.ringing_end])) ++near.ringing_end;
   while (near.begin > 0 && is_loud(near.mean[near.begin - 1])) --near.begin;

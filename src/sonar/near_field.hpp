@@ -21,6 +21,7 @@ std::vector<std::uint8_t> mean_of_beams(const PolarImage& image, const Sweep& sw
 /// begins within it.
 struct NearField {
   std::vector<std::uint8_t> mean;  ///< of the beams around, all bins
+  int level = 0;                   ///< lowest intensity of a loud bin
   std::size_t ringing_end = 0;     ///< end of the first loud bins of the mean
   std::size_t begin = 0,
               end = 0;  ///< of the loud bins next to the blanking range; those of the ringing: begin < ringing_end

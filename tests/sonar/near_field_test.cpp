@@ -11,6 +11,8 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
+#include "support/rounds.hpp"
+#include "support/uniform.hpp"
 
 namespace pingvox {
 namespace {
@@ -103,6 +105,56 @@ TEST(NearWall, WhoseEchoBeginsWithinTheBlankingRangeIsFoundAtAnyGain) {
       }
     }
   }
+}
+
+// Kills a near wall of the beams around that is given to beams that do not hear it.
+TEST(NearWall, IsNotHeardByTheBeamsBesideIt) {
+  std::mt19937_64 random(11);
+  const Sweep sweep = sweep_of(40, 1.0, random, [](std::size_t n, Heard& heard) {
+    heard.add_ringing(0.8, 0.06);
+    if (n >= 18 && n < 22) heard.add_echo(0.7, 0.9, 0.3, 1.0);
+  });
+  const auto echoes = echoes_of(sweep);
+  for (std::size_t n = 0; n < echoes.size(); ++n) {
+    SCOPED_TRACE(n);
+    if (n >= 18 && n < 22) {
+      ASSERT_TRUE(echoes[n]);
+      EXPECT_NEAR(echoes[n]->range_m, 0.9, 0.1);
+    }
+    if (n < 16 || n >= 24) {  // the filter joins two beams to either side
+      EXPECT_FALSE(echoes[n]);
+    }
+  }
+}
+
+// Kills echoes fainter than what makes an echo, of any detector but kCanny, whose threshold is a gradient.
+TEST(NearWall, AndAllOtherEchoesAreAsLoudAsTheirThreshold) {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= test::rounds(200); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937_64 random(seed);
+    const auto metres = [&](double low, double high) { return test::uniform(random, low, high); };
+    const double ringing_m = metres(0.04, 0.5), wall_m = metres(0.6, 2.5), length_m = metres(0.1, 1.5);
+    const double amplitude = metres(0.1, 1.2), share = metres(0.1, 1.0), slant_m = metres(-0.05, 0.05);
+    const Sweep sweep = sweep_of(seed % 2 == 0 ? 200 : 40, metres(0.1, 1.5), random, [&](std::size_t n, Heard& heard) {
+      heard.add_ringing(0.9, ringing_m);
+      if (metres(0.0, 1.0) > share && n % 20 > 7) return;
+      const double range_m = wall_m + slant_m * static_cast<double>(n % 20);
+      heard.add_echo(range_m - length_m, range_m, metres(0.05, 1.0), amplitude);
+    });
+    for (const Detector detector : {Detector::kRise, Detector::kLevel, Detector::kMax, Detector::kCfar}) {
+      EchoOptions options{.detector = detector};
+      if (seed % 3 == 0) options.threshold = static_cast<int>(1 + random() % 120);
+      const PolarImage image = apply_filter(PolarImage(sweep), {});
+      for (const std::vector<Echo>& of_beam : detect_all_echoes(image, sweep, options)) {
+        for (const Echo& echo : of_beam) {
+          ++found;
+          ASSERT_GE(echo.intensity, echo.threshold) << echo.range_m << " m";
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 10'000U);
 }
 
 // Kills a near wall that hides what comes through it: a part of the vehicle does not fill the beam.
