@@ -250,6 +250,10 @@ int loudest(Bins bins, std::size_t begin, std::size_t end) {
   return begin < end ? *std::ranges::max_element(bins.subspan(begin, end - begin)) : 0;
 }
 
+int quietest(Bins bins, std::size_t begin, std::size_t end) {
+  return *std::ranges::min_element(bins.subspan(begin, end - begin));
+}
+
 /// The echo of the beams' mean that is heard where the blanking range ends or within the loud bins behind it: the last
 /// one with its peak nearer, unless that has faded, or the first with its peak beyond.
 std::optional<Echo> echo_of_mean(const EchoSearch& search, const SearchedBeam& beam, const NearField& near) {
@@ -292,7 +296,8 @@ struct SearchedNearField {
 /// - Its crest is within the blanking range, but the ringing had ended before: something near, at an unknown range.
 ///   Unless something behind is louder, the beam says nothing.
 /// - It only falls: ringing or reverberation. If the beam alone rises in it, that is speckle, and unless what comes
-///   behind is as loud, it may be the second echo of a wall that the near field hides: the beam says nothing.
+///   behind is as loud, it may be the second echo of a wall that the near field hides: the beam says nothing. A rise
+///   from below the loud bins is not within them: there the beam itself is quiet before a wall.
 SearchedNearField search_near_field(const EchoSearch& search, const SearchedBeam& beam, const NearField& near) {
   const BinWindow heard = beam.heard;
   const SearchedNearField nothing{.wall = std::nullopt, .search_from = heard.end};
@@ -306,7 +311,7 @@ SearchedNearField search_near_field(const EchoSearch& search, const SearchedBeam
   const int fainter = loudest(beam.bins, heard.begin, near.end) - loudest(beam.bins, near.end, heard.end);
   if (echo && near.begin >= near.ringing_end && fainter >= 0) return nothing;
   const std::optional<std::size_t> rise = search.rise_in(beam, heard);
-  if (!rise || *rise >= near.end) return no_wall;
+  if (!rise || *rise >= near.end || quietest(beam.bins, heard.begin, *rise) < near.level) return no_wall;
   return 2 * fainter > beam.contrast ? nothing : SearchedNearField{.wall = std::nullopt, .search_from = near.end};
 }
 

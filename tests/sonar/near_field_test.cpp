@@ -199,6 +199,24 @@ TEST(NearField, OfRingingBeyondTheBlankingRangeHidesNoFainterWalls) {
   EXPECT_GE(at_wall, 190U);
 }
 
+// Kills a wall taken for speckle of the beams around: its own beam is quiet before it.
+TEST(NearField, OfTheBeamsAroundHidesNoWallOfAQuietBeam) {
+  std::mt19937_64 random(14);
+  for (const double quiet_m : {0.6, 0.9}) {  // the beam is quiet where the blanking range ends, or soon behind
+    SCOPED_TRACE(quiet_m);
+    const Sweep sweep = sweep_of(40, 1.0, random, [&](std::size_t n, Heard& heard) {
+      heard.set(0, static_cast<std::size_t>((n % 10 == 5 ? quiet_m : 1.6) / kBin_m), 0.7);
+      if (n % 10 == 5) heard.add_echo(1.25, 1.4, 0.1, 0.6);
+    });
+    const auto echoes = detect_echoes(PolarImage(sweep), sweep, {});
+    for (std::size_t n = 5; n < echoes.size(); n += 10) {
+      SCOPED_TRACE(n);
+      ASSERT_TRUE(echoes[n]);
+      EXPECT_NEAR(echoes[n]->range_m, 1.4, 0.1);
+    }
+  }
+}
+
 /// A head whose near field is saturated up to 1.25 m but for dips of single beams, before a wall.
 Sweep saturated_turn(double wall_amplitude) {
   std::mt19937_64 random(7);
