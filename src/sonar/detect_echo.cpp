@@ -268,19 +268,25 @@ std::optional<Echo> echo_of_mean(const EchoSearch& search, const SearchedBeam& b
   return nearer;
 }
 
-/// The same echo in the beam's own bins. Its peak is beyond the blanking range. nullopt: the beam itself is fainter
-/// there than an echo.
+/// The same echo in the beam's own bins: what the beam alone would find there, as others around may have longer echoes
+/// that begin nearer; else, if too little of its rise is beyond the blanking range, from where the mean rises. nullopt:
+/// the beam itself is fainter there than an echo.
 std::optional<Echo> echo_of_beam(const EchoSearch& search, const SearchedBeam& beam, const NearField& near,
                                  const Echo& of_mean) {
-  Echo own = of_mean;
-  own.peak = std::max(of_mean.first, beam.heard.begin);
-  if (loudest(beam.bins, own.peak, of_mean.last + 1) < std::max(near.level, search.threshold_of(beam, own.first)))
-    return std::nullopt;
-  for (std::size_t i = own.peak; i < beam.heard.end; ++i) {
-    if (i > of_mean.last && has_ended(beam.bins, own.peak, i, beam.contrast)) break;
-    if (beam.bins[i] > beam.bins[own.peak]) own.peak = i;
-    own.last = i;
+  const std::size_t from = std::max(of_mean.first, beam.heard.begin);
+  const Bins crest = beam.bins.subspan(from, of_mean.last + 1 - from);
+  const std::size_t peak = from + static_cast<std::size_t>(std::ranges::max_element(crest) - crest.begin());
+  if (beam.bins[peak] < std::max(near.level, search.threshold_of(beam, of_mean.first))) return std::nullopt;
+  BinWindow window = beam.heard;
+  while (window.begin <= peak) {
+    const std::optional<std::size_t> first = search.rise_in(beam, window);
+    if (!first || *first > peak) break;
+    const Echo alone = echo_from(beam.bins, window, *first, beam.contrast);
+    if (alone.last >= peak) return alone;
+    window.begin = alone.last + 1;
   }
+  Echo own = echo_from(beam.bins, beam.heard, peak, beam.contrast);
+  own.first = of_mean.first;
   return own;
 }
 

@@ -157,6 +157,41 @@ TEST(NearWall, AndAllOtherEchoesAreAsLoudAsTheirThreshold) {
   EXPECT_GT(found, 10'000U);
 }
 
+// Kills a near wall whose beam has the end of its neighbours' echoes: what it hears behind its own moves its range.
+TEST(NearWall, EndsWhereItsOwnBeamHasFallen) {
+  std::mt19937_64 random(12);
+  const Sweep sweep = sweep_of(200, 1.0, random, [](std::size_t n, Heard& heard) {
+    heard.add_ringing(0.8, 0.06);
+    heard.set(24, 31, 0.57);
+    heard.set(32, 36, 0.6);
+    heard.set(37, 50, 0.57);
+    if (n % 9 == 0) heard.set(40, 43, 0.45);
+  });
+  const auto echoes = detect_echoes(PolarImage(sweep), sweep, {});
+  for (std::size_t n = 0; n < echoes.size(); n += 9) {
+    SCOPED_TRACE(n);
+    ASSERT_TRUE(echoes[n]);
+    EXPECT_LT(echoes[n]->last, 40U);
+    EXPECT_NEAR(echoes[n]->range_m, 0.85, 0.05);
+  }
+}
+
+// Kills a near wall that begins where its neighbours' do.
+TEST(NearWall, BeginsWhereItsOwnBeamRises) {
+  std::mt19937_64 random(13);
+  const Sweep sweep = sweep_of(200, 1.0, random, [](std::size_t n, Heard& heard) {
+    heard.add_ringing(0.8, 0.06);
+    heard.add_echo(n % 9 == 0 ? 0.85 : 0.5, 0.95, 0.4, 0.6);
+  });
+  const auto echoes = detect_echoes(PolarImage(sweep), sweep, {});
+  for (std::size_t n = 0; n < echoes.size(); n += 9) {
+    SCOPED_TRACE(n);
+    ASSERT_TRUE(echoes[n]);
+    EXPECT_GT(kBin_m * static_cast<double>(echoes[n]->first), 0.84);
+    EXPECT_NEAR(echoes[n]->range_m, 0.95, 0.1);
+  }
+}
+
 // Kills a near wall that hides what comes through it: a part of the vehicle does not fill the beam.
 TEST(NearWall, IsNotAPartOfTheVehicleThatIsFainterThanTheWallBehind) {
   std::mt19937_64 random(3);
