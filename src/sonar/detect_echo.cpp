@@ -179,7 +179,8 @@ class EchoSearch {
     if (loudness < beam.contrast) return std::nullopt;  // no level is lower
     const int level = default_level(beam.bins, beam.heard, beam.contrast);
     if (loudness < level) return std::nullopt;
-    return near_field_of(mean_of_beams(image_, sweep_, n, 0, beam.bins.size()), nearest, level);
+    return near_field_of(mean_of_beams(image_, sweep_, n, 0, beam.bins.size()), nearest, level,
+                         sweep_.beams[n].bin_length_m);
   }
 
   /// Where the next rise of a beam's bins reaches its threshold (kRise).
@@ -258,7 +259,7 @@ int quietest(Bins bins, std::size_t begin, std::size_t end) {
 /// one with its peak nearer, unless that has faded, or the first with its peak beyond.
 std::optional<Echo> echo_of_mean(const EchoSearch& search, const SearchedBeam& beam, const NearField& near) {
   std::optional<Echo> nearer;
-  BinWindow window{.begin = 0, .end = near.end};
+  BinWindow window{.begin = 0, .end = near.walls_end};
   while (const std::optional<std::size_t> first = search.rise_of_mean(near.mean, beam, window)) {
     const Echo echo = echo_from(near.mean, {.begin = window.begin, .end = beam.heard.end}, *first, beam.contrast);
     if (echo.peak >= beam.heard.begin) return echo;

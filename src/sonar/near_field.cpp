@@ -23,13 +23,20 @@ std::vector<std::uint8_t> mean_of_beams(const PolarImage& image, const Sweep& sw
   return mean;
 }
 
-NearField near_field_of(std::vector<std::uint8_t> mean, std::size_t nearest, int level) {
+NearField near_field_of(std::vector<std::uint8_t> mean, std::size_t nearest, int level, double bin_length_m) {
   const auto is_loud = [level](std::uint8_t intensity) { return intensity >= level; };
-  NearField near{.mean = std::move(mean), .level = level, .ringing_end = 0, .begin = nearest, .end = nearest};
+  NearField near{.mean = std::move(mean),
+                 .level = level,
+                 .ringing_end = 0,
+                 .begin = nearest,
+                 .end = nearest,
+                 .walls_end = nearest};
   while (!is_loud(near.mean[near.ringing_end])) ++near.ringing_end;
   while (near.ringing_end < near.mean.size() && is_loud(near.mean[near.ringing_end])) ++near.ringing_end;
   while (near.begin > 0 && is_loud(near.mean[near.begin - 1])) --near.begin;
   while (near.end < near.mean.size() && is_loud(near.mean[near.end])) ++near.end;
+  const double reach = std::min(kNearWalls_m / bin_length_m, static_cast<double>(near.end - nearest));
+  near.walls_end += static_cast<std::size_t>(reach);
   return near;
 }
 

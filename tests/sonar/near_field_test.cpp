@@ -252,6 +252,19 @@ TEST(NearField, OfTheBeamsAroundHidesNoWallOfAQuietBeam) {
   }
 }
 
+// Kills walls in bins that are loud far beyond any near field, where a long echo rises and falls.
+TEST(NearField, HoldsNoWallsFarBehindTheBlankingRange) {
+  for (const double crest_m : {2.75, 3.0, 3.3}) {
+    SCOPED_TRACE(crest_m);
+    std::mt19937_64 random(15);
+    const Sweep sweep = sweep_of(200, 1.0, random, [&](std::size_t, Heard& heard) {
+      heard.set(0, 145, 0.5);
+      heard.add_echo(crest_m - 0.3, crest_m, 0.2, 0.4);
+    });
+    for (const auto& echo : echoes_of(sweep)) EXPECT_FALSE(echo);
+  }
+}
+
 /// A head whose near field is saturated up to 1.25 m but for dips of single beams, before a wall.
 Sweep saturated_turn(double wall_amplitude) {
   std::mt19937_64 random(7);
