@@ -83,6 +83,17 @@ Result<Recording> recording_of(const SlamCommand& command) {
   });
 }
 
+/// Refuses options of beams where the format of the log says that it holds scans.
+Result<void> check_options_of_scans(const SlamCommand& command) {
+  if (command.logs.front() == "-") return {};
+  const Result<Format> format =
+      ByteStream::open(command.logs.front()).and_then([](ByteStream stream) { return identify_format(stream); });
+  if (!format || kind_of(*format) != FormatKind::kScans) return {};
+  return check_limited(command.limited, {kind_text(FormatKind::kScans)}).map_error([](const Error& error) {
+    return Error{error.code, fmt::format("slam: {}", error.message)};
+  });
+}
+
 /// What to do where SLAM failed.
 Error advise_on_slam(Error error, const SlamCommand& command) {
   if (!command.navs.empty() || error.code != Error::Code::kUnsupported) return error;
@@ -152,6 +163,7 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
 }  // namespace
 
 Result<int> run(const SlamCommand& command, Console& console) {
+  if (const auto used = check_options_of_scans(command); !used) return tl::unexpected(used.error());
   const Result<Recording> recording = recording_of(command);
   if (!recording) return tl::unexpected(recording.error());
   Result<OpenedLog> first = open_log_of(*recording, 0);

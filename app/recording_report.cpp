@@ -65,8 +65,10 @@ std::vector<InputFile> input_files(const std::vector<std::string>& paths) {
 
 Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options) {
   const std::vector<InputFile> navs = options.nav;
+  const InputFile first = logs.front();
   return Recording::open(std::move(logs), std::move(options)).map_error([&](Error error) {
-    return advise_on_trajectory(std::move(error), navs);
+    const std::optional<Format> format = format_of_file(first);
+    return advise_on_trajectory(format ? advise_on_log(std::move(error), *format) : std::move(error), navs);
   });
 }
 

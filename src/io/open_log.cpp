@@ -35,26 +35,30 @@ Result<Format> identify_format(ByteStream& stream) {
   return identify_format(stream.held());
 }
 
+Result<Format> identify_log(ByteStream& stream) {
+  const Result<Format> format = identify_format(stream);
+  if (!format || is_bag(*format)) return format;
+  const FormatKind kind = kind_of(*format);
+  if (kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud) return format;
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: is {}, not a log of a sonar", stream.name(), description_of(*format)));
+}
+
 Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen::Vector3d>& cloud_origin_m,
                      const BeamTopic& topic) {
-  const Result<Format> format = identify_format(stream);
+  const Result<Format> format = identify_log(stream);
   if (!format) return tl::unexpected(format.error());
-  const FormatKind kind = kind_of(*format);
   if (!topic.name.empty() && !topic.fields && !is_bag(*format)) {
     return fail(Error::Code::kBadOption, fmt::format("{}: a topic has no effect on {}, only on ROS bags", stream.name(),
                                                      description_of(*format)));
   }
   if (is_bag(*format)) return open_bag_log(std::move(stream), damage, topic);
-  if (kind == FormatKind::kBeams) {
+  if (kind_of(*format) == FormatKind::kBeams) {
     return open_beams(std::move(stream), damage, topic).map([](auto source) { return Log(std::move(source)); });
   }
-  if (kind == FormatKind::kScans || kind == FormatKind::kCloud) {
-    return ByteStream::whole(std::move(stream))
-        .and_then([&](FileBytes file) { return open_scans(std::move(file), damage, cloud_origin_m); })
-        .map([](auto source) { return Log(std::move(source)); });
-  }
-  return fail(Error::Code::kUnsupported,
-              fmt::format("{}: is {}, not a log of a sonar", stream.name(), description_of(*format)));
+  return ByteStream::whole(std::move(stream))
+      .and_then([&](FileBytes file) { return open_scans(std::move(file), damage, cloud_origin_m); })
+      .map([](auto source) { return Log(std::move(source)); });
 }
 
 Result<std::unique_ptr<BeamSource>> only_beams(Log log, const std::string& name) {

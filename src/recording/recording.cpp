@@ -27,6 +27,17 @@ Result<NavOffset> offset_of(const RecordingOptions& options, const NavLog& nav, 
   return find_nav_offset(nav, {log, options.topic, options.body_from_sonar, options.damage});
 }
 
+/// Says what is wrong with the log before the navigation is read. Standard input is read once, and an empty file may be
+/// one of several.
+Result<void> check_is_log(const InputFile& file) {
+  if (file.is_standard_input()) return {};
+  Result<ByteStream> stream = file.open();
+  if (!stream) return tl::unexpected(stream.error());
+  if (stream->beginning().empty()) return {};
+  const Result<Format> format = identify_log(*stream);
+  return format ? Result<void>() : tl::unexpected(format.error());
+}
+
 }  // namespace
 
 Result<void> RecordingOptions::validate() const {
@@ -55,6 +66,7 @@ Result<Recording> Recording::open(std::vector<InputFile> logs, RecordingOptions 
   if (logs.empty()) return fail(Error::Code::kBadOption, "recording: there must be a log");
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   const InputFile& first = logs.front();
+  if (const auto is_log = check_is_log(first); !is_log) return tl::unexpected(is_log.error());
   Result<NavFiles> nav = read_navigation(options.nav, {.damage = options.damage,
                                                        .fields = options.nav_fields,
                                                        .log = first.name(),

@@ -20,6 +20,9 @@ Result<Format> identify_format(const FileBytes& file);
 /// The same. Loads formats that are not read as streams into memory.
 Result<Format> identify_format(ByteStream& stream);
 
+/// The same of a log or a cloud: kUnsupported also when it is another file that can be read, as a map.
+Result<Format> identify_log(ByteStream& stream);
+
 /// A log of beams, or of scans of points.
 using Log = BagLog;
 
