@@ -13,14 +13,11 @@
 #include <set>
 #include <utility>
 
+#include "tests/slam/least_squares/random_matrix.hpp"
 #include "tests/support/uniform.hpp"
 
 namespace pingvox::test {
 namespace {
-
-Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& random) {
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1.0, 1.0); });
-}
 
 /// The same matrix twice.
 struct Problem {

@@ -11,16 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/uniform.hpp"
+#include "tests/slam/least_squares/random_matrix.hpp"
 
 namespace pingvox::test {
 namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
-Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& random) {
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1.0, 1.0); });
-}
 
 TEST(NormalEquations, SolveLoopsAndBorderAsDenseOnes) {
   std::mt19937_64 random(7);
