@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
@@ -24,12 +25,6 @@ Result<NavLog> read_navigation(const std::filesystem::path& path) {
   Result<NavFile> nav = read_nav(*file);
   if (!nav) return tl::unexpected(nav.error());
   return std::move(nav->log);
-}
-
-Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& places) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& place : places) sum += place;
-  return sum / static_cast<double>(places.size());
 }
 
 }  // namespace
@@ -72,16 +67,8 @@ Result<Pose> align(const Trajectory& from, const Trajectory& onto) {
     those.emplace_back(there->translation().head<2>());
   }
   if (these.size() < 2) return fail(Error::Code::kUnsupported, "the trajectories have no two times in common");
-  const Eigen::Vector2d these_middle = middle_of(these), those_middle = middle_of(those);
-  double sine = 0.0, cosine = 0.0;
-  for (std::size_t i = 0; i < these.size(); ++i) {
-    const Eigen::Vector2d a = these[i] - these_middle, b = those[i] - those_middle;
-    cosine += a.dot(b);
-    sine += a.x() * b.y() - a.y() * b.x();
-  }
-  const Eigen::Rotation2Dd turn(std::atan2(sine, cosine));
-  const Eigen::Vector2d shift = those_middle - turn * these_middle;
-  return pose_from_rpy({shift.x(), shift.y(), 0.0}, 0.0, 0.0, turn.angle());
+  const Pose2 fit = fit_pose2(these, those);
+  return pose_from_rpy({fit.place_m.x(), fit.place_m.y(), 0.0}, 0.0, 0.0, fit.yaw_rad);
 }
 
 Trajectory move_by(const Pose& by, const Trajectory& trajectory) {

@@ -18,6 +18,7 @@
 #include "line_map.hpp"
 #include "mapping/internal/beam_tracer.hpp"
 #include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/slam/localizer.hpp"
 #include "pingvox/viewer/render_map.hpp"
@@ -51,10 +52,6 @@ struct Place {
   std::vector<Run> runs;
   std::vector<Truth> truths;  ///< of each run
 };
-
-double yaw_of(const Pose& pose) {
-  return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
-}
 
 Eigen::Vector3d in_space(const Vector2d& point) {
   return {point.x(), point.y(), 0.0};

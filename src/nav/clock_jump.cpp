@@ -23,12 +23,12 @@ struct Jump {
 };
 
 /// Those of the longest pauses, in order of time.
-std::vector<Jump> possible_jumps(const std::vector<Pause>& pauses, const TimeSeries& yaw_rad) {
+std::vector<Jump> possible_jumps(const std::vector<TimeSpan>& pauses, const TimeSeries& yaw_rad) {
   std::vector<Jump> jumps;
-  for (const TimeSeries::Gap& gap : yaw_rad.gaps(yaw_rad.from_s(), yaw_rad.to_s())) {
+  for (const TimeSpan& gap : yaw_rad.gaps(yaw_rad.from_s(), yaw_rad.to_s())) {
     jumps.push_back({gap.from_s, yaw_rad.usual_step_s() - (gap.to_s - gap.from_s), gap.to_s});
   }
-  for (const Pause& pause : pauses) jumps.push_back({pause.to_s, pause.to_s - pause.from_s, pause.to_s});
+  for (const TimeSpan& pause : pauses) jumps.push_back({pause.to_s, pause.to_s - pause.from_s, pause.to_s});
   std::erase_if(jumps, [](const Jump& jump) { return std::abs(jump.offset_s) < kLeastPause_s; });
   std::ranges::sort(jumps, std::ranges::greater(), [](const Jump& jump) { return std::abs(jump.offset_s); });
   if (jumps.size() > kMaxPauses) jumps.resize(kMaxPauses);
@@ -38,7 +38,7 @@ std::vector<Jump> possible_jumps(const std::vector<Pause>& pauses, const TimeSer
 
 }  // namespace
 
-std::optional<ClockOffset> clock_jump(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+std::optional<ClockOffset> clock_jump(const std::vector<YawChange>& changes, const std::vector<TimeSpan>& pauses,
                                       const TimeSeries& yaw_rad) {
   constexpr double kMin_rad = 1e-6, kMaxOff_s = 2.0;
   const std::vector<Jump> jumps = possible_jumps(pauses, yaw_rad);

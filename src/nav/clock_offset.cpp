@@ -14,6 +14,7 @@
 #include "nav/internal/navigation.hpp"
 #include "nav/internal/yaw_clock.hpp"
 #include "nav/yaw_comparison.hpp"
+#include "pingvox/geometry/pose2.hpp"
 
 namespace pingvox {
 namespace {
@@ -145,7 +146,7 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const NavLog
   return clock_offset(all, heading->yaw_rad, kAny_s);
 }
 
-std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<TimeSpan>& pauses,
                                        const TimeSeries& yaw_rad) {
   if (const auto jump = clock_jump(thin(changes), pauses, yaw_rad)) return jump;
   // A search over all of a long recording would take longer than to map it.
@@ -162,12 +163,12 @@ std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, co
   return found;
 }
 
-std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<TimeSpan>& pauses,
                                        const Trajectory& trajectory) {
   std::vector<double> times_s, yaws_rad;
   for (const StampedPose& pose : trajectory.poses()) {
     times_s.push_back(pose.time_s);
-    add_yaw(rpy_of(pose.map_from_body.rotation()).z(), yaws_rad);
+    add_yaw(yaw_of(pose.map_from_body), yaws_rad);
   }
   return clock_error(changes, pauses, TimeSeries(std::move(times_s), std::move(yaws_rad)));
 }

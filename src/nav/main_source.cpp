@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "nav/internal/nav_frames.hpp"
+#include "pingvox/nav/time_span.hpp"
 
 namespace pingvox {
 namespace {
@@ -25,14 +26,10 @@ constexpr double kCovers = 0.5;
 /// One that is known for more is as good as the one that is known longest.
 constexpr double kCoversAll = 0.9;
 
-struct Stretch {
-  double from_s, to_s;
-};
-
 /// When a source is known: between valid samples, but for its gaps.
-std::vector<Stretch> stretches_of(const NavSource& source) {
+std::vector<TimeSpan> stretches_of(const NavSource& source) {
   const double longest_step_s = summary_of(source).longest_step_s;
-  std::vector<Stretch> stretches;
+  std::vector<TimeSpan> stretches;
   for (const NavSample& sample : source.samples) {
     if (!sample.valid) continue;
     if (stretches.empty() || sample.time_s - stretches.back().to_s > longest_step_s) {
@@ -44,10 +41,10 @@ std::vector<Stretch> stretches_of(const NavSource& source) {
 }
 
 /// Puts together stretches that overlap.
-std::vector<Stretch> united(std::vector<Stretch> stretches) {
-  std::ranges::sort(stretches, {}, &Stretch::from_s);
-  std::vector<Stretch> all;
-  for (const Stretch& next : stretches) {
+std::vector<TimeSpan> united(std::vector<TimeSpan> stretches) {
+  std::ranges::sort(stretches, {}, &TimeSpan::from_s);
+  std::vector<TimeSpan> all;
+  for (const TimeSpan& next : stretches) {
     if (all.empty() || next.from_s > all.back().to_s) all.push_back(next);
     all.back().to_s = std::max(all.back().to_s, next.to_s);
   }
@@ -55,7 +52,7 @@ std::vector<Stretch> united(std::vector<Stretch> stretches) {
 }
 
 /// Seconds in which both are known; a little for a single time.
-double common_s(const std::vector<Stretch>& a, const std::vector<Stretch>& b) {
+double common_s(const std::vector<TimeSpan>& a, const std::vector<TimeSpan>& b) {
   constexpr double kTouch_s = 1e-6;
   double sum_s = 0.0;
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
@@ -135,7 +132,7 @@ int class_of(const NavSource& source) {
 
 struct Candidate {
   const NavSource* source;
-  std::vector<Stretch> known;
+  std::vector<TimeSpan> known;
   double known_s = 0.0;  ///< alone, or together with others
 };
 
@@ -239,7 +236,7 @@ PathSources path_sources(const NavLog& log) {
   std::vector<Candidate> positions = candidates_in(log, kPlaces);
   std::vector<Candidate> attitudes = candidates_in(log, std::array{NavQuantity::kAttitude});
   if (!attitudes.empty()) {
-    std::vector<Stretch> turns;
+    std::vector<TimeSpan> turns;
     for (const Candidate& attitude : attitudes) std::ranges::copy(attitude.known, std::back_inserter(turns));
     turns = united(std::move(turns));
     for (Candidate& position : positions) position.known_s = common_s(position.known, turns);
@@ -253,7 +250,7 @@ PathSources path_sources(const NavLog& log) {
     path.attitude = main_source(log, NavQuantity::kAttitude);
     return path;
   }
-  const std::vector<Stretch> places = stretches_of(*path.position);
+  const std::vector<TimeSpan> places = stretches_of(*path.position);
   for (Candidate& attitude : attitudes) attitude.known_s = common_s(attitude.known, places);
   // A source of both has them in one frame, which need not be that of others.
   path.attitude = first_of(attitudes, [&](const Candidate& candidate, bool covers_all) {
@@ -267,7 +264,7 @@ std::vector<const NavSource*> covering_sources(const NavLog& log, std::span<cons
                                                const NavSource* other) {
   std::vector<Candidate> candidates = candidates_in(log, quantities);
   if (other != nullptr) {
-    const std::vector<Stretch> known = stretches_of(*other);
+    const std::vector<TimeSpan> known = stretches_of(*other);
     for (Candidate& candidate : candidates) candidate.known_s = common_s(candidate.known, known);
   }
   const double longest_s = longest_of(candidates);
@@ -280,7 +277,7 @@ std::vector<const NavSource*> covering_sources(const NavLog& log, std::span<cons
 }
 
 Result<NavLog> sources_between(const NavLog& log, double from_s, double to_s) {
-  const std::vector<Stretch> wanted = {{from_s, to_s}};
+  const std::vector<TimeSpan> wanted = {{from_s, to_s}};
   std::vector<NavSource> sources = log.sources();
   std::vector<double> known_s(sources.size(), 0.0);
   std::map<NavQuantity, double> longest_s;  // of each group

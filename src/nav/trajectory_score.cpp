@@ -38,17 +38,6 @@ ErrorStatistics statistics_of(const std::vector<Match>& matches, ErrorOf error_o
   return statistics;
 }
 
-/// The turn that brings ours, about its mean, closest to the reference about its own. 0 where every turn is as good.
-double best_turn_rad(const std::vector<Match>& matches, const Match& mean) {
-  double along = 0.0, across = 0.0;
-  for (const Match& match : matches) {
-    const Eigen::Vector2d ours = match.ours - mean.ours, reference = match.reference - mean.reference;
-    along += ours.dot(reference);
-    across += ours.x() * reference.y() - ours.y() * reference.x();
-  }
-  return std::atan2(across, along);
-}
-
 void set_relative_error(TrajectoryScore& score, const std::vector<Match>& matches, const Eigen::Rotation2Dd& turn) {
   score.per_m = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> path_m = {0.0};
@@ -98,11 +87,14 @@ Result<TrajectoryScore> score_trajectory(const Trajectory& trajectory, const Tra
   score.poses = matches.size();
 
   Match mean{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  std::vector<Eigen::Vector2d> ours_m, references_m;
   for (const Match& match : matches) {
     mean.ours += match.ours / static_cast<double>(matches.size());
     mean.reference += match.reference / static_cast<double>(matches.size());
+    ours_m.push_back(match.ours);
+    references_m.push_back(match.reference);
   }
-  score.se2_turn_rad = best_turn_rad(matches, mean);
+  score.se2_turn_rad = fit_pose2(ours_m, references_m).yaw_rad;
   const Eigen::Rotation2Dd turn(score.se2_turn_rad);
   const auto shifted_from = [](const Match& at) {
     return [&at](const Match& match) -> Eigen::Vector2d {

@@ -9,10 +9,10 @@ namespace {
 
 TEST(G2o, WritesNodesByTheirNumbersAndTheUpperTriangleOfTheInformation) {
   PoseGraph graph;
-  graph.nodes = {{7, {1.5, -2.0, 0.25}}, {9, {0.1, 0.0, -3.0}}};
+  graph.nodes = {{7, {{1.5, -2.0}, 0.25}}, {9, {{0.1, 0.0}, -3.0}}};
   Eigen::Matrix3d information;
   information << 4.0, 0.5, 0.25, 0.5, 5.0, -1.0, 0.25, -1.0, 6.0;
-  graph.edges = {{1, 0, {1.0, 2.0, 0.5}, information}};
+  graph.edges = {{1, 0, {{1.0, 2.0}, 0.5}, information}};
   std::ostringstream out;
   ASSERT_TRUE(write_g2o(graph, out));
   EXPECT_EQ(out.str(),

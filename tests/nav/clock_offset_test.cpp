@@ -161,7 +161,7 @@ class ClockJump : public testing::Test {
     }
     return all;
   }
-  static std::vector<Pause> pause_of(double length_s) { return {{kJump_s, kJump_s + length_s}}; }
+  static std::vector<TimeSpan> pause_of(double length_s) { return {{kJump_s, kJump_s + length_s}}; }
   static Trajectory poses(double ahead_s, double pause_s, const Yaw& yaw = wander) {
     std::vector<StampedPose> all;
     for (double time_s = 0.0; time_s < kEnd_s + 100.0; time_s += 0.5) {

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "pingvox/geometry/pose2.hpp"
+
 namespace pingvox {
 namespace {
 
 using Eigen::Vector3d;
-
-double yaw_of(const Pose& pose) {
-  return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0));
-}
 
 TEST(FollowRoute, GoesThroughItsWaypointsAtItsSpeedAndLooksAhead) {
   const Route route{{{0.0, 0.0, -1.0}, {4.0, 0.0, -1.0}, {4.0, 4.0, -2.0}}, Route::End::kStays};

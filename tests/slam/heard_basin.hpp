@@ -33,7 +33,7 @@ inline HeadingSource heading_of(const Basin& basin) {
   return *std::move(heading);
 }
 
-inline SonarMount mount_of(const Basin& basin) {
+inline Pose2 mount_of(const Basin& basin) {
   return {Eigen::Vector2d::Zero(), basin.sonar_yaw_rad};
 }
 

@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
+#include <span>
+
+#include "pingvox/geometry/pose.hpp"
 
 namespace pingvox {
 
@@ -31,5 +34,21 @@ struct Pose2 {
   }
   Eigen::Vector2d operator*(const Eigen::Vector2d& point_m) const { return place_m + rotation2(yaw_rad) * point_m; }
 };
+
+/// The yaw of rpy_of [rad].
+inline double yaw_of(const Eigen::Matrix3d& rotation) {
+  return std::atan2(rotation(1, 0), rotation(0, 0));
+}
+inline double yaw_of(const Pose& pose) {
+  return yaw_of(pose.linear());
+}
+
+/// Position and yaw of a pose, seen from above.
+inline Pose2 pose2_of(const Pose& pose) {
+  return {pose.translation().head<2>(), yaw_of(pose)};
+}
+
+/// The turn and move that bring points nearest to others in the mean square. REQUIRES as many others, at least one.
+Pose2 fit_pose2(std::span<const Eigen::Vector2d> points_m, std::span<const Eigen::Vector2d> others_m);
 
 }  // namespace pingvox

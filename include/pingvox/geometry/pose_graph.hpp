@@ -4,22 +4,25 @@
 #include <cstddef>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
+
 namespace pingvox {
+
+/// A measured pose of node b in the frame of node a.
+struct PoseEdge {
+  std::size_t a = 0, b = 0;
+  Pose2 a_from_b;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  ///< inverse covariance of x, y [m], yaw [rad] in a
+};
 
 /// Poses in the plane, and relative poses that were measured between them.
 struct PoseGraph {
   struct Node {
     std::size_t number = 0;
-    Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x, y [m] and yaw [rad] in the map
-  };
-  /// Measured pose of node b in the frame of node a.
-  struct Edge {
-    std::size_t a = 0, b = 0;  ///< places in `nodes`
-    Eigen::Vector3d a_from_b = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  ///< inverse covariance of a_from_b
+    Pose2 pose;  ///< in the map
   };
   std::vector<Node> nodes;
-  std::vector<Edge> edges;
+  std::vector<PoseEdge> edges;  ///< between places in `nodes`
 };
 
 }  // namespace pingvox

@@ -8,6 +8,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/nav/device_clock.hpp"
 #include "pingvox/nav/nav_log.hpp"
+#include "pingvox/nav/time_span.hpp"
 #include "pingvox/result.hpp"
 
 /// What lies between the clocks of two recordings of one vehicle, by how it turned.
@@ -18,11 +19,6 @@ struct YawChange {
   double from_s = 0.0, to_s = 0.0;
   double by_rad = 0.0;
   double spread_s = 0.0;  ///< duration of what it was measured from; the times are its middle
-};
-
-/// A stretch of time in which nothing came.
-struct Pause {
-  double from_s, to_s;
 };
 
 /// How the vehicle turned, by its heading or attitude with most samples: a change for each second.
@@ -71,7 +67,7 @@ Result<NavClockOffset> nav_clock_offset(const NavLog& dated, std::span<const Dev
 /// smallest one that explains them, up to 40 s. One since a time (ClockOffset::from_s), where either clock paused and
 /// the picture turned on as if it had jumped. nullopt: it cannot be told.
 /// @param pauses  of the changes, see PictureTurns
-std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<Pause>& pauses,
+std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<TimeSpan>& pauses,
                                        const Trajectory& trajectory);
 
 }  // namespace pingvox

@@ -22,7 +22,7 @@ class PictureTurns {
   /// The changes of yaw found so far; the beams since the last whole sweep count as one.
   std::vector<YawChange> finish();
   /// Of two seconds and more between one beam and the next.
-  const std::vector<Pause>& pauses() const { return pauses_; }
+  const std::vector<TimeSpan>& pauses() const { return pauses_; }
 
  private:
   void compare(Sweep sweep);
@@ -32,7 +32,7 @@ class PictureTurns {
   Sweep before_;
   std::vector<YawChange> changes_;
   std::optional<double> last_s_;
-  std::vector<Pause> pauses_;
+  std::vector<TimeSpan> pauses_;
 };
 
 }  // namespace pingvox

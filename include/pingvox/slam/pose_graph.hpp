@@ -1,20 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "pingvox/geometry/pose2.hpp"
+#include "pingvox/geometry/pose_graph.hpp"
 
 namespace pingvox {
-
-/// A measured pose of node b in the frame of node a.
-struct PoseEdge {
-  std::size_t a = 0, b = 0;
-  Pose2 a_from_b;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  ///< inverse covariance of x, y [m], yaw [rad] in a
-};
 
 /// Difference between where the poses put b in the frame of a, and the edge: x, y [m], yaw [rad].
 Eigen::Vector3d residual_of(const PoseEdge& edge, const Pose2& a, const Pose2& b);

@@ -111,8 +111,8 @@ double TimeSeries::at(double time_s) const {
   return values_[i - 1] + share * (values_[i] - values_[i - 1]);
 }
 
-std::vector<TimeSeries::Gap> TimeSeries::gaps(double from_s, double to_s) const {
-  std::vector<Gap> found;
+std::vector<TimeSpan> TimeSeries::gaps(double from_s, double to_s) const {
+  std::vector<TimeSpan> found;
   if (from_s < times_s_.front()) found.push_back({from_s, times_s_.front()});
   auto next = std::ranges::upper_bound(times_s_, from_s);
   if (next == times_s_.begin()) ++next;
@@ -125,7 +125,7 @@ std::vector<TimeSeries::Gap> TimeSeries::gaps(double from_s, double to_s) const 
 
 double TimeSeries::gap_s(double from_s, double to_s) const {
   double sum_s = 0.0;
-  for (const Gap& gap : gaps(from_s, to_s)) sum_s += gap.within(from_s, to_s);
+  for (const TimeSpan& gap : gaps(from_s, to_s)) sum_s += gap.within(from_s, to_s);
   return sum_s;
 }
 

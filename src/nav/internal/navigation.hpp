@@ -9,6 +9,7 @@
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/nav/nav_log.hpp"
+#include "pingvox/nav/time_span.hpp"
 
 /// What a vehicle's navigation says, prepared for dead reckoning.
 namespace pingvox {
@@ -30,15 +31,8 @@ class TimeSeries {
   const std::vector<double>& values() const { return values_; }
   /// The first and last value go on outside.
   double at(double time_s) const;
-  struct Gap {
-    double from_s, to_s;
-    /// The part of it that lies in a stretch of time.
-    double within(double begin_s, double end_s) const {
-      return std::max(0.0, std::min(to_s, end_s) - std::max(from_s, begin_s));
-    }
-  };
   /// Where a stretch of time lies in gaps between samples, or outside of them.
-  std::vector<Gap> gaps(double from_s, double to_s) const;
+  std::vector<TimeSpan> gaps(double from_s, double to_s) const;
   /// How long that is in the stretch, all in all.
   double gap_s(double from_s, double to_s) const;
   double longest_step_s() const;

@@ -37,28 +37,16 @@ std::vector<NavSource> sources_within(const std::vector<NavSource>& sources, dou
   return within;
 }
 
-/// The turn and move that brings places nearest to others, in the mean square.
-Pose2 align(const std::vector<Eigen::Vector3d>& places, const std::vector<Eigen::Vector3d>& to) {
-  const auto count = static_cast<double>(places.size());
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero(), mean_to = Eigen::Vector2d::Zero();
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    mean += places[k].head<2>() / count;
-    mean_to += to[k].head<2>() / count;
-  }
-  double cosine = 0.0, sine = 0.0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const Eigen::Vector2d a = places[k].head<2>() - mean, b = to[k].head<2>() - mean_to;
-    cosine += a.dot(b);
-    sine += a.x() * b.y() - a.y() * b.x();
-  }
-  const double yaw_rad = std::atan2(sine, cosine);
-  return {mean_to - rotation2(yaw_rad) * mean, yaw_rad};
+std::vector<Eigen::Vector2d> places_of(const Unknowns& unknowns) {
+  std::vector<Eigen::Vector2d> places_m;
+  for (const Eigen::Vector3d& knot : unknowns.knots) places_m.emplace_back(knot.head<2>());
+  return places_m;
 }
 
 /// The knots of the window, and new ones until the end of what was recorded.
 Result<std::vector<double>> window_knot_times(const CausalWindow& window, const SlamInput& recording) {
   const bool is_first = window.times_s.empty();
-  const Span span{is_first ? recording.span.from_s : window.times_s.back(), recording.span.to_s};
+  const TimeSpan span{is_first ? recording.span.from_s : window.times_s.back(), recording.span.to_s};
   Result<std::vector<double>> added = knot_times(span, recording.sweeps, recording.beam_times_s.size());
   if (!added || is_first) return added;
   std::vector<double> times_s = window.times_s;
@@ -98,7 +86,7 @@ MotionSources CausalEstimator::sources_of_window(double nav_until_s) {
   const Result<NavLog> log = NavLog::make(sources.measured, NavClock::kUnknown);
   if (!log) return sources;
   const std::vector<HeadingSource> headings = headings_of(*log, options_);
-  odometry_.extend(sweeps_, sonar_mount(options_.body_from_sonar), headings.empty() ? nullptr : &headings.front());
+  odometry_.extend(sweeps_, pose2_of(options_.body_from_sonar), headings.empty() ? nullptr : &headings.front());
   if (odometry_.tells()) {
     sources.by_sonar = odometry_.sources();
   } else {
@@ -148,7 +136,7 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   loops_.found += found.found;
   loops_.kept += found.kept;
   if (settles && !poses_.empty() && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
-    frame_ = frame_ * align(solver.unknowns().knots, start.knots);
+    frame_ = frame_ * fit_pose2(places_of(solver.unknowns()), places_of(start));
   sweeps_.erase(sweeps_.begin(), sweeps_.begin() + static_cast<std::ptrdiff_t>(*left));
   solver_.emplace(std::move(solver));
   forget();
@@ -158,9 +146,9 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
 void CausalEstimator::fill_gaps(Navigation& navigation) {
   VelocitySource& velocity = navigation.velocity;
   if (options_.matching == Matching::kNone || velocity.by_sonar) return;
-  const Span span{velocity.ahead.from_s(), solver_ ? sweeps_.back().to_s : velocity.ahead.to_s()};
-  for (const TimeSeries::Gap& gap : fill_velocity_gaps(sweeps_, span, velocity_from_sonar(velocity, options_),
-                                                       navigation.headings.front(), velocity)) {
+  const TimeSpan span{velocity.ahead.from_s(), solver_ ? sweeps_.back().to_s : velocity.ahead.to_s()};
+  for (const TimeSpan& gap : fill_velocity_gaps(sweeps_, span, velocity_from_sonar(velocity, options_),
+                                                navigation.headings.front(), velocity)) {
     filled_s_ += std::max(0.0, gap.to_s - std::max(gap.from_s, filled_until_s_));
     filled_until_s_ = std::max(filled_until_s_, gap.to_s);
   }

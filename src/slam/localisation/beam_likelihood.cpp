@@ -49,7 +49,7 @@ double BeamJudge::log_likelihood(const PlaneFrame& map_from_frame) const {
   return log_behind_;
 }
 
-double log_likelihood(std::span<const BeamJudge> judges, const PlanePose& map_from_frame, const BeamLikelihood& model) {
+double log_likelihood(std::span<const BeamJudge> judges, const Pose2& map_from_frame, const BeamLikelihood& model) {
   const PlaneFrame frame(map_from_frame);
   double sum = 0.0;
   for (const BeamJudge& judge : judges) sum += judge.log_likelihood(frame);
@@ -57,7 +57,7 @@ double log_likelihood(std::span<const BeamJudge> judges, const PlanePose& map_fr
 }
 
 std::optional<double> fit_of(std::span<const HeardBeam> beams, const DistanceField& field, const BeamLikelihood& model,
-                             const PlanePose& map_from_frame) {
+                             const Pose2& map_from_frame) {
   const PlaneFrame frame(map_from_frame);
   double sum = 0.0;
   std::size_t echoes = 0;

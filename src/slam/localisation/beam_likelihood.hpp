@@ -8,30 +8,24 @@
 #include <span>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/map/distance_field.hpp"
 #include "pingvox/slam/localizer.hpp"
 
 namespace pingvox {
 
-/// A place in the plane and a direction.
-struct PlanePose {
-  double x = 0.0, y = 0.0, yaw = 0.0;  ///< [m], [rad]
-};
-
-/// A frame in the plane, to move points by.
+/// A frame in the plane, to move many points by: the sine and cosine of its yaw are computed once. Yaws add up, not
+/// wrapped.
 class PlaneFrame {
  public:
-  explicit PlaneFrame(const PlanePose& pose)
-      : place_(pose.x, pose.y), cosine_(std::cos(pose.yaw)), sine_(std::sin(pose.yaw)), yaw_(pose.yaw) {}
+  explicit PlaneFrame(const Pose2& pose)
+      : place_(pose.place_m), cosine_(std::cos(pose.yaw_rad)), sine_(std::sin(pose.yaw_rad)), yaw_(pose.yaw_rad) {}
 
   Eigen::Vector2d turn(const Eigen::Vector2d& v) const {
     return {cosine_ * v.x() - sine_ * v.y(), sine_ * v.x() + cosine_ * v.y()};
   }
   Eigen::Vector2d operator*(const Eigen::Vector2d& point) const { return place_ + turn(point); }
-  PlanePose operator*(const PlanePose& pose) const {
-    const Eigen::Vector2d place = *this * Eigen::Vector2d(pose.x, pose.y);
-    return {place.x(), place.y(), yaw_ + pose.yaw};
-  }
+  Pose2 operator*(const Pose2& pose) const { return {*this * pose.place_m, yaw_ + pose.yaw_rad}; }
   PlaneFrame inverse() const {
     return PlaneFrame(-cosine_ * place_.x() - sine_ * place_.y(), sine_ * place_.x() - cosine_ * place_.y(), cosine_,
                       -sine_, -yaw_);
@@ -91,11 +85,11 @@ class BeamJudge {
 };
 
 /// Weighted sum over beams.
-double log_likelihood(std::span<const BeamJudge> judges, const PlanePose& map_from_frame, const BeamLikelihood& model);
+double log_likelihood(std::span<const BeamJudge> judges, const Pose2& map_from_frame, const BeamLikelihood& model);
 
 /// Mean likelihood of the echoes among beams, 0..1: how well they fit. nullopt: fewer than ten.
 std::optional<double> fit_of(std::span<const HeardBeam> beams, const DistanceField& field, const BeamLikelihood& model,
-                             const PlanePose& map_from_frame);
+                             const Pose2& map_from_frame);
 
 /// Calls for the sums of many poses at once: adds to `sums` the table's value for the beam's end at each pose.
 /// All spans are of one length.

@@ -40,17 +40,9 @@ constexpr double kSure_m = 0.3, kSure_rad = 5.0 * kDegree_rad;
 /// Spread of the particles around what a search found.
 constexpr double kSeed_m = 0.05, kSeed_rad = 1.5 * kDegree_rad;
 
-double yaw_of(const Pose& pose) {
-  return std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
-}
-
-PlanePose plane_pose(const Pose& pose) {
-  return {pose.translation().x(), pose.translation().y(), yaw_of(pose)};
-}
-
 /// Where the body was when a beam was heard.
 struct Placed {
-  PlanePose odometry;
+  Pose2 odometry;
   Eigen::Matrix3d level_from_body = Eigen::Matrix3d::Identity();
   double turned_rad = 0.0;  ///< by the head so far
 };
@@ -111,10 +103,10 @@ struct Localizer::State {
   EchoStream stream;
 
   // The motion.
-  std::optional<double> time_s;      ///< of the last beam
-  std::optional<Pose> next, last;    ///< odometry: for the next beam, and the last that was used
-  PlaneFrame odometry{PlanePose{}};  ///< all motion so far
-  PlanePose odometry_pose;           ///< the same
+  std::optional<double> time_s;    ///< of the last beam
+  std::optional<Pose> next, last;  ///< odometry: for the next beam, and the last that was used
+  PlaneFrame odometry{Pose2{}};    ///< all motion so far
+  Pose2 odometry_pose;             ///< the same
   Eigen::Matrix3d level_from_body = Eigen::Matrix3d::Identity();
   double height_m = 0.0;
 
@@ -128,7 +120,7 @@ struct Localizer::State {
   // The filter. No particles: not found yet.
   Particles particles;
   std::vector<PoseHypothesis> groups;  ///< as of the last quarter of a turn
-  PlanePose anchor;                    ///< near the most likely one
+  Pose2 anchor;                        ///< near the most likely one
   double grouped_rad = 0.0;
   double since_rad = 0.0;  ///< turned_rad when what is believed began
   double searched_rad = 0.0;
@@ -157,29 +149,30 @@ struct Localizer::State {
 /// Moves the particles with the odometry, and apart.
 void Localizer::State::move(double step_s) {
   const MotionNoise& noise = next ? options.noise : options.without;
-  PlanePose step;
+  Pose2 step;
   if (next) {
-    const PlanePose now = plane_pose(*next);
+    const Pose2 now = pose2_of(*next);
     if (last) {
-      step = PlaneFrame(plane_pose(*last)).inverse() * now;
-      step.yaw = std::remainder(step.yaw, 2.0 * std::numbers::pi);
+      step = PlaneFrame(pose2_of(*last)).inverse() * now;
+      step.yaw_rad = wrap_angle(step.yaw_rad);
     }
-    level_from_body = Eigen::AngleAxisd(-now.yaw, Eigen::Vector3d::UnitZ()) * next->rotation();
+    level_from_body = Eigen::AngleAxisd(-now.yaw_rad, Eigen::Vector3d::UnitZ()) * next->rotation();
     height_m = next->translation().z();
     last = std::exchange(next, std::nullopt);
   }
   odometry_pose = odometry * step;
   odometry = PlaneFrame(odometry_pose);
   anchor = PlaneFrame(anchor) * step;
-  const double position_m = std::sqrt(std::pow(noise.position_m_per_sqrt_s, 2) * step_s +
-                                      std::pow(noise.position_m_per_sqrt_m, 2) * std::hypot(step.x, step.y));
+  const double position_m =
+      std::sqrt(std::pow(noise.position_m_per_sqrt_s, 2) * step_s +
+                std::pow(noise.position_m_per_sqrt_m, 2) * std::hypot(step.place_m.x(), step.place_m.y()));
   const double yaw_rad = std::sqrt(std::pow(noise.yaw_rad_per_sqrt_s, 2) * step_s +
-                                   std::pow(noise.yaw_rad_per_sqrt_rad, 2) * std::abs(step.yaw));
-  for (PlanePose& pose : particles.poses) {
+                                   std::pow(noise.yaw_rad_per_sqrt_rad, 2) * std::abs(step.yaw_rad));
+  for (Pose2& pose : particles.poses) {
     pose = PlaneFrame(pose) * step;
-    pose.x += position_m * random.normal();
-    pose.y += position_m * random.normal();
-    pose.yaw += yaw_rad * random.normal();
+    pose.place_m.x() += position_m * random.normal();
+    pose.place_m.y() += position_m * random.normal();
+    pose.yaw_rad += yaw_rad * random.normal();
   }
 }
 
@@ -277,7 +270,7 @@ void Localizer::State::group() {
   grouped_rad = turned_rad;
   groups = groups_of(particles);
   if (groups.empty()) return;
-  anchor = {groups.front().x_m, groups.front().y_m, groups.front().yaw_rad};
+  anchor = pose_of(groups.front());
   const double before = std::exchange(fit, fit_of(turn_beams(), field, options.beam, anchor).value_or(0.0));
   if (before < kSureFit || fit >= kSureFit) return;
   is_confirmed = false;
@@ -290,8 +283,7 @@ std::vector<ScoredPose> Localizer::State::candidates(const std::vector<HeardBeam
   std::vector<BeamJudge> judges;
   for (const HeardBeam& beam : beams_now) judges.emplace_back(beam, field, options.beam);
   for (const PoseHypothesis& believed : groups) {
-    found.push_back(
-        refine_pose(judges, options.beam, {believed.x_m, believed.y_m, believed.yaw_rad}, 0.1, 2.0 * kDegree_rad));
+    found.push_back(refine_pose(judges, options.beam, pose_of(believed), 0.1, 2.0 * kDegree_rad));
   }
   return without_neighbours(std::move(found), 0.3, 10.0 * kDegree_rad, kMaxHypotheses);
 }
@@ -307,9 +299,9 @@ void Localizer::State::confirm() {
   const std::vector<HeardBeam> beams_now = turn_beams();
   const std::vector<ScoredPose> found = candidates(beams_now);
   if (found.empty()) return;
-  const PlanePose& best = found.front().pose;
+  const Pose2& best = found.front().pose;
   doubted_rad.reset();
-  if (!is_near(best.x, best.y, best.yaw, anchor, kHypothesis_m, kHypothesis_rad)) return adopt(found, beams_now);
+  if (!is_near(best, anchor, kHypothesis_m, kHypothesis_rad)) return adopt(found, beams_now);
   is_confirmed = is_distinct(found);
   // Boulders look alike: what is here may be there, too.
   if (!is_confirmed) doubted_rad = turned_rad;
@@ -340,9 +332,9 @@ void Localizer::State::seed(const std::vector<ScoredPose>& found) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (double& weight : weights) weight /= sum;
   for (const std::size_t i : draw_particles(weights, count, random.uniform())) {
-    const PlanePose& pose = found[i].pose;
-    all.poses.push_back({pose.x + kSeed_m * random.normal(), pose.y + kSeed_m * random.normal(),
-                         pose.yaw + kSeed_rad * random.normal()});
+    const Pose2& pose = found[i].pose;
+    all.poses.push_back({{pose.place_m.x() + kSeed_m * random.normal(), pose.place_m.y() + kSeed_m * random.normal()},
+                         pose.yaw_rad + kSeed_rad * random.normal()});
   }
   all.log_weights.assign(all.poses.size(), 0.0);
   particles = std::move(all);
@@ -364,11 +356,11 @@ void Localizer::start(double x_m, double y_m, double yaw_rad, double deviation_m
   State& s = *state_;
   s.particles = {};
   for (std::size_t i = 0; i < s.options.max_particles; ++i) {
-    s.particles.poses.push_back({x_m + deviation_m * s.random.normal(), y_m + deviation_m * s.random.normal(),
+    s.particles.poses.push_back({{x_m + deviation_m * s.random.normal(), y_m + deviation_m * s.random.normal()},
                                  yaw_rad + deviation_rad * s.random.normal()});
   }
   s.particles.log_weights.assign(s.particles.poses.size(), 0.0);
-  s.anchor = {x_m, y_m, yaw_rad};
+  s.anchor = {{x_m, y_m}, yaw_rad};
   s.since_rad = s.turned_rad;
   s.is_confirmed = true;
   s.doubted_rad.reset();
@@ -415,7 +407,7 @@ std::optional<Localizer::Located> Localizer::pose() const {
   const State& s = *state_;
   if (s.particles.poses.empty() || !s.time_s) return std::nullopt;
   PoseHypothesis mean = s.around_anchor();
-  if (!(mean.weight > 0.0)) mean = {s.anchor.x, s.anchor.y, s.anchor.yaw, 0.0, 0.0, 0.0};
+  if (!(mean.weight > 0.0)) mean = {s.anchor.place_m.x(), s.anchor.place_m.y(), s.anchor.yaw_rad, 0.0, 0.0, 0.0};
   Pose pose = Pose::Identity();
   pose.translation() = Eigen::Vector3d(mean.x_m, mean.y_m, s.height_m);
   pose.linear() = Eigen::AngleAxisd(mean.yaw_rad, Eigen::Vector3d::UnitZ()) * s.level_from_body;

@@ -57,7 +57,7 @@ std::vector<Poses> segments_of(Poses poses) {
   const auto follows = [&](const LocatedPose& before, const LocatedPose& pose) {
     const double step_s = pose.time_s - before.time_s;
     const Pose &from = before.map_from_body, &to = pose.map_from_body;
-    const double turn_rad = rpy_of(from.rotation().transpose() * to.rotation()).z();
+    const double turn_rad = yaw_of(from.rotation().transpose() * to.rotation());
     return (to.translation() - from.translation()).head<2>().norm() <= kJump_m + kFastest_m_s * step_s &&
            std::abs(turn_rad) <= kTurn_rad + kFastest_rad_s * step_s;
   };

@@ -17,16 +17,16 @@ namespace pingvox {
 namespace {
 
 /// How many boxes of 0.1 m and 3 degrees the chosen particles lie in.
-std::size_t bins_of(const std::vector<PlanePose>& poses, const std::vector<std::size_t>& chosen) {
+std::size_t bins_of(const std::vector<Pose2>& poses, const std::vector<std::size_t>& chosen) {
   std::unordered_set<std::uint64_t> bins;
   for (const std::size_t i : chosen) {
-    const PlanePose& p = poses[i];
+    const Pose2& p = poses[i];
     const auto part = [](double value, double step) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::clamp(std::floor(value / step), -1e6, 1e6))) &
              0x1FFFFFU;
     };
-    bins.insert(part(p.x, 0.1) | part(p.y, 0.1) << 21U |
-                part(std::remainder(p.yaw, 2.0 * std::numbers::pi), 3.0 * kDegree_rad) << 42U);
+    bins.insert(part(p.place_m.x(), 0.1) | part(p.place_m.y(), 0.1) << 21U |
+                part(std::remainder(p.yaw_rad, 2.0 * std::numbers::pi), 3.0 * kDegree_rad) << 42U);
   }
   return bins.size();
 }
@@ -37,12 +37,12 @@ PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& we
   double weight = 0.0, x = 0.0, y = 0.0, cosine = 0.0, sine = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     if (!is_member(i)) continue;
-    const PlanePose& p = particles.poses[i];
+    const Pose2& p = particles.poses[i];
     weight += weights[i];
-    x += weights[i] * p.x;
-    y += weights[i] * p.y;
-    cosine += weights[i] * std::cos(p.yaw);
-    sine += weights[i] * std::sin(p.yaw);
+    x += weights[i] * p.place_m.x();
+    y += weights[i] * p.place_m.y();
+    cosine += weights[i] * std::cos(p.yaw_rad);
+    sine += weights[i] * std::sin(p.yaw_rad);
   }
   PoseHypothesis mean;
   mean.weight = weight;
@@ -53,9 +53,9 @@ PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& we
   double squares = 0.0, turns = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     if (!is_member(i)) continue;
-    const PlanePose& p = particles.poses[i];
-    squares += weights[i] * (std::pow(p.x - mean.x_m, 2) + std::pow(p.y - mean.y_m, 2));
-    turns += weights[i] * std::pow(wrap_angle(p.yaw - mean.yaw_rad), 2);
+    const Pose2& p = particles.poses[i];
+    squares += weights[i] * (std::pow(p.place_m.x() - mean.x_m, 2) + std::pow(p.place_m.y() - mean.y_m, 2));
+    turns += weights[i] * std::pow(wrap_angle(p.yaw_rad - mean.yaw_rad), 2);
   }
   mean.deviation_m = std::sqrt(squares / weight);
   mean.deviation_rad = std::sqrt(turns / weight);
@@ -64,8 +64,13 @@ PoseHypothesis mean_of(const Particles& particles, const std::vector<double>& we
 
 }  // namespace
 
-bool is_near(double x_m, double y_m, double yaw_rad, const PlanePose& pose, double near_m, double near_rad) {
-  return std::hypot(x_m - pose.x, y_m - pose.y) <= near_m && std::abs(wrap_angle(pose.yaw - yaw_rad)) <= near_rad;
+Pose2 pose_of(const PoseHypothesis& hypothesis) {
+  return {{hypothesis.x_m, hypothesis.y_m}, hypothesis.yaw_rad};
+}
+
+bool is_near(const Pose2& pose, const Pose2& other, double near_m, double near_rad) {
+  return std::hypot(pose.place_m.x() - other.place_m.x(), pose.place_m.y() - other.place_m.y()) <= near_m &&
+         std::abs(wrap_angle(other.yaw_rad - pose.yaw_rad)) <= near_rad;
 }
 
 std::vector<double> Particles::weights() const {
@@ -90,7 +95,7 @@ std::vector<std::size_t> draw_particles(const std::vector<double>& weights, std:
   return chosen;
 }
 
-double kld_particles(const std::vector<PlanePose>& poses, const std::vector<std::size_t>& chosen) {
+double kld_particles(const std::vector<Pose2>& poses, const std::vector<std::size_t>& chosen) {
   const std::size_t bins = bins_of(poses, chosen);
   if (bins < 2) return 1.0;
   constexpr double kDistance = 0.05, kQuantile = 2.3263;
@@ -99,11 +104,9 @@ double kld_particles(const std::vector<PlanePose>& poses, const std::vector<std:
   return free / (2.0 * kDistance) * cube * cube * cube;
 }
 
-PoseHypothesis mean_near(const Particles& particles, const PlanePose& pose, double near_m, double near_rad) {
-  return mean_of(particles, particles.weights(), [&](std::size_t i) {
-    const PlanePose& p = particles.poses[i];
-    return is_near(p.x, p.y, p.yaw, pose, near_m, near_rad);
-  });
+PoseHypothesis mean_near(const Particles& particles, const Pose2& pose, double near_m, double near_rad) {
+  return mean_of(particles, particles.weights(),
+                 [&](std::size_t i) { return is_near(particles.poses[i], pose, near_m, near_rad); });
 }
 
 std::vector<PoseHypothesis> groups_of(const Particles& particles) {
@@ -115,9 +118,9 @@ std::vector<PoseHypothesis> groups_of(const Particles& particles) {
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> group(weights.size(), kNone), leaders;
   for (const std::size_t i : order) {
-    const PlanePose& p = particles.poses[i];
+    const Pose2& pose = particles.poses[i];
     for (std::size_t g = 0; g < leaders.size() && group[i] == kNone; ++g) {
-      if (is_near(p.x, p.y, p.yaw, particles.poses[leaders[g]], kHypothesis_m, kHypothesis_rad)) group[i] = g;
+      if (is_near(pose, particles.poses[leaders[g]], kHypothesis_m, kHypothesis_rad)) group[i] = g;
     }
     if (group[i] == kNone && leaders.size() < kMaxHypotheses) {
       group[i] = leaders.size();
@@ -131,9 +134,8 @@ std::vector<PoseHypothesis> groups_of(const Particles& particles) {
   }
   for (std::size_t g = 1; g < means.size(); ++g) {
     for (std::size_t other = 0; other < g; ++other) {
-      const PlanePose place{means[other].x_m, means[other].y_m, means[other].yaw_rad};
       if (means[other].weight == 0.0 ||
-          !is_near(means[g].x_m, means[g].y_m, means[g].yaw_rad, place, kHypothesis_m, kHypothesis_rad)) {
+          !is_near(pose_of(means[g]), pose_of(means[other]), kHypothesis_m, kHypothesis_rad)) {
         continue;
       }
       for (std::size_t& of : group) of = of == g ? other : of;

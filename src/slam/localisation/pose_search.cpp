@@ -52,13 +52,13 @@ std::vector<ScoredPose> coarse_search(const DistanceField& field, const std::vec
     y[i] = places[i].y();
   }
   std::vector<float> sums(places.size() * static_cast<std::size_t>(kYawSteps), 0.0F);
-  const auto yaw_of = [&](std::size_t pose) {
+  const auto yaw_rad = [&](std::size_t pose) {
     const std::size_t turn = pose / places.size();
     return static_cast<double>(turn) * yaw_step;
   };
   for (std::size_t first = 0; first < sums.size(); first += places.size()) {
-    std::ranges::fill(cosine, std::cos(yaw_of(first)));
-    std::ranges::fill(sine, std::sin(yaw_of(first)));
+    std::ranges::fill(cosine, std::cos(yaw_rad(first)));
+    std::ranges::fill(sine, std::sin(yaw_rad(first)));
     for (std::size_t e = 0; e < echoes.size(); e += kFirstEchoes) {
       add_end_likelihood(field, tables[e], echoes[e].end_m(), x, y, cosine, sine,
                          std::span(sums).subspan(first, places.size()));
@@ -75,7 +75,7 @@ std::vector<ScoredPose> coarse_search(const DistanceField& field, const std::vec
   keep_best(std::max(kLeastSecond, sums.size() / kSecondShare));
   for (const std::uint32_t i : poses) {
     const Eigen::Vector2d& place = places[i % places.size()];
-    const PlaneFrame frame({place.x(), place.y(), yaw_of(i)});
+    const PlaneFrame frame({place, yaw_rad(i)});
     for (std::size_t e = 0; e < echoes.size(); ++e) {
       if (e % kFirstEchoes == 0) continue;
       const Eigen::Vector2d end = frame * echoes[e].end_m();
@@ -86,7 +86,7 @@ std::vector<ScoredPose> coarse_search(const DistanceField& field, const std::vec
   std::vector<ScoredPose> best;
   for (const std::uint32_t i : poses) {
     const Eigen::Vector2d& place = places[i % places.size()];
-    best.push_back({{place.x(), place.y(), yaw_of(i)}, sums[i]});
+    best.push_back({{place, yaw_rad(i)}, sums[i]});
   }
   return without_neighbours(std::move(best), 1.5 * step_m, 1.5 * yaw_step, kCandidates);
 }
@@ -99,10 +99,10 @@ struct Steps {
 
 /// The best pose near one, by `score` of a pose and the least that counts.
 template <class Score>
-ScoredPose climb(const PlanePose& from, Steps steps, const Score& score) {
+ScoredPose climb(const Pose2& from, Steps steps, const Score& score) {
   ScoredPose best{from, score(from)};
   const auto try_step = [&](double dx, double dy, double dyaw) {
-    const PlanePose pose{best.pose.x + dx, best.pose.y + dy, best.pose.yaw + dyaw};
+    const Pose2 pose{best.pose.place_m + Eigen::Vector2d(dx, dy), best.pose.yaw_rad + dyaw};
     const double here = score(pose);
     if (here <= best.log_likelihood) return false;
     best = {pose, here};
@@ -129,16 +129,15 @@ ScoredPose climb(const PlanePose& from, Steps steps, const Score& score) {
 
 std::vector<ScoredPose> without_neighbours(std::vector<ScoredPose> poses, double near_m, double near_rad,
                                            std::size_t most) {
-  std::ranges::sort(poses, {},
-                    [](const ScoredPose& p) { return std::tuple(-p.log_likelihood, p.pose.x, p.pose.y, p.pose.yaw); });
+  std::ranges::sort(poses, {}, [](const ScoredPose& p) {
+    return std::tuple(-p.log_likelihood, p.pose.place_m.x(), p.pose.place_m.y(), p.pose.yaw_rad);
+  });
   std::vector<ScoredPose> kept;
   for (const ScoredPose& pose : poses) {
     if (kept.size() >= most) break;
-    const bool is_near = std::ranges::any_of(kept, [&](const ScoredPose& other) {
-      return std::hypot(pose.pose.x - other.pose.x, pose.pose.y - other.pose.y) <= near_m &&
-             std::abs(std::remainder(pose.pose.yaw - other.pose.yaw, 2.0 * std::numbers::pi)) <= near_rad;
-    });
-    if (!is_near) kept.push_back(pose);
+    const bool has_neighbour = std::ranges::any_of(
+        kept, [&](const ScoredPose& other) { return is_near(pose.pose, other.pose, near_m, near_rad); });
+    if (!has_neighbour) kept.push_back(pose);
   }
   return kept;
 }
@@ -147,14 +146,14 @@ bool is_distinct(std::span<const ScoredPose> found) {
   constexpr double kDistinct = 5.0;
   const auto& [best, likelihood] = found.front();
   return std::ranges::all_of(found, [&](const ScoredPose& other) {
-    return is_near(other.pose.x, other.pose.y, other.pose.yaw, best, kHypothesis_m, kHypothesis_rad) ||
+    return is_near(other.pose, best, kHypothesis_m, kHypothesis_rad) ||
            likelihood - other.log_likelihood >= std::log(kDistinct);
   });
 }
 
-ScoredPose refine_pose(std::span<const BeamJudge> judges, const BeamLikelihood& model, const PlanePose& from,
-                       double step_m, double step_rad) {
-  return climb(from, {step_m, step_rad, 4}, [&](const PlanePose& pose) { return log_likelihood(judges, pose, model); });
+ScoredPose refine_pose(std::span<const BeamJudge> judges, const BeamLikelihood& model, const Pose2& from, double step_m,
+                       double step_rad) {
+  return climb(from, {step_m, step_rad, 4}, [&](const Pose2& pose) { return log_likelihood(judges, pose, model); });
 }
 
 std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const HeardBeam> beams,
@@ -166,7 +165,7 @@ std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const
   std::vector<BeamJudge> judges;
   for (const HeardBeam& beam : beams) judges.emplace_back(beam, field, model);
   const Steps steps{0.5 * step_m, std::numbers::pi / kYawSteps, 1};
-  const auto at_ends = [&](const PlanePose& pose) {
+  const auto at_ends = [&](const Pose2& pose) {
     const PlaneFrame frame(pose);
     double sum = 0.0;
     for (const BeamJudge& judge : judges) sum += judge.log_at_end(frame);

@@ -9,7 +9,7 @@ namespace pingvox {
 
 /// A pose, and the log-likelihood of the beams there.
 struct ScoredPose {
-  PlanePose pose;
+  Pose2 pose;
   double log_likelihood = 0.0;
 };
 
@@ -20,8 +20,8 @@ std::vector<ScoredPose> search_poses(const DistanceField& field, std::span<const
                                      const BeamLikelihood& model);
 
 /// The best pose near one, by steps that are halved four times.
-ScoredPose refine_pose(std::span<const BeamJudge> judges, const BeamLikelihood& model, const PlanePose& from,
-                       double step_m, double step_rad);
+ScoredPose refine_pose(std::span<const BeamJudge> judges, const BeamLikelihood& model, const Pose2& from, double step_m,
+                       double step_rad);
 
 /// Whether the beams are at least five times as likely at the best pose as at any that is another hypothesis.
 /// REQUIRES one pose at least, the best first.

@@ -13,6 +13,7 @@
 #include "base/without_exceptions.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/slam/loop_finder.hpp"
+#include "slam/sweeps/reach.hpp"
 
 namespace pingvox {
 namespace {
@@ -30,10 +31,7 @@ struct LevelScan {
   std::size_t number = 0;
   std::vector<Eigen::Vector2d> points_m;  ///< around the sensor, turned by its yaw only
 
-  Pose2 odometry() const {
-    const Eigen::Vector3d ahead = pose.linear().col(0);
-    return {pose.translation().head<2>(), std::atan2(ahead.y(), ahead.x())};
-  }
+  Pose2 odometry() const { return pose2_of(pose); }
 };
 
 /// Key frames, the number of the first scan of each, and for each scan its key frame.
@@ -67,10 +65,7 @@ double reach_of(const std::vector<LevelScan>& scans) {
   for (const LevelScan& scan : scans) {
     for (const Eigen::Vector2d& point : scan.points_m) ranges_m.push_back(point.norm());
   }
-  if (ranges_m.empty()) return 0.0;
-  const auto nine_of_ten = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() * 9 / 10);
-  std::ranges::nth_element(ranges_m, nine_of_ten);
-  return *nine_of_ten;
+  return reach_of(std::move(ranges_m));
 }
 
 std::vector<PoseEdge> odometry_edges(const std::vector<KeyFrame>& frames, double reach_m) {
@@ -83,21 +78,17 @@ std::vector<PoseEdge> odometry_edges(const std::vector<KeyFrame>& frames, double
   return edges;
 }
 
-Eigen::Vector3d vector_of(const Pose2& pose) {
-  return {pose.place_m.x(), pose.place_m.y(), pose.yaw_rad};
-}
-
 /// @param weights  of the loops
 PoseGraph graph_of(std::span<const std::size_t> numbers, std::span<const Pose2> poses,
                    std::span<const PoseEdge> odometry, std::span<const PoseEdge> loops,
                    std::span<const double> weights) {
   PoseGraph graph;
-  for (std::size_t k = 0; k < poses.size(); ++k) graph.nodes.push_back({numbers[k], vector_of(poses[k])});
-  const auto add = [&](const PoseEdge& edge, double weight) {
-    graph.edges.push_back({edge.a, edge.b, vector_of(edge.a_from_b), weight * edge.information});
-  };
-  for (const PoseEdge& edge : odometry) add(edge, 1.0);
-  for (std::size_t l = 0; l < loops.size(); ++l) add(loops[l], weights[l]);
+  for (std::size_t k = 0; k < poses.size(); ++k) graph.nodes.push_back({numbers[k], poses[k]});
+  graph.edges.assign(odometry.begin(), odometry.end());
+  for (std::size_t l = 0; l < loops.size(); ++l) {
+    graph.edges.push_back(loops[l]);
+    graph.edges.back().information *= weights[l];
+  }
   return graph;
 }
 

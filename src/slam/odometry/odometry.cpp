@@ -20,10 +20,10 @@ constexpr double kMaxStep_s = 5.0;
 
 /// Leaves out the times at which another source goes on while this one is silent.
 void leave_out_gaps(const TimeSeries& series, std::vector<double>& times_s) {
-  std::vector<TimeSeries::Gap> gaps = series.gaps(series.from_s(), series.to_s());
-  std::erase_if(gaps, [](const TimeSeries::Gap& gap) { return gap.to_s - gap.from_s <= kMaxStep_s; });
+  std::vector<TimeSpan> gaps = series.gaps(series.from_s(), series.to_s());
+  std::erase_if(gaps, [](const TimeSpan& gap) { return gap.to_s - gap.from_s <= kMaxStep_s; });
   std::erase_if(times_s, [&](double time_s) {
-    const auto next = std::ranges::lower_bound(gaps, time_s, {}, &TimeSeries::Gap::from_s);
+    const auto next = std::ranges::lower_bound(gaps, time_s, {}, &TimeSpan::from_s);
     return next != gaps.begin() && time_s < std::prev(next)->to_s;
   });
 }

@@ -52,7 +52,7 @@ double middle_s(const HeardSweep& sweep) {
 
 /// What is known of a vehicle before its sonar tells how it moves.
 struct Vehicle {
-  SonarMount body_from_sonar;
+  Pose2 body_from_sonar;
   const HeadingSource* heading;  ///< nullptr: not known
 };
 
@@ -76,7 +76,7 @@ Eigen::Matrix2d way_by_velocity(double from_s, double to_s, double turn_rad_s, c
 /// axes are those of the heading's zero; where no heading is known those of the vehicle.
 std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, double within_m, const Motion& motion,
                                    const Vehicle& vehicle) {
-  const SonarMount& mount = vehicle.body_from_sonar;
+  const Pose2& mount = vehicle.body_from_sonar;
   std::vector<Eigen::Vector2d> points_m;
   for (const EchoRun& run : sweep.runs) {
     const double ray_rad = mount.yaw_rad + run.bearing_rad;
@@ -238,7 +238,7 @@ VelocitySource sonar_velocity(const NavSource& source) {
           true};
 }
 
-SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
+SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar,
                              const HeadingSource* heading) {
   SonarOdometry odometry{{std::string(kSonarSource), NavQuantity::kVelocity, {}},
                          {std::string(kSonarSource), NavQuantity::kHeading, {}}};
@@ -273,7 +273,7 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMoun
 }
 
 std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
-                                            const SonarMount& velocity_from_sonar, const HeadingSource& heading) {
+                                            const Pose2& velocity_from_sonar, const HeadingSource& heading) {
   constexpr std::size_t kFewest = 5;
   constexpr double kNoise_m_s = 0.05, kShareOfSpeed = 0.35;
   constexpr int kParts = 16;
@@ -303,7 +303,7 @@ std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std:
   return VelocityCheck{compared, difference_m_s, over_s, difference_m_s > kNoise_m_s + kShareOfSpeed * speed_m_s};
 }
 
-void GrowingOdometry::extend(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
+void GrowingOdometry::extend(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar,
                              const HeadingSource* heading) {
   // What these say of the first of them is known better from before.
   constexpr std::size_t kLooked = 12;

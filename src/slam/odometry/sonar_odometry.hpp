@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "nav/internal/navigation.hpp"
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/nav/nav_log.hpp"
-#include "slam/smoother/echo_pairs.hpp"
-#include "slam/smoother/slam_solver.hpp"
+#include "slam/sweeps/heard_sweep.hpp"
 
 /// How the vehicle moved, by its sonar.
 namespace pingvox {
@@ -44,7 +44,7 @@ struct SonarOdometry {
 /// moves, which is found in rounds: all as if it went at one speed, then each sweep where its neighbours lead. A match
 /// along a straight wall, or one of two that are as good, says nothing; there the velocity is taken to change evenly.
 /// @param heading  of the body; nullptr: not known
-SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar,
+SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar,
                              const HeadingSource* heading);
 
 /// How a measured velocity differs from what the sonar says of the motion.
@@ -57,7 +57,7 @@ struct VelocityCheck {
 /// nullopt: too few sweeps match to tell.
 /// @param velocity_from_sonar  seen from where the velocity is measured
 std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
-                                            const SonarMount& velocity_from_sonar, const HeadingSource& heading);
+                                            const Pose2& velocity_from_sonar, const HeadingSource& heading);
 
 /// Such odometry of sweeps as they come: what it said of earlier ones stays.
 class GrowingOdometry {
@@ -65,7 +65,7 @@ class GrowingOdometry {
   /// Takes what the last sweeps tell of the time since the last call, if they tell anything; the first ones have to
   /// tell a trajectory.
   /// @param sweeps  the last ones; the same as before and those that came since
-  void extend(std::span<const HeardSweep> sweeps, const SonarMount& body_from_sonar, const HeadingSource* heading);
+  void extend(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar, const HeadingSource* heading);
   /// Forgets what is not needed from a time on.
   void forget_before(double time_s);
 

@@ -25,15 +25,15 @@ VelocitySample sample_of(const VelocitySource& velocity, double time_s) {
 }
 
 /// Between samples, before the first one and after the last one.
-std::vector<TimeSeries::Gap> gaps_within(const Span& span, const TimeSeries& series) {
-  std::vector<TimeSeries::Gap> gaps = series.gaps(series.from_s(), series.to_s());
+std::vector<TimeSpan> gaps_within(const TimeSpan& span, const TimeSeries& series) {
+  std::vector<TimeSpan> gaps = series.gaps(series.from_s(), series.to_s());
   gaps.push_back({span.from_s, series.from_s()});
   gaps.push_back({series.to_s(), span.to_s});
   return gaps;
 }
 
 /// The sweeps of a gap and some around it.
-std::span<const HeardSweep> sweeps_around(const TimeSeries::Gap& gap, std::span<const HeardSweep> sweeps) {
+std::span<const HeardSweep> sweeps_around(const TimeSpan& gap, std::span<const HeardSweep> sweeps) {
   const auto first = std::ranges::upper_bound(sweeps, gap.from_s, {}, &HeardSweep::to_s);
   const auto end = std::ranges::lower_bound(sweeps, gap.to_s, {}, &HeardSweep::from_s);
   if (first >= end) return {};
@@ -41,8 +41,8 @@ std::span<const HeardSweep> sweeps_around(const TimeSeries::Gap& gap, std::span<
 }
 
 /// Adds samples of what the sonar says between each match and the next.
-void fill(const TimeSeries::Gap& gap, const VelocitySource& seen, double longest_s, double step_s,
-          std::vector<VelocitySample>& samples, std::vector<TimeSeries::Gap>& filled) {
+void fill(const TimeSpan& gap, const VelocitySource& seen, double longest_s, double step_s,
+          std::vector<VelocitySample>& samples, std::vector<TimeSpan>& filled) {
   // The first and the last sample go on to the ends.
   const std::vector<double>& matches_s = seen.ahead.times_s();
   for (std::size_t i = 1; i + 2 < matches_s.size(); ++i) {
@@ -56,15 +56,15 @@ void fill(const TimeSeries::Gap& gap, const VelocitySource& seen, double longest
 
 }  // namespace
 
-std::vector<TimeSeries::Gap> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const Span& span,
-                                                const SonarMount& velocity_from_sonar, const HeadingSource& heading,
-                                                VelocitySource& velocity) {
+std::vector<TimeSpan> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const TimeSpan& span,
+                                         const Pose2& velocity_from_sonar, const HeadingSource& heading,
+                                         VelocitySource& velocity) {
   const double sweep_s = sweep_duration_s(sweeps);
   const double step_s = std::max({velocity.ahead.usual_step_s(), kMinStep_s, sweep_s / kMaxSamplesOfSweep});
   std::vector<VelocitySample> samples;
-  std::vector<TimeSeries::Gap> filled;
-  const Span known{std::max(span.from_s, heading.yaw_rad.from_s()), std::min(span.to_s, heading.yaw_rad.to_s())};
-  for (const TimeSeries::Gap& gap : gaps_within(known, velocity.ahead)) {
+  std::vector<TimeSpan> filled;
+  const TimeSpan known{std::max(span.from_s, heading.yaw_rad.from_s()), std::min(span.to_s, heading.yaw_rad.to_s())};
+  for (const TimeSpan& gap : gaps_within(known, velocity.ahead)) {
     if (gap.to_s - gap.from_s <= sweep_s) continue;
     const SonarOdometry odometry = sonar_odometry(sweeps_around(gap, sweeps), velocity_from_sonar, &heading);
     if (!odometry.tells) continue;

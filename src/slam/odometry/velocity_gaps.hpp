@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "nav/internal/navigation.hpp"
-#include "slam/smoother/echo_pairs.hpp"
-#include "slam/smoother/slam_input.hpp"
-#include "slam/smoother/slam_solver.hpp"
+#include "pingvox/geometry/pose2.hpp"
+#include "pingvox/nav/time_span.hpp"
+#include "slam/sweeps/heard_sweep.hpp"
 
 namespace pingvox {
 
@@ -16,8 +16,8 @@ namespace pingvox {
 ///              is known
 /// @param velocity_from_sonar  seen from where the velocity is measured
 /// @return where that was
-std::vector<TimeSeries::Gap> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const Span& span,
-                                                const SonarMount& velocity_from_sonar, const HeadingSource& heading,
-                                                VelocitySource& velocity);
+std::vector<TimeSpan> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const TimeSpan& span,
+                                         const Pose2& velocity_from_sonar, const HeadingSource& heading,
+                                         VelocitySource& velocity);
 
 }  // namespace pingvox

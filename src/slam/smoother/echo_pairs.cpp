@@ -9,6 +9,7 @@
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
+#include "pingvox/geometry/random.hpp"
 
 namespace pingvox {
 namespace {
@@ -78,14 +79,6 @@ std::vector<SweepIndex> index_sweeps(std::span<const EchoOnGround> ground, std::
   return indices;
 }
 
-/// splitmix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
 double variance_of(const PlacedEcho& echo, const EchoOnGround& ground, const Eigen::Vector2d& normal, double scale) {
   // A crest is as sharp as the sonar draws it, not as far as it reaches.
   const double place_m = echo.run.place == EchoRun::Place::kCrest ? kCrest_m : scale * kMiddle_m;
@@ -124,10 +117,11 @@ double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns) {
 }
 
 std::uint64_t partner_rank(std::uint64_t seed, std::size_t sweep, std::size_t other) {
+  const auto mix = [](std::uint64_t bits) { return Random(bits).bits(); };
   return mix(mix(mix(seed) ^ std::min(sweep, other)) ^ std::max(sweep, other));
 }
 
-EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+EchoOnGround place_echo(const SlamProblem& problem, const Pose2& mount, const Unknowns& unknowns,
                         const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo) {
   EchoOnGround ground;
   Eigen::Vector2d place_m;
@@ -150,7 +144,7 @@ EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, con
   return ground;
 }
 
-std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const Pose2& mount, const Unknowns& unknowns,
                                        const std::vector<SlamProblem::Way>& ways, std::span<const PlacedEcho> echoes,
                                        std::span<const std::size_t> sweeps) {
   std::vector<EchoOnGround> ground;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/smoother/map_walls.hpp"
 #include "slam/smoother/slam_problem.hpp"
 
@@ -21,24 +22,18 @@ struct EchoOnGround {
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< of the wall; zero where the echoes around form no line
 };
 
-/// How the sonar is mounted, seen from the velocity's source: place and yaw in the frame of the body.
-struct SonarMount {
-  Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
-  double yaw_rad = 0.0;
-};
-
 /// Normal of the line through points; zero if they are no line. REQUIRES a point.
 Eigen::Vector2d normal_of(std::span<const Eigen::Vector2d> points);
 
 /// The body's yaw at an echo.
 double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns);
 
-EchoOnGround place_echo(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+EchoOnGround place_echo(const SlamProblem& problem, const Pose2& mount, const Unknowns& unknowns,
                         const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo);
 
 /// Places all echoes, and fits the wall's line at each: through the five nearest of its sweep within five metres.
 /// @param sweeps  where the echoes of each sweep begin, and the end of the last
-std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const SonarMount& mount, const Unknowns& unknowns,
+std::vector<EchoOnGround> place_echoes(const SlamProblem& problem, const Pose2& mount, const Unknowns& unknowns,
                                        const std::vector<SlamProblem::Way>& ways, std::span<const PlacedEcho> echoes,
                                        std::span<const std::size_t> sweeps);
 

@@ -31,7 +31,7 @@ Unknowns begin_near(const SlamProblem& problem, const Trajectory& near, const Ei
   for (std::size_t k = 0; k < problem.knots(); ++k) {
     const double time_s = problem.knot_times_s()[k];
     const Pose pose = near.at(time_s).value_or(Pose::Identity());
-    const double yaw_rad = std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0));
+    const double yaw_rad = yaw_of(pose);
     error_rad += wrap_angle(yaw_rad - problem.main_yaw_rad(time_s) - error_rad);
     start.knots[k] << pose.translation().head<2>() + rotation2(yaw_rad) * velocity_place, error_rad;
   }

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "base/median.hpp"
+#include "pingvox/geometry/pose2.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
-#include "slam/sweeps/echo_runs.hpp"
-#include "slam/sweeps/level_head.hpp"
 
 namespace pingvox {
 namespace {
@@ -29,9 +28,9 @@ double usual_speed_m_s(const VelocitySource& velocity) {
 }
 
 /// The time that is common to all that is needed.
-Result<Span> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
-  const Span beams{beam_times_s.front(), beam_times_s.back()};
-  Span span = beams;
+Result<TimeSpan> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
+  const TimeSpan beams{beam_times_s.front(), beam_times_s.back()};
+  TimeSpan span = beams;
   const auto cut = [&](const TimeSeries& series, const std::string& what) -> Result<void> {
     if (!overlap(span, series)) return no_overlap(beams, series, what);
     span = {std::max(span.from_s, series.from_s()), std::min(span.to_s, series.to_s())};
@@ -47,40 +46,14 @@ Result<Span> common_span(std::span<const double> beam_times_s, const Navigation&
 
 }  // namespace
 
-SonarMount sonar_mount(const Pose& pose) {
-  return {pose.translation().head<2>(), std::atan2(pose.rotation()(1, 0), pose.rotation()(0, 0))};
-}
-
 Eigen::Vector3d place_of_velocity(const VelocitySource& velocity, const SlamOptions& options) {
   if (velocity.by_sonar) return Eigen::Vector3d::Zero();
   return mount_of(options.body_from_source, velocity.name).translation();
 }
 
-SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options) {
+Pose2 velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options) {
   const Eigen::Translation3d source_from_body(-place_of_velocity(velocity, options));
-  return sonar_mount(Pose(source_from_body) * options.body_from_sonar);
-}
-
-HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
-  HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
-                   echo_runs(sweep, options.filter, options.echo)};
-  const double sense = is_upside_down(options.body_from_sonar) ? -1.0 : 1.0;
-  for (EchoRun& run : heard.runs) {
-    run.bearing_rad *= sense;
-    run.range_m *= options.sound_speed_ratio;
-    run.half_length_m *= options.sound_speed_ratio;
-  }
-  return heard;
-}
-
-double sweep_duration_s(std::span<const HeardSweep> sweeps) {
-  std::vector<double> complete_s, all_s;
-  for (const HeardSweep& sweep : sweeps) {
-    const double duration_s = sweep.to_s - sweep.from_s;
-    if (sweep.extent != Sweep::Extent::kCut) complete_s.push_back(duration_s);
-    all_s.push_back(duration_s);
-  }
-  return median(complete_s.empty() ? std::move(all_s) : std::move(complete_s));
+  return pose2_of(Pose(source_from_body) * options.body_from_sonar);
 }
 
 NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, NavQuantity quantity) {
@@ -166,11 +139,11 @@ Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& optio
   return navigation;
 }
 
-bool overlap(const Span& span, const TimeSeries& series) {
+bool overlap(const TimeSpan& span, const TimeSeries& series) {
   return series.from_s() < span.to_s && series.to_s() > span.from_s;
 }
 
-tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, const std::string& what) {
+tl::unexpected<Error> no_overlap(const TimeSpan& beams, const TimeSeries& series, const std::string& what) {
   return fail(Error::Code::kUnsupported,
               fmt::format("beams and navigation do not overlap in time: the beams are from {:.3f} to {:.3f} s, the "
                           "{} is from {:.3f} to {:.3f} s",
@@ -179,7 +152,7 @@ tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, co
 
 Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
                                 Navigation navigation) {
-  const Result<Span> span = common_span(beam_times_s, navigation);
+  const Result<TimeSpan> span = common_span(beam_times_s, navigation);
   if (!span) return tl::unexpected(span.error());
   return SlamInput{beam_times_s, sweeps, std::move(navigation), *span};
 }
@@ -191,7 +164,7 @@ Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<
   return slam_input_of(beam_times_s, sweeps, *std::move(navigation));
 }
 
-Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSweep> sweeps, std::size_t beams) {
+Result<std::vector<double>> knot_times(const TimeSpan& span, std::span<const HeardSweep> sweeps, std::size_t beams) {
   const double step_s = sweep_duration_s(sweeps) / kKnotsOfSweep;
   if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
   const double steps = std::max(1.0, std::ceil((span.to_s - span.from_s) / step_s));
@@ -207,7 +180,7 @@ Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSw
 
 SlamSolver solver_of(SlamProblem problem, const SlamInput& recording, const SlamOptions& options, Unknowns start,
                      Before before) {
-  const SonarMount mount = velocity_from_sonar(recording.navigation.velocity, options);
+  const Pose2 mount = velocity_from_sonar(recording.navigation.velocity, options);
   return SlamSolver(std::move(problem), mount, recording.sweeps, options.seed, std::move(start), std::move(before));
 }
 

@@ -11,11 +11,12 @@
 #include "nav/internal/navigation.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/nav/nav_log.hpp"
+#include "pingvox/nav/time_span.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
-#include "pingvox/sonar/sweep.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
 #include "slam/smoother/slam_solver.hpp"
+#include "slam/sweeps/heard_sweep.hpp"
 
 /// What was recorded, prepared for the least-squares problem.
 namespace pingvox {
@@ -23,18 +24,10 @@ namespace pingvox {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kKnotsOfSweep = 4.0;
 
-/// How the sonar is mounted in the plane, where bearings run counter-clockwise.
-SonarMount sonar_mount(const Pose& body_from_sonar);
-
 /// Where the velocity is measured on the body. By the sonar it is the body's own.
 Eigen::Vector3d place_of_velocity(const VelocitySource& velocity, const SlamOptions& options);
 /// How the sonar is mounted, seen from the source of the velocity.
-SonarMount velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options);
-
-/// The echoes of a sweep, by the options; bearings run counter-clockwise, seen from above the vehicle.
-HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options);
-/// Usual time of a sweep: of complete ones, where there are any. REQUIRES a sweep.
-double sweep_duration_s(std::span<const HeardSweep> sweeps);
+Pose2 velocity_from_sonar(const VelocitySource& velocity, const SlamOptions& options);
 
 /// The source of that name and quantity; a new one where there is none yet.
 NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, NavQuantity quantity);
@@ -67,19 +60,15 @@ std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& opt
 /// mounted source is not there, or the calibration is of another velocity
 Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options);
 
-/// A stretch of time.
-struct Span {
-  double from_s, to_s;
-};
-bool overlap(const Span& span, const TimeSeries& series);
-tl::unexpected<Error> no_overlap(const Span& beams, const TimeSeries& series, const std::string& what);
+bool overlap(const TimeSpan& span, const TimeSeries& series);
+tl::unexpected<Error> no_overlap(const TimeSpan& beams, const TimeSeries& series, const std::string& what);
 
 /// What was recorded until some time.
 struct SlamInput {
   std::span<const double> beam_times_s;
   std::span<const HeardSweep> sweeps;
   Navigation navigation;
-  Span span;  ///< common to all that is needed
+  TimeSpan span;  ///< common to all that is needed
 };
 
 /// @return kUnsupported when the times do not overlap
@@ -92,7 +81,7 @@ Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<
 /// Some four knots in the time of a sweep, both ends included.
 /// @param beams  in this time: bounds how many knots there may be
 /// @return kUnsupported when all beams have the same time; kCorrupt when their times jump
-Result<std::vector<double>> knot_times(const Span& span, std::span<const HeardSweep> sweeps, std::size_t beams);
+Result<std::vector<double>> knot_times(const TimeSpan& span, std::span<const HeardSweep> sweeps, std::size_t beams);
 
 SlamSolver solver_of(SlamProblem problem, const SlamInput& recording, const SlamOptions& options, Unknowns start,
                      Before before = {});

@@ -109,7 +109,7 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
     nodes_.push_back(std::move(nodes));
   }
   steady_m2_.assign(nodes_.size(), 0.0);
-  for (const TimeSeries::Gap& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
+  for (const TimeSpan& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
     const double variance_m2 = steady_variance_m2(gap);
     const auto after = std::ranges::upper_bound(knot_times_s_, gap.from_s);
     auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - knot_times_s_.begin() - 1, 0));
@@ -120,7 +120,7 @@ SlamProblem::SlamProblem(std::vector<double> knot_times_s, VelocitySource veloci
   }
 }
 
-double SlamProblem::steady_variance_m2(const TimeSeries::Gap& gap) const {
+double SlamProblem::steady_variance_m2(const TimeSpan& gap) const {
   constexpr double kSteps = 1000.0;
   const double step_s = (gap.to_s - gap.from_s) / kSteps;
   Eigen::Vector2d way_s = Eigen::Vector2d::Zero();
@@ -219,7 +219,7 @@ std::vector<SlamProblem::Way> SlamProblem::ways(const Unknowns& unknowns) const 
 
 double SlamProblem::gap_deviation_m(double longer_than_s) const {
   double variance_m2 = 0.0;
-  for (const TimeSeries::Gap& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
+  for (const TimeSpan& gap : velocity_.ahead.gaps(knot_times_s_.front(), knot_times_s_.back())) {
     if (gap.to_s - gap.from_s > longer_than_s) variance_m2 += steady_variance_m2(gap);
   }
   return std::sqrt(variance_m2);

@@ -129,7 +129,7 @@ class SlamProblem {
   };
   /// Variance of a motion that is the same for all of a gap: grows with the square of how far a vehicle gets in it that
   /// goes ahead.
-  double steady_variance_m2(const TimeSeries::Gap& gap) const;
+  double steady_variance_m2(const TimeSpan& gap) const;
   Row row(std::size_t knot, double residual) const;
   double deviation_rad(const Unknowns& unknowns, std::size_t source, double yaw_rad) const;
   /// Residual of a heading at a knot [rad], with derivatives by the error of the knot and the globals of the source.

@@ -12,7 +12,6 @@
 
 #include "base/option_errors.hpp"
 #include "base/without_exceptions.hpp"
-#include "base/option_errors.hpp"
 #include "pingvox/slam/picture_turns.hpp"
 #include "slam/causal/causal_estimator.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
@@ -127,7 +126,7 @@ Result<void> check_headings(std::span<const HeadingSource> headings, std::span<c
   // Over a longer time the turns of a vehicle are no more than a guess.
   constexpr double kLongest_s = 30.0;
   const TimeSeries& main = headings.front().yaw_rad;
-  for (const TimeSeries::Gap& gap : main.gaps(main.from_s(), main.to_s())) {
+  for (const TimeSpan& gap : main.gaps(main.from_s(), main.to_s())) {
     const bool is_known = std::ranges::any_of(headings, [&](const HeadingSource& heading) {
       return heading.yaw_rad.gap_s(gap.from_s, gap.to_s) <= kLongest_s;
     });
@@ -155,7 +154,7 @@ Result<double> fill_gaps(SlamInput& recording, const SlamOptions& options) {
   const std::span<const double> times_s = recording.beam_times_s;
   VelocitySource& velocity = recording.navigation.velocity;
   double filled_s = 0.0;
-  for (const TimeSeries::Gap& gap :
+  for (const TimeSpan& gap :
        fill_velocity_gaps(recording.sweeps, {times_s.front(), times_s.back()}, velocity_from_sonar(velocity, options),
                           recording.navigation.headings.front(), velocity)) {
     filled_s += gap.to_s - gap.from_s;
@@ -245,12 +244,12 @@ Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::s
   }
   const std::vector<HeadingSource> headings = headings_of(*log, options);
   if (!headings.empty()) {
-    const Span beams{sweeps.front().from_s, sweeps.back().to_s};
+    const TimeSpan beams{sweeps.front().from_s, sweeps.back().to_s};
     const HeadingSource& main = headings.front();
     if (!overlap(beams, main.yaw_rad)) return no_overlap(beams, main.yaw_rad, "heading of " + main.name);
   }
   SonarOdometry odometry =
-      sonar_odometry(sweeps, sonar_mount(options.body_from_sonar), headings.empty() ? nullptr : &headings.front());
+      sonar_odometry(sweeps, pose2_of(options.body_from_sonar), headings.empty() ? nullptr : &headings.front());
   if (!odometry.tells) {
     const bool are_too_few = headings.empty() && odometry.matched < kMatchesAlone;
     return fail(Error::Code::kUnsupported,

@@ -37,19 +37,8 @@ Eigen::VectorXd gradient_at(const WindowPrior& prior, const Eigen::Vector3d& kno
 
 }  // namespace
 
-double reach_of(std::span<const HeardSweep> sweeps) {
-  std::vector<double> ranges_m;
-  for (const HeardSweep& sweep : sweeps) {
-    for (const EchoRun& run : sweep.runs) ranges_m.push_back(run.range_m);
-  }
-  if (ranges_m.empty()) return 0.0;
-  const auto nine_of_ten = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() * 9 / 10);
-  std::ranges::nth_element(ranges_m, nine_of_ten);
-  return *nine_of_ten;
-}
-
-SlamSolver::SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps,
-                       std::uint64_t seed, Unknowns start, Before before)
+SlamSolver::SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
+                       Unknowns start, Before before)
     : problem_(std::move(problem)),
       mount_(mount),
       seed_(seed),

@@ -9,30 +9,19 @@
 #include <vector>
 
 #include "pingvox/slam/pose_graph.hpp"
-#include "pingvox/sonar/sweep.hpp"
 #include "slam/least_squares/normal_equations.hpp"
 #include "slam/smoother/echo_pairs.hpp"
 #include "slam/smoother/held_sweeps.hpp"
 #include "slam/smoother/map_walls.hpp"
 #include "slam/smoother/slam_problem.hpp"
-#include "slam/sweeps/echo_runs.hpp"
+#include "slam/sweeps/heard_sweep.hpp"
 
 namespace pingvox {
-
-/// A sweep that ended.
-struct HeardSweep {
-  Sweep::Extent extent;
-  double from_s, to_s;
-  std::vector<EchoRun> runs;
-};
 
 /// The widest gate of pairs where the velocity leads from sweep to sweep, as a share of the sonar's reach: echoes that
 /// are farther apart are of two things, as of two boulders. Gaps of the velocity widen it by how far they may lead
 /// astray.
 inline constexpr double kGateOfReach = 0.2;
-
-/// The range that nine of ten echoes are within; 0 without echoes.
-double reach_of(std::span<const HeardSweep> sweeps);
 
 /// What a problem that begins within a recording keeps of the time before.
 struct Before {
@@ -50,7 +39,7 @@ struct HeldLoop {
 /// The least-squares problem of sweeps, and its iterations.
 class SlamSolver {
  public:
-  SlamSolver(SlamProblem problem, const SonarMount& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
+  SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
              Unknowns start, Before before = {});
 
   /// In the steps to come, echoes are matched with the walls of a known map instead of each other. They must outlive
@@ -113,7 +102,7 @@ class SlamSolver {
   void add_walls(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
 
   SlamProblem problem_;
-  SonarMount mount_;
+  Pose2 mount_;
   std::uint64_t seed_;
   Unknowns unknowns_;
   std::vector<PlacedEcho> echoes_;

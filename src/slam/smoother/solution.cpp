@@ -104,7 +104,7 @@ SlamReport report_of(const SlamSolver& solver) {
 
 }  // namespace
 
-void report_velocity(const VelocitySource& velocity, const Span& span, SlamReport& report) {
+void report_velocity(const VelocitySource& velocity, const TimeSpan& span, SlamReport& report) {
   report.velocities = velocity.ahead.size();
   report.velocities_clipped = velocity.clipped;
   report.longest_gap_s = std::max(

@@ -14,7 +14,7 @@ class BeamJudgeInRoom : public testing::Test {
  protected:
   double likelihood(double range_m, bool has_echo) const {
     const HeardBeam beam{.direction = -Eigen::Vector2d::UnitX(), .range_m = range_m, .has_echo = has_echo};
-    return std::exp(BeamJudge(beam, *field_, model_).log_likelihood(PlaneFrame(PlanePose{})));
+    return std::exp(BeamJudge(beam, *field_, model_).log_likelihood(PlaneFrame(Pose2{})));
   }
 
   Result<DistanceField> field_ = DistanceField::make(Room().map(), {});

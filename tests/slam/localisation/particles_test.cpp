@@ -15,18 +15,19 @@
 namespace pingvox::test {
 namespace {
 
-std::vector<std::size_t> all_of(const std::vector<PlanePose>& poses) {
+std::vector<std::size_t> all_of(const std::vector<Pose2>& poses) {
   std::vector<std::size_t> all(poses.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
 }
 
 /// Particles around a place, of one weight each.
-void add_around(const PlanePose& place, std::size_t count, double log_weight, std::mt19937_64& random,
+void add_around(const Pose2& place, std::size_t count, double log_weight, std::mt19937_64& random,
                 Particles& particles) {
   for (std::size_t i = 0; i < count; ++i) {
-    particles.poses.push_back({place.x + uniform(random, -0.1, 0.1), place.y + uniform(random, -0.1, 0.1),
-                               place.yaw + uniform(random, -0.05, 0.05)});
+    particles.poses.push_back(
+        {{place.place_m.x() + uniform(random, -0.1, 0.1), place.place_m.y() + uniform(random, -0.1, 0.1)},
+         place.yaw_rad + uniform(random, -0.05, 0.05)});
     particles.log_weights.push_back(log_weight);
   }
 }
@@ -54,19 +55,19 @@ TEST(Particles, AreDrawnAsOftenAsTheyWeigh) {
 TEST(Particles, AreAsManyForBoxesAlongEachAxis) {
   for (const int boxes : {2, 5, 20, 60}) {
     SCOPED_TRACE(boxes);
-    std::vector<PlanePose> along_x, along_y, turned;
+    std::vector<Pose2> along_x, along_y, turned;
     for (int n = 0; n < boxes; ++n) {
       const double middle = n + 0.5;
-      along_x.push_back({0.1 * middle, 0.0, 0.0});
-      along_y.push_back({0.0, 0.1 * middle, 0.0});
-      turned.push_back({0.0, 0.0, 3.0 * kDegree_rad * (middle - std::floor(0.5 * boxes))});
+      along_x.push_back({{0.1 * middle, 0.0}, 0.0});
+      along_y.push_back({{0.0, 0.1 * middle}, 0.0});
+      turned.push_back({{0.0, 0.0}, 3.0 * kDegree_rad * (middle - std::floor(0.5 * boxes))});
     }
     const double asked = kld_particles(along_x, all_of(along_x));
     EXPECT_EQ(kld_particles(along_y, all_of(along_y)), asked);
     EXPECT_EQ(kld_particles(turned, all_of(turned)), asked);
     EXPECT_GT(asked, 10.0 * (boxes - 1));
     // So many more in each box change nothing.
-    std::vector<PlanePose> doubled = turned;
+    std::vector<Pose2> doubled = turned;
     doubled.insert(doubled.end(), turned.begin(), turned.end());
     EXPECT_EQ(kld_particles(doubled, all_of(doubled)), asked);
   }
@@ -75,18 +76,18 @@ TEST(Particles, AreAsManyForBoxesAlongEachAxis) {
 // Kills a spread that depends on what lies elsewhere.
 TEST(Particles, TheSpreadNearAPoseIsThatOfTheParticlesThere) {
   std::mt19937_64 random(5);
-  const PlanePose place{3.0, -2.0, 3.1};
+  const Pose2 place{{3.0, -2.0}, 3.1};
   Particles alone;
   add_around(place, 2000, 0.0, random, alone);
   const PoseHypothesis mean = mean_near(alone, place, 1.0, 1.0);
   EXPECT_NEAR(mean.weight, 1.0, 1e-9);
-  EXPECT_NEAR(mean.x_m, place.x, 0.01);
-  EXPECT_NEAR(mean.y_m, place.y, 0.01);
-  EXPECT_NEAR(std::remainder(mean.yaw_rad - place.yaw, 2.0 * std::numbers::pi), 0.0, 0.005);
+  EXPECT_NEAR(mean.x_m, place.place_m.x(), 0.01);
+  EXPECT_NEAR(mean.y_m, place.place_m.y(), 0.01);
+  EXPECT_NEAR(std::remainder(mean.yaw_rad - place.yaw_rad, 2.0 * std::numbers::pi), 0.0, 0.005);
   EXPECT_NEAR(mean.deviation_m, std::sqrt(2.0 / 3.0) * 0.1, 0.003);
   EXPECT_NEAR(mean.deviation_rad, std::sqrt(1.0 / 3.0) * 0.05, 0.0015);
   Particles two = alone;
-  add_around({-8.0, 5.0, 0.0}, 6000, 0.0, random, two);
+  add_around({{-8.0, 5.0}, 0.0}, 6000, 0.0, random, two);
   const PoseHypothesis again = mean_near(two, place, 1.0, 1.0);
   EXPECT_NEAR(again.weight, 0.25, 1e-9);
   EXPECT_NEAR(again.deviation_m, mean.deviation_m, 1e-9);

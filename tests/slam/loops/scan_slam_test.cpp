@@ -59,23 +59,20 @@ TEST(ScanSlam, PlainLeastSquaresOverItsGraphGiveItsPoses) {
   const PoseGraph& graph = solution.graph;
   ASSERT_EQ(graph.nodes.size(), solution.report.key_frames);
   EXPECT_EQ(graph.edges.size(), graph.nodes.size() - 1 + solution.report.loops_kept);
-  std::vector<PoseEdge> edges;
-  for (const auto& [a, b, a_from_b, information] : graph.edges) {
-    edges.push_back({a, b, Pose2{a_from_b.head<2>(), a_from_b.z()}, information});
-  }
+  const std::vector<PoseEdge>& edges = graph.edges;
   // From where the odometry alone leads.
-  std::vector<Pose2> poses = {{graph.nodes[0].pose.head<2>(), graph.nodes[0].pose.z()}};
+  std::vector<Pose2> poses = {graph.nodes[0].pose};
   for (std::size_t k = 0; k + 1 < graph.nodes.size(); ++k) {
     EXPECT_EQ(edges[k].b, k + 1);
     poses.push_back(poses.back() * edges[k].a_from_b);
   }
-  EXPECT_GT((poses.back().place_m - graph.nodes.back().pose.head<2>()).norm(), 2.0);
+  EXPECT_GT((poses.back().place_m - graph.nodes.back().pose.place_m).norm(), 2.0);
   solve_pose_graph(poses, edges, {});
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    EXPECT_LT((poses[k].place_m - graph.nodes[k].pose.head<2>()).norm(), 0.02) << k;
+    EXPECT_LT((poses[k].place_m - graph.nodes[k].pose.place_m).norm(), 0.02) << k;
     // A key frame is its first scan.
     const Pose scan = *solution.trajectory.at(static_cast<double>(graph.nodes[k].number));
-    EXPECT_LT((scan.translation().head<2>() - graph.nodes[k].pose.head<2>()).norm(), 1e-9) << k;
+    EXPECT_LT((scan.translation().head<2>() - graph.nodes[k].pose.place_m).norm(), 1e-9) << k;
   }
 }
 

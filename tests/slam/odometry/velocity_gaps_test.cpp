@@ -24,9 +24,9 @@ class VelocityGaps : public testing::Test {
   }
 
   /// @return for how long the sonar tells it [s]
-  double fill(VelocitySource& velocity, const Span& span = {50.0, 50.0}) const {
+  double fill(VelocitySource& velocity, const TimeSpan& span = {50.0, 50.0}) const {
     double sum_s = 0.0;
-    for (const TimeSeries::Gap& gap : fill_velocity_gaps(sweeps_, span, mount_of(basin_), heading_, velocity)) {
+    for (const TimeSpan& gap : fill_velocity_gaps(sweeps_, span, mount_of(basin_), heading_, velocity)) {
       sum_s += gap.to_s - gap.from_s;
     }
     return sum_s;

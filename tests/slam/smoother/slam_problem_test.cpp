@@ -80,7 +80,7 @@ TEST(SlamProblem, DerivativesOfMotionAndHeadingsAreThoseOfTheirResiduals) {
 
 TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
   const SlamProblem problem = a_problem();
-  const SonarMount mount{{0.4, -0.1}, 3.0};
+  const Pose2 mount{{0.4, -0.1}, 3.0};
   const Unknowns at = random_unknowns(problem, 5);
   const auto echo_at = [&](double time_s, double bearing_rad, double range_m) {
     const auto between = problem.between_knots(time_s);

@@ -68,7 +68,7 @@ class SlamSolverCeres : public testing::Test {
   /// held, and whose normals turn with the yaw from what it is with `bulges` on.
   std::vector<double> residuals(const Unknowns& unknowns, std::span<const EchoPair> pairs,
                                 const Unknowns& bulges) const {
-    const SonarMount mount = sonar_mount(options_.body_from_sonar);
+    const Pose2 mount = pose2_of(options_.body_from_sonar);
     const auto ways = problem_->ways(unknowns), held_ways = problem_->ways(bulges);
     std::vector<double> all;
     for (const SlamProblem::Row& row : problem_->rows(unknowns, ways)) all.push_back(row.residual);
