@@ -87,6 +87,97 @@ std::array<int, kTileCells> squared_distances(const Neighbourhood& occupied, int
   return squares;
 }
 
+/// The columns of a layer that are known, in cells from the centre of the lattice.
+struct LayerBounds {
+  std::int64_t min_x = std::numeric_limits<std::int64_t>::max(), min_y = min_x, max_x = -min_x, max_y = -min_x;
+  bool has_occupied = false;
+};
+
+LayerBounds layer_bounds(const OccupancyMap& map, const DistanceFieldOptions& options) {
+  LayerBounds known;
+  for_each_square(map, options, [&](const Square& s, bool is_occupied) {
+    known.min_x = std::min(known.min_x, s.first_x);
+    known.min_y = std::min(known.min_y, s.first_y);
+    known.max_x = std::max(known.max_x, s.first_x + s.size);
+    known.max_y = std::max(known.max_y, s.first_y + s.size);
+    known.has_occupied |= is_occupied;
+  });
+  return known;
+}
+
+/// What is known of the columns in a box, in tiles that are made where something is.
+class LayerTiles {
+ public:
+  LayerTiles(std::size_t tiles_x, std::size_t tiles_y) : tiles_x_(tiles_x), tiles_(tiles_x * tiles_y, 0) {}
+
+  const std::vector<std::uint32_t>& tiles() const { return tiles_; }   ///< by place; 0: none
+  const std::vector<std::uint8_t>& states() const { return states_; }  ///< tile by tile, the first of none
+  std::size_t count() const { return has_occupied_.size(); }           ///< with the first of none
+
+  /// Makes the tile at a place, if there is none. 0: there are too many.
+  std::uint32_t make_tile(std::size_t place) {
+    std::uint32_t& tile = tiles_[place];
+    if (tile == 0 && has_occupied_.size() <= kMaxTiles) {
+      tile = static_cast<std::uint32_t>(has_occupied_.size());
+      has_occupied_.push_back(false);
+      states_.resize(states_.size() + kTileCells, kNoCell);
+    }
+    return tile;
+  }
+
+  /// Takes columns, counted from the corner of the box. False: too many tiles.
+  bool add(const Square& columns, bool is_occupied) {
+    const std::int64_t x0 = columns.first_x, y0 = columns.first_y;
+    for (std::int64_t ty = y0 / kTile; ty <= (y0 + columns.size - 1) / kTile; ++ty) {
+      for (std::int64_t tx = x0 / kTile; tx <= (x0 + columns.size - 1) / kTile; ++tx) {
+        const std::uint32_t tile = make_tile(static_cast<std::size_t>(ty) * tiles_x_ + static_cast<std::size_t>(tx));
+        if (tile == 0) return false;
+        if (is_occupied) has_occupied_[tile] = true;
+        const std::uint8_t state = is_occupied ? kOccupiedCell : kFreeCell;
+        for (std::int64_t y = std::max(y0, ty * kTile); y < std::min(y0 + columns.size, (ty + 1) * kTile); ++y) {
+          for (std::int64_t x = std::max(x0, tx * kTile); x < std::min(x0 + columns.size, (tx + 1) * kTile); ++x) {
+            std::uint8_t& cell = states_[tile * kTileCells + static_cast<std::size_t>((y % kTile) * kTile + x % kTile)];
+            cell = std::max(cell, state);
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+  /// Places of the tiles with something occupied and of those next to them, which may hold nothing themselves.
+  std::vector<std::size_t> near_occupied() const {
+    std::vector<std::size_t> near;
+    for (std::size_t place = 0; place < tiles_.size(); ++place) {
+      if (!has_occupied_[tiles_[place]]) continue;
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) near.push_back(place + (row - 1) * tiles_x_ + column - 1);
+      }
+    }
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    return near;
+  }
+
+  void occupied_around(std::size_t place, Neighbourhood& occupied) const {
+    for (std::size_t ty = 0; ty < 3; ++ty) {
+      for (std::size_t tx = 0; tx < 3; ++tx) {
+        const std::size_t other = place + (ty - 1) * tiles_x_ + tx - 1;
+        const std::size_t tile = other < tiles_.size() ? tiles_[other] : 0;
+        for (std::size_t i = 0; i < kTileCells; ++i) {
+          occupied[ty * kTile + i / kTile][tx * kTile + i % kTile] = states_[tile * kTileCells + i] == kOccupiedCell;
+        }
+      }
+    }
+  }
+
+ private:
+  std::size_t tiles_x_;
+  std::vector<std::uint32_t> tiles_;
+  std::vector<std::uint8_t> states_ = std::vector<std::uint8_t>(kTileCells, kNoCell);
+  std::vector<bool> has_occupied_ = std::vector<bool>(1, false);
+};
+
 }  // namespace
 
 Result<void> DistanceFieldOptions::validate() const {
@@ -107,17 +198,7 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
     field.truncation_m_ = std::min(options.truncation_m, static_cast<double>(kTile) * field.cell_m_);
     field.step_m_ = field.truncation_m_ / kFar;
 
-    struct {
-      std::int64_t min_x = std::numeric_limits<std::int64_t>::max(), min_y = min_x, max_x = -min_x, max_y = -min_x;
-      bool has_occupied = false;
-    } known;
-    for_each_square(map, options, [&](const Square& s, bool is_occupied) {
-      known.min_x = std::min(known.min_x, s.first_x);
-      known.min_y = std::min(known.min_y, s.first_y);
-      known.max_x = std::max(known.max_x, s.first_x + s.size);
-      known.max_y = std::max(known.max_y, s.first_y + s.size);
-      known.has_occupied |= is_occupied;
-    });
+    LayerBounds known = layer_bounds(map, options);
     if (!known.has_occupied) {
       return fail(Error::Code::kUnsupported, fmt::format("nothing is occupied between the heights {:.3g} and {:.3g} m",
                                                          options.min_z_m, options.max_z_m));
@@ -137,81 +218,34 @@ Result<DistanceField> DistanceField::make(const OccupancyMap& map, const Distanc
     field.size_x_ = static_cast<double>(tiles_x * kTile);
     field.size_y_ = static_cast<double>(tiles_y * kTile);
     field.tiles_x_ = static_cast<std::size_t>(tiles_x);
-    field.tiles_.assign(field.tiles_x_ * static_cast<std::size_t>(tiles_y), 0);
 
-    // What is known, tile by tile.
-    std::vector<std::uint8_t> states(kTileCells, kNoCell);
-    std::vector<bool> has_occupied(1, false);
-    const auto tile_at = [&](std::size_t place) {
-      std::uint32_t& tile = field.tiles_[place];
-      if (tile == 0 && has_occupied.size() <= kMaxTiles) {
-        tile = static_cast<std::uint32_t>(has_occupied.size());
-        has_occupied.push_back(false);
-        states.resize(states.size() + kTileCells, kNoCell);
-      }
-      return tile;
-    };
+    LayerTiles layer(field.tiles_x_, static_cast<std::size_t>(tiles_y));
     bool fits = true;
     for_each_square(map, options, [&](const Square& s, bool is_occupied) {
-      const std::int64_t x0 = s.first_x - known.min_x, y0 = s.first_y - known.min_y;
-      for (std::int64_t ty = y0 / kTile; ty <= (y0 + s.size - 1) / kTile && fits; ++ty) {
-        for (std::int64_t tx = x0 / kTile; tx <= (x0 + s.size - 1) / kTile && fits; ++tx) {
-          const std::uint32_t tile =
-              tile_at(static_cast<std::size_t>(ty) * field.tiles_x_ + static_cast<std::size_t>(tx));
-          fits = tile != 0;
-          if (!fits) return;
-          if (is_occupied) has_occupied[tile] = true;
-          const std::uint8_t state = is_occupied ? kOccupiedCell : kFreeCell;
-          for (std::int64_t y = std::max(y0, ty * kTile); y < std::min(y0 + s.size, (ty + 1) * kTile); ++y) {
-            for (std::int64_t x = std::max(x0, tx * kTile); x < std::min(x0 + s.size, (tx + 1) * kTile); ++x) {
-              std::uint8_t& cell =
-                  states[tile * kTileCells + static_cast<std::size_t>((y % kTile) * kTile + x % kTile)];
-              cell = std::max(cell, state);
-            }
-          }
-        }
-      }
+      fits = fits && layer.add({s.first_x - known.min_x, s.first_y - known.min_y, s.size}, is_occupied);
     });
     if (!fits) return too_large();
-
-    // Tiles next to something occupied, which may hold nothing themselves.
-    std::vector<std::size_t> near;
-    for (std::size_t place = 0; place < field.tiles_.size(); ++place) {
-      if (!has_occupied[field.tiles_[place]]) continue;
-      for (std::size_t row = 0; row < 3; ++row) {
-        for (std::size_t column = 0; column < 3; ++column)
-          near.push_back(place + (row - 1) * field.tiles_x_ + column - 1);
-      }
-    }
-    std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    const std::vector<std::size_t> near = layer.near_occupied();
     for (const std::size_t place : near) {
-      if (tile_at(place) == 0) return too_large();
+      if (layer.make_tile(place) == 0) return too_large();
     }
+    field.tiles_ = layer.tiles();
 
     std::array<std::uint8_t, 2 * kTile * kTile + 1> steps{};
     for (std::size_t square = 0; square < steps.size(); ++square) {
       const double distance_m = std::sqrt(static_cast<double>(square)) * field.cell_m_;
       steps[square] = static_cast<std::uint8_t>(std::min<double>(kFar, std::round(distance_m / field.step_m_)));
     }
+    const std::vector<std::uint8_t>& states = layer.states();
     field.values_.resize(states.size());
     std::ranges::transform(states, field.values_.begin(), [](std::uint8_t state) {
       return static_cast<std::uint8_t>(kFar + (state == kNoCell ? kUnknown : 0));
     });
     // A tile that is not near has nothing occupied beside it.
-    field.clear_cells_.resize(has_occupied.size() * kBlocks * kBlocks, kTile - 2);
+    field.clear_cells_.resize(layer.count() * kBlocks * kBlocks, kTile - 2);
     const auto occupied = std::make_unique<Neighbourhood>();
     for (const std::size_t place : near) {
-      for (std::size_t ty = 0; ty < 3; ++ty) {
-        for (std::size_t tx = 0; tx < 3; ++tx) {
-          const std::size_t other = place + (ty - 1) * field.tiles_x_ + tx - 1;
-          const std::size_t tile = other < field.tiles_.size() ? field.tiles_[other] : 0;
-          for (std::size_t i = 0; i < kTileCells; ++i) {
-            (*occupied)[ty * kTile + i / kTile][tx * kTile + i % kTile] =
-                states[tile * kTileCells + i] == kOccupiedCell;
-          }
-        }
-      }
+      layer.occupied_around(place, *occupied);
       const auto squares = squared_distances(*occupied, kTile);
       const std::size_t first = field.tiles_[place] * kTileCells;
       for (std::size_t i = 0; i < kTileCells; ++i) {
