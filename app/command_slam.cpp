@@ -63,7 +63,7 @@ Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& s
 }
 
 std::vector<std::string> used_sources(const SlamSolution& solution) {
-  std::vector<std::string> used = {solution.report.velocity, solution.report.heading};
+  std::vector<std::string> used = {solution.report.velocity.source, solution.report.heading};
   for (const HeadingCalibration& heading : solution.calibration.headings) used.push_back(heading.source);
   return used;
 }
@@ -111,7 +111,7 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
   if (const std::string hint = mount_hint(recording); !hint.empty()) console.say(hint);
   ProgressBar bar(command.output_options);
   bar.draw(std::nullopt, "solving");
-  const Result<RecordingSlam> found = slam(recording, command.slam, std::move(first));
+  const Result<RecordingSlam> found = slam(recording, command.slam, command.estimation, std::move(first));
   bar.clear();
   if (!found) return tl::unexpected(advise_on_slam(found.error(), command));
   const SlamSolution& solution = found->solution;

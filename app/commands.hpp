@@ -203,6 +203,7 @@ struct SlamCommand {
   Damage damage = Damage::kSkip;
   BagArgs bag;
   SlamOptions slam;
+  Estimation estimation = Estimation::kBatch;
   std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
   std::optional<double> nav_offset_s;    ///< added to the times of `navs`; nullopt: to be found
   std::vector<NamedSource> nav_sources;  ///< of `navs`, that are taken instead of others

@@ -70,7 +70,7 @@ Result<Command> slam_command(const Args& args) {
       "Estimation",
       {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none is dead reckoning",
               slam.matching),
-       flag("--causal", "estimate each pose only from what was recorded before it, as on board", slam.estimation,
+       flag("--causal", "estimate each pose only from what was recorded before it, as on board", command.estimation,
             Estimation::kCausal),
        std::move(seed)}};
   for (OptionTable::Group* group : {&navigation, &estimation}) {
@@ -144,7 +144,7 @@ Result<Command> slam_command(const Args& args) {
     if (!known_calibration.empty()) command.known_calibration = known_calibration;
     if (!calibration.empty()) command.calibration = calibration;
     if (!covariance.empty()) {
-      if (slam.estimation == Estimation::kCausal) {
+      if (command.estimation == Estimation::kCausal) {
         return usage_error("--covariance and --causal: exclude each other: covariances need the whole log");
       }
       command.covariance = covariance;

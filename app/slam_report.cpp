@@ -113,27 +113,39 @@ std::string seconds_text(const SlamSeconds& seconds) {
                      seconds.read, seconds.solve, seconds.map, seconds.write);
 }
 
-std::string velocity_text(const SlamReport& report) {
-  if (const auto& sonar = report.by_sonar) {
+JsonObject json_of(const LoopCount& loops) {
+  JsonObject json;
+  json.add("found", loops.found).add("kept", loops.kept);
+  return json;
+}
+
+JsonObject json_of(const LargestSolution& largest) {
+  JsonObject json;
+  json.add("knots", largest.knots).add("echoes", largest.echoes).add("pairs", largest.pairs);
+  return json;
+}
+
+std::string velocity_text(const VelocityReport& velocity, std::size_t sweeps) {
+  if (const auto& sonar = velocity.by_sonar) {
     return fmt::format(
         "not measured, but by the sonar: {} of {} sweeps match those before them, longest gap {:.0f} s; "
         "without pairs it drifts by {:.1f} m",
-        sonar->matched, report.sweeps, report.longest_gap_s, sonar->drift_m);
+        sonar->matched, sweeps, velocity.longest_gap_s, sonar->drift_m);
   }
-  const std::string check =
-      report.velocity_check ? fmt::format("{:.2f} m/s from what the sonar sees", report.velocity_check->difference_m_s)
-                            : std::string("not checked by the sonar");
-  const std::string by_sonar = report.gaps_by_sonar_s > 0.0
-                                   ? fmt::format(" ({:.0f} s of gaps by the sonar)", report.gaps_by_sonar_s)
+  const std::string check = velocity.check
+                                ? fmt::format("{:.2f} m/s from what the sonar sees", velocity.check->difference_m_s)
+                                : std::string("not checked by the sonar");
+  const std::string by_sonar = velocity.gaps_by_sonar_s > 0.0
+                                   ? fmt::format(" ({:.0f} s of gaps by the sonar)", velocity.gaps_by_sonar_s)
                                    : std::string();
-  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s{}; {}", on_one_line(report.velocity),
-                     report.velocities, report.velocities_clipped, report.longest_gap_s, by_sonar, check);
+  return fmt::format("{}, {} samples, {} clipped, longest gap {:.2f} s{}; {}", on_one_line(velocity.source),
+                     velocity.samples, velocity.clipped, velocity.longest_gap_s, by_sonar, check);
 }
 
 std::string sensors_text(const SlamSolution& solution) {
   const SlamCalibration& c = solution.calibration;
   std::string text;
-  if (!solution.report.by_sonar) {
+  if (!solution.report.velocity.by_sonar) {
     text = fmt::format("velocity turned by {} degrees, scaled by {:.4f} +- {:.4f}; ", degrees_text(c.velocity_yaw_rad),
                        1.0 + c.velocity_scale.value, c.velocity_scale.deviation);
   }
@@ -159,27 +171,24 @@ std::string slam_json(const Recording& recording, const RecordingSlam& slam, con
                       const SlamInputs& inputs, const SlamSeconds& seconds) {
   const SlamSolution& solution = slam.solution;
   const SlamReport& report = solution.report;
-  JsonObject loops, submap_loops, velocity, largest, json;
-  loops.add("found", report.loops_found).add("kept", report.loops_kept);
-  submap_loops.add("found", report.submap_loops_found).add("kept", report.submap_loops_kept);
-  largest.add("knots", report.largest.knots).add("echoes", report.largest.echoes).add("pairs", report.largest.pairs);
-  velocity.add("source", report.velocity)
-      .add("samples", report.velocities)
-      .add("clipped", report.velocities_clipped)
-      .add("longest_gap_s", report.longest_gap_s)
-      .add("gaps_by_sonar_s", report.gaps_by_sonar_s);
-  if (report.by_sonar) {
+  JsonObject velocity, json;
+  velocity.add("source", report.velocity.source)
+      .add("samples", report.velocity.samples)
+      .add("clipped", report.velocity.clipped)
+      .add("longest_gap_s", report.velocity.longest_gap_s)
+      .add("gaps_by_sonar_s", report.velocity.gaps_by_sonar_s);
+  if (const auto& motion = report.velocity.by_sonar) {
     JsonObject by_sonar;
-    by_sonar.add("matched", report.by_sonar->matched)
-        .add("noise_m_sqrt_s", report.by_sonar->noise_m_sqrt_s)
-        .add("drift_m", report.by_sonar->drift_m);
+    by_sonar.add("matched", motion->matched)
+        .add("noise_m_sqrt_s", motion->noise_m_sqrt_s)
+        .add("drift_m", motion->drift_m);
     velocity.add("by_sonar", by_sonar);
   } else {
     velocity.add_null("by_sonar");
   }
-  if (report.velocity_check) {
+  if (const auto& checked = report.velocity.check) {
     JsonObject check;
-    check.add("sweeps", report.velocity_check->sweeps).add("difference_m_s", report.velocity_check->difference_m_s);
+    check.add("sweeps", checked->sweeps).add("difference_m_s", checked->difference_m_s);
     velocity.add("check", check);
   } else {
     velocity.add_null("check");
@@ -192,10 +201,10 @@ std::string slam_json(const Recording& recording, const RecordingSlam& slam, con
       .add("skipped", slam.skipped)
       .add("sound_speed_m_s", slam.options.sound_speed_ratio * kAssumedSoundSpeed_m_s)
       .add("knots", report.knots)
-      .add("pairs", report.pairs)
-      .add("pair_median_m", report.pair_median_m)
-      .add("loops", loops)
-      .add("submap_loops", submap_loops)
+      .add("pairs", report.pairs.count)
+      .add("pair_median_m", report.pairs.median_m)
+      .add("loops", json_of(report.pairs.loops))
+      .add("submap_loops", json_of(report.pairs.submap_loops))
       .add("velocity", velocity)
       .add("heading", report.heading)
       .add("frame", frame_text(report.heading))
@@ -203,7 +212,7 @@ std::string slam_json(const Recording& recording, const RecordingSlam& slam, con
       .add("nav_logs", nav_logs_json(recording.nav().clocks))
       .add("nav_others", json_of(inputs.others));
   report.clock_check ? json.add("clock_check", json_of(*report.clock_check)) : json.add_null("clock_check");
-  command.slam.estimation == Estimation::kCausal ? json.add("largest", largest) : json.add_null("largest");
+  report.largest ? json.add("largest", json_of(*report.largest)) : json.add_null("largest");
   std::vector<JsonObject> not_observable;
   for (const std::string& what : report.not_observable) not_observable.emplace_back().add("name", what);
   json.add("not_observable", not_observable);
@@ -240,7 +249,7 @@ std::string slam_text(const Recording& recording, const RecordingSlam& slam, con
   text += nav_logs_text(recording.nav().clocks);
   text += recording.water() ? report_line("water", water_text(*recording.water()))
                             : sound_line(slam.options.sound_speed_ratio * kAssumedSoundSpeed_m_s);
-  text += report_line("velocity", velocity_text(report)) + others_line(inputs.others);
+  text += report_line("velocity", velocity_text(report.velocity, report.sweeps)) + others_line(inputs.others);
   const std::size_t poses = solution.trajectory.poses().size();
   std::string trajectory = fmt::format("{} over {:.1f} s", counted(poses, "pose"), recorded_s(solution));
   if (report.in_pauses > 0) trajectory += fmt::format(", {} of them in pauses of the sonar", report.in_pauses);
@@ -250,13 +259,13 @@ std::string slam_text(const Recording& recording, const RecordingSlam& slam, con
   text += report_line("trajectory", trajectory);
   text += report_line("frame", frame_text(report.heading));
   if (command.slam.matching == Matching::kPairs) {
-    text += report_line("pairs", report.pairs == 0
-                                     ? "none: the poses come from velocity and headings alone"
-                                     : fmt::format("{}, median distance {:.2f} m, {} of {} loops kept", report.pairs,
-                                                   report.pair_median_m, report.loops_kept, report.loops_found));
-    if (report.submap_loops_found > 0) {
-      text += report_line(
-          "submaps", fmt::format("{} of {} loops kept before", report.submap_loops_kept, report.submap_loops_found));
+    text +=
+        report_line("pairs", report.pairs.count == 0 ? "none: the poses come from velocity and headings alone"
+                                                     : fmt::format("{}, median distance {:.2f} m, {} of {} loops kept",
+                                                                   report.pairs.count, report.pairs.median_m,
+                                                                   report.pairs.loops.kept, report.pairs.loops.found));
+    if (const LoopCount& loops = report.pairs.submap_loops; loops.found > 0) {
+      text += report_line("submaps", fmt::format("{} of {} loops kept before", loops.kept, loops.found));
     }
     text += report_line("sensors", sensors_text(solution));
     for (const HeadingCalibration& heading : solution.calibration.headings) {

@@ -81,7 +81,7 @@ Result<Sums> smooth(const Drive& drive, const DistanceField& field, std::vector<
   SlamSmoother smoother({});
   for (const Beam& beam : drive.beams) smoother.add(beam);
   if (const auto added = smoother.add(drive.nav); !added) return tl::unexpected(added.error());
-  const Result<SlamSolution> solution = smoother.solve_in(field, *near);
+  const Result<MapSolution> solution = smoother.solve_in(field, *near);
   if (!solution) return tl::unexpected(solution.error());
   Sums sums;
   for (const StampedPose& pose : solution->trajectory.poses()) {

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "io/internal/beams_in_order.hpp"
 #include "pingvox/recording/recording.hpp"
+#include "pingvox/slam/causal_replay.hpp"
 
 namespace pingvox {
 namespace {
@@ -42,8 +44,15 @@ SlamOptions options_for(const Recording& recording, SlamOptions options) {
   return options;
 }
 
-/// Gives the smoother the beams of a log.
-Result<void> add_beams(const Recording& recording, OpenedLog log, SlamSmoother& smoother, RecordingSlam& slam) {
+using Estimator = std::variant<SlamSmoother, CausalReplay>;
+
+Estimator estimator_of(Estimation estimation, const SlamOptions& options) {
+  if (estimation == Estimation::kCausal) return CausalReplay(options);
+  return SlamSmoother(options);
+}
+
+/// Gives the estimator the beams of a log.
+Result<void> add_beams(const Recording& recording, OpenedLog log, Estimator& estimator, RecordingSlam& slam) {
   const std::string name = log.name;
   Result<std::unique_ptr<BeamSource>> source = only_beams(std::move(log.log), name);
   if (!source) return tl::unexpected(source.error());
@@ -55,7 +64,7 @@ Result<void> add_beams(const Recording& recording, OpenedLog log, SlamSmoother& 
     Result<std::optional<Beam>> beam = beams->next();
     if (!beam) return tl::unexpected(beam.error());
     if (!*beam) break;
-    smoother.add(std::move(**beam));
+    std::visit([&](auto& to) { to.add(std::move(**beam)); }, estimator);
   }
   slam.skipped += beams->skipped();
   if (const std::string note = beams->note(); !note.empty()) slam.notes.push_back({name, note});
@@ -74,25 +83,27 @@ VehiclePath RecordingSlam::path() const {
   return path;
 }
 
-Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& options, std::optional<OpenedLog> first) {
+Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& options, Estimation estimation,
+                           std::optional<OpenedLog> first) {
   auto start = std::chrono::steady_clock::now();
   RecordingSlam slam{{Trajectory::still(Pose::Identity()), {}, {}, {}}, options_for(recording, options)};
   if (const auto valid = slam.options.validate(); !valid) return tl::unexpected(valid.error());
-  SlamSmoother smoother(slam.options);
-  if (const auto added = smoother.add(recording.nav().log); !added) {
+  Estimator estimator = estimator_of(estimation, slam.options);
+  const Result<void> added = std::visit([&](auto& to) { return to.add(recording.nav().log); }, estimator);
+  if (!added) {
     return fail(added.error().code, fmt::format("{}: {}", recording.nav_names(), added.error().message));
   }
   slam.skipped = recording.nav().damaged;
   for (std::size_t i = 0; i < recording.logs().size(); ++i) {
     Result<OpenedLog> log = i == 0 && first ? *std::exchange(first, std::nullopt) : recording.open_log(i);
     if (!log) return tl::unexpected(log.error());
-    if (const auto added = add_beams(recording, *std::move(log), smoother, slam); !added) {
-      return tl::unexpected(added.error());
+    if (const auto read = add_beams(recording, *std::move(log), estimator, slam); !read) {
+      return tl::unexpected(read.error());
     }
   }
   slam.read_s = seconds_since(start);
   start = std::chrono::steady_clock::now();
-  Result<SlamSolution> solution = smoother.solve();
+  Result<SlamSolution> solution = std::visit([](const auto& of) { return of.solve(); }, estimator);
   if (!solution) {
     return fail(solution.error().code, fmt::format("{}: {}", names_of(recording), solution.error().message));
   }

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "pingvox/recording/recording.hpp"
+#include "pingvox/slam/causal_replay.hpp"
 #include "recording/dive.hpp"
 
 namespace pingvox::test {
@@ -11,23 +12,34 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(RecordingSlam, IsWhatASmootherSaysOfItsBeams) {
+// Kills an estimation of the other kind.
+template <class Slam>
+void expect_as_by(Estimation estimation) {
   const Dive dive = harbour_dive();
   const auto recording = Recording::open({dive.log}, {.nav = {dive.nav}, .nav_offset_s = 0.0});
   ASSERT_TRUE(recording) << recording.error().message;
-  const auto found = slam(*recording);
+  const auto found = slam(*recording, {}, estimation);
   ASSERT_TRUE(found) << found.error().message;
 
-  SlamSmoother smoother{SlamOptions{}};
-  ASSERT_TRUE(smoother.add(read_nav(dive.nav)->log));
-  for (const Beam& beam : all_beams(dive.log).items) smoother.add(beam);
-  const auto by_hand = smoother.solve();
+  Slam estimator{SlamOptions{}};
+  ASSERT_TRUE(estimator.add(read_nav(dive.nav)->log));
+  for (const Beam& beam : all_beams(dive.log).items) estimator.add(beam);
+  const auto by_hand = estimator.solve();
   ASSERT_TRUE(by_hand) << by_hand.error().message;
+  EXPECT_EQ(found->solution.report.largest.has_value(), estimation == Estimation::kCausal);
   const auto &a = found->solution.trajectory.poses(), &b = by_hand->trajectory.poses();
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(a[i].map_from_body.matrix(), b[i].map_from_body.matrix()) << i;
   }
+}
+
+TEST(RecordingSlam, IsWhatASmootherSaysOfItsBeams) {
+  expect_as_by<SlamSmoother>(Estimation::kBatch);
+}
+
+TEST(RecordingSlam, IsWhatAReplaySaysAsOnBoard) {
+  expect_as_by<CausalReplay>(Estimation::kCausal);
 }
 
 // Kills a map that is not along the path of SLAM.

@@ -164,13 +164,13 @@ struct RecordingSlam {
   VehiclePath path() const;
 };
 
-/// Where the vehicle was, by a SlamSmoother over all beams and navigation.
+/// Where the vehicle was, by a SlamSmoother over all beams and navigation, or as on board by a CausalReplay.
 /// @param options  their mount, mounts and offset of the navigation, calibration and speed of sound in known water are
 ///                 the recording's
 /// @param first    the first log, where it was opened already: standard input is read once
 /// @return as SlamSmoother::solve; kUnsupported for scans; errors of reading
 Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& options = {},
-                           std::optional<OpenedLog> first = std::nullopt);
+                           Estimation estimation = Estimation::kBatch, std::optional<OpenedLog> first = std::nullopt);
 
 struct RecordingLocateOptions {
   LocateOptions locate = {};  ///< mount, noise and speed of sound in known water are the recording's

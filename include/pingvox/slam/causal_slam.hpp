@@ -9,11 +9,10 @@
 
 namespace pingvox {
 
-/// Where a vehicle is, while its sonar and its navigation tell: SlamSmoother with Estimation::kCausal, on board. After
+/// Where a vehicle is, on board: each pose from what was recorded until then, navigation until its next sample. After
 /// every other sweep a window of the last ones is estimated anew (SlamOptions::causal_sweeps), so that the work for a
 /// sweep and the memory, apart from a pose for each beam, do not grow with time. In between, velocity and headings lead
-/// on from there. Where no source of a velocity speaks before the first solution, the sonar tells how the vehicle
-/// moved.
+/// on from there. CausalReplay says what it would have told of a recording.
 ///
 ///     CausalSlam slam(options);
 ///     slam.add("dvl", NavQuantity::kVelocity, sample);  // as they come
@@ -21,8 +20,8 @@ namespace pingvox {
 ///     if (const auto pose = slam.pose()) steer_by(*pose);
 class CausalSlam {
  public:
-  /// REQUIRES valid options. What they say of `estimation` does not matter.
-  explicit CausalSlam(SlamOptions options);
+  /// REQUIRES valid options.
+  explicit CausalSlam(const SlamOptions& options);
   ~CausalSlam();
   CausalSlam(CausalSlam&&) noexcept;
   CausalSlam& operator=(CausalSlam&&) noexcept;
@@ -40,7 +39,8 @@ class CausalSlam {
   /// sweep. The first pose is at 0, 0. nullopt: before the first solution, and while the sonar alone tells too little.
   std::optional<StampedPose> pose() const;
 
-  /// Ends the recording: the poses of all beams, each from what was known then. Nothing can be added afterwards.
+  /// Ends the recording: the poses of all beams, each from what was known then. What the report says of the velocity is
+  /// of the last sweeps. Nothing can be added afterwards.
   /// @return errors of SlamSmoother::solve
   Result<SlamSolution> finish();
 

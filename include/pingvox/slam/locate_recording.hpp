@@ -31,6 +31,12 @@ struct RecordedMotion {
   OdometryOptions nav_options;  ///< of `nav`
 };
 
+/// What the pose of a beam is estimated from.
+enum class Estimation {
+  kBatch,   ///< all that was recorded
+  kCausal,  ///< what was recorded until then, as on board
+};
+
 struct LocateOptions {
   LocalizerOptions localizer;
   std::optional<StartPose> start = std::nullopt;  ///< nullopt: anywhere

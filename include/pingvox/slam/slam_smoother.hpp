@@ -29,24 +29,19 @@ enum class Matching {
   kNone,   ///< none: dead reckoning by velocity and headings
 };
 
-/// What the pose of a beam is estimated from.
-enum class Estimation {
-  kBatch,   ///< all that was recorded
-  kCausal,  ///< what was recorded until then, as on board; navigation until its next sample
-};
-
 /// What says how the vehicle moved from sweep to sweep.
 enum class MotionSource {
-  kVelocity,  ///< a velocity of the navigation; to SlamSmoother the sonar where there is none, while CausalSlam waits
+  kVelocity,  ///< a velocity of the navigation; where a recording has none the sonar, while CausalSlam waits for one
   kSonar,     ///< the sonar: each sweep is matched with those before it
 };
 
 struct SlamOptions {
   Matching matching = Matching::kPairs;
-  Estimation estimation = Estimation::kBatch;
   MotionSource motion = MotionSource::kVelocity;
-  /// With Estimation::kCausal: how many sweeps are estimated at a time, at least 2; those before stay as they are.
+  /// Of CausalSlam: how many sweeps are estimated at a time, kMinCausalSweeps or more; those before stay as they
+  /// are.
   std::size_t causal_sweeps = 80;
+  static constexpr std::size_t kMinCausalSweeps = 2;
   std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
 
   /// Within 45 degrees of level, or of upside down.
@@ -96,56 +91,74 @@ struct SonarCheck {
   double difference_m_s = 0.0;  ///< median over these
 };
 
-/// The greatest of each that a solution with Estimation::kCausal had: they do not grow with the log.
+struct VelocityReport {
+  std::string source;  ///< its name
+  std::size_t samples = 0, clipped = 0;
+  double longest_gap_s = 0.0;           ///< without a valid sample; between matches where it is by the sonar
+  double gaps_by_sonar_s = 0.0;         ///< how long, in gaps of more than a sweep, the sonar told the motion
+  std::optional<SonarCheck> check;      ///< nullopt: too few sweeps match to tell, or none was asked to
+  std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity
+};
+
+struct LoopCount {
+  std::size_t found = 0, kept = 0;
+};
+
+/// Pairs of echoes, in the last iteration of the last solution.
+struct PairReport {
+  std::size_t count = 0;
+  double median_m = 0.0;  ///< median distance from line to point
+  /// Pairs of sweeps far apart in time and near in place; kept are those with at least ten pairs that count.
+  LoopCount loops;
+  /// Submaps of some sweeps that look like one of an earlier time, and how many of these agree with each other: they
+  /// led the trajectory to where pairs were looked for. Of CausalSlam those of all solutions, but only where poses were
+  /// farther off than pairs lead back.
+  LoopCount submap_loops;
+};
+
+/// The greatest of each that a solution of CausalSlam had: they do not grow with the log.
 struct LargestSolution {
   std::size_t knots = 0;   ///< three unknowns each
   std::size_t echoes = 0;  ///< with those of sweeps that stay as they are
   std::size_t pairs = 0;
 };
 
-/// With Estimation::kCausal, pairs and loops are those of the last solution.
 struct SlamReport {
   std::size_t beams = 0;
+  std::size_t in_pauses = 0;  ///< poses in pauses of the sonar; 0 of CausalSlam
   std::size_t sweeps = 0;
-  std::size_t in_pauses = 0;  ///< poses in pauses of the sonar
-  std::size_t echoes = 0;     ///< within the time of the trajectory
+  std::size_t echoes = 0;  ///< within the time of the trajectory
   std::size_t knots = 0;
-  std::size_t pairs = 0;        ///< of echoes, in the last iteration
-  double pair_median_m = 0.0;   ///< median distance from line to point over the pairs
-  std::size_t loops_found = 0;  ///< pairs of sweeps far apart in time and near in place
-  std::size_t loops_kept = 0;   ///< of these, how many have at least ten pairs that count
-  /// Submaps of some sweeps that look like one of an earlier time, and how many of these agree with each other: they
-  /// led the trajectory to where pairs were looked for. With Estimation::kCausal of all solutions, but only where poses
-  /// were farther off than pairs lead back.
-  std::size_t submap_loops_found = 0, submap_loops_kept = 0;
-  std::size_t velocities = 0;  ///< valid samples
-  std::size_t velocities_clipped = 0;
-  double longest_gap_s = 0.0;    ///< without a valid velocity
-  double gaps_by_sonar_s = 0.0;  ///< how long, in gaps of more than a sweep, the sonar told how the vehicle moved
-  /// nullopt: too few sweeps match to tell, or none was asked to.
-  std::optional<SonarCheck> velocity_check;
+  PairReport pairs;
+  VelocityReport velocity;
+  std::string heading;  ///< the name of the main heading's source
   /// What is to be added to the times of the main heading, nav_offset_s already added, by the turning of the sonar's
   /// picture: 0 if the clocks are right. nullopt: it cannot be told.
   std::optional<ClockOffset> clock_check;
-  double least_on_walls = 0.0;    ///< in a map: of all sweeps the least share of echoes that are on walls of it
-  std::string velocity, heading;  ///< the names of the sources: of the velocity, and of the main heading
   /// What of the calibration the recording says little about, in words: more than half of the variance that was
   /// believed beforehand is left.
   std::vector<std::string> not_observable;
   /// What of the calibration ended more than four standard deviations from what was believed beforehand: a mount, the
   /// navigation of another vehicle, or the clock may be wrong. Also a velocity or a clock that the sonar contradicts.
   std::vector<std::string> implausible;
-  LargestSolution largest;
-  std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity, and longest_gap_s is between matches
+  std::optional<LargestSolution> largest;  ///< of CausalSlam
 };
 
 struct SlamSolution {
   /// map_from_body: x east, y north as the headings say, the first pose at 0, 0. At each beam, and in pauses of the
-  /// sonar at each velocity, where velocity and heading go on; else pauses are gaps. With Estimation::kCausal all are.
+  /// sonar at each velocity, where velocity and heading go on; else pauses are gaps. Of CausalSlam all are.
   Trajectory trajectory;
   SlamCalibration calibration;
-  std::vector<PoseCovariance> covariances;  ///< of the knots, some four a sweep; none with Estimation::kCausal
+  std::vector<PoseCovariance> covariances;  ///< of the knots, some four a sweep; none of CausalSlam
   SlamReport report;
+};
+
+/// Poses in a map that is known, at the beams.
+struct MapSolution {
+  Trajectory trajectory;  ///< map_from_body; pauses of the sonar are gaps
+  SlamCalibration calibration;
+  std::vector<PoseCovariance> covariances;  ///< of the knots
+  double least_on_walls = 0.0;              ///< of all sweeps the least share of echoes that are on walls of the map
 };
 
 /// Where a vehicle was and how its sensors are mounted, by one least-squares problem over all that was recorded
@@ -179,7 +192,7 @@ class SlamSmoother {
   /// @param near  poses in the map, within some decimetres and degrees, as a Localizer finds them; the solution is of
   ///              the beams within its time
   /// @return as solve(); kUnsupported also without a velocity
-  Result<SlamSolution> solve_in(const DistanceField& map, const Trajectory& near) const;
+  Result<MapSolution> solve_in(const DistanceField& map, const Trajectory& near) const;
 
  private:
   struct State;

@@ -56,16 +56,14 @@ Result<std::vector<double>> window_knot_times(const CausalWindow& window, const 
 
 }  // namespace
 
-CausalEstimator::CausalEstimator(SlamOptions options) : options_(std::move(options)), window_(options_.seed) {
-  options_.estimation = Estimation::kCausal;
-}
+CausalEstimator::CausalEstimator(SlamOptions options) : options_(std::move(options)), window_(options_.seed) {}
 
 void CausalEstimator::add_beam(double time_s) {
   beam_times_s_.push_back(time_s);
   ++beams_;
 }
 
-void CausalEstimator::add_sweep(HeardSweep sweep) {
+void CausalEstimator::take(HeardSweep sweep) {
   if (sweep.extent != Sweep::Extent::kCut) ++complete_sweeps_;
   sweeps_.push_back(std::move(sweep));
   ++all_sweeps_;
@@ -75,8 +73,11 @@ Result<void> CausalEstimator::add_sample(std::string_view source, NavQuantity qu
   return pingvox::add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
 }
 
-Result<void> CausalEstimator::solve() {
-  return sweeps_.empty() ? Result<void>() : solve_until(sweeps_.back().to_s);
+Result<void> CausalEstimator::add_sweep(HeardSweep sweep) {
+  take(std::move(sweep));
+  if (++sweeps_of_step_ < kSweepsOfStep) return {};
+  sweeps_of_step_ = 0;
+  return solve_until(sweeps_.back().to_s);
 }
 
 MotionSources CausalEstimator::sources_of_window(double nav_until_s) {
@@ -97,7 +98,7 @@ MotionSources CausalEstimator::sources_of_window(double nav_until_s) {
 
 Result<void> CausalEstimator::solve_until(double nav_until_s) {
   const auto end = std::ranges::upper_bound(beam_times_s_, sweeps_.back().to_s) - beam_times_s_.begin();
-  Result<Navigation> navigation = navigation_of(sources_of_window(nav_until_s), options_);
+  Result<Navigation> navigation = navigation_of(sources_of_window(nav_until_s), options_, kEarlierSamples);
   if (navigation) fill_gaps(*navigation);
   const Result<SlamInput> recording = std::move(navigation).and_then([&](Navigation part) {
     return slam_input_of(std::span(beam_times_s_).first(static_cast<std::size_t>(end)), sweeps_, std::move(part));
@@ -192,7 +193,7 @@ std::optional<StampedPose> CausalEstimator::pose() const {
   const double from_s = window_.times_s.back();
   MotionSources sources{sources_within(sources_, from_s, kInfinity, 0.0)};
   if (odometry_.tells()) sources.by_sonar = odometry_.sources();
-  Result<Navigation> navigation = navigation_of(std::move(sources), options_);
+  Result<Navigation> navigation = navigation_of(std::move(sources), options_, kEarlierSamples);
   if (!navigation) return std::nullopt;
   // The window's last error of the heading is that of its main one.
   std::vector<HeadingSource>& headings = navigation->headings;
@@ -221,7 +222,8 @@ std::optional<StampedPose> CausalEstimator::pose() const {
   return pose;
 }
 
-Result<SlamSolution> CausalEstimator::finish() {
+Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
+  if (last) take(*std::move(last));
   if (sweeps_.empty() && !solver_) return fail(Error::Code::kUnsupported, "there are no beams");
   if (!sweeps_.empty()) {
     if (const auto solved = solve_until(kInfinity); !solved) return tl::unexpected(solved.error());
@@ -246,11 +248,10 @@ Result<SlamSolution> CausalEstimator::finish() {
   solution->report.knots = window_.left_knots + window_.times_s.size();
   solution->report.echoes = window_.left_echoes + window_.echoes;
   solution->report.largest = window_.largest;
-  solution->report.gaps_by_sonar_s = filled_s_;
-  solution->report.submap_loops_found = loops_.found;
-  solution->report.submap_loops_kept = loops_.kept;
-  if (solution->report.by_sonar) {
-    SonarMotion& motion = *solution->report.by_sonar;
+  solution->report.velocity.gaps_by_sonar_s = filled_s_;
+  solution->report.pairs.submap_loops = {loops_.found, loops_.kept};
+  if (solution->report.velocity.by_sonar) {
+    SonarMotion& motion = *solution->report.velocity.by_sonar;
     motion.matched = odometry_.matched();
     const std::vector<StampedPose>& told = solution->trajectory.poses();
     motion.drift_m = motion.noise_m_sqrt_s * std::sqrt(told.back().time_s - told.front().time_s);

@@ -16,8 +16,11 @@
 
 namespace pingvox {
 
-/// Estimates each pose from what was recorded until then: after some sweeps the poses of their beams by dead reckoning
-/// from the last solution, then a new solution of a window of the last sweeps.
+/// Outliers of a velocity are judged by as many samples as else, but earlier ones.
+inline constexpr OutlierWindow kEarlierSamples = {10, 0};
+
+/// Estimates each pose from what was recorded until then: after every kSweepsOfStep sweeps the poses of their beams by
+/// dead reckoning from the last solution, then a new solution of a window of the last sweeps.
 class CausalEstimator {
  public:
   /// REQUIRES valid options.
@@ -28,21 +31,21 @@ class CausalEstimator {
 
   /// @param time_s  not before that of the last one
   void add_beam(double time_s);
-  /// Takes a sweep whose beams were added.
-  void add_sweep(HeardSweep sweep);
+  /// Takes a sweep that is followed by another one, and whose beams were added; the last one of a step leads to a
+  /// solution, with navigation until its end. What is missing for one may come later.
+  /// @return kUnsupported when the recording does not determine the poses, which are as before then: these sweeps are
+  ///         solved with the next ones; kCorrupt when times jump
+  Result<void> add_sweep(HeardSweep sweep);
   /// Takes a sample on the clock of the navigation. @return kCorrupt when a number is not finite
   Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample);
 
-  /// Solves with the sweeps until now, and navigation until the end of the last one. What is missing may come later.
-  /// @return kUnsupported when the recording does not determine the poses, which are as before then: these sweeps are
-  ///         solved with the next ones; kCorrupt when times jump
-  Result<void> solve();
   /// @see CausalSlam::pose
   std::optional<StampedPose> pose() const;
-  /// Solves with all navigation.
-  Result<SlamSolution> finish();
+  /// Solves with the last sweep, if there is one, and all navigation.
+  Result<SlamSolution> finish(std::optional<HeardSweep> last);
 
  private:
+  void take(HeardSweep sweep);
   Result<void> solve_until(double nav_until_s);
   /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
   /// moved.
@@ -63,6 +66,7 @@ class CausalEstimator {
   std::vector<HeardSweep> sweeps_;
   std::vector<NavSource> sources_;  ///< with some samples before, in order
   std::size_t beams_ = 0, all_sweeps_ = 0, complete_sweeps_ = 0;
+  std::size_t sweeps_of_step_ = 0;  ///< since the last solution
 
   GrowingOdometry odometry_;
 

@@ -13,22 +13,14 @@ namespace pingvox {
 struct CausalSlam::State {
   explicit State(const SlamOptions& some) : options(some), estimator(some) {}
 
-  void take(const Sweep& sweep) {
-    estimator.add_sweep(heard_sweep(sweep, options));
-    ++waiting;
-  }
-
   SlamOptions options;
   CausalEstimator estimator;
   SweepAssembler assembler;
   std::optional<double> last_s;
-  std::size_t waiting = 0;  ///< sweeps since the last solution
 };
 
-CausalSlam::CausalSlam(SlamOptions options) {
+CausalSlam::CausalSlam(const SlamOptions& options) : state_(std::make_unique<State>(options)) {
   assert(options.validate());
-  options.estimation = Estimation::kCausal;
-  state_ = std::make_unique<State>(options);
 }
 CausalSlam::~CausalSlam() = default;
 CausalSlam::CausalSlam(CausalSlam&&) noexcept = default;
@@ -43,11 +35,7 @@ Result<void> CausalSlam::add(Beam beam) {
     state_->last_s = beam.time_s;
     state_->estimator.add_beam(beam.time_s);
     const auto sweep = state_->assembler.add(std::move(beam));
-    if (!sweep) return {};
-    state_->take(*sweep);
-    if (state_->waiting < kSweepsOfStep) return {};
-    state_->waiting = 0;
-    return state_->estimator.solve();
+    return sweep ? state_->estimator.add_sweep(heard_sweep(*sweep, state_->options)) : Result<void>();
   });
 }
 
@@ -61,8 +49,9 @@ std::optional<StampedPose> CausalSlam::pose() const {
 
 Result<SlamSolution> CausalSlam::finish() {
   return detail::without_exceptions([&]() -> Result<SlamSolution> {
-    if (const auto rest = state_->assembler.finish()) state_->take(*rest);
-    return state_->estimator.finish();
+    std::optional<HeardSweep> last;
+    if (const auto rest = state_->assembler.finish()) last = heard_sweep(*rest, state_->options);
+    return state_->estimator.finish(std::move(last));
   });
 }
 

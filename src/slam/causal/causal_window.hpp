@@ -16,8 +16,8 @@
 
 namespace pingvox {
 
-/// Causal estimation: solved anew after so many sweeps, from where the last solution was.
-inline constexpr std::size_t kSweepsOfStep = 2;
+/// Solved anew after so many sweeps, from where the last solution was.
+inline constexpr std::size_t kSweepsOfStep = SlamOptions::kMinCausalSweeps;
 
 /// The part of a trajectory that is still estimated, and what is left of the time before.
 struct CausalWindow {

@@ -75,7 +75,7 @@ std::vector<Poses> segments_of(Poses poses) {
 Result<bool> smooth(const SlamSmoother& smoother, const DistanceField& map, Poses poses) {
   const Result<Trajectory> near = Trajectory::make(poses_of(poses));
   if (!near) return false;
-  const Result<SlamSolution> solution = smoother.solve_in(map, *near);
+  const Result<MapSolution> solution = smoother.solve_in(map, *near);
   if (!solution && solution.error().code == Error::Code::kUnsupported) return false;
   if (!solution) return tl::unexpected(solution.error());
   for (LocatedPose& pose : poses) {

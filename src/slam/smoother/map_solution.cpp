@@ -70,25 +70,25 @@ WindowPrior prior_in_map(const SlamProblem& problem, const Unknowns& start) {
 
 }  // namespace
 
-Result<SlamSolution> solve_in_map(SlamInput recording, const NavLog& log, const SlamOptions& options,
-                                  const DistanceField& map, const Trajectory& near) {
-  recording.span.from_s = std::max(recording.span.from_s, near.poses().front().time_s);
-  recording.span.to_s = std::min(recording.span.to_s, near.poses().back().time_s);
-  if (!(recording.span.from_s < recording.span.to_s)) {
+Result<MapSolution> solve_in_map(SlamInput input, const NavLog& log, const SlamOptions& options,
+                                 const DistanceField& map, const Trajectory& near) {
+  input.span.from_s = std::max(input.span.from_s, near.poses().front().time_s);
+  input.span.to_s = std::min(input.span.to_s, near.poses().back().time_s);
+  if (!(input.span.from_s < input.span.to_s)) {
     return fail(Error::Code::kUnsupported, "the recording and the poses in the map do not overlap in time");
   }
-  Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
+  Result<std::vector<double>> times_s = knot_times(input.span, input.sweeps, input.beam_times_s.size());
   if (!times_s) return tl::unexpected(times_s.error());
-  std::vector<HeadingSource> headings = recording.navigation.headings;
+  std::vector<HeadingSource> headings = input.navigation.headings;
   if (const NavSource* rate = log.best(NavQuantity::kTurnRate)) {
     auto turned = gyro_heading(*rate, mount_of(options.body_from_source, rate->name), headings.front());
     if (turned) headings.insert(headings.begin(), *std::move(turned));
   }
-  SlamProblem problem(*std::move(times_s), recording.navigation.velocity, std::move(headings), options.calibration);
-  Unknowns start = begin_near(problem, near, place_of_velocity(recording.navigation.velocity, options).head<2>());
+  SlamProblem problem(*std::move(times_s), input.navigation.velocity, std::move(headings), options.calibration);
+  Unknowns start = begin_near(problem, near, place_of_velocity(input.navigation.velocity, options).head<2>());
   Before before;
   before.prior = prior_in_map(problem, start);
-  SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start), std::move(before));
+  SlamSolver solver = solver_of(std::move(problem), input, options, std::move(start), std::move(before));
   const MapWalls walls(map);
   solver.set_walls(walls);
   solver.expect_steady_motion();
@@ -102,14 +102,12 @@ Result<SlamSolution> solve_in_map(SlamInput recording, const NavLog& log, const 
     return fail(Error::Code::kUnsupported,
                 fmt::format("the echoes do not fit the map: of a sweep, {:.0f} % are on walls", 100.0 * on_walls));
   }
-  Result<SlamSolution> solution = solution_of(
-      solver, options,
-      poses_at(recording.beam_times_s, solver.problem(), solver.unknowns(), recording.navigation.depth, options));
-  if (!solution) return solution;
-  solution->covariances = covariances_of(solver, *of_knots, options);
-  solution->report.beams = recording.beam_times_s.size();
-  solution->report.least_on_walls = on_walls;
-  return solution;
+  return solution_of(solver, options,
+                     poses_at(input.beam_times_s, solver.problem(), solver.unknowns(), input.navigation.depth, options))
+      .map([&](SlamSolution solution) {
+        return MapSolution{std::move(solution.trajectory), std::move(solution.calibration),
+                           covariances_of(solver, *of_knots, options), on_walls};
+      });
 }
 
 }  // namespace pingvox

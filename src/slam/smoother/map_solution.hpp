@@ -10,7 +10,7 @@
 namespace pingvox {
 
 /// See SlamSmoother::solve_in. `log` is that of the recording, on the clock of the beams.
-Result<SlamSolution> solve_in_map(SlamInput recording, const NavLog& log, const SlamOptions& options,
-                                  const DistanceField& map, const Trajectory& near);
+Result<MapSolution> solve_in_map(SlamInput input, const NavLog& log, const SlamOptions& options,
+                                 const DistanceField& map, const Trajectory& near);
 
 }  // namespace pingvox

@@ -14,8 +14,6 @@
 namespace pingvox {
 namespace {
 
-/// As many samples as around, but earlier ones.
-constexpr OutlierWindow kEarlier = {10, 0};
 constexpr double kFastest_m_s = 30.0;
 
 /// Median over the samples.
@@ -77,10 +75,9 @@ Result<void> add_sample(std::string_view source, NavQuantity quantity, const Nav
   return {};
 }
 
-std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options) {
+std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options, const OutlierWindow& window) {
   const NavSource* fastest = log.best(NavQuantity::kVelocity);
   if (fastest == nullptr) return std::nullopt;
-  const OutlierWindow window = options.estimation == Estimation::kCausal ? kEarlier : OutlierWindow{};
   return velocity_source(*fastest, mount_of(options.body_from_source, fastest->name), window);
 }
 
@@ -106,13 +103,14 @@ std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& opt
   return headings;
 }
 
-Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options) {
+Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options, const OutlierWindow& window) {
   const Result<NavLog> made = NavLog::make(std::move(sources.measured), NavClock::kUnknown);
   if (!made) return tl::unexpected(made.error());
   const NavLog& log = *made;
   if (const auto known = check_mounts(log, options.body_from_source); !known) return tl::unexpected(known.error());
   const std::optional<SonarSources>& by_sonar = sources.by_sonar;
-  std::optional<VelocitySource> velocity = by_sonar ? sonar_velocity(by_sonar->velocity) : velocity_of(log, options);
+  std::optional<VelocitySource> velocity =
+      by_sonar ? sonar_velocity(by_sonar->velocity) : velocity_of(log, options, window);
   std::vector<HeadingSource> headings =
       headings_of(log, options, by_sonar && by_sonar->heading ? &*by_sonar->heading : nullptr);
   if (!velocity || headings.empty()) {
@@ -141,6 +139,26 @@ Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& optio
 
 bool overlap(const TimeSpan& span, const TimeSeries& series) {
   return series.from_s() < span.to_s && series.to_s() > span.from_s;
+}
+
+Result<void> check_headings(std::span<const HeadingSource> headings, std::span<const double> beam_times_s) {
+  // Over a longer time the turns of a vehicle are no more than a guess.
+  constexpr double kLongest_s = 30.0;
+  const TimeSeries& main = headings.front().yaw_rad;
+  for (const TimeSpan& gap : main.gaps(main.from_s(), main.to_s())) {
+    const bool is_known = std::ranges::any_of(headings, [&](const HeadingSource& heading) {
+      return heading.yaw_rad.gap_s(gap.from_s, gap.to_s) <= kLongest_s;
+    });
+    const auto beams =
+        std::ranges::upper_bound(beam_times_s, gap.to_s) - std::ranges::lower_bound(beam_times_s, gap.from_s);
+    if (is_known || beams == 0) continue;
+    return fail(
+        Error::Code::kUnsupported,
+        fmt::format("no heading is known from {:.3f} to {:.3f} s, where there are {} beams: did the clock of {} "
+                    "jump?",
+                    gap.from_s, gap.to_s, beams, headings.front().name));
+  }
+  return {};
 }
 
 tl::unexpected<Error> no_overlap(const TimeSpan& beams, const TimeSeries& series, const std::string& what) {

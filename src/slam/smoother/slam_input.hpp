@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -50,15 +51,22 @@ struct Navigation {
   std::optional<TimeSeries> depth;
 };
 
+inline constexpr std::array kVelocityQuantities = {NavQuantity::kVelocity};
+
 /// nullopt: no valid samples.
-std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options);
+/// @param window  of samples by which outliers are judged
+std::optional<VelocitySource> velocity_of(const NavLog& log, const SlamOptions& options,
+                                          const OutlierWindow& window = {});
 /// All headings, the one with the most samples first. Without any, how the turn rates turn.
 /// @param by_sonar  one more heading; nullptr: none
 std::vector<HeadingSource> headings_of(const NavLog& log, const SlamOptions& options,
                                        const NavSource* by_sonar = nullptr);
 /// @return kUnsupported without a velocity or a heading, or when the velocity is that of no vehicle; kBadOption when a
 /// mounted source is not there, or the calibration is of another velocity
-Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options);
+Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& options, const OutlierWindow& window = {});
+
+/// @return kUnsupported where no heading is known for long while beams come
+Result<void> check_headings(std::span<const HeadingSource> headings, std::span<const double> beam_times_s);
 
 bool overlap(const TimeSpan& span, const TimeSeries& series);
 tl::unexpected<Error> no_overlap(const TimeSpan& beams, const TimeSeries& series, const std::string& what);

@@ -12,10 +12,9 @@
 
 #include "base/option_errors.hpp"
 #include "base/without_exceptions.hpp"
-#include "pingvox/slam/picture_turns.hpp"
-#include "slam/causal/causal_estimator.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
 #include "slam/odometry/velocity_gaps.hpp"
+#include "slam/smoother/heard_log.hpp"
 #include "slam/smoother/map_solution.hpp"
 #include "slam/smoother/slam_input.hpp"
 #include "slam/smoother/slam_problem.hpp"
@@ -54,7 +53,7 @@ Result<void> SlamOptions::validate() const {
   if (calibration) {
     if (const auto valid = calibration->validate(); !valid) errors.add("calibration: " + valid.error().message);
   }
-  errors.require(causal_sweeps >= kSweepsOfStep, "causal_sweeps", fmt::format("{} or more", kSweepsOfStep),
+  errors.require(causal_sweeps >= kMinCausalSweeps, "causal_sweeps", fmt::format("{} or more", kMinCausalSweeps),
                  causal_sweeps);
   errors.add(filter.validate());
   errors.add(echo.validate());
@@ -62,85 +61,28 @@ Result<void> SlamOptions::validate() const {
 }
 
 struct SlamSmoother::State {
-  SlamOptions options;
-  SweepAssembler assembler;
-  PictureTurns turns;  ///< only where echoes are matched
-  std::vector<double> beam_times_s;
-  std::vector<HeardSweep> sweeps;
-  std::vector<NavSource> sources;
-
-  /// With what there is of the last. @return kUnsupported without beams; kCorrupt when their times do not rise
-  Result<std::vector<HeardSweep>> all_sweeps() const;
+  HeardLog log;
 };
 
-Result<std::vector<HeardSweep>> SlamSmoother::State::all_sweeps() const {
-  if (beam_times_s.empty()) return fail(Error::Code::kUnsupported, "there are no beams");
-  if (const auto back = std::ranges::adjacent_find(beam_times_s, std::ranges::greater()); back != beam_times_s.end()) {
-    return fail(Error::Code::kCorrupt, fmt::format("the times of the beams do not rise: beam {} is at {:.3f} s, the "
-                                                   "next at {:.3f} s",
-                                                   back - beam_times_s.begin(), *back, *(back + 1)));
-  }
-  std::vector<HeardSweep> all = sweeps;
-  SweepAssembler rest = assembler;
-  if (const auto sweep = rest.finish()) all.push_back(heard_sweep(*sweep, options));
-  return all;
-}
-
-SlamSmoother::SlamSmoother(SlamOptions options) : state_(std::make_unique<State>()) {
-  assert(options.validate());
-  state_->turns = PictureTurns(options.body_from_sonar);
-  state_->options = std::move(options);
-}
+SlamSmoother::SlamSmoother(SlamOptions options)
+    : state_(std::make_unique<State>(State{HeardLog(std::move(options))})) {}
 SlamSmoother::~SlamSmoother() = default;
 SlamSmoother::SlamSmoother(SlamSmoother&&) noexcept = default;
 SlamSmoother& SlamSmoother::operator=(SlamSmoother&&) noexcept = default;
 
 void SlamSmoother::add(Beam beam) {
-  state_->beam_times_s.push_back(beam.time_s);
-  if (state_->options.matching == Matching::kPairs) state_->turns.add(beam);
-  if (const auto sweep = state_->assembler.add(std::move(beam))) {
-    state_->sweeps.push_back(heard_sweep(*sweep, state_->options));
-  }
+  state_->log.add(std::move(beam));
 }
 
 Result<void> SlamSmoother::add(std::string_view source, NavQuantity quantity, const NavSample& sample) {
-  return add_sample(source, quantity, sample, state_->options.nav_offset_s, state_->sources);
+  return state_->log.add(source, quantity, sample);
 }
 
 Result<void> SlamSmoother::add(const NavLog& log) {
-  return detail::without_exceptions([&]() -> Result<void> {
-    if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return checked;
-    for (NavSource source : log.sources()) {
-      if (source.subject == NavSubject::kOther) continue;
-      for (NavSample& sample : source.samples) sample.time_s += state_->options.nav_offset_s;
-      add_samples(source, source_in(state_->sources, source.name, source.quantity));
-    }
-    return {};
-  });
+  return state_->log.add(log);
 }
 
 namespace {
-
-/// @return kUnsupported where no heading is known for long while beams come
-Result<void> check_headings(std::span<const HeadingSource> headings, std::span<const double> beam_times_s) {
-  // Over a longer time the turns of a vehicle are no more than a guess.
-  constexpr double kLongest_s = 30.0;
-  const TimeSeries& main = headings.front().yaw_rad;
-  for (const TimeSpan& gap : main.gaps(main.from_s(), main.to_s())) {
-    const bool is_known = std::ranges::any_of(headings, [&](const HeadingSource& heading) {
-      return heading.yaw_rad.gap_s(gap.from_s, gap.to_s) <= kLongest_s;
-    });
-    const auto beams =
-        std::ranges::upper_bound(beam_times_s, gap.to_s) - std::ranges::lower_bound(beam_times_s, gap.from_s);
-    if (is_known || beams == 0) continue;
-    return fail(
-        Error::Code::kUnsupported,
-        fmt::format("no heading is known from {:.3f} to {:.3f} s, where there are {} beams: did the clock of {} "
-                    "jump?",
-                    gap.from_s, gap.to_s, beams, headings.front().name));
-  }
-  return {};
-}
 
 /// How far a velocity that the sonar contradicts may be from the truth, instead of how much it scatters.
 void allow_noise(double density, VelocitySource& velocity) {
@@ -150,39 +92,39 @@ void allow_noise(double density, VelocitySource& velocity) {
 }
 
 /// @return for how long [s] the sonar tells the motion where the velocity is missing
-Result<double> fill_gaps(SlamInput& recording, const SlamOptions& options) {
-  const std::span<const double> times_s = recording.beam_times_s;
-  VelocitySource& velocity = recording.navigation.velocity;
+Result<double> fill_gaps(SlamInput& input, const SlamOptions& options) {
+  const std::span<const double> times_s = input.beam_times_s;
+  VelocitySource& velocity = input.navigation.velocity;
   double filled_s = 0.0;
   for (const TimeSpan& gap :
-       fill_velocity_gaps(recording.sweeps, {times_s.front(), times_s.back()}, velocity_from_sonar(velocity, options),
-                          recording.navigation.headings.front(), velocity)) {
+       fill_velocity_gaps(input.sweeps, {times_s.front(), times_s.back()}, velocity_from_sonar(velocity, options),
+                          input.navigation.headings.front(), velocity)) {
     filled_s += gap.to_s - gap.from_s;
   }
-  Result<SlamInput> longer = slam_input_of(times_s, recording.sweeps, std::move(recording.navigation));
+  Result<SlamInput> longer = slam_input_of(times_s, input.sweeps, std::move(input.navigation));
   if (!longer) return tl::unexpected(longer.error());
-  recording = *std::move(longer);
+  input = *std::move(longer);
   return filled_s;
 }
 
-Result<SlamSolution> solve_batch(SlamInput recording, const SonarChecks& checks, const SlamOptions& options) {
-  VelocitySource& velocity = recording.navigation.velocity;
+Result<SlamSolution> solve_batch(SlamInput input, const SonarChecks& checks, const SlamOptions& options) {
+  VelocitySource& velocity = input.navigation.velocity;
   const VelocitySource measured = velocity;
   const bool contradicts = checks.contradict_velocity();
   double filled_s = 0.0;
   if (options.matching == Matching::kPairs && !contradicts && !velocity.by_sonar) {
-    const Result<double> filled = fill_gaps(recording, options);
+    const Result<double> filled = fill_gaps(input, options);
     if (!filled) return tl::unexpected(filled.error());
     filled_s = *filled;
   }
-  Result<std::vector<double>> times_s = knot_times(recording.span, recording.sweeps, recording.beam_times_s.size());
+  Result<std::vector<double>> times_s = knot_times(input.span, input.sweeps, input.beam_times_s.size());
   if (!times_s) return tl::unexpected(times_s.error());
-  const auto checked = check_headings(recording.navigation.headings, recording.beam_times_s);
+  const auto checked = check_headings(input.navigation.headings, input.beam_times_s);
   if (!checked) return tl::unexpected(checked.error());
   if (contradicts) allow_noise(checks.velocity->difference_m_s * std::sqrt(checks.velocity->over_s), velocity);
-  SlamProblem problem(*std::move(times_s), velocity, recording.navigation.headings, options.calibration);
+  SlamProblem problem(*std::move(times_s), velocity, input.navigation.headings, options.calibration);
   Unknowns start = problem.dead_reckoning();
-  SlamSolver solver = solver_of(std::move(problem), recording, options, std::move(start));
+  SlamSolver solver = solver_of(std::move(problem), input, options, std::move(start));
   bool determined = true;
   std::optional<SweepLoops> loops;
   if (options.matching == Matching::kPairs) {
@@ -191,7 +133,7 @@ Result<SlamSolution> solve_batch(SlamInput recording, const SonarChecks& checks,
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
     if (determined) loops = close_sweep_loops(solver);
     determined = determined && loops;
-    const double in_gaps_m = solver.problem().gap_deviation_m(sweep_duration_s(recording.sweeps));
+    const double in_gaps_m = solver.problem().gap_deviation_m(sweep_duration_s(input.sweeps));
     const double widest_m = is_believed ? kGateOfReach * solver.reach_m() + in_gaps_m : kInfinity;
     for (const double gate_m : kGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
   }
@@ -200,34 +142,29 @@ Result<SlamSolution> solve_batch(SlamInput recording, const SonarChecks& checks,
   if (!of_knots) {
     return fail(Error::Code::kUnsupported, "the recording does not determine the trajectory");
   }
-  const std::vector<double> in_pauses_s = times_in_pauses(recording);
+  const std::vector<double> in_pauses_s = times_in_pauses(input);
   std::vector<double> poses_s;
-  std::ranges::merge(recording.beam_times_s, in_pauses_s, std::back_inserter(poses_s));
+  std::ranges::merge(input.beam_times_s, in_pauses_s, std::back_inserter(poses_s));
   std::vector<StampedPose> poses =
-      poses_at(poses_s, solver.problem(), solver.unknowns(), recording.navigation.depth, options);
+      poses_at(poses_s, solver.problem(), solver.unknowns(), input.navigation.depth, options);
   begin_at_origin(poses);
   Result<SlamSolution> solution =
       solution_of(solver, options, std::move(poses), in_pauses_s.empty() ? 0.0 : velocity.ahead.usual_limit_s());
   if (!solution) return solution;
   solution->report.in_pauses = static_cast<std::size_t>(
       std::ranges::count_if(in_pauses_s, [&](double time_s) { return solution->trajectory.at(time_s).has_value(); }));
-  solution->report.beams = recording.beam_times_s.size();
+  solution->report.beams = input.beam_times_s.size();
   solution->report.sweeps = static_cast<std::size_t>(
-      std::ranges::count_if(recording.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
+      std::ranges::count_if(input.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
   solution->covariances = covariances_of(solver, *of_knots, options);
   report_checks(checks, solution->report);
   if (filled_s > 0.0) {
-    report_velocity(measured, recording.span, solution->report);
-    solution->report.gaps_by_sonar_s = filled_s;
+    report_velocity(measured, input.span, solution->report.velocity);
+    solution->report.velocity.gaps_by_sonar_s = filled_s;
   }
-  if (loops) {
-    solution->report.submap_loops_found = loops->found;
-    solution->report.submap_loops_kept = loops->kept;
-  }
+  if (loops) solution->report.pairs.submap_loops = {loops->found, loops->kept};
   return solution;
 }
-
-constexpr std::array kVelocityQuantities = {NavQuantity::kVelocity};
 
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
 Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::span<const HeardSweep> sweeps,
@@ -263,85 +200,35 @@ Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::s
   return MotionSources{std::move(sources), std::move(by_sonar)};
 }
 
-/// All that was recorded, as it came.
-Result<SlamSolution> solve_causal(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
-                                  std::vector<NavSource> sources, const PictureTurns& turns, SlamOptions options) {
-  const Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnknown);
-  if (!log) return tl::unexpected(log.error());
-  options.nav_offset_s = 0.0;  // the sources are on the clock of the beams
-  const std::vector<HeadingSource> headings = headings_of(*log, options);
-  if (!headings.empty()) {
-    if (const auto checked = check_headings(headings, beam_times_s); !checked) return tl::unexpected(checked.error());
-  }
-  const std::optional<VelocitySource> velocity = velocity_of(*log, options);
-  if (!velocity && options.motion == MotionSource::kVelocity) {
-    if (const auto checked = check_sources(*log, kVelocityQuantities); !checked) return tl::unexpected(checked.error());
-  }
-  if (!velocity) options.motion = MotionSource::kSonar;
-  CausalEstimator estimator(options);
-  auto beam = beam_times_s.begin();
-  std::vector<std::size_t> added(log->sources().size(), 0);
-  const auto add_until = [&](double time_s) -> Result<void> {
-    for (; beam != beam_times_s.end() && *beam <= time_s; ++beam) estimator.add_beam(*beam);
-    for (std::size_t s = 0; s < added.size(); ++s) {
-      const NavSource& source = log->sources()[s];
-      for (; added[s] < source.samples.size() && source.samples[added[s]].time_s <= time_s; ++added[s]) {
-        const auto done = estimator.add_sample(source.name, source.quantity, source.samples[added[s]]);
-        if (!done) return done;
-      }
-    }
-    return {};
-  };
-  for (std::size_t end = 1; end < sweeps.size(); ++end) {
-    if (const auto done = add_until(sweeps[end - 1].to_s); !done) return tl::unexpected(done.error());
-    estimator.add_sweep(sweeps[end - 1]);
-    if (end % kSweepsOfStep != 0) continue;
-    if (const auto solved = estimator.solve(); !solved) return tl::unexpected(solved.error());
-  }
-  if (const auto done = add_until(kInfinity); !done) return tl::unexpected(done.error());
-  estimator.add_sweep(sweeps.back());
-  Result<SlamSolution> solution = estimator.finish();
-  // Of all, not of the window.
-  if (!solution || solution->report.by_sonar || !velocity) return solution;
-  const std::vector<StampedPose>& poses = solution->trajectory.poses();
-  report_velocity(*velocity, {poses.front().time_s, poses.back().time_s}, solution->report);
-  report_checks(checks_of(*velocity, headings.front(), sweeps, turns, options), solution->report);
-  return solution;
-}
-
 }  // namespace
 
-Result<SlamSolution> SlamSmoother::solve_in(const DistanceField& map, const Trajectory& near) const {
-  return detail::without_exceptions([&]() -> Result<SlamSolution> {
-    const SlamOptions& options = state_->options;
-    const Result<std::vector<HeardSweep>> sweeps = state_->all_sweeps();
+Result<MapSolution> SlamSmoother::solve_in(const DistanceField& map, const Trajectory& near) const {
+  return detail::without_exceptions([&]() -> Result<MapSolution> {
+    const HeardLog& heard = state_->log;
+    const Result<std::vector<HeardSweep>> sweeps = heard.sweeps();
     if (!sweeps) return tl::unexpected(sweeps.error());
-    const Result<SlamInput> recording = slam_input_of(state_->beam_times_s, *sweeps, {state_->sources}, options);
-    if (!recording) return tl::unexpected(recording.error());
-    const Result<NavLog> log = NavLog::make(state_->sources, NavClock::kUnknown);
+    const Result<SlamInput> input = slam_input_of(heard.beam_times_s(), *sweeps, {heard.sources()}, heard.options());
+    if (!input) return tl::unexpected(input.error());
+    const Result<NavLog> log = NavLog::make(heard.sources(), NavClock::kUnknown);
     if (!log) return tl::unexpected(log.error());
-    return solve_in_map(*recording, *log, options, map, near);
+    return solve_in_map(*input, *log, heard.options(), map, near);
   });
 }
 
 Result<SlamSolution> SlamSmoother::solve() const {
   return detail::without_exceptions([&]() -> Result<SlamSolution> {
-    const SlamOptions& options = state_->options;
-    Result<std::vector<HeardSweep>> heard = state_->all_sweeps();
-    if (!heard) return tl::unexpected(heard.error());
-    const std::vector<HeardSweep>& sweeps = *heard;
-    const std::vector<double>& times_s = state_->beam_times_s;
-    if (options.estimation == Estimation::kCausal) {
-      return solve_causal(times_s, sweeps, state_->sources, state_->turns, options);
-    }
-    Result<MotionSources> sources = with_sonar_odometry(state_->sources, sweeps, options);
+    const HeardLog& heard = state_->log;
+    const SlamOptions& options = heard.options();
+    const Result<std::vector<HeardSweep>> sweeps = heard.sweeps();
+    if (!sweeps) return tl::unexpected(sweeps.error());
+    Result<MotionSources> sources = with_sonar_odometry(heard.sources(), *sweeps, options);
     if (!sources) return tl::unexpected(sources.error());
-    Result<SlamInput> recording = slam_input_of(times_s, sweeps, *std::move(sources), options);
-    if (!recording) return tl::unexpected(recording.error());
-    const Navigation& navigation = recording->navigation;
+    Result<SlamInput> input = slam_input_of(heard.beam_times_s(), *sweeps, *std::move(sources), options);
+    if (!input) return tl::unexpected(input.error());
+    const Navigation& navigation = input->navigation;
     const SonarChecks checks =
-        checks_of(navigation.velocity, navigation.headings.front(), sweeps, state_->turns, options);
-    return solve_batch(*std::move(recording), checks, options);
+        checks_of(navigation.velocity, navigation.headings.front(), *sweeps, heard.turns(), options);
+    return solve_batch(*std::move(input), checks, options);
   });
 }
 

@@ -82,14 +82,13 @@ SlamReport report_of(const SlamSolver& solver) {
   SlamReport report;
   report.echoes = solver.echoes();
   report.knots = solver.problem().knots();
-  report.pairs = solver.pairs().pairs.size();
+  report.pairs.count = solver.pairs().pairs.size();
   std::vector<double> distances_m;
   for (const EchoPair& pair : solver.pairs().pairs) distances_m.push_back(std::abs(pair.distance_m));
-  if (!distances_m.empty()) report.pair_median_m = median(std::move(distances_m));
-  report.loops_found = solver.pairs().loops_found;
-  report.loops_kept = solver.pairs().loops_kept;
+  if (!distances_m.empty()) report.pairs.median_m = median(std::move(distances_m));
+  report.pairs.loops = {solver.pairs().loops_found, solver.pairs().loops_kept};
   const std::vector<double>& knots_s = solver.problem().knot_times_s();
-  report_velocity(velocity, {knots_s.front(), knots_s.back()}, report);
+  report_velocity(velocity, {knots_s.front(), knots_s.back()}, report.velocity);
   report.heading = solver.problem().headings().front().name;
   if (velocity.by_sonar) {
     double variance_m2 = 0.0;
@@ -97,19 +96,19 @@ SlamReport report_of(const SlamSolver& solver) {
       variance_m2 += way.with_steady_m * way.with_steady_m;
     }
     // The first and the last sample go on to the ends of the recording.
-    report.by_sonar = {velocity.ahead.size() - 2, velocity.density.values().front(), std::sqrt(variance_m2)};
+    report.velocity.by_sonar = {velocity.ahead.size() - 2, velocity.density.values().front(), std::sqrt(variance_m2)};
   }
   return report;
 }
 
 }  // namespace
 
-void report_velocity(const VelocitySource& velocity, const TimeSpan& span, SlamReport& report) {
-  report.velocities = velocity.ahead.size();
-  report.velocities_clipped = velocity.clipped;
+void report_velocity(const VelocitySource& velocity, const TimeSpan& span, VelocityReport& report) {
+  report.samples = velocity.ahead.size();
+  report.clipped = velocity.clipped;
   report.longest_gap_s = std::max(
       {velocity.ahead.longest_step_s(), velocity.ahead.from_s() - span.from_s, span.to_s - velocity.ahead.to_s()});
-  report.velocity = velocity.name;
+  report.source = velocity.name;
 }
 
 std::vector<StampedPose> poses_at(std::span<const double> times_s, const SlamProblem& problem, const Unknowns& unknowns,

@@ -38,6 +38,6 @@ Result<SlamSolution> solution_of(const SlamSolver& solver, const SlamOptions& op
                                  double least_gap_s = 0.0);
 
 /// What the report says of the velocity. @param span  of the trajectory
-void report_velocity(const VelocitySource& velocity, const TimeSpan& span, SlamReport& report);
+void report_velocity(const VelocitySource& velocity, const TimeSpan& span, VelocityReport& report);
 
 }  // namespace pingvox

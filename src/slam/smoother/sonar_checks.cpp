@@ -35,11 +35,11 @@ SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& headi
 
 void report_checks(const SonarChecks& checks, SlamReport& report) {
   const auto& [velocity, clock] = checks;
-  if (velocity) report.velocity_check = SonarCheck{velocity->matched, velocity->difference_m_s};
+  if (velocity) report.velocity.check = SonarCheck{velocity->matched, velocity->difference_m_s};
   report.clock_check = clock;
   if (checks.contradict_velocity()) {
     report.implausible.push_back(fmt::format("velocity of {} ({:.2f} m/s from what {} sweeps see, in the median)",
-                                             report.velocity, velocity->difference_m_s, velocity->matched));
+                                             report.velocity.source, velocity->difference_m_s, velocity->matched));
   }
   if (clock && clock->from_s) {
     report.implausible.push_back(

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/slam/causal_replay.hpp"
 #include "slam/basin.hpp"
 
 namespace pingvox::test {
@@ -24,19 +25,17 @@ SlamOptions options_of(const Basin& basin) {
   return options;
 }
 
-Result<SlamSolution> solve_by_smoother(const Basin& basin) {
-  SlamOptions options = options_of(basin);
-  options.estimation = Estimation::kCausal;
-  SlamSmoother smoother(options);
+Result<SlamSolution> replay(const Basin& basin) {
+  CausalReplay recording(options_of(basin));
   for (const NavSource& source : basin.sources()) {
     for (const NavSample& sample : source.samples) {
-      if (const auto added = smoother.add(source.name, source.quantity, sample); !added) {
+      if (const auto added = recording.add(source.name, source.quantity, sample); !added) {
         return tl::unexpected(added.error());
       }
     }
   }
-  for (const Beam& beam : basin.beams()) smoother.add(beam);
-  return smoother.solve();
+  for (const Beam& beam : basin.beams()) recording.add(beam);
+  return recording.solve();
 }
 
 void expect_same(const Trajectory& one, const Trajectory& other) {
@@ -48,7 +47,7 @@ void expect_same(const Trajectory& one, const Trajectory& other) {
 
 // Kills a pose that is not carried on, is of another frame or heading, or has another origin, and a window that loses
 // what it needs: two thirds of the sweeps leave it.
-TEST(CausalSlam, TellsWhileItGoesWhatTheSmootherTellsOfTheLog) {
+TEST(CausalSlam, TellsWhileItGoesWhatTheReplayTellsOfTheLog) {
   const Basin basin{.duration_s = 240.0};
   const std::vector<NavSource> sources = basin.sources();
   CausalSlam slam(options_of(basin));
@@ -76,7 +75,7 @@ TEST(CausalSlam, TellsWhileItGoesWhatTheSmootherTellsOfTheLog) {
   add_until(basin.duration_s);
   const auto finished = slam.finish();
   ASSERT_TRUE(finished) << finished.error().message;
-  const auto solved = solve_by_smoother(basin);
+  const auto solved = replay(basin);
   ASSERT_TRUE(solved) << solved.error().message;
   expect_same(finished->trajectory, solved->trajectory);
   EXPECT_EQ(finished->report.beams, 2400U);
@@ -125,7 +124,7 @@ TEST(CausalSlam, NavigationMayComeEarlyAndInAnyOrder) {
     }
   }
   for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
-  const auto finished = slam.finish(), solved = solve_by_smoother(basin);
+  const auto finished = slam.finish(), solved = replay(basin);
   ASSERT_TRUE(finished && solved);
   expect_same(finished->trajectory, solved->trajectory);
 }
@@ -143,7 +142,7 @@ TEST(CausalSlam, WaitsForAVelocity) {
   for (const Beam& beam : basin.beams()) ASSERT_TRUE(slam.add(beam));
   const auto finished = slam.finish();
   ASSERT_TRUE(finished) << finished.error().message;
-  EXPECT_FALSE(finished->report.by_sonar);
+  EXPECT_FALSE(finished->report.velocity.by_sonar);
   EXPECT_EQ(finished->trajectory.poses().front().time_s, 45.0);
 }
 
@@ -176,7 +175,7 @@ TEST(CausalSlam, GoesOnByTheSonarWhereTheVelocityIsMissing) {
   EXPECT_LT(greatest_m, 3.5);
   const auto finished = slam.finish();
   ASSERT_TRUE(finished) << finished.error().message;
-  EXPECT_NEAR(finished->report.gaps_by_sonar_s, kTo_s - kFrom_s, 2.0);
+  EXPECT_NEAR(finished->report.velocity.gaps_by_sonar_s, kTo_s - kFrom_s, 2.0);
 }
 
 // Kills a trajectory by the sonar alone that says to be by the velocity of another dive.
@@ -254,8 +253,8 @@ TEST(CausalSlam, ASourceMayHaveTheNameOfOdometryByTheSonar) {
   ASSERT_TRUE(usual && velocity && heading);
   expect_same(usual->trajectory, velocity->trajectory);
   expect_same(usual->trajectory, heading->trajectory);
-  EXPECT_FALSE(velocity->report.by_sonar);
-  EXPECT_EQ(velocity->report.velocity, "sonar odometry");
+  EXPECT_FALSE(velocity->report.velocity.by_sonar);
+  EXPECT_EQ(velocity->report.velocity.source, "sonar odometry");
 }
 
 TEST(CausalSlam, RefusesBeamsThatGoBackInTime) {

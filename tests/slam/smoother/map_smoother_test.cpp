@@ -71,7 +71,7 @@ TEST(MapSmoother, FindsTheTrajectoryInTheMapAndHowTheVelocityIsTurned) {
   EXPECT_EQ(solution->trajectory.poses().size(), std::size_t{kBeams});
   EXPECT_LT(std::sqrt(squares / kBeams), 0.03);
   EXPECT_NEAR(solution->calibration.velocity_yaw_rad.value, kVelocityYaw_rad, 2.0 * kDegree_rad);
-  EXPECT_GT(solution->report.least_on_walls, 0.8);
+  EXPECT_GT(solution->least_on_walls, 0.8);
 }
 
 // Kills a solution that is taken wherever it ends.

@@ -32,8 +32,8 @@ TEST(SlamSmoother, FindsTrajectoryAndCalibrationOfABasin) {
   EXPECT_NEAR(solved->calibration.headings[0].cos1_rad.value, 0.06, 0.01);
   EXPECT_NEAR(solved->calibration.wall_in_echo.value, 0.0, 0.2);
   EXPECT_EQ(solved->report.sweeps, 80U);
-  EXPECT_GT(solved->report.pairs, 5000U);
-  EXPECT_GT(solved->report.loops_kept, 0U);
+  EXPECT_GT(solved->report.pairs.count, 5000U);
+  EXPECT_GT(solved->report.pairs.loops.kept, 0U);
 }
 
 TEST(SlamSmoother, FindsLoopsOfSubmapsWhereItGoesRoundAgain) {
@@ -41,8 +41,8 @@ TEST(SlamSmoother, FindsLoopsOfSubmapsWhereItGoesRoundAgain) {
   const auto solved = solve(Basin{.duration_s = 560.0, .compass_cos = 0.3}, {});
   ASSERT_TRUE(solved) << solved.error().message;
   EXPECT_LT(error_m(solved->trajectory), 0.5);
-  EXPECT_GT(solved->report.submap_loops_kept, 2U);
-  EXPECT_LE(solved->report.submap_loops_kept, solved->report.submap_loops_found);
+  EXPECT_GT(solved->report.pairs.submap_loops.kept, 2U);
+  EXPECT_LE(solved->report.pairs.submap_loops.kept, solved->report.pairs.submap_loops.found);
 }
 
 TEST(SlamSmoother, GivesAPoseForEachBeamAtItsDepth) {
@@ -80,7 +80,7 @@ TEST(SlamSmoother, AHeadThatIsUpsideDownSeesTheSame) {
   }
   const auto turned_over = smoother.solve();
   ASSERT_TRUE(upright && turned_over);
-  EXPECT_GT(upright->report.pairs, 1000U);
+  EXPECT_GT(upright->report.pairs.count, 1000U);
   for (std::size_t i = 0; i < upright->trajectory.poses().size(); ++i) {
     const Pose &a = upright->trajectory.poses()[i].map_from_body, &b = turned_over->trajectory.poses()[i].map_from_body;
     ASSERT_TRUE(a.isApprox(b, 1e-6)) << i;
@@ -147,9 +147,9 @@ TEST(SlamSmoother, BridgesALostBottomLock) {
   for (const Beam& beam : basin.beams()) smoother.add(beam);
   const auto solved = smoother.solve();
   ASSERT_TRUE(solved) << solved.error().message;
-  EXPECT_NEAR(solved->report.longest_gap_s, 20.5, 1.0) << "as measured";
-  EXPECT_EQ(solved->report.velocities, 1562U) << "as measured";
-  EXPECT_NEAR(solved->report.gaps_by_sonar_s, 20.5, 1.0);
+  EXPECT_NEAR(solved->report.velocity.longest_gap_s, 20.5, 1.0) << "as measured";
+  EXPECT_EQ(solved->report.velocity.samples, 1562U) << "as measured";
+  EXPECT_NEAR(solved->report.velocity.gaps_by_sonar_s, 20.5, 1.0);
   EXPECT_LT(error_m(solved->trajectory), 0.5);
 }
 
@@ -204,8 +204,8 @@ TEST(SlamSmoother, GoesOnByTheSonarAfterTheLastVelocity) {
   const auto solved = smoother.solve();
   ASSERT_TRUE(solved) << solved.error().message;
   EXPECT_GT(solved->trajectory.poses().back().time_s, 185.0);
-  EXPECT_GT(solved->report.longest_gap_s, 65.0);
-  EXPECT_GT(solved->report.gaps_by_sonar_s, 65.0);
+  EXPECT_GT(solved->report.velocity.longest_gap_s, 65.0);
+  EXPECT_GT(solved->report.velocity.gaps_by_sonar_s, 65.0);
   EXPECT_LT(error_m(solved->trajectory), 1.0);
 }
 
@@ -225,99 +225,6 @@ TEST(SlamSmoother, NavigationOnALateClockIsMovedByTheOffset) {
   EXPECT_LT(error_m(solved->trajectory), 0.4);
 }
 
-// Kills a use of what came later: beams, or navigation.
-TEST(SlamSmoother, CausalPosesAreThoseOfALogThatEndsSooner) {
-  SlamOptions causal;
-  causal.estimation = Estimation::kCausal;
-  // 100 s are solved after ten sweeps, with navigation for another second alone.
-  const auto whole = solve({.duration_s = 200.0}, causal), part = solve({.duration_s = 101.0}, causal);
-  ASSERT_TRUE(whole && part);
-  const auto &poses = whole->trajectory.poses(), &sooner = part->trajectory.poses();
-  EXPECT_EQ(poses.size(), 2000U);
-  ASSERT_GT(sooner.size(), 1000U);
-  for (std::size_t i = 0; i < 990; ++i) {
-    ASSERT_EQ(poses[i].map_from_body.matrix(), sooner[i].map_from_body.matrix()) << i;
-  }
-}
-
-TEST(SlamSmoother, CausalPosesAreBetterThanDeadReckoning) {
-  SlamOptions alone, causal;
-  alone.matching = Matching::kNone;
-  causal.estimation = Estimation::kCausal;
-  const Basin basin{.duration_s = 500.0};
-  const auto reckoned = solve(basin, alone), solved = solve(basin, causal);
-  ASSERT_TRUE(reckoned && solved);
-  EXPECT_LT(error_m(solved->trajectory), 0.7 * error_m(reckoned->trajectory));
-  EXPECT_GT(solved->report.loops_kept, 0U);
-}
-
-// Kills a window that does not move, sweeps that all stay partners, and numbers that are told of the window alone.
-TEST(SlamSmoother, CausalWorkDoesNotGrowWithTheLog) {
-  SlamOptions causal;
-  causal.estimation = Estimation::kCausal;
-  causal.causal_sweeps = 8;
-  constexpr std::size_t kKnots = 9 * (8 + 2) / 2 + 1;  // nine in two sweeps
-  for (const double duration_s : {200.0, 400.0}) {
-    SCOPED_TRACE(duration_s);
-    const auto solved = solve({.duration_s = duration_s}, causal);
-    ASSERT_TRUE(solved) << solved.error().message;
-    const SlamReport& report = solved->report;
-    EXPECT_LE(report.largest.knots, kKnots);
-    // Ten sweeps of a hundred beams; eight partners before them, and ten for each that is far enough in time.
-    EXPECT_LE(report.largest.echoes, 100U * (10 + 8 + 10 * 10));
-    EXPECT_LE(report.largest.pairs, 1000U * (5 + 5 + 10));
-    EXPECT_GT(report.largest.pairs, 1000U);
-    EXPECT_NEAR(static_cast<double>(report.knots), 9.0 * duration_s / 20.0, 2.0);
-    EXPECT_GT(static_cast<double>(report.echoes), 9.0 * duration_s);
-    EXPECT_EQ(solved->trajectory.poses().size(), static_cast<std::size_t>(10.0 * duration_s));
-  }
-}
-
-// Kills sweeps that are forgotten when they leave, a prior that is dropped, and one that is taken where it is not: the
-// second lap goes where the first one did.
-TEST(SlamSmoother, CausalWindowComesBackToWhatLeftIt) {
-  SlamOptions alone, causal;
-  alone.matching = Matching::kNone;
-  causal.estimation = Estimation::kCausal;
-  causal.causal_sweeps = 8;  // all of them too near in time to be a loop
-  const Basin basin{.duration_s = 600.0};
-  const auto reckoned = solve(basin, alone), solved = solve(basin, causal);
-  ASSERT_TRUE(reckoned && solved);
-  EXPECT_LT(error_m(solved->trajectory), 0.7 * error_m(reckoned->trajectory));
-  EXPECT_GT(solved->report.loops_kept, 0U);
-  EXPECT_NEAR(solved->calibration.velocity_yaw_rad.value, basin.velocity_yaw_rad, 0.02);
-}
-
-// Kills loops that are looked for in the window alone or do not move it: it drifts away from what left by 8 m, beyond
-// any pair, while the sonar hears nothing.
-TEST(SlamSmoother, CausalPosesComeBackFromBeyondTheReachOfPairs) {
-  SlamOptions causal;
-  causal.estimation = Estimation::kCausal;
-  causal.causal_sweeps = 24;
-  const Basin basin{.duration_s = 600.0, .velocity_noise_m_s = 0.2};
-  const auto is_silent = [](double time_s) { return time_s >= 200.0 && time_s < 400.0; };
-  std::vector<NavSource> sources = basin.sources();
-  for (NavSample& sample : sources[0].samples) {
-    const double yaw_rad = Basin::at(sample.time_s).yaw_rad;
-    if (is_silent(sample.time_s)) sample.value += 0.04 * Eigen::Vector3d(std::cos(yaw_rad), -std::sin(yaw_rad), 0.0);
-  }
-  SlamSmoother smoother = smoother_of(basin, causal);
-  add(smoother, sources);
-  for (Beam beam : basin.beams()) {
-    if (is_silent(beam.time_s)) std::ranges::fill(beam.intensities, std::uint8_t{0});
-    smoother.add(std::move(beam));
-  }
-  const auto solved = smoother.solve();
-  ASSERT_TRUE(solved) << solved.error().message;
-  const auto off_m = [&](double time_s) {
-    const Eigen::Vector2d moved = Basin::at(time_s).place - Basin::at(0.0).place;
-    return (solved->trajectory.at(time_s)->translation().head<2>() - moved).norm();
-  };
-  EXPECT_GT(off_m(405.0), 5.0);
-  for (double time_s = 500.0; time_s < 600.0; time_s += 10.0) EXPECT_LT(off_m(time_s), 3.0) << time_s;
-  EXPECT_GT(solved->report.submap_loops_kept, 0U);
-}
-
 // Kills a source of the navigation that is taken for odometry by the sonar, as it has its name.
 TEST(SlamSmoother, ASourceMayHaveTheNameOfOdometryByTheSonar) {
   const Basin basin{.duration_s = 200.0};
@@ -326,7 +233,7 @@ TEST(SlamSmoother, ASourceMayHaveTheNameOfOdometryByTheSonar) {
   other.name = "sonar odometry";
   const auto usual = solve_without_velocity(basin, {}, compass), renamed = solve_without_velocity(basin, {}, other);
   ASSERT_TRUE(usual && renamed);
-  EXPECT_TRUE(renamed->report.by_sonar);
+  EXPECT_TRUE(renamed->report.velocity.by_sonar);
   EXPECT_EQ(renamed->report.clock_check.has_value(), usual->report.clock_check.has_value());
   ASSERT_EQ(renamed->trajectory.poses().size(), usual->trajectory.poses().size());
   for (std::size_t i = 0; i < usual->trajectory.poses().size(); ++i) {
@@ -393,12 +300,9 @@ TEST(SlamSmoother, CovariancesBeginAtTheFirstPoseAndAreOfTheBody) {
   const auto behind = solve(basin, options);
   options.body_from_source.clear();
   const auto reckoned = solve(basin, options);
-  options.estimation = Estimation::kCausal;
-  const auto causal = solve(basin, options);
-  ASSERT_TRUE(at_source && behind && reckoned && causal);
+  ASSERT_TRUE(at_source && behind && reckoned);
   EXPECT_EQ(at_source->covariances.size(), at_source->report.knots);
   EXPECT_LT(place_ellipse(at_source->covariances.front().covariance).along_m, 0.01);
-  EXPECT_TRUE(causal->covariances.empty());
   const auto &of_source = reckoned->covariances.front(), &of_body = behind->covariances.front();
   const double yaw_rad = std::sqrt(of_source.covariance(2, 2));
   EXPECT_NEAR(place_ellipse(of_body.covariance).along_m, 2.0 * yaw_rad, 1e-3);
@@ -423,8 +327,8 @@ TEST(SlamSmoother, SaysWhatTheRecordingDoesNotTell) {
   EXPECT_THAT(unknown, testing::Not(testing::Contains("angle of the velocity")));
   EXPECT_THAT(unknown, testing::Not(testing::Contains("cos1 of heading compass")));
   EXPECT_TRUE(solved->report.implausible.empty());
-  ASSERT_TRUE(solved->report.velocity_check);
-  EXPECT_LT(solved->report.velocity_check->difference_m_s, 0.1);
+  ASSERT_TRUE(solved->report.velocity.check);
+  EXPECT_LT(solved->report.velocity.check->difference_m_s, 0.1);
 }
 
 // Kills limits of another unknown, and a limit that nothing passes.
@@ -450,21 +354,13 @@ TEST(SlamSmoother, SaysThatTheSonarContradictsTheVelocity) {
   const Basin basin{.duration_s = 200.0};
   std::vector<NavSource> sources = basin.sources(1);
   for (NavSample& sample : sources[0].samples) sample.value *= 1e-3;
-  for (const Estimation estimation : {Estimation::kBatch, Estimation::kCausal}) {
-    SlamOptions options;
-    options.estimation = estimation;
-    SlamSmoother smoother = smoother_of(basin, options);
-    add(smoother, sources);
-    for (const Beam& beam : basin.beams()) smoother.add(beam);
-    const auto solved = smoother.solve();
-    ASSERT_TRUE(solved) << solved.error().message;
-    EXPECT_THAT(solved->report.implausible, testing::Contains(testing::StartsWith("velocity of dvl (")));
-    if (estimation == Estimation::kCausal) continue;
-    double squares_m2 = 0.0;
-    for (const PoseCovariance& pose : solved->covariances) squares_m2 += pose.covariance.topLeftCorner<2, 2>().trace();
-    const double believed_m = std::sqrt(squares_m2 / static_cast<double>(solved->covariances.size()));
-    EXPECT_LT(error_m(solved->trajectory), 3.0 * believed_m);
-  }
+  const auto solved = solve(basin, {}, sources);
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_THAT(solved->report.implausible, testing::Contains(testing::StartsWith("velocity of dvl (")));
+  double squares_m2 = 0.0;
+  for (const PoseCovariance& pose : solved->covariances) squares_m2 += pose.covariance.topLeftCorner<2, 2>().trace();
+  const double believed_m = std::sqrt(squares_m2 / static_cast<double>(solved->covariances.size()));
+  EXPECT_LT(error_m(solved->trajectory), 3.0 * believed_m);
 }
 
 // Kills a calibration that is not used, or used with the wrong sign: another drive of the same sensors, without pairs.
@@ -520,9 +416,9 @@ TEST(SlamSmoother, FindsTheWayOfAVehicleWithoutVelocityByItsSonar) {
   const auto solved = solve_without_velocity(basin, {}, basin.sources()[1]);
   ASSERT_TRUE(solved) << solved.error().message;
   EXPECT_LT(error_m(solved->trajectory), 0.5);
-  ASSERT_TRUE(solved->report.by_sonar);
-  EXPECT_GT(solved->report.by_sonar->matched, 22U);
-  EXPECT_GT(solved->report.by_sonar->drift_m, 0.5);
+  ASSERT_TRUE(solved->report.velocity.by_sonar);
+  EXPECT_GT(solved->report.velocity.by_sonar->matched, 22U);
+  EXPECT_GT(solved->report.velocity.by_sonar->drift_m, 0.5);
   EXPECT_NEAR(solved->calibration.velocity_scale.value, 0.0, 1e-6);
 }
 
@@ -546,42 +442,6 @@ TEST(SlamSmoother, FindsTheWayByTheSonarAndAGyroThatDrifts) {
   EXPECT_NEAR((poses.back().map_from_body.translation() - poses.front().map_from_body.translation()).norm(),
               (Basin::at(poses.back().time_s).place - Basin::at(poses.front().time_s).place).norm(), 0.5);
   EXPECT_EQ(solved->report.heading, "gyro");
-}
-
-// Kills odometry by the sonar that forgets, jumps or is taken twice where it goes on, and that of later sweeps.
-TEST(SlamSmoother, FindsTheWayWithoutVelocityAsOnBoard) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
-  const Basin basin{.duration_s = 400.0, .compass_cos = 0.02};
-  SlamOptions causal;
-  causal.estimation = Estimation::kCausal;
-  causal.causal_sweeps = 12;
-  const auto solved = solve_without_velocity(basin, causal, basin.sources()[1]);
-  ASSERT_TRUE(solved) << solved.error().message;
-  EXPECT_LT(error_m(solved->trajectory), 1.0);
-  EXPECT_EQ(solved->trajectory.poses().size(), 4000U);
-  ASSERT_TRUE(solved->report.by_sonar);
-  EXPECT_GT(solved->report.by_sonar->matched, 36U);
-  EXPECT_LE(solved->report.by_sonar->matched, 39U);
-  const auto sooner = solve_without_velocity({.duration_s = 301.0, .compass_cos = 0.02}, causal, basin.sources()[1]);
-  ASSERT_TRUE(sooner);
-  for (std::size_t i = 0; i < 2990; ++i) {
-    ASSERT_EQ(solved->trajectory.poses()[i].map_from_body.matrix(),
-              sooner->trajectory.poses()[i].map_from_body.matrix());
-  }
-}
-
-TEST(SlamSmoother, FindsTheWayByTheSonarAloneAsOnBoard) {
-  PINGVOX_SKIP_UNDER_SANITIZERS();
-  const Basin basin{.duration_s = 300.0};
-  SlamOptions causal;
-  causal.estimation = Estimation::kCausal;
-  SlamSmoother smoother = smoother_of(basin, causal);
-  for (const Beam& beam : basin.beams()) smoother.add(beam);
-  const auto solved = smoother.solve();
-  ASSERT_TRUE(solved) << solved.error().message;
-  const auto& poses = solved->trajectory.poses();
-  EXPECT_NEAR((poses.back().map_from_body.translation() - poses.front().map_from_body.translation()).norm(),
-              (Basin::at(poses.back().time_s).place - Basin::at(poses.front().time_s).place).norm(), 2.0);
 }
 
 }  // namespace
