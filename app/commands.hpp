@@ -13,12 +13,11 @@
 #include "option_table.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
-#include "pingvox/device/micron_driver.hpp"
-#include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/live/live_options.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/head_options.hpp"
@@ -238,37 +237,13 @@ struct LocateCommand {
   WrittenPoses written = WrittenPoses::kAll;
 };
 
-/// What `live` listens to.
-struct LiveDevice {
-  enum class Kind { kPing360, kMicron, kReplay };
-  Kind kind = Kind::kReplay;
-  std::string address;  ///< of the line, or the file
-  double speed = 1.0;   ///< of a replay; infinity: as fast as it can be mapped
-  std::string text;     ///< as typed
-};
-
-/// A source of poses for `live`.
-struct LiveNavigation {
-  enum class Kind { kMavlink, kA50 };
-  Kind kind = Kind::kMavlink;
-  std::string address;  ///< that a vehicle sends MAVLink to, or of a DVL
-};
-
 struct LiveCommand {
   OutputOptions output_options;
-  LiveDevice device;
+  LiveOptions live;
   std::string output;
   Format format = Format::kBt;
-  std::optional<std::string> record;     ///< a file that does not exist, or a folder
-  std::vector<LiveNavigation> nav;       ///< empty: the vehicle stands still
-  std::optional<std::string> obstacles;  ///< address to send the nearest obstacles to
-  Ping360Settings ping360;               ///< of this head
-  MicronSettings micron;                 ///< of a SeaNet head
-  std::size_t max_beams = 0;             ///< stop after them; 0: never
+  std::size_t max_beams = 0;  ///< stop after them; 0: never
   double write_every_s = 10.0;
-  MapOptions map;
-  BuildOptions build;
-  HeadOptions head;
   std::string made_by;  ///< the command line, written into the file
 };
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <ostream>
 
+#include "io/internal/descriptor.hpp"
 #include "pingvox/io/byte_stream.hpp"
-#include "pingvox/io/descriptor.hpp"
 #include "pingvox/io/file.hpp"
 
 namespace pingvox::app {

@@ -33,23 +33,23 @@ constexpr double kGradian_deg = 0.9;
 /// Whose options are limited to it.
 constexpr std::string_view kHead = "a head", kReplayed = "a replay";
 
-Result<LiveDevice> device_from(const std::string& text) {
+Result<LiveHead> device_from(const std::string& text) {
   constexpr std::string_view kPing360 = "ping360:", kMicron = "micron:", kReplay = "replay:";
-  LiveDevice device;
-  device.text = text;
+  LiveHead device;
   if (text.starts_with(kPing360)) {
-    device.kind = LiveDevice::Kind::kPing360;
+    device.kind = LiveHead::Kind::kPing360;
     device.address = text.substr(kPing360.size());
     if (device.address.starts_with("udp://") || device.address.starts_with('/')) return device;
   }
   if (text.starts_with(kMicron)) {
-    device.kind = LiveDevice::Kind::kMicron;
+    device.kind = LiveHead::Kind::kMicron;
     device.address = text.substr(kMicron.size());
     for (const std::string_view line : {"/", "udp://", "tcp://"}) {
       if (device.address.starts_with(line)) return device;
     }
   }
   if (text.starts_with(kReplay) && text.size() > kReplay.size()) {
+    device.kind = LiveHead::Kind::kReplay;
     device.address = text.substr(kReplay.size());
     const std::size_t at = device.address.rfind('@');
     if (at == std::string::npos) return device;
@@ -71,10 +71,10 @@ Result<LiveDevice> device_from(const std::string& text) {
                   text));
 }
 
-Result<LiveNavigation> navigation_from(const std::string& text) {
+Result<LiveNav> navigation_from(const std::string& text) {
   constexpr std::string_view kMavlink = "mavlink:", kA50 = "a50:", kTcp = "tcp://", kA50Port = ":16171";
   if (text.starts_with("mavlink:udp://")) {
-    return LiveNavigation{LiveNavigation::Kind::kMavlink, text.substr(kMavlink.size())};
+    return LiveNav{LiveNav::Kind::kMavlink, text.substr(kMavlink.size())};
   }
   if (text.starts_with("a50:tcp://")) {
     std::string address = text.substr(kA50.size());
@@ -82,7 +82,7 @@ Result<LiveNavigation> navigation_from(const std::string& text) {
     // The colons of "[::1]" are not that of a port.
     const bool has_port = host.find(':', host.starts_with('[') ? host.find(']') : 0) != std::string_view::npos;
     if (!has_port) address += kA50Port;
-    return LiveNavigation{LiveNavigation::Kind::kA50, address};
+    return LiveNav{LiveNav::Kind::kA50, address};
   }
   return usage_error(
       fmt::format("no such source of navigation '{}': must be mavlink:udp://:PORT, mavlink:udp://ADDRESS:PORT or "
@@ -181,41 +181,41 @@ struct LiveArgs {
 };
 
 Result<void> set_head(LiveCommand& command, const LiveArgs& typed) {
-  Ping360Settings& ping360 = command.ping360;
-  MicronSettings& micron = command.micron;
+  Ping360Settings& ping360 = command.live.head.ping360;
+  MicronSettings& micron = command.live.head.micron;
   ping360.range_m = micron.range_m = typed.range_m;
   micron.gain = ping360.gain;
   if (typed.timeout_s) ping360.timeout_s = micron.timeout_s = *typed.timeout_s;
-  const bool is_micron = command.device.kind == LiveDevice::Kind::kMicron;
+  const bool is_micron = command.live.head.kind == LiveHead::Kind::kMicron;
   if (const auto valid = is_micron ? apply(typed.motion, micron) : apply(typed.motion, ping360); !valid) return valid;
   return is_micron ? micron.validate() : ping360.validate();
 }
 
 Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Parsed& parsed, const Args& args) {
-  const bool is_replay = command.device.kind == LiveDevice::Kind::kReplay;
+  const bool is_replay = command.live.head.kind == LiveHead::Kind::kReplay;
   if (const auto used = check_limited(parsed.limited, {std::string(is_replay ? kReplayed : kHead)}); !used)
     return tl::unexpected(used.error());
   const Result<Format> output_as = output_format(typed.output, typed.asked_format, kTreeFormats);
   if (!output_as) return tl::unexpected(output_as.error());
   command.format = *output_as;
-  command.map = typed.build.map;
+  command.live.map = typed.build.map;
   command.output = typed.output;
   if (const auto valid = typed.build.echoes.validate(); !valid) return tl::unexpected(valid.error());
-  command.build = typed.build.build_options();
-  command.head = typed.build.head;
-  if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
-  if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
-  if (const auto ranges = check_ranges(command.build); !ranges) return tl::unexpected(ranges.error());
+  command.live.build = typed.build.build_options();
+  command.live.beam = typed.build.head;
+  if (const auto valid = command.live.map.validate(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = check_options(command.live.build); !valid) return tl::unexpected(valid.error());
+  if (const auto ranges = check_ranges(command.live.build); !ranges) return tl::unexpected(ranges.error());
   if (const auto valid = set_head(command, typed); !valid) return tl::unexpected(valid.error());
   if (typed.output == "-") return usage_error("-o -: the map is written again and again: name a file");
-  if (command.map.depth != Lattice::kDefaultDepth && *output_as != Format::kPvx) {
+  if (command.live.map.depth != Lattice::kDefaultDepth && *output_as != Format::kPvx) {
     return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", typed.output,
-                                   name_of(*output_as), Lattice::kDefaultDepth, command.map.depth));
+                                   name_of(*output_as), Lattice::kDefaultDepth, command.live.map.depth));
   }
   if (!typed.record.empty()) {
     if (is_replay) return usage_error("--record: a replay is a recording already");
     for (const std::string_view suffix : {".tlog", ".jsonl"}) {
-      if (command.nav.empty()) continue;
+      if (command.live.nav.empty()) continue;
       if (typed.record.ends_with(suffix)) {
         return usage_error(fmt::format("--record: {} is for --nav: give the sonar's log another suffix", suffix));
       }
@@ -223,13 +223,13 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
         return usage_error(fmt::format("-o: {} is for the recording of --nav: give the map another suffix", suffix));
       }
     }
-    command.record = typed.record;
+    command.live.record = typed.record;
   }
-  if (!command.nav.empty() && is_replay) {
+  if (!command.live.nav.empty() && is_replay) {
     return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
   }
   CommandFiles files;
-  if (is_replay) files.read("DEVICE", command.device.address);
+  if (is_replay) files.read("DEVICE", command.live.head.address);
   files.read("--config", parsed.config);
   files.write("-o", typed.output);
   files.write("--record", typed.record);
@@ -250,10 +250,13 @@ Result<Command> live_command(const Args& args) {
   LiveCommand command;
   LiveArgs typed;
   const Take device = [&](const std::string& text) -> Result<void> {
-    const Result<LiveDevice> taken = device_from(text);
+    const Result<LiveHead> taken = device_from(text);
     if (!taken) return tl::unexpected(taken.error());
-    command.device = *taken;
-    if (taken->kind == LiveDevice::Kind::kReplay) return {};
+    LiveHead& head = command.live.head;
+    head.kind = taken->kind;
+    head.address = taken->address;
+    head.speed = taken->speed;
+    if (taken->kind == LiveHead::Kind::kReplay) return {};
     return Link::check(taken->address);
   };
   const Take format = [&](const std::string& text) -> Result<void> {
@@ -263,15 +266,15 @@ Result<Command> live_command(const Args& args) {
     return {};
   };
   const Take nav = [&](const std::string& text) -> Result<void> {
-    const Result<LiveNavigation> taken = navigation_from(text);
+    const Result<LiveNav> taken = navigation_from(text);
     if (!taken) return tl::unexpected(taken.error());
-    command.nav.push_back(*taken);
-    if (taken->kind == LiveNavigation::Kind::kMavlink) return {};
+    command.live.nav.push_back(*taken);
+    if (taken->kind == LiveNav::Kind::kMavlink) return {};
     return Link::check(taken->address);
   };
   const Take obstacles = [&](const std::string& text) -> Result<void> {
     if (!text.starts_with("udp://")) return usage_error(fmt::format("must be udp://HOST:PORT, is '{}'", text));
-    command.obstacles = text;
+    command.live.obstacles = text;
     return Link::check(text);
   };
   OptionTable table{
@@ -307,9 +310,9 @@ Result<Command> live_command(const Args& args) {
           store_sector(typed.motion)},
          {"--step", 0, "DEG", "angle from beam to beam: a multiple of 0.9 (Ping360) or 0.05625 (Micron)",
           number_text(typed.motion.step_deg), store_number(typed.motion.step_deg)},
-         choice("--gain", kGains, "gain of the receiver", command.ping360.gain),
+         choice("--gain", kGains, "gain of the receiver", command.live.head.ping360.gain),
          {"--timeout", 0, "S", "seconds to wait for an answer, in which the head may have to turn",
-          fmt::format("{}, of a Micron {}", command.ping360.timeout_s, command.micron.timeout_s),
+          fmt::format("{}, of a Micron {}", command.live.head.ping360.timeout_s, command.live.head.micron.timeout_s),
           within({0.01, 60.0}, store_optional(typed.timeout_s))}}},
        {"Navigation",
         {{"--nav", 0, "NAV",

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "pingvox/io/descriptor.hpp"
+#include "io/internal/descriptor.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -13,7 +13,7 @@
 #include "bench/paired_timing.hpp"
 #include "bench/vehicle/tank_head.hpp"
 #include "device/internal/link.hpp"
-#include "pingvox/device/live_source.hpp"
+#include "device/internal/live_source.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 
 namespace pingvox::bench {
@@ -60,7 +60,7 @@ class Day {
   double now_s() const { return now_s_; }
   std::size_t beams() const { return beams_; }
   std::size_t pings() const { return head_.pings(); }
-  LiveStatus status() const { return source_->status(); }
+  HeadStatus status() const { return source_->status(); }
 
  private:
   Link end_;
@@ -92,7 +92,7 @@ Result<std::vector<Row>> day(const BenchOptions&) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (const auto finished = mapper->finish(); !finished) return tl::unexpected(finished.error());
 
-  const LiveStatus status = day->status();
+  const HeadStatus status = day->status();
   // The last ping may be on its way.
   const bool has_all = day->beams() + 1 >= day->pings() && mapper->report().beams == day->beams();
   if (!has_all || status.unanswered + status.damaged > 0 || status.connections != 1) {

@@ -17,9 +17,9 @@
 #include "bench/paired_timing.hpp"
 #include "bench/vehicle/tank_head.hpp"
 #include "device/internal/link.hpp"
+#include "device/internal/live_source.hpp"
 #include "device/internal/ping360_emulator.hpp"
 #include "pingvox/analysis/compare.hpp"
-#include "pingvox/device/live_source.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -151,7 +151,7 @@ Result<Row> measure(std::string_view name, const BuildOptions& options) {
   const Result<std::vector<double>> latencies_s = map_beams(*source, head, *mapper, beams);
   if (!latencies_s) return tl::unexpected(latencies_s.error());
   if (const auto finished = mapper->finish(); !finished) return tl::unexpected(finished.error());
-  const LiveStatus status = source->status();
+  const HeadStatus status = source->status();
   if (status.unanswered + status.damaged > 0) {
     return fail(Error::Code::kCorrupt,
                 fmt::format("{} requests without an answer, {} damaged frames", status.unanswered, status.damaged));

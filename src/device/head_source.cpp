@@ -8,11 +8,11 @@
 
 #include "device/internal/guarded_recorder.hpp"
 #include "device/internal/link.hpp"
+#include "device/internal/live_source.hpp"
 #include "device/read_limit.hpp"
 #include "io/internal/frame_finder.hpp"
 #include "io/internal/ping_frame.hpp"
 #include "io/internal/seanet_frame.hpp"
-#include "pingvox/device/live_source.hpp"
 
 namespace pingvox {
 namespace {
@@ -78,8 +78,8 @@ class HeadSource final : public LiveSource {
     take_frames(beams);
   }
 
-  LiveStatus status() const override {
-    LiveStatus status = status_;
+  HeadStatus status() const override {
+    HeadStatus status = status_;
     status.is_connected = link_ && driver_.is_connected();
     status.unanswered = driver_.unanswered();
     status.damaged += damage_count(finder_.damage()) + unusable_;
@@ -196,7 +196,7 @@ class HeadSource final : public LiveSource {
   std::deque<Piece> pieces_;  ///< that unprocessed bytes came with
   std::uint64_t received_ = 0;
   std::size_t unusable_ = 0;
-  LiveStatus status_;
+  HeadStatus status_;
   double start_s_, open_at_s_, delay_s_ = kFirstDelay_s;
 };
 

@@ -2,7 +2,7 @@
 #include <limits>
 #include <utility>
 
-#include "pingvox/device/live_source.hpp"
+#include "device/internal/live_source.hpp"
 
 namespace pingvox {
 namespace {
@@ -36,8 +36,8 @@ class ReplaySource final : public LiveSource {
 
   void finish(std::vector<Beam>&) override {}
 
-  LiveStatus status() const override {
-    LiveStatus status;
+  HeadStatus status() const override {
+    HeadStatus status;
     status.is_connected = true;
     status.connections = 1;
     status.damaged = log_->skipped();

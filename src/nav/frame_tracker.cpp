@@ -1,4 +1,4 @@
-#include "pingvox/nav/frame_tracker.hpp"
+#include "nav/internal/frame_tracker.hpp"
 
 #include <algorithm>
 #include <cassert>

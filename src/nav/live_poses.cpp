@@ -1,4 +1,4 @@
-#include "pingvox/nav/live_poses.hpp"
+#include "nav/internal/live_poses.hpp"
 
 #include <algorithm>
 #include <cmath>

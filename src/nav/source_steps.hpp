@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pingvox/nav/frame_tracker.hpp"
+#include "nav/internal/frame_tracker.hpp"
 #include "pingvox/nav/nav_log.hpp"
 
 namespace pingvox {

@@ -1,4 +1,4 @@
-#include "pingvox/nav/step_filter.hpp"
+#include "nav/internal/step_filter.hpp"
 
 #include "nav/source_steps.hpp"
 

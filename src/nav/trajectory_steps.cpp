@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "nav/internal/frame_tracker.hpp"
 #include "nav/source_steps.hpp"
-#include "pingvox/nav/frame_tracker.hpp"
 
 namespace pingvox {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "device/internal/link.hpp"
-#include "pingvox/device/live_source.hpp"
+#include "device/internal/live_source.hpp"
 
 /// A source of live beams and the emulator of its head, at the two ends of a real line.
 namespace pingvox::test {

@@ -16,12 +16,12 @@
 
 #include "device/internal/a50_receiver.hpp"
 #include "device/internal/link.hpp"
+#include "device/internal/live_source.hpp"
 #include "device/internal/micron_emulator.hpp"
 #include "device/internal/ping360_emulator.hpp"
 #include "io/internal/frame_finder.hpp"
 #include "io/internal/ping_frame.hpp"
 #include "io/internal/seanet_frame.hpp"
-#include "pingvox/device/live_source.hpp"
 #include "tests/device/altered_head.hpp"
 #include "tests/device/dialogue.hpp"
 #include "tests/device/recording.hpp"

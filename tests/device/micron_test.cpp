@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "device/internal/link.hpp"
+#include "device/internal/live_source.hpp"
 #include "device/internal/micron_emulator.hpp"
 #include "device/micron_command.hpp"
 #include "io/internal/seanet_frame.hpp"
-#include "pingvox/device/live_source.hpp"
+#include "io/internal/seanet_recorder.hpp"
 #include "pingvox/device/micron_driver.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/io/seanet_recorder.hpp"
 #include "tests/device/dialogue.hpp"
 #include "tests/device/recording.hpp"
 

@@ -17,7 +17,7 @@
 
 #include "device/internal/a50_receiver.hpp"
 #include "device/internal/link.hpp"
-#include "pingvox/device/live_source.hpp"
+#include "device/internal/live_source.hpp"
 
 namespace {
 

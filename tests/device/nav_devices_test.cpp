@@ -18,12 +18,12 @@
 
 #include "device/internal/a50_receiver.hpp"
 #include "device/internal/link.hpp"
+#include "device/internal/live_source.hpp"
 #include "device/internal/mavlink_receiver.hpp"
 #include "device/internal/nav_emulator.hpp"
-#include "pingvox/device/live_source.hpp"
+#include "nav/internal/live_poses.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
-#include "pingvox/nav/live_poses.hpp"
 
 namespace {
 

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "device/internal/link.hpp"
+#include "device/internal/live_source.hpp"
 #include "device/internal/ping360_emulator.hpp"
 #include "io/internal/ping_frame.hpp"
-#include "pingvox/device/live_source.hpp"
+#include "io/internal/ping_viewer_recorder.hpp"
 #include "pingvox/device/ping360_driver.hpp"
-#include "pingvox/io/ping_viewer_recorder.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "tests/device/dialogue.hpp"
 #include "tests/device/recording.hpp"

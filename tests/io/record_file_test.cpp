@@ -1,4 +1,4 @@
-#include "pingvox/io/record_file.hpp"
+#include "io/internal/record_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

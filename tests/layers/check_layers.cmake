@@ -17,7 +17,8 @@ set(allowed_sim base geometry sonar nav)
 set(allowed_viewer base geometry sonar map mapping io)
 set(allowed_slam base geometry sonar nav map mapping)
 set(allowed_recording base geometry sonar nav map mapping slam io)
-set(layers base geometry sonar nav map analysis cloud mapping io device sim viewer slam recording)
+set(allowed_live base geometry sonar nav map mapping io device)
+set(layers base geometry sonar nav map analysis cloud mapping io device sim viewer slam recording live)
 
 # Libraries that one layer keeps to itself, in its sources: first part of the include -> layer.
 set(private_opencv2 sonar)

@@ -1,6 +1,6 @@
 // Poses while the samples come.
 
-#include "pingvox/nav/live_poses.hpp"
+#include "nav/internal/live_poses.hpp"
 
 #include <gtest/gtest.h>
 

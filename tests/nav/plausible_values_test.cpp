@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/nav/live_poses.hpp"
+#include "nav/internal/live_poses.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 

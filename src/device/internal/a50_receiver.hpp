@@ -9,7 +9,7 @@
 #include "device/internal/guarded_recorder.hpp"
 #include "device/internal/link.hpp"
 #include "io/internal/a50_nav.hpp"
-#include "pingvox/io/record_file.hpp"
+#include "io/internal/record_file.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {

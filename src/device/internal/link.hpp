@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pingvox/io/descriptor.hpp"
+#include "io/internal/descriptor.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {

@@ -11,7 +11,7 @@
 #include "device/internal/guarded_recorder.hpp"
 #include "device/internal/link.hpp"
 #include "io/internal/mavlink_nav.hpp"
-#include "pingvox/io/tlog_recorder.hpp"
+#include "io/internal/tlog_recorder.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {

@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "io/bytes/text.hpp"
+#include "io/internal/descriptor.hpp"
 #include "pingvox/io/byte_stream.hpp"
-#include "pingvox/io/descriptor.hpp"
 #include "pingvox/io/file.hpp"
 
 namespace pingvox {

@@ -1,4 +1,4 @@
-#include "pingvox/io/ping_viewer_recorder.hpp"
+#include "io/internal/ping_viewer_recorder.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "pingvox/io/seanet_recorder.hpp"
+#include "io/internal/seanet_recorder.hpp"
 
 #include <fmt/core.h>
 

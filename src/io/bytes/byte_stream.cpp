@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "io/bags/bag_folder.hpp"
-#include "pingvox/io/descriptor.hpp"
+#include "io/internal/descriptor.hpp"
 
 namespace pingvox {
 

@@ -15,8 +15,8 @@
 #include <system_error>
 #include <utility>
 
+#include "io/internal/descriptor.hpp"
 #include "pingvox/io/byte_stream.hpp"
-#include "pingvox/io/descriptor.hpp"
 
 namespace pingvox {
 namespace {

@@ -1,4 +1,4 @@
-#include "pingvox/io/record_file.hpp"
+#include "io/internal/record_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "pingvox/io/tlog_recorder.hpp"
+#include "io/internal/tlog_recorder.hpp"
 
 #include <vector>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "pingvox/io/descriptor.hpp"
+#include "io/internal/descriptor.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {

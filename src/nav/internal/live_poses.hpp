@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "nav/internal/step_filter.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/nav/nav_log.hpp"
-#include "pingvox/nav/step_filter.hpp"
 
 namespace pingvox {
 

@@ -1,4 +1,4 @@
-#include "obstacle_sender.hpp"
+#include "live/obstacle_sender.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 #include "io/internal/mavlink.hpp"
 #include "io/internal/mavlink_obstacles.hpp"
 
-namespace pingvox::app {
+namespace pingvox {
 namespace {
 
 ObstacleDistance message_of(const ObstacleSectors& obstacles, const ObstacleOptions& options) {
@@ -60,4 +60,4 @@ void ObstacleSender::send(const OccupancyMap& map, const std::optional<Pose>& ma
   static_cast<void>(link_->write(make_mavlink_frame(kObstacleDistance, payload_of(message), sender)));
 }
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -7,27 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "io/internal/ping_viewer_recorder.hpp"
+#include "io/internal/seanet_recorder.hpp"
+#include "pingvox/device/head_status.hpp"
 #include "pingvox/device/micron_driver.hpp"
 #include "pingvox/device/ping360_driver.hpp"
-#include "pingvox/io/ping_viewer_recorder.hpp"
-#include "pingvox/io/seanet_recorder.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 
 namespace pingvox {
-
-/// State of a live source.
-struct LiveStatus {
-  bool is_connected = false;
-  std::size_t connections = 0;  ///< how often it was connected
-  std::string problem;          ///< why it is not connected, or not any more
-  std::size_t unanswered = 0;   ///< requests without an answer
-  std::size_t damaged = 0;      ///< damaged frames, and runs of bytes between frames
-  /// Beams that do not fit the request that they answer, as of another range: they are recorded and left out.
-  std::size_t unexpected = 0;
-  std::string first_unexpected;          ///< why the first one does not fit
-  std::optional<Error> recording_error;  ///< what is wrong with the recording; the beams go on
-};
 
 /// A non-blocking source of beams: the caller polls it. It has no clock of its own.
 class LiveSource {
@@ -44,7 +32,7 @@ class LiveSource {
   /// Stops the head, and appends the beams that waited for more bytes.
   virtual void finish(std::vector<Beam>& beams) = 0;
 
-  virtual LiveStatus status() const = 0;
+  virtual HeadStatus status() const = 0;
   /// The sonar head, if known.
   virtual const DeviceProfile* device() const = 0;
 };

@@ -10,7 +10,7 @@
 #include "pingvox/mapping/obstacle_sectors.hpp"
 #include "pingvox/result.hpp"
 
-namespace pingvox::app {
+namespace pingvox {
 
 /// Sends the nearest obstacles to an autopilot, five times a second.
 class ObstacleSender {
@@ -39,4 +39,4 @@ class ObstacleSender {
   std::uint8_t sequence_ = 0;
 };
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "pingvox/io/record_file.hpp"
+#include "io/internal/record_file.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {

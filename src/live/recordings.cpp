@@ -1,12 +1,12 @@
-#include "recordings.hpp"
+#include "live/recordings.hpp"
 
 #include <system_error>
 
-namespace pingvox::app {
+namespace pingvox {
 
 Recordings::~Recordings() {
   std::error_code ignored;
   for (const std::filesystem::path& path : created_) std::filesystem::remove(path, ignored);
 }
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -7,7 +7,7 @@
 
 #include "pingvox/result.hpp"
 
-namespace pingvox::app {
+namespace pingvox {
 
 /// The files that a run records to. A run that does not begin leaves none of them behind: they would be in the way of
 /// the next one.
@@ -41,4 +41,4 @@ class Recordings {
   std::vector<std::filesystem::path> created_;
 };
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "commands.hpp"
+#include "json.hpp"
+#include "pingvox/live/live_mapping.hpp"
+
+namespace pingvox::app {
+
+/// What a run prints of an event on standard error.
+/// @param status  for the names of the navigation devices
+std::string text_of(const LiveEvent& event, const LiveCommand& command, const LiveStatus& status);
+
+/// Since the last status.
+struct LiveRates {
+  double beams_per_s = 0.0;
+  double latency_s = 0.0;  ///< longest time from a beam's arrival until the mapper was done with it
+};
+
+enum class LiveEnd { kNo, kYes };
+
+/// "400 beams, 20/s, 310 echoes, ..."
+std::string status_line(const LiveMapping& live, const LiveStatus& status, const LiveRates& rates);
+JsonObject live_json(const LiveMapping& live, const LiveStatus& status, const LiveRates& rates, LiveEnd end);
+/// Without --json.
+std::string live_summary(const LiveMapping& live, const LiveStatus& status, const LiveCommand& command);
+
+}  // namespace pingvox::app

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pingvox/device/head_status.hpp"
+#include "pingvox/live/live_event.hpp"
+#include "pingvox/live/live_options.hpp"
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/mapping/build_options.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// State of a navigation device.
+struct LiveNavStatus {
+  LiveNav::Kind kind = LiveNav::Kind::kMavlink;
+  std::string name;          ///< "mavlink:udp://127.0.0.1:14550", with the port that was chosen
+  bool is_connected = true;  ///< of one that waits for others to send, always
+  std::size_t connections = 0;
+  std::string problem;  ///< why it is not connected
+  std::size_t messages = 0, damaged = 0;
+  std::optional<Error> recording_error;
+  // Of those that wait for others to send.
+  std::string vehicle;              ///< who is followed, as "192.168.2.2:14550 (system 1)"; empty: nobody yet
+  std::size_t vehicles = 0;         ///< that were followed, one after the other
+  std::size_t ignored = 0;          ///< frames of others
+  std::vector<std::string> others;  ///< the first ones of them
+};
+
+struct LiveStatus {
+  double time_s = 0.0;  ///< since the start
+  HeadStatus head;
+  std::size_t beams = 0;  ///< that came: mapped, not mapped and waiting
+  std::size_t mapped = 0;
+  std::size_t not_mapped = 0;    ///< without a pose, dropped, blocked or too long
+  std::size_t waiting = 0;       ///< for their poses, or for the end of their sweep
+  std::size_t without_pose = 0;  ///< of those not mapped
+  std::vector<LiveNavStatus> nav;
+  std::string attitude, position;  ///< sources of the poses; empty: not chosen yet
+  std::size_t outliers = 0;        ///< samples of these sources that were left out
+  std::size_t new_frames = 0;      ///< how often one of them went on in another frame
+};
+
+/// Maps with a sonar while it runs: drives the head, records its bytes, puts each beam where the vehicle was at its
+/// time by what the navigation devices send, maps it, and sends the nearest obstacles to an autopilot. It is pushed by
+/// one loop, and nothing but `wait` waits:
+///
+///     for (bool goes_on = true; goes_on; goes_on = live.step().value_or(false)) live.wait(1.0);
+///     live.finish();
+///
+/// A device that is not there, or falls silent, is tried again as long as it runs. Where recordings, navigation or the
+/// map fail, the rest goes on, and an event tells it.
+class LiveMapping {
+ public:
+  /// Seconds of a clock that never goes back.
+  using Clock = std::function<double()>;
+
+  /// Creates the recordings and opens the devices; names of hosts are looked up in the background.
+  /// @param clock  nullptr: the steady clock of the system
+  /// @return kBadOption when the options do not validate, kIo when a recording exists or an address is in use, errors
+  ///         of reading a replay; no recordings are left behind then
+  static Result<LiveMapping> open(const LiveOptions& options, Clock clock = nullptr);
+  LiveMapping(LiveMapping&&) noexcept;
+  LiveMapping& operator=(LiveMapping&&) noexcept;
+  ~LiveMapping();
+
+  /// Waits until `step` has something to do.
+  /// @param seconds  at most, and not longer than one second
+  /// @param file     descriptor that ends the wait as well when it is readable; -1: none
+  void wait(double seconds, int file = -1) const;
+
+  /// Reads, records and sends what is due, and maps beams for 10 ms, at least one.
+  /// @return false at the end of a replay (a head has none), an error when a replay can no longer be read; after either
+  ///         false
+  Result<bool> step();
+
+  /// Stops the head and maps all beams that wait. To be called once, at the end.
+  /// @return kLimit or kNoMemory of the map, which keeps the beams before
+  Result<void> finish();
+
+  /// Up to date between two calls. The beams that wait are not in it.
+  const OccupancyMap& map() const;
+  const BuildReport& report() const;  ///< of the map
+  double time_s() const;              ///< since the start; beams and recordings count from there
+  std::size_t beams() const;          ///< that came so far
+  LiveStatus status() const;
+  const std::vector<std::filesystem::path>& recordings() const;
+
+  /// What has happened since it was taken last, in order; beyond the first thousand, events are lost.
+  std::vector<LiveEvent> take_events();
+  /// Longest time from the arrival of a beam until the mapper was done with it, since it was taken last [s].
+  double take_latency_s();
+
+ private:
+  class Run;
+  explicit LiveMapping(std::unique_ptr<Run> run);
+  std::unique_ptr<Run> run_;
+};
+
+}  // namespace pingvox

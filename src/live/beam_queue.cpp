@@ -1,0 +1,55 @@
+#include "live/beam_queue.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "pingvox/geometry/pose.hpp"
+
+namespace pingvox {
+
+void BeamQueue::push(std::vector<Beam>& arrived, double now_s) {
+  constexpr std::size_t kMaxWaiting = 2000;  // at most 2.4 MB of a Ping360
+  beams_ += arrived.size();
+  for (Beam& beam : arrived) waiting_.push_back({std::move(beam), now_s});
+  arrived.clear();
+  for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++dropped_;
+}
+
+bool BeamQueue::can_map_one(const LiveNavigation* nav) const {
+  return !waiting_.empty() && !(nav != nullptr && !has_failed_ && nav->may_come(waiting_.front().beam.time_s));
+}
+
+Result<void> BeamQueue::map_one(const LiveNavigation* nav, const std::function<double()>& clock) {
+  auto [beam, arrived_s] = std::move(waiting_.front());
+  waiting_.pop_front();
+  if (has_failed_) {
+    ++dropped_;
+    return {};
+  }
+  const std::optional<Pose> pose = nav != nullptr ? nav->poses().at(beam.time_s) : Pose::Identity();
+  if (!pose) ++without_pose_;
+  Result<void> added = mapper_.add(std::move(beam), pose);
+  if (!added) added = give_up(added.error());
+  latency_s_ = std::max(latency_s_, clock() - arrived_s);
+  return added;
+}
+
+Result<void> BeamQueue::finish() {
+  if (has_failed_) return {};
+  const Result<void> finished = mapper_.finish();
+  return finished ? finished : give_up(finished.error());
+}
+
+std::size_t BeamQueue::not_mapped() const {
+  const BuildReport& report = mapper_.report();
+  return dropped_ + without_pose_ + report.blocked.count + report.too_long.count;
+}
+
+/// Beams that the mapper held are lost with an error.
+Result<void> BeamQueue::give_up(const Error& error) {
+  has_failed_ = true;
+  dropped_ += waiting() - waiting_.size();
+  return tl::unexpected(error);
+}
+
+}  // namespace pingvox

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "live/live_navigation.hpp"
+#include "pingvox/mapping/beam_mapper.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+namespace pingvox {
+
+/// Beams that wait for their poses, and then go into the map.
+class BeamQueue {
+ public:
+  explicit BeamQueue(BeamMapper mapper) : mapper_(std::move(mapper)) {}
+
+  /// Takes beams that have arrived. The oldest ones are dropped when too many wait: the recording has them.
+  void push(std::vector<Beam>& arrived, double now_s);
+
+  bool empty() const { return waiting_.empty(); }
+  /// Whether the pose of the oldest beam is known, or does not come any more.
+  /// @param nav  nullptr: the vehicle stands still
+  bool can_map_one(const LiveNavigation* nav) const;
+  /// Maps the oldest beam, without a pose if it is not known. After an error it is dropped. REQUIRES that one waits.
+  /// @param clock  to take the latency by
+  /// @return the error of the map, once
+  Result<void> map_one(const LiveNavigation* nav, const std::function<double()>& clock);
+  /// Maps the beams that the mapper still holds. @return as map_one
+  Result<void> finish();
+
+  bool has_failed() const { return has_failed_; }
+  const BuildReport& report() const { return mapper_.report(); }
+  std::size_t beams() const { return beams_; }  ///< that were pushed
+  std::size_t without_pose() const { return without_pose_; }
+  /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep. Those that
+  /// reach out of the map are mapped in part.
+  std::size_t not_mapped() const;
+  /// Beams that are not yet mapped.
+  std::size_t waiting() const { return beams_ - mapper_.report().beams - not_mapped(); }
+
+  /// Longest time from a beam's arrival until the mapper was done with it, since it was taken last.
+  double take_latency_s() { return std::exchange(latency_s_, 0.0); }
+
+ private:
+  struct Waiting {
+    Beam beam;
+    double arrived_s;
+  };
+  Result<void> give_up(const Error& error);
+
+  BeamMapper mapper_;
+  std::deque<Waiting> waiting_;
+  std::size_t beams_ = 0, without_pose_ = 0;
+  std::size_t dropped_ = 0;  ///< under load, or after an error of the map
+  double latency_s_ = 0.0;
+  bool has_failed_ = false;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,108 @@
+#include "live/event_tracker.hpp"
+
+#include <algorithm>
+
+namespace pingvox {
+
+EventTracker::EventTracker(std::string head, const HeadStatus& status, const LiveNavigation* nav) {
+  head_ = {.name = std::move(head), .is_connected = status.is_connected, .problem = status.problem};
+  if (nav == nullptr) return;
+  for (const NavDevice& device : nav->devices()) {
+    nav_.push_back({.name = device.name(), .is_connected = device.status().is_connected, .problem = {}});
+  }
+}
+
+void EventTracker::add(LiveEvent event) {
+  constexpr std::size_t kMaxEvents = 1000;  // a caller that takes none shall not fill the memory
+  if (events_.size() < kMaxEvents) events_.push_back(std::move(event));
+}
+
+void EventTracker::update_head(const HeadStatus& status) {
+  update_recording(status.recording_error, head_);
+  if (status.unexpected > 0 && !std::exchange(has_unexpected_, true)) {
+    add(live_event::UnexpectedBeam{head_.name, status.first_unexpected});
+  }
+  update_connection(status.is_connected, status.problem, head_);
+}
+
+void EventTracker::update_nav(LiveNavigation& nav) {
+  const std::string& position = nav.poses().position();
+  for (std::size_t i = 0; i < nav_.size(); ++i) {
+    const NavDevice& device = nav.devices()[i];
+    const LiveNavStatus status = device.status();
+    Device& known = nav_[i];
+    update_recording(status.recording_error, known);
+    update_senders(status, known);
+    if (device.has_other_origin(position) && !std::exchange(known.has_other_origin, true)) {
+      add(live_event::SenderRestarted{known.name, position});
+    }
+    update_connection(status.is_connected, status.problem, known);
+  }
+  update_poses(nav);
+  for (const LivePoses::NewFrame& frame : nav.take_new_frames()) {
+    ++new_frames_;
+    add(live_event::NewFrame{frame.source, frame.quantity, frame.step});
+  }
+}
+
+void EventTracker::update_obstacles(const std::string& problem) {
+  if (problem == obstacle_problem_) return;
+  obstacle_problem_ = problem;
+  if (problem.empty()) {
+    add(live_event::ObstaclesSent{});
+  } else {
+    add(live_event::ObstaclesNotSent{problem});
+  }
+}
+
+void EventTracker::update_recording(const std::optional<Error>& error, Device& known) {
+  if (error && !std::exchange(known.has_failed_recording, true)) add(live_event::RecordingFailed{*error});
+}
+
+void EventTracker::update_connection(bool is_connected, const std::string& problem, Device& known) {
+  if (is_connected == known.is_connected && problem == known.problem) return;
+  if (is_connected) {
+    add(live_event::Connected{known.name});
+  } else if (!problem.empty()) {
+    add(live_event::NotConnected{known.name, problem});
+  }
+  known.is_connected = is_connected;
+  known.problem = problem;
+}
+
+void EventTracker::update_senders(const LiveNavStatus& status, Device& known) {
+  if (status.vehicles > known.vehicles && known.vehicles > 0) {
+    add(live_event::VehicleChanged{known.name, status.vehicle});
+  }
+  known.vehicles = status.vehicles;
+  known.others = std::min(known.others, status.others.size());
+  for (; known.others < status.others.size(); ++known.others) {
+    add(live_event::SenderIgnored{known.name, status.others[known.others], status.vehicle});
+  }
+}
+
+void EventTracker::update_poses(const LiveNavigation& nav) {
+  constexpr double kLong_s = 5.0;
+  const LivePoses& poses = nav.poses();
+  if (poses.position().empty()) {
+    if (nav.now_s() > kLong_s && !std::exchange(has_missed_sources_, true)) {
+      add(live_event::NoSourceYet{poses.has(NavQuantity::kAttitude), poses.has(NavQuantity::kPosition),
+                                  nav.messages()});
+    }
+    return;
+  }
+  const bool has_no_pose = nav.pose_age_s() > kLong_s;
+  if (has_no_pose != has_no_pose_) {
+    has_no_pose_ = has_no_pose;
+    if (has_no_pose) {
+      add(live_event::PosesEnded{});
+    } else {
+      add(live_event::PosesResumed{});
+    }
+  }
+  if (!std::exchange(has_sources_, true)) {
+    add(live_event::SourcesChosen{poses.attitude(), poses.position()});
+  }
+}
+
+}  // namespace pingvox

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "live/live_navigation.hpp"
+#include "pingvox/device/head_status.hpp"
+#include "pingvox/live/live_event.hpp"
+#include "pingvox/live/live_mapping.hpp"
+
+namespace pingvox {
+
+/// Compares the state of the devices with that of before, and keeps what has changed as events.
+class EventTracker {
+ public:
+  /// @param nav  nullptr: the vehicle stands still
+  EventTracker(std::string head, const HeadStatus& status, const LiveNavigation* nav);
+
+  void add(LiveEvent event);
+  void update_head(const HeadStatus& status);
+  void update_nav(LiveNavigation& nav);
+  /// @param problem  why no obstacles are sent; empty: they are
+  void update_obstacles(const std::string& problem);
+
+  std::vector<LiveEvent> take() { return std::exchange(events_, {}); }
+  /// How often a source went on in another frame.
+  std::size_t new_frames() const { return new_frames_; }
+
+ private:
+  /// What is known of a device.
+  struct Device {
+    std::string name;
+    bool is_connected = false;
+    std::string problem;
+    bool has_failed_recording = false, has_other_origin = false;
+    std::size_t vehicles = 0, others = 0;
+  };
+
+  void update_recording(const std::optional<Error>& error, Device& known);
+  void update_connection(bool is_connected, const std::string& problem, Device& known);
+  void update_senders(const LiveNavStatus& status, Device& known);
+  void update_poses(const LiveNavigation& nav);
+
+  Device head_;
+  std::vector<Device> nav_;
+  bool has_unexpected_ = false;
+  bool has_sources_ = false, has_missed_sources_ = false, has_no_pose_ = false;
+  std::string obstacle_problem_;
+  std::size_t new_frames_ = 0;
+  std::vector<LiveEvent> events_;
+};
+
+}  // namespace pingvox

@@ -1,0 +1,54 @@
+#include "live/live_navigation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <span>
+
+namespace pingvox {
+
+Result<LiveNavigation> LiveNavigation::open(const std::vector<LiveNav>& from, Recordings& recordings,
+                                            double since_1970_s) {
+  std::vector<NavDevice> devices;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::optional<std::filesystem::path> name = recordings.sonar();
+    if (name) name->replace_extension();
+    const auto before = std::span(from).first(i);
+    const auto of_kind = std::ranges::count(before, from[i].kind, &LiveNav::kind);
+    if (name && of_kind > 0) *name += fmt::format("-{}", of_kind + 1);
+    Result<NavDevice> device = NavDevice::open(from[i], std::move(name), recordings, since_1970_s);
+    if (!device) return tl::unexpected(device.error());
+    devices.push_back(*std::move(device));
+  }
+  return LiveNavigation(std::move(devices));
+}
+
+std::size_t LiveNavigation::messages() const {
+  std::size_t sum = 0;
+  for (const NavDevice& device : devices_) sum += device.status().messages;
+  return sum;
+}
+
+Result<void> LiveNavigation::step(double now_s) {
+  now_s_ = now_s;
+  Result<void> all;
+  for (NavDevice& device : devices_) {
+    if (auto read = device.read(now_s_, poses_); !read && all) all = std::move(read);
+  }
+  return all;
+}
+
+bool LiveNavigation::may_come(double beam_s) const {
+  constexpr double kPatience_s = 1.0;
+  const std::optional<double> until_s = poses_.known_until_s();
+  return now_s_ < beam_s + kPatience_s && !(until_s && *until_s >= beam_s);
+}
+
+double LiveNavigation::pose_age_s() const {
+  const std::optional<double> until_s = poses_.known_until_s();
+  return until_s ? now_s_ - *until_s : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace pingvox

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "device/internal/a50_receiver.hpp"
+#include "device/internal/mavlink_receiver.hpp"
+#include "live/recordings.hpp"
+#include "nav/internal/live_poses.hpp"
+#include "pingvox/live/live_mapping.hpp"
+#include "pingvox/live/live_options.hpp"
+#include "pingvox/nav/device_clock.hpp"
+#include "pingvox/result.hpp"
+
+namespace pingvox {
+
+/// An autopilot or a DVL that reports the pose of the vehicle.
+class NavDevice {
+ public:
+  /// @param record        name of the record, less its suffix; nullopt: nothing is recorded
+  /// @param since_1970_s  time of the recording at 0 of the clock that `read` is told
+  static Result<NavDevice> open(const LiveNav& from, std::optional<std::filesystem::path> record,
+                                Recordings& recordings, double since_1970_s);
+
+  /// "mavlink:udp://127.0.0.1:14550", with the port that was chosen.
+  std::string name() const;
+  int descriptor() const;  ///< for poll()
+  LiveNavStatus status() const;
+
+  /// Whether the sender of these positions has restarted: they are relative to another origin since then.
+  bool has_other_origin(const std::string& position) const;
+
+  /// Adds the samples that have arrived. @param now_s  on the beams' clock
+  Result<void> read(double now_s, LivePoses& poses);
+
+ private:
+  using Receiver = std::variant<MavlinkReceiver, A50Receiver>;
+  explicit NavDevice(Receiver receiver) : receiver_(std::move(receiver)) {}
+  void note_start(const MavlinkNav::Report& report);
+
+  Receiver receiver_;
+  struct Positions {
+    DeviceTime last;  ///< when it was made
+    bool has_other_origin = false;
+  };
+  std::map<std::string, Positions> positions_;  ///< of each source
+};
+
+}  // namespace pingvox
