@@ -153,7 +153,7 @@ TEST(Live, MapsAroundAVehicleThatSaysWhereItIs) {
 }
 
 // Kills two maps in one without a word: positions of the second start are relative to where the vehicle was then.
-TEST(Live, SaysThatAnAutopilotWasStartedAnew) {
+TEST(Live, SaysThatAnAutopilotRestarted) {
   const Head head({}, "40");
   const Workplace here;
   const pid_t child = here.start({"live", head.address(), "--nav", "mavlink:udp://127.0.0.1:0", "-o", "live.bt",
@@ -169,10 +169,10 @@ TEST(Live, SaysThatAnAutopilotWasStartedAnew) {
     // The clock of the second one begins further back than messages overtake each other.
     std::this_thread::sleep_for(std::chrono::seconds(2));
   }
-  EXPECT_FALSE(notes_say("started anew"));
+  EXPECT_FALSE(notes_say("restarted"));
   {
     const Vehicle second(port, own_port);
-    EXPECT_TRUE(wait_until([&] { return notes_say("the sender of LOCAL_POSITION_NED was started anew"); }));
+    EXPECT_TRUE(wait_until([&] { return notes_say("the sender of LOCAL_POSITION_NED restarted"); }));
   }
   ::kill(child, SIGTERM);
   EXPECT_EQ(status_of(child), 0) << here.read("notes");

@@ -110,7 +110,9 @@ TEST(LiveMapping, GoesOnRecordingWhereTheMapCannotGrow) {
 TEST(LiveMapping, CountsBeamsWithoutAPose) {
   Dive dive(with_autopilot());
   dive.run_for(7.0);
-  EXPECT_GT(dive.live().status().without_pose, 100U) << "before they would go into the map";
+  const LiveStatus before = dive.live().status();
+  EXPECT_GT(before.without_pose, 100U);
+  EXPECT_EQ(before.not_mapped, before.without_pose) << "at once, not when their sweep ends";
   ASSERT_TRUE(dive.live().finish());
   const LiveStatus status = dive.live().status();
   EXPECT_EQ(status.without_pose, status.beams) << "each once";
@@ -188,26 +190,51 @@ TEST(LiveMapping, TellsThatTheHeadIsLostAndFound) {
   EXPECT_EQ(dive.live().status().head.connections, 2U);
 }
 
-// Sectors that a silent sonar calls free.
-TEST(LiveMapping, SendsObstaclesWhileBeamsCome) {
-  Result<Link> pilot = Link::listen("udp://127.0.0.1:0");
-  ASSERT_TRUE(pilot);
-  const auto received = [&] {
+/// An autopilot that is sent obstacles.
+class Pilot {
+ public:
+  std::string address() const { return line_->address(); }
+  /// Messages since it was asked last.
+  std::size_t received() {
     std::array<std::uint8_t, 300> bytes = {};
-    std::size_t frames = 0;
-    while (pilot->read(bytes).value_or(0) > 0) ++frames;
-    return frames;
-  };
+    std::size_t messages = 0;
+    while (line_->read(bytes).value_or(0) > 0) ++messages;
+    return messages;
+  }
+
+ private:
+  Result<Link> line_ = Link::listen("udp://127.0.0.1:0");
+};
+
+// Kills sectors that a silent sonar calls free.
+TEST(LiveMapping, SendsObstaclesWhileBeamsCome) {
+  Pilot pilot;
   LiveOptions options;
-  options.obstacles = pilot->address();
+  options.obstacles = pilot.address();
   Dive dive(options);
   dive.run_until_beams(130);
-  EXPECT_GE(received(), 5U);
+  EXPECT_GE(pilot.received(), 5U);
   dive.set_head(Power::kOff);
   dive.run_for(6.0);
-  EXPECT_GE(received(), 5U) << "of the first five seconds";
+  EXPECT_GE(pilot.received(), 5U) << "of the first five seconds";
   dive.run_for(5.0);
-  EXPECT_EQ(received(), 0U);
+  EXPECT_EQ(pilot.received(), 0U);
+}
+
+// Kills obstacles around where the vehicle was long ago.
+TEST(LiveMapping, SendsObstaclesWhileItsPoseIsKnown) {
+  Pilot pilot;
+  LiveOptions options = with_autopilot();
+  options.obstacles = pilot.address();
+  Dive dive(options);
+  dive.set_autopilot(autopilot());
+  dive.run_until_beams(200);
+  EXPECT_GE(pilot.received(), 5U);
+  dive.set_autopilot(std::nullopt);
+  dive.run_for(3.0);
+  EXPECT_GE(pilot.received(), 5U) << "of the first two seconds";
+  dive.run_for(3.0);
+  EXPECT_EQ(pilot.received(), 0U);
 }
 
 // They would be in the way of the next run.
