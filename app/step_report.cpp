@@ -28,8 +28,8 @@ std::string others_text(std::size_t steps) {
 std::string step_text(const SourceStep& step) {
   const double seconds = step.to_s - step.from_s;
   if (step.is_new_start) {
-    return fmt::format("is back at its origin, {:.1f} m away, after {:.2f} s, so its device was started anew",
-                       step.moved_m, seconds);
+    return fmt::format("is back at its origin, {:.1f} m away, after {:.2f} s, so its device restarted", step.moved_m,
+                       seconds);
   }
   // Of poses with both, what the vehicle cannot do: a position jumps farther than a metre.
   constexpr double kLeastJump_m = 1.0;

@@ -18,7 +18,7 @@ Result<Lattice> Lattice::make(double resolution_m, int depth) {
   if (!bad.empty()) return fail(Error::Code::kBadOption, bad);
   if (!std::isfinite(std::ldexp(resolution_m, depth))) {
     return fail(Error::Code::kBadOption,
-                fmt::format("{} levels of cells of {} m are larger than any number", depth, resolution_m));
+                fmt::format("{} levels of cells of {} m exceed the range of double", depth, resolution_m));
   }
   return Lattice(resolution_m, depth);
 }

@@ -67,7 +67,7 @@ struct Delays {
   double lasts_s = 0.0;
 
   bool has_any() const { return std::isfinite(smallest_s); }
-  /// @return false beyond the minute, and where the device was started anew
+  /// @return false beyond the minute, and where the device restarted
   bool add(const ReceivedMessage& message, double sense) {
     if (!message.made_s) return true;
     if (!has_any()) nearest_s = *message.made_s;

@@ -111,7 +111,7 @@ Result<TrajectoryScore> score_trajectory(const Trajectory& trajectory, const Tra
   set_relative_error(score, matches, turn);
   for (const ErrorStatistics& error : {score.none, score.first_fix, score.translation, score.se2}) {
     if (!std::isfinite(error.rmse_m)) {
-      return fail(Error::Code::kUnsupported, "positions are so far apart that their errors are larger than any number");
+      return fail(Error::Code::kUnsupported, "positions are so far apart that their errors exceed the range of double");
     }
   }
   return score;

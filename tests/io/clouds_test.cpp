@@ -211,8 +211,8 @@ TEST(PcdCloud, RefusesWhatItsBytesDoNotHold) {
   EXPECT_THAT(with("SIZE 4\n"), HasSubstr("as much as FIELDS"));
   EXPECT_THAT(with("SIZE 4 4 0\n"), HasSubstr("line 6"));
   EXPECT_THAT(with("SIZE 4 4 3\nPOINTS 0\nDATA ascii\n"), HasSubstr("the field z is of no type of number"));
-  EXPECT_THAT(with("HIGHT 1\n"), HasSubstr("belongs in no header"));
-  EXPECT_THAT(with(" , \n"), HasSubstr("belongs in no header"));
+  EXPECT_THAT(with("HIGHT 1\n"), HasSubstr("is an unknown header line"));
+  EXPECT_THAT(with(" , \n"), HasSubstr("is an unknown header line"));
   EXPECT_THAT(cloud_error_of("# .PCD\nFIELDS x y\nPOINTS 0\nDATA ascii\n"), HasSubstr("no x, y and z"));
 }
 

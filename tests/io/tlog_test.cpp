@@ -160,7 +160,7 @@ TEST(Tlog, OfVehiclesWithTheSameAddressOneIsRead) {
   EXPECT_THAT(nav->notes.front(), testing::HasSubstr("60 samples of one are read, left out: 30 of others"));
 }
 
-// Kills an autopilot that is started anew and taken for two.
+// Kills an autopilot that restarts and taken for two.
 TEST(Tlog, AVehicleThatIsStartedAnewIsOne) {
   std::vector<std::uint8_t> log;
   for (std::uint32_t i = 0; i < 60; ++i) add_position(log, 1000 + 100 * i, 1, 500'000 + 100 * i, 10.0F);

@@ -68,7 +68,7 @@ TEST(DeviceClock, IsNotSetByAQueueThatWaited) {
   expect_true_from(0, device_times_s(times), 1e-5);
 }
 
-// Kills the old difference after a device was started anew: it was 50 s old, and is 3 s away for booting.
+// Kills the old difference after a device restarted: it was 50 s old, and is 3 s away for booting.
 TEST(DeviceClock, BeginsAgainWithADeviceThatWasStartedAnew) {
   const auto times =
       messages(1000, kNoMore, [](double true_s) { return true_s < 49.95 ? 10.0 + true_s : true_s - 47.0; });

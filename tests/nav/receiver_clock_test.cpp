@@ -70,7 +70,7 @@ TEST(ReceiverClock, MayBeSetTwice) {
   expect_even(found, kDate_s - 100.0);
 }
 
-// Kills a setting that is told of messages that waited, of a pause, and of a device that was started anew or set.
+// Kills a setting that is told of messages that waited, of a pause, and of a device that restarted or set.
 TEST(ReceiverClock, IsNotSetByDelaysAndPauses) {
   const auto waits = [](double true_s) { return kDate_s + (true_s > 20.0 && true_s < 30.0 ? 30.0 : true_s); };
   const auto waits_at_the_end = [](double true_s) { return kDate_s + true_s + (true_s > 58.0 ? 4.0 : 0.0); };

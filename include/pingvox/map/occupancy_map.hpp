@@ -97,7 +97,7 @@ class OccupancyMap {
   /// Applies one scan: each cell it missed or hit gets its evidence once, clamped; then parents are up to date and the
   /// tree is pruned. @return kLimit when memory_limit_bytes would be passed, kBadOption for a scan made for another
   /// lattice: the map is as before then. kNoMemory when memory ran out: some of the scan's cells have got their
-  /// evidence then, and the map is as good as any.
+  /// evidence then, and the map stays valid.
   Result<ApplyReport> apply(const ScanUpdate& scan);
 
   /// A batch of updates (paper, section 5.5): each key's cell gets the evidence as often as the key is named, in the

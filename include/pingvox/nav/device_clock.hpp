@@ -11,12 +11,12 @@ struct DeviceTime {
   double received_s = 0.0, made_s = 0.0;
 };
 
-/// Whether the device was started anew between two messages: it has not been up for longer than the time between them.
+/// Whether the device restarted between two messages: it has not been up for longer than the time between them.
 bool was_started_anew(const DeviceTime& before, const DeviceTime& now);
 
 /// Puts times of a device's own clock on the clock of who receives its messages, as they arrive. Delays vary and only
 /// add, so the smallest difference of the two clocks is the nearest; that of the last minute or two, for clocks drift.
-/// A clock that goes back by more than a second, or jumps by more than a minute, was set or started anew.
+/// A clock that goes back by more than a second, or jumps by more than a minute, was set, or its device restarted.
 class DeviceClock {
  public:
   /// @return when the message was made, on the receiver's clock

@@ -53,7 +53,7 @@ struct NavSample {
 struct SourceStep {
   double from_s = 0.0, to_s = 0.0;  ///< times of the samples before and after it
   double moved_m = 0.0, turned_rad = 0.0;
-  bool is_new_start = false;  ///< the device was started anew: it is back at its origin
+  bool is_new_start = false;  ///< the device restarted: it is back at its origin
   std::size_t left_out = 0;
   double left_from_s = 0.0, left_to_s = 0.0;  ///< times of the first and last sample that are left out
 };

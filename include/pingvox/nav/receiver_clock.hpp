@@ -31,8 +31,8 @@ struct ReceiverTimes {
 
 /// Finds where the clock of a recorder was set: its times go back by more than a second, or run ahead of the device's
 /// by more than two seconds and stay there, which no delay does. By how much, the device's clock tells; all times are
-/// then on the clock of the last part with dates, or of the last part. Where the device does not tell, as it was
-/// started anew at that time, the times before and after it stay as they are.
+/// then on the clock of the last part with dates, or of the last part. Where the device does not tell, as it
+/// restarted at that time, the times before and after it stay as they are.
 /// @param messages  in the order of the recording
 ReceiverTimes receiver_times(std::span<const ReceivedMessage> messages);
 

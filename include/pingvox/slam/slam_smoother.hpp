@@ -51,8 +51,8 @@ struct SlamOptions {
   std::map<std::string, Pose> body_from_source;
   double nav_offset_s = 0.0;  ///< added to the times of navigation samples to get those of the beams
 
-  /// What an earlier solution says of the same sensors: each number is believed beforehand with its standard deviation,
-  /// instead of the usual one (docs/slam.md). Headings that it does not have are believed as usual.
+  /// What an earlier solution says of the same sensors: each number is a prior with its standard deviation,
+  /// instead of the usual one (docs/slam.md). Headings that it does not have get the usual prior.
   std::optional<SlamCalibration> calibration = std::nullopt;
 
   /// How echoes are found in logs with intensities. Where a sweep has but one intensity besides 0, somebody else has
@@ -135,10 +135,10 @@ struct SlamReport {
   /// What is to be added to the times of the main heading, nav_offset_s already added, by the turning of the sonar's
   /// picture: 0 if the clocks are right. nullopt: it cannot be told.
   std::optional<ClockOffset> clock_check;
-  /// What of the calibration the recording says little about, in words: more than half of the variance that was
-  /// believed beforehand is left.
+  /// What of the calibration the recording says little about, in words: more than half of the prior
+  /// variance remains.
   std::vector<std::string> not_observable;
-  /// What of the calibration ended more than four standard deviations from what was believed beforehand: a mount, the
+  /// What of the calibration ended more than four standard deviations from its prior: a mount, the
   /// navigation of another vehicle, or the clock may be wrong. Also a velocity or a clock that the sonar contradicts.
   std::vector<std::string> implausible;
   std::optional<LargestSolution> largest;  ///< of CausalSlam

@@ -20,7 +20,7 @@ namespace pingvox {
 /// port, and most vehicles are system 1. So the first sender that tells of navigation is followed, by its address and
 /// system; what others tell is neither read nor recorded, but for ground stations at the same address (a router's).
 /// After five seconds without navigation from it, a sender that was not heard beside it is followed in its place, as an
-/// autopilot that was started anew at another port. It never blocks and has no clock of its own: the caller polls it,
+/// autopilot that restarted at another port. It never blocks and has no clock of its own: the caller polls it,
 /// at least once a second. Bytes are recorded before they are parsed.
 class MavlinkReceiver {
  public:

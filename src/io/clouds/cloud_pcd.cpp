@@ -56,7 +56,7 @@ std::optional<Scalar> scalar_of(const Field& field) {
 /// Parses a line of the header.
 /// @return its error; empty: none
 std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader& header) {
-  if (words.empty()) return "belongs in no header";  // only commas
+  if (words.empty()) return "is an unknown header line";  // only commas
   const std::string_view key = words.front();
   const std::size_t values = words.size() - 1;
   const auto take_count = [&](std::optional<std::uint64_t>& target) -> std::string_view {
@@ -105,7 +105,7 @@ std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader
     if (values != 7) return "must be seven numbers: x y z, and a quaternion";
     for (std::size_t i = 0; i < 3; ++i) {
       const auto number = number_in(words[i + 1]);
-      if (!number) return "has a number that is none";
+      if (!number) return "contains an invalid number";
       place[static_cast<Eigen::Index>(i)] = *number;
     }
     header.viewpoint_m = place;
@@ -116,7 +116,7 @@ std::string_view take_line(const std::vector<std::string_view>& words, PcdHeader
     if (how == "binary_compressed") header.data = PcdData::kCompressed;
     if (!header.data) return "must be ascii, binary or binary_compressed";
   } else if (key != "VERSION") {
-    return "belongs in no header";
+    return "is an unknown header line";
   }
   return "";
 }

@@ -50,10 +50,10 @@ Result<Header> read_header(const FileBytes& file, std::size_t memory_limit_bytes
   header.inner = *reader.read<std::uint64_t>();
   header.leaves = *reader.read<std::uint64_t>();
   header.options.memory_limit_bytes = memory_limit_bytes;
-  if (parents > 1) return damage_error(file, 17, fmt::format("no rule for parents has the number {}", parents));
+  if (parents > 1) return damage_error(file, 17, fmt::format("unknown parent rule {}", parents));
   header.options.parents = parents == 0 ? Parents::kMax : Parents::kMean;
   if (header.root != kNothing && header.root != kLeaf && header.root != kInner) {
-    return damage_error(file, 18, fmt::format("the root is of no kind that there is ({})", header.root));
+    return damage_error(file, 18, fmt::format("unknown node type {} of the root", header.root));
   }
   if (reserved != 0) return damage_error(file, 19, "the reserved bytes are not 0");
   if (const auto valid = header.options.validate(); !valid) {

@@ -25,7 +25,7 @@ namespace {
 constexpr double kUnknownTime_s = std::numeric_limits<double>::quiet_NaN();
 
 /// By which of several clocks each message of a sender was made. Two vehicles with the same address take turns; one
-/// that is started anew does not go back to its clock of before.
+/// that restarts does not go back to its clock of before.
 struct Clocks {
   std::vector<std::size_t> of;      ///< number of the clock of each message
   std::vector<std::size_t> counts;  ///< messages of each clock

@@ -56,7 +56,7 @@ class FrameTracker {
   /// REQUIRES samples in order of time
   std::size_t add(const SamplePose& sample);
 
-  /// Whether the last sample began a frame because its device was started anew: it is at the origin, but was not before
+  /// Whether the last sample began a frame because its device restarted: it is at the origin, but was not before
   /// a pause or a jump.
   bool is_new_start() const { return is_new_start_; }
 

@@ -230,8 +230,7 @@ Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
   }
   if (!solver_) {
     Error missing = missing_;
-    if (options_.motion == MotionSource::kSonar)
-      missing.message += ", and the sonar does not tell how the vehicle moved";
+    if (options_.motion == MotionSource::kSonar) missing.message += ", and motion cannot be estimated from the sonar";
     return tl::unexpected(std::move(missing));
   }
   if (odometry_.tells() && !tells_enough()) {

@@ -30,7 +30,7 @@ struct CausalWindow {
   std::optional<std::size_t> keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps, std::size_t longest);
   /// What the window says of a problem that goes on longer; dead reckoning after its end. REQUIRES poses.
   Unknowns continue_in(const SlamProblem& problem) const;
-  /// The prior in the unknowns of a problem that starts with `start`. A heading that is new is believed as usual.
+  /// The prior in the unknowns of a problem that starts with `start`. A new heading has the usual prior.
   std::optional<WindowPrior> prior_in(const SlamProblem& problem, const Unknowns& start) const;
 
   std::size_t first_sweep = 0;  ///< of the log

@@ -44,7 +44,7 @@ Unknowns begin_near(const SlamProblem& problem, const Trajectory& near, const Ei
   return start;
 }
 
-/// What is believed in a map: as usual, but for the sonar's mount, which is known, and for where the headings' north
+/// The priors in a map: as usual, but for the sonar's mount, which is known, and for where the headings' north
 /// is, which is not.
 WindowPrior prior_in_map(const SlamProblem& problem, const Unknowns& start) {
   constexpr double kPlace_m = 1.0, kYaw_rad = 1.0;

@@ -13,7 +13,7 @@
 namespace pingvox {
 namespace {
 
-/// Standard deviations of what is believed beforehand.
+/// Standard deviations of the priors.
 constexpr double kFirstPosition_m = 1e-3;
 constexpr double kVelocityYaw_rad = 10.0 * kDegree_rad, kVelocityScale = 0.005, kWall = 0.5, kLever_m = 0.3;
 constexpr double kConstant_rad = 3.0 * kDegree_rad, kHarmonic_rad = 5.0 * kDegree_rad;
@@ -28,7 +28,7 @@ constexpr double kVelocityInGap_m_s = 0.3, kSteadyInGap_m_s = 0.1;
 constexpr double kStep_s = 0.25;
 constexpr double kMaxSteps = 64.0;
 
-/// What is believed of sensors that nobody calibrated.
+/// Priors on sensors that nobody calibrated.
 SlamCalibration usual_calibration() {
   SlamCalibration usual;
   usual.velocity_yaw_rad.deviation = kVelocityYaw_rad;
@@ -324,7 +324,7 @@ std::vector<SlamProblem::Row> SlamProblem::rows(const Unknowns& unknowns, const 
     rows.push_back(std::move(r));
   }
   if (has_prior_) return rows;
-  // What is believed beforehand.
+  // The priors.
   for (int axis = 0; axis < 2; ++axis) {
     Row r = row(0, unknowns.knots.front()[axis] / kFirstPosition_m);
     r.by_knot[axis] = 1.0 / kFirstPosition_m;

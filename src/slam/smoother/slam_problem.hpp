@@ -41,7 +41,7 @@ struct Unknowns {
   }
 };
 
-/// How a heading source is believed.
+/// Prior on a heading source.
 struct HeadingPrior {
   HeadingCalibration deviation;
   bool turns_with_velocity = false;  ///< same device as the velocity: turned against its mount by the same angle
@@ -86,10 +86,10 @@ class SlamProblem {
   /// The knot before a time, and the share of the way to the next. nullopt: outside of the knots.
   std::optional<std::pair<std::size_t, double>> between_knots(double time_s) const;
 
-  /// What is believed of the globals beforehand.
+  /// Priors on the globals.
   std::vector<Estimate> global_priors() const;
 
-  /// Dead reckoning from the origin, with the headings and the velocity corrected by what is believed beforehand.
+  /// Dead reckoning from the origin, with the headings and the velocity corrected by their priors.
   Unknowns dead_reckoning() const;
 
   /// The velocity integrated over the time between two knots.
@@ -116,10 +116,10 @@ class SlamProblem {
     Eigen::Vector3d by_knot = Eigen::Vector3d::Zero(), by_next = Eigen::Vector3d::Zero();
     Eigen::VectorXd by_globals;
   };
-  /// What is believed beforehand is in a WindowPrior.
+  /// Priors are in a WindowPrior.
   void begin_with_prior() { has_prior_ = true; }
 
-  /// All but the pairs: motion, headings and what is believed beforehand.
+  /// All but the pairs: motion, headings and priors.
   std::vector<Row> rows(const Unknowns& unknowns, const std::vector<Way>& ways) const;
 
  private:

@@ -289,7 +289,7 @@ TEST(CausalSlam, SaysWhatIsMissing) {
     ASSERT_FALSE(finished);
     EXPECT_EQ(finished.error().code, Error::Code::kUnsupported);
     EXPECT_THAT(finished.error().message, HasSubstr("no valid velocity and no heading"));
-    EXPECT_EQ(finished.error().message.ends_with("and the sonar does not tell how the vehicle moved"),
+    EXPECT_EQ(finished.error().message.ends_with("and motion cannot be estimated from the sonar"),
               motion == MotionSource::kSonar);
   }
 }
