@@ -168,7 +168,7 @@ Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand
   const Result<VehiclePath> path = positions_of(*contents, name, command.nav_sources);
   if (!path) {
     Error error = path.error();
-    if (!tells_path(log) && log.best(NavQuantity::kVelocity) != nullptr) {
+    if (log.best(NavQuantity::kVelocity) != nullptr) {
       error.message += "; 'pingvox slam --matching none' reckons them from velocity and heading";
     }
     return tl::unexpected(std::move(error));

@@ -89,7 +89,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
 
   ProgressBar bar(command.output_options);
   const RecordingLocateOptions options{
-      {command.localizer, command.start, command.estimation}, command.min_z_m, command.max_z_m};
+      {command.localizer, command.start, command.estimation}, command.min_z_m, command.max_z_m, command.map};
   const Result<RecordingLocation> location = locate(*recording, *map, options, [&](double share) {
     if (bar.is_due()) bar.draw(share, "locating");
   });

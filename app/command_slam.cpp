@@ -96,7 +96,9 @@ Result<void> check_options_of_scans(const SlamCommand& command) {
 
 /// What to do where SLAM failed.
 Error advise_on_slam(Error error, const SlamCommand& command) {
-  if (!command.navs.empty() || error.code != Error::Code::kUnsupported) return error;
+  // Navigation does not help where there are no beams.
+  const bool has_beams = !error.message.ends_with("there are no beams");
+  if (!command.navs.empty() || error.code != Error::Code::kUnsupported || !has_beams) return error;
   const std::string in_bag = hint_at_nav(command.logs.front());
   error.message +=
       in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;

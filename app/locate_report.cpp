@@ -103,7 +103,7 @@ std::string locate_json(const Recording& recording, const RecordingLocation& loc
       .add("motion", motion_text(recording, location))
       .add("nav_others", json_of(location.others));
   const bool has_nav = !recording.options().nav.empty();
-  has_nav ? json.add("nav_clock", json_of(recording.nav_offset())) : json.add_null("nav_clock");
+  has_nav ? json.add("nav_clock", json_of(*recording.nav_offset())) : json.add_null("nav_clock");
   json.add("nav_logs", nav_logs_json(recording.nav().clocks));
   found.clock_check ? json.add("clock_check", json_of(*found.clock_check)) : json.add_null("clock_check");
   json.add_truth("sure", found.is_sure()).add("hypotheses", hypotheses).add("sure_spans", spans);
@@ -127,7 +127,7 @@ std::string locate_text(const Recording& recording, const RecordingLocation& loc
                                              : on_one_line(command.output) + "\n";
   text += report_line("motion", motion_text(recording, location)) + others_line(location.others);
   if (!recording.options().nav.empty()) {
-    text += report_line("nav clock", text_of(recording.nav_offset(), found.clock_check)) +
+    text += report_line("nav clock", text_of(*recording.nav_offset(), found.clock_check)) +
             nav_logs_text(recording.nav().clocks);
   }
   text +=

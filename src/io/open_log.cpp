@@ -49,7 +49,7 @@ Result<Log> open_log(ByteStream stream, Damage damage, const std::optional<Eigen
   const Result<Format> format = identify_log(stream);
   if (!format) return tl::unexpected(format.error());
   if (!topic.name.empty() && !topic.fields && !is_bag(*format)) {
-    return fail(Error::Code::kBadOption, fmt::format("{}: a topic has no effect on {}, only on ROS bags", stream.name(),
+    return fail(Error::Code::kBadOption, fmt::format("{}: topic: has no effect on {}, only on ROS bags", stream.name(),
                                                      description_of(*format)));
   }
   if (is_bag(*format)) return open_bag_log(std::move(stream), damage, topic);

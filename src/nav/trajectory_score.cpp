@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "pingvox/geometry/pose2.hpp"
+
 namespace pingvox {
 namespace {
 

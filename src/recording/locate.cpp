@@ -42,7 +42,7 @@ Result<RecordedMotion> motion_of_poses(const InputFile& poses, RecordingLocation
 Result<RecordedMotion> motion_of_nav(const Recording& recording, RecordingLocation& location) {
   const RecordingOptions& of = recording.options();
   OdometryOptions options{
-      .body_from_source = of.nav_mounts, .offset_s = recording.nav_offset().offset_s, .turns = TurnsBy::kTurnRate};
+      .body_from_source = of.nav_mounts, .offset_s = recording.nav_offset()->offset_s, .turns = TurnsBy::kTurnRate};
   if (of.calibration) {
     options.body_from_source.insert(of.calibration->body_from_source.begin(), of.calibration->body_from_source.end());
     options.calibration = of.calibration->calibration;
@@ -113,9 +113,14 @@ Result<DistanceField> field_of(const OccupancyMap& map, const RecordingLocateOpt
   constexpr double kHalf_m = 0.5;
   const DistanceFieldOptions layer{options.min_z_m.value_or(z_m - kHalf_m), options.max_z_m.value_or(z_m + kHalf_m)};
   return DistanceField::make(map, layer).map_error([&](const Error& error) {
-    return Error{error.code, fmt::format("{}; the sonar is at z = {:.2f} m at the first beam: give the layer to use "
-                                         "with min_z_m and max_z_m",
-                                         error.message, z_m)};
+    std::string reach = "knows nothing";
+    if (const std::optional<Box> box = map.bounds()) {
+      reach = fmt::format("has x {:.9g}..{:.9g}, y {:.9g}..{:.9g}, z {:.9g}..{:.9g} m", box->min.x(), box->max.x(),
+                          box->min.y(), box->max.y(), box->min.z(), box->max.z());
+    }
+    return Error{error.code, fmt::format("{}: {}; the map {}, and the sonar is at z = {:.2f} m at the first beam: give "
+                                         "the layer to use with min_z_m and max_z_m",
+                                         options.map_name, error.message, reach, z_m)};
   });
 }
 
@@ -123,6 +128,7 @@ Result<DistanceField> field_of(const OccupancyMap& map, const RecordingLocateOpt
 
 Result<RecordingLocation> locate(const Recording& recording, const OccupancyMap& map,
                                  const RecordingLocateOptions& options, const std::function<void(double)>& progress) {
+  if (!recording.nav_offset()) return tl::unexpected(recording.nav_offset().error());
   Clock::time_point start = Clock::now();
   RecordingLocation location;
   location.skipped = recording.nav().damaged;

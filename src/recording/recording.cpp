@@ -78,9 +78,7 @@ Result<Recording> Recording::open(std::vector<InputFile> logs, RecordingOptions 
   const Result<std::optional<Water>> water = water_of(recording.options_, recording.nav_.log);
   if (!water) return tl::unexpected(water.error());
   recording.water_ = *water;
-  const Result<NavOffset> offset = offset_of(recording.options_, recording.nav_.log, recording.logs_.front());
-  if (!offset) return tl::unexpected(offset.error());
-  recording.nav_offset_ = *offset;
+  recording.nav_offset_ = offset_of(recording.options_, recording.nav_.log, recording.logs_.front());
   return recording;
 }
 
@@ -104,7 +102,9 @@ Result<OpenedLog> Recording::open_log(std::size_t number) const {
 Result<VehiclePath> Recording::path() const {
   if (options_.poses) return read_path(*options_.poses);
   if (options_.nav.empty()) return still_path();
-  return path_of(nav_, nav_names(), nav_offset_.offset_s, options_.calibration);
+  // What tells no path tells none on any clock.
+  if (!nav_offset_ && tells_path(nav_.log)) return tl::unexpected(nav_offset_.error());
+  return path_of(nav_, nav_names(), nav_offset_ ? nav_offset_->offset_s : 0.0, options_.calibration);
 }
 
 }  // namespace pingvox

@@ -31,7 +31,7 @@ SlamOptions options_for(const Recording& recording, SlamOptions options) {
   const RecordingOptions& of = recording.options();
   options.body_from_sonar = of.body_from_sonar;
   options.body_from_source = of.nav_mounts;
-  options.nav_offset_s = recording.nav_offset().offset_s;
+  options.nav_offset_s = recording.nav_offset()->offset_s;
   if (recording.water()) options.sound_speed_ratio = sound_speed_ratio(*recording.water());
   if (!of.calibration) return options;
   options.calibration = of.calibration->calibration;
@@ -85,6 +85,7 @@ VehiclePath RecordingSlam::path() const {
 
 Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& options, Estimation estimation,
                            std::optional<OpenedLog> first) {
+  if (!recording.nav_offset()) return tl::unexpected(recording.nav_offset().error());
   auto start = std::chrono::steady_clock::now();
   RecordingSlam slam{{Trajectory::still(Pose::Identity()), {}, {}, {}}, options_for(recording, options)};
   if (const auto valid = slam.options.validate(); !valid) return tl::unexpected(valid.error());

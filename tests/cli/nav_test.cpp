@@ -393,11 +393,11 @@ TEST(Nav, FindsTheOffsetBetweenTheClocks) {
   expect_error(map("beams.csv", "unix.csv"), 1, {"beams.csv", "--nav-offset"});
   expect_error(map("beams.csv", "boot.csv"), 1, {"beams.csv", "--nav-offset"});
   here.write("20200926-110158491.csv", here.read("beams.csv"));
-  expect_error(
-      map("20200926-110158491.csv", "unix.csv"), 1,
-      {"20200926-110158491.csv: does not overlap --nav in time, whatever the time zone (by the date in its name the "
-       "log ends 2020-09-26 11:02:",
-       "--nav begins 2026-01-01 00:00:00)"});
+  expect_error(map("20200926-110158491.csv", "unix.csv"), 1,
+               {"20200926-110158491.csv: does not overlap the navigation in time, whatever the time zone (by the date "
+                "in its name the "
+                "log ends 2020-09-26 11:02:",
+                "the navigation begins 2026-01-01 00:00:00)"});
   const Outcome given =
       here.call({"map", "beams.csv", "--nav", "boot.csv", "--nav-offset", "0", "-o", "map.bt", "--json"});
   ASSERT_EQ(given.status, 0) << given.err;
@@ -415,10 +415,11 @@ TEST(Nav, SeveralTimeZonesAreNamed) {
   }
   here.write("nav.csv", nav);
   const Outcome mapped = here.call({"map", "20260101-120010000.csv", "--nav", "nav.csv", "-o", "map.bt"});
-  expect_error(mapped, 1,
-               {"its name says 2026-01-01 12:00:10 to 2026-01-01 12:00:",
-                "--nav is of 2026-01-01 09:00:00 to 2026-01-01 13:00:00: in UTC+0:00 --nav-offset -1767268810.000, "
-                "in UTC+1:00 --nav-offset -1767265210.000, in UTC+2:00 "});
+  expect_error(
+      mapped, 1,
+      {"its name says 2026-01-01 12:00:10 to 2026-01-01 12:00:",
+       "the navigation is of 2026-01-01 09:00:00 to 2026-01-01 13:00:00: in UTC+0:00 --nav-offset -1767268810.000, "
+       "in UTC+1:00 --nav-offset -1767265210.000, in UTC+2:00 "});
 }
 
 // Kills a log on another clock that makes no path, but stretches its time until it overlaps anything.
@@ -472,8 +473,8 @@ TEST(Nav, LogsAreAlignedInAnyOrder) {
                {"apart.csv: the offset between its clock and that of long.csv cannot be found"});
 }
 
-// Refused were logs of one day "as it is of 2023-05-17, --nav is of 2023-05-17", and those that do not overlap with
-// "the offset is not known".
+// Refused were logs of one day "as it is of 2023-05-17, the navigation is of 2023-05-17", and those that do not overlap
+// with "the offset is not known".
 TEST(Nav, ThatDoesNotOverlapIsRefusedWithTheTimesOfBoth) {
   const Workplace here;
   constexpr double kTen_s = 1'684'317'600.0;  // 2023-05-17 10:00:00
@@ -500,16 +501,17 @@ TEST(Nav, ThatDoesNotOverlapIsRefusedWithTheTimesOfBoth) {
   // The same logs, four hours and twelve seconds apart: a zone of UTC+4 would make up for it.
   EXPECT_THAT(map("dive.csv", "morning.csv").out, HasSubstr("both have dates, the sonar log's in UTC+4:00"));
   here.write("dive.csv", beams_from(kTen_s + 1.5 * 3600));
-  expect_error(
-      map("dive.csv", "morning.csv"), 1,
-      {"dive.csv: does not overlap --nav in time, whatever the time zone (--nav ends 2023-05-17 10:12:03, the log "
-       "begins 2023-05-17 11:30:00)"});
+  expect_error(map("dive.csv", "morning.csv"), 1,
+               {"dive.csv: does not overlap the navigation in time, whatever the time zone (the navigation ends "
+                "2023-05-17 10:12:03, the log "
+                "begins 2023-05-17 11:30:00)"});
   expect_error(map("dive.csv", "never.csv"), 1,
-               {"--nav ends 130.000 s, the log begins 2023-05-17 11:30:00", "of a clock that was not set"});
-  expect_error(map("short.csv", "start.csv"), 1,
-               {"short.csv: does not overlap --nav in time (the log ends 9.750 s, --nav begins 100.000 s)"});
+               {"the navigation ends 130.000 s, the log begins 2023-05-17 11:30:00", "of a clock that was not set"});
+  expect_error(
+      map("short.csv", "start.csv"), 1,
+      {"short.csv: does not overlap the navigation in time (the log ends 9.750 s, the navigation begins 100.000 s)"});
   expect_error(map("short.csv", "morning.csv"), 1,
-               {"is not known (the log ends 9.750 s, --nav begins 2023-05-17 10:00:00)"});
+               {"is not known (the log ends 9.750 s, the navigation begins 2023-05-17 10:00:00)"});
 }
 
 // Logs of one vehicle were put on one clock, and nothing said by how much, how, and how surely.
@@ -667,7 +669,7 @@ TEST(Nav, IsRefusedForALogWithoutTimes) {
                                           {"locate", "log.txt", "--map", "map.bt", "-o", "o.tum"}}) {
       call.insert(call.end(), {"--nav", "nav.csv"});
       call.insert(call.end(), offset.begin(), offset.end());
-      expect_error(here.call(call), 1, {"log.txt: --nav: the log has no times"});
+      expect_error(here.call(call), 1, {"log.txt: has no times"});
     }
   }
 }

@@ -99,10 +99,10 @@ TEST(Recording, SaysHowTheClocksAreJoined) {
   const auto found = Recording::open({dive.log}, {.nav = {dive.nav}});
   const auto given = Recording::open({dive.log}, {.nav = {dive.nav}, .nav_offset_s = 2.5});
   ASSERT_TRUE(found && given);
-  EXPECT_EQ(found->nav_offset().by, NavOffset::By::kOneClock);
-  EXPECT_EQ(found->nav_offset().offset_s, 0.0);
-  EXPECT_EQ(given->nav_offset().by, NavOffset::By::kGiven);
-  EXPECT_EQ(given->nav_offset().offset_s, 2.5);
+  EXPECT_EQ(found->nav_offset()->by, NavOffset::By::kOneClock);
+  EXPECT_EQ(found->nav_offset()->offset_s, 0.0);
+  EXPECT_EQ(given->nav_offset()->by, NavOffset::By::kGiven);
+  EXPECT_EQ(given->nav_offset()->offset_s, 2.5);
   ASSERT_EQ(found->nav().clocks.size(), 1U);
   EXPECT_EQ(found->nav().clocks.front().by, NavLogClock::By::kFirst);
 }

@@ -71,10 +71,10 @@ struct OpenedLog {
 /// but for standard input and pipes.
 class Recording {
  public:
-  /// Reads the navigation, and finds how its clock and that of the first log are offset.
+  /// Reads the navigation, and finds how its clock and that of the first log are offset; where that cannot be told,
+  /// `path`, `slam` and `locate` say so.
   /// @param logs  of beams or scans, at least one
-  /// @return kBadOption when the options do not validate; kUnsupported when the navigation cannot be joined; errors of
-  ///         reading, which name the file
+  /// @return kBadOption when the options do not validate; errors of reading, which name the file
   static Result<Recording> open(std::vector<InputFile> logs, RecordingOptions options = {});
 
   const std::vector<InputFile>& logs() const { return logs_; }
@@ -83,7 +83,8 @@ class Recording {
   const NavFiles& nav() const { return nav_; }
   /// "dive.tlog, dvl.csv"
   std::string nav_names() const;
-  const NavOffset& nav_offset() const { return nav_offset_; }
+  /// Between the clock of the navigation and that of the first log; the error when it cannot be told.
+  const Result<NavOffset>& nav_offset() const { return nav_offset_; }
   /// nullopt: the ranges are as the device reckons them.
   const std::optional<Water>& water() const { return water_; }
 
@@ -102,7 +103,7 @@ class Recording {
   std::vector<InputFile> logs_;
   RecordingOptions options_;
   NavFiles nav_;
-  NavOffset nav_offset_;
+  Result<NavOffset> nav_offset_ = NavOffset{};
   std::optional<Water> water_;
 };
 
@@ -176,6 +177,7 @@ struct RecordingLocateOptions {
   LocateOptions locate = {};  ///< mount, noise and speed of sound in known water are the recording's
   /// Heights of the map that are used; nullopt: half a metre around the sonar at the first beam.
   std::optional<double> min_z_m = std::nullopt, max_z_m = std::nullopt;
+  std::string map_name = "the map";  ///< for messages
 };
 
 /// Where the vehicle was in a known map.
