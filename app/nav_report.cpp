@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -15,6 +18,7 @@
 #include "map_report.hpp"
 #include "nav_clock.hpp"
 #include "open_log.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/nav/clock_offset.hpp"
@@ -26,6 +30,24 @@ std::size_t damaged_records(const NavFile& nav) {
   return damage_count(nav.damage);
 }
 
+namespace {
+
+/// Where an angle of the mount is pi, a half or a quarter of it: in degrees, as they are given, that is next to
+/// nothing.
+std::string mount_doubt(const RecordingOptions& options) {
+  constexpr double kSame_deg = 5e-4;
+  constexpr std::array kUsual = {std::numbers::pi, std::numbers::pi / 2.0, std::numbers::pi / 4.0};
+  for (const double angle_rad : rpy_of(options.body_from_sonar.rotation())) {
+    const double size_deg = std::fabs(angle_rad) / kDegree_rad;
+    const auto is_same = [&](double usual) { return std::fabs(size_deg - usual) < kSame_deg; };
+    if (std::ranges::none_of(kUsual, is_same)) continue;
+    return fmt::format("--mount: {:.4f} degrees looks like an angle in radians, and degrees are expected", size_deg);
+  }
+  return {};
+}
+
+}  // namespace
+
 std::vector<std::string> nav_warnings(const Recording& recording) {
   const NavFiles& nav = recording.nav();
   const std::string names = recording.nav_names();
@@ -34,7 +56,9 @@ std::vector<std::string> nav_warnings(const Recording& recording) {
   if (const std::string faults = faults_text(nav.log); !faults.empty()) {
     warnings.push_back(fmt::format("{}: {}", names, faults));
   }
+  for (const std::string& doubt : doubt_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, doubt));
   for (const std::string& step : step_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, step));
+  if (std::string doubt = mount_doubt(recording.options()); !doubt.empty()) warnings.push_back(std::move(doubt));
   return warnings;
 }
 
@@ -98,6 +122,7 @@ void add_nav(JsonObject& json, const NavFile& nav) {
         .add("note", source.note);
     if (!source.steps.empty()) json_of_source.add("steps", steps_json(source.steps));
     if (!source.fault.empty()) json_of_source.add("fault", source.fault);
+    if (!source.doubt.empty()) json_of_source.add("doubt", source.doubt);
   }
   json.add("clock", name_of(nav.log.clock()))
       .add("records", nav.records)
@@ -170,6 +195,7 @@ std::string nav_text(const NavFile& nav) {
     text += report_line("not used",
                         on_one_line(fmt::format("{} of {}: {}", name_of(source.quantity), source.name, source.fault)));
   }
+  for (const std::string& doubt : doubt_texts(nav.log)) text += report_line("doubtful", on_one_line(doubt));
   text += order_text(nav);
   for (const std::string& note : nav.notes) text += report_line("note", note);
   for (const std::string& step : step_texts(nav.log)) text += report_line("step", step);

@@ -108,6 +108,7 @@ std::vector<std::string> warnings_of(const Recording& recording, const VehiclePa
   std::vector<std::string> warnings = nav_warnings(recording);
   if (const std::string hint = mount_hint(recording); !hint.empty()) warnings.push_back(hint);
   if (!recording.options().poses) return warnings;
+  if (!path.doubt.empty()) warnings.push_back(fmt::format("{}: {}", recording.options().poses->name(), path.doubt));
   const std::size_t poses = path.trajectory.poses().size() + left_out(path.steps);
   for (const std::string& step : step_texts(path.steps, poses)) {
     warnings.push_back(fmt::format("{}: {}", recording.options().poses->name(), step));
@@ -181,7 +182,7 @@ std::string skipped_text(const MappedLog& mapped, std::string_view unit, const T
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
                   trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
       gap_advice);
-  add(blocked, "towards an obstacle of the map that is nearer than --min-range",
+  add(blocked, "left out: the map has an obstacle nearer than --min-range in their direction",
       "they would record its second echo, or what lies around it");
   add(too_long, "with ten times the range of the others, or of too many cells",
       "their range may be damaged; a shorter --max-range or a larger --resolution may do");

@@ -134,8 +134,15 @@ FrameAxes axes_of(std::string_view frame) {
   for_each_part(own_name(frame), [&](std::string_view part) {
     if (part == "ned" || part == "frd") axes = FrameAxes::kDown;
     if (part == "enu" || part == "flu") axes = FrameAxes::kUp;
+    if (part == "optical") axes = FrameAxes::kOptical;
   });
   return axes;
+}
+
+Eigen::Matrix3d ours_from_optical() {
+  Eigen::Matrix3d turn;
+  turn << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return turn;
 }
 
 bool is_fixed_frame(std::string_view frame) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/median.hpp"
+#include "nav/depth_checks.hpp"
 #include "nav/plausible_values.hpp"
 #include "nav/source_steps.hpp"
 #include "nav/water_column.hpp"
@@ -127,6 +128,7 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
     check_values(source);
   }
   compare_turns(sources);
+  compare_depths(sources);
   leave_out_other_frames(sources);
   return NavLog(std::move(sources), clock);
 }
@@ -138,6 +140,7 @@ void add_samples(const NavSource& from, NavSource& to) {
   to.late += from.late;
   if (!to.step_back) to.step_back = from.step_back;
   if (to.fault.empty()) to.fault = from.fault;
+  if (to.doubt.empty()) to.doubt = from.doubt;
   if (to.note.empty()) to.note = from.note;
 }
 
@@ -229,6 +232,15 @@ std::string faults_text(const NavLog& log) {
     text += (text.empty() ? "" : "; ") + fault_text(source);
   }
   return text;
+}
+
+std::vector<std::string> doubt_texts(const NavLog& log) {
+  std::vector<std::string> texts;
+  for (const NavSource& source : log.sources()) {
+    if (source.doubt.empty() || !is_taken(source)) continue;
+    texts.push_back(fmt::format("{} of {}: {}", name_of(source.quantity), source.name, source.doubt));
+  }
+  return texts;
 }
 
 const NavSource* NavLog::best(NavQuantity quantity) const {

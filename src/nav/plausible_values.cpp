@@ -13,6 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "base/median.hpp"
+#include "nav/depth_checks.hpp"
+#include "nav/internal/upright.hpp"
+#include "pingvox/geometry/degree.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -167,16 +172,67 @@ std::string fault_of_turning(const NavSource& source) {
                      mean_rad_s);
 }
 
+/// What a DVL writes where it knows nothing: the lowest number of 16 bits, in mm/s, on its axes.
+bool is_not_known(const NavSource& source, const NavSample& sample) {
+  constexpr double kMarker_m_s = 32.768, kRounding_m_s = 1e-6;
+  if (source.quantity != NavQuantity::kVelocity) return false;
+  return ((sample.value.head<2>().cwiseAbs().array() - kMarker_m_s).abs() < kRounding_m_s).all();
+}
+
+/// Faster than the fastest boats with a sonar, most of the time.
+std::string fault_of_speed(const NavSource& source) {
+  constexpr double kFastest_m_s = 10.0;
+  if (source.quantity != NavQuantity::kVelocity) return {};
+  std::vector<double> speeds_m_s;
+  for (const NavSample& sample : source.samples) {
+    if (sample.valid) speeds_m_s.push_back(sample.value.norm());
+  }
+  if (speeds_m_s.empty()) return {};
+  const double usual_m_s = median(std::move(speeds_m_s));
+  if (!(usual_m_s > kFastest_m_s)) return {};
+  return fmt::format("velocity of {:.3g} m/s most of the time: is it in cm/s or mm/s?", usual_m_s);
+}
+
+std::string doubt_of_attitude(const NavSource& source) {
+  if (source.quantity != NavQuantity::kAttitude || source.subject == NavSubject::kOther) return {};
+  std::vector<Eigen::Vector3d> rpy;
+  for (const NavSample& sample : source.samples) {
+    if (sample.valid) rpy.push_back(sample.value);
+  }
+  return doubt_of_attitudes(rpy);
+}
+
 bool is_heading(const NavSource& source) {
   return source.quantity == NavQuantity::kAttitude || source.quantity == NavQuantity::kHeading;
 }
 
-bool tells_turns(const NavSource& source) {
-  return is_usable(source) && (is_heading(source) || source.quantity == NavQuantity::kTurnRate);
-}
-
 double yaw_in(const NavSource& heading, const NavSample& sample) {
   return heading.quantity == NavQuantity::kAttitude ? sample.value.z() : sample.value.x();
+}
+
+/// A yaw that reads as degrees and is in radians begins anew within 6.28 degrees, while the vehicle turns on.
+std::string fault_of_wrapping(const NavSource& source) {
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi * kDegree_rad, kNearly = 0.85, kMost = 1.02;
+  if (!is_heading(source)) return {};
+  std::vector<double> yaws_rad;
+  for (const NavSample& sample : source.samples) {
+    if (sample.valid) yaws_rad.push_back(yaw_in(source, sample));
+  }
+  if (yaws_rad.size() < 4) return {};
+  const auto [least, most] = std::ranges::minmax(yaws_rad);
+  if (most - least < kNearly * kTurn_rad || most - least > kMost * kTurn_rad) return {};
+  for (std::size_t i = 2; i + 1 < yaws_rad.size(); ++i) {
+    const double jump = yaws_rad[i] - yaws_rad[i - 1];
+    const double before = yaws_rad[i - 1] - yaws_rad[i - 2], after = yaws_rad[i + 1] - yaws_rad[i];
+    if (std::fabs(jump) >= kNearly * kTurn_rad && jump * before < 0.0 && jump * after < 0.0) {
+      return "its yaw begins anew within 6.28 degrees, again and again: is it in radians?";
+    }
+  }
+  return {};
+}
+
+bool tells_turns(const NavSource& source) {
+  return is_usable(source) && (is_heading(source) || source.quantity == NavQuantity::kTurnRate);
 }
 
 double turn_between(const NavSource& heading, const NavSample& from, const NavSample& to) {
@@ -256,6 +312,7 @@ bool is_possible(NavQuantity quantity, const Eigen::Vector3d& value) {
 
 void check_values(NavSource& source) {
   if (!source.fault.empty()) return;
+  for (NavSample& sample : source.samples) sample.valid = sample.valid && !is_not_known(source, sample);
   ImpossibleSamples found(source.quantity);
   for (const NavSample& sample : source.samples) found.add(sample);
   if (found.are_there()) {
@@ -263,7 +320,9 @@ void check_values(NavSource& source) {
     if (!source.fault.empty()) return;
     for (NavSample& sample : source.samples) sample.valid = sample.valid && is_possible(source.quantity, sample.value);
   }
-  source.fault = fault_of_turning(source);
+  // Of one quantity each.
+  source.fault = fault_of_turning(source) + fault_of_speed(source) + fault_of_depth(source) + fault_of_wrapping(source);
+  source.doubt = doubt_of_attitude(source);
 }
 
 void compare_turns(std::span<NavSource> sources) {

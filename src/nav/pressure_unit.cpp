@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/median.hpp"
+#include "nav/number_extent.hpp"
 #include "nav/plausible_values.hpp"
 #include "nav/water_column.hpp"
 
@@ -34,53 +35,15 @@ constexpr std::array kReadings = {Reading{"Pa", 1.0, false},  Reading{"hPa", 1e2
                                   Reading{"bar", 1e5, false}, Reading{"Pa", 1.0, true},   Reading{"hPa", 1e2, true},
                                   Reading{"kPa", 1e3, true},  Reading{"bar", 1e5, true}};
 
-/// What the numbers of a recording are like. Outliers, up to a hundredth of them, are left out.
-struct Numbers {
-  double lowest = 0.0, highest = 0.0;
-  double speed_s = 0.0;  ///< by how much they change in a second, but for the fastest tenth
-};
-
-/// Numbers that a sensor sends before it answers.
-bool is_answer(const NavSample& sample) {
-  return sample.valid && sample.value.x() != 0.0;
-}
-
-/// The lowest and highest value, but for this share of them at either end.
-std::pair<double, double> range_of(std::vector<double> values, double share) {
-  const auto left_out = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::sort(values);
-  return {values[left_out], values[values.size() - 1 - left_out]};
-}
-
-/// nullopt: there are none.
-std::optional<Numbers> extent_of(const NavSource& source) {
-  constexpr double kOutliers = 0.01, kFastest = 0.1, kStep_s = 1.0;
-  std::vector<double> values, speeds_s;
-  const NavSample* before = nullptr;
-  for (const NavSample& sample : source.samples) {
-    if (!is_answer(sample)) continue;
-    values.push_back(sample.value.x());
-    const double step_s = before != nullptr ? sample.time_s - before->time_s : 0.0;
-    if (before != nullptr && step_s < kStep_s) continue;
-    if (before != nullptr) speeds_s.push_back(std::fabs(sample.value.x() - before->value.x()) / step_s);
-    before = &sample;
-  }
-  if (values.empty()) return std::nullopt;
-  Numbers numbers;
-  std::tie(numbers.lowest, numbers.highest) = range_of(std::move(values), kOutliers);
-  if (!speeds_s.empty()) numbers.speed_s = range_of(std::move(speeds_s), kFastest).second;
-  return numbers;
-}
-
 /// Air at sea level in any weather, and at the height of most lakes.
-bool begins_in_air(const Reading& reading, const Numbers& numbers) {
+bool begins_in_air(const Reading& reading, const NumberExtent& numbers) {
   constexpr double kLowest_pa = 80'000.0;
   const double lowest_pa = reading.pascals(numbers.lowest);
   return !reading.is_gauge && lowest_pa >= kLowest_pa && lowest_pa <= kMaxInAir_pa;
 }
 
 /// Whether the numbers can have this meaning at all.
-bool is_possible_reading(const Reading& reading, const Numbers& numbers) {
+bool is_possible_reading(const Reading& reading, const NumberExtent& numbers) {
   constexpr double kDeepest_m = 1000.0, kLeastDive_m = 0.3, kWeather_m = 1.0, kThinAir_pa = 50'000.0;
   const double lowest_m = reading.depth_m(numbers.lowest), highest_m = reading.depth_m(numbers.highest);
   const bool is_usual_unit = reading.unit_pa == 1.0;
@@ -95,7 +58,7 @@ bool is_possible_reading(const Reading& reading, const Numbers& numbers) {
 }
 
 /// Leaves out what goes up and down faster than any vehicle, if that leaves something.
-void leave_out_too_fast(std::vector<Reading>& readings, const Numbers& numbers) {
+void leave_out_too_fast(std::vector<Reading>& readings, const NumberExtent& numbers) {
   constexpr double kFastest_m_s = 1.5;
   const auto is_too_fast = [&](const Reading& reading) {
     return numbers.speed_s * reading.unit_pa / kPascalsPerMetre > kFastest_m_s;
@@ -105,21 +68,8 @@ void leave_out_too_fast(std::vector<Reading>& readings, const Numbers& numbers) 
 
 /// The readings, each with how far it is off a known depth [m], the best one first; empty: the depth says nothing.
 std::vector<std::pair<double, Reading>> readings_by_depth(const NavSource& source, const NavSource& depth) {
-  constexpr double kNear_s = 1.0;
-  constexpr std::size_t kFewest = 3, kEnough = 1000;
-  const std::size_t step = std::max<std::size_t>(1, source.samples.size() / kEnough);
-  std::vector<std::pair<double, double>> pairs;  // a number, and a depth at the same time
-  for (std::size_t i = 0; i < source.samples.size(); i += step) {
-    const NavSample& sample = source.samples[i];
-    if (!is_answer(sample)) continue;
-    const auto near = std::ranges::lower_bound(depth.samples, sample.time_s - kNear_s, {}, &NavSample::time_s);
-    const auto until = std::ranges::upper_bound(depth.samples, sample.time_s + kNear_s, {}, &NavSample::time_s);
-    const auto distance_s = [&](const NavSample& other) {
-      return other.valid ? std::fabs(other.time_s - sample.time_s) : 2.0 * kNear_s;
-    };
-    const auto nearest = std::ranges::min_element(near, until, {}, distance_s);
-    if (nearest != until && nearest->valid) pairs.emplace_back(sample.value.x(), nearest->value.x());
-  }
+  constexpr std::size_t kFewest = 3;
+  const auto pairs = numbers_together(source, depth);  // a number, and a depth at the same time
   std::vector<std::pair<double, Reading>> readings;
   if (pairs.size() < kFewest) return readings;
   for (const Reading& reading : kReadings) {
@@ -141,7 +91,7 @@ std::optional<Reading> reading_by_depth(const NavSource& source, const NavSource
 }
 
 /// The possible meanings; one: it is that.
-std::vector<Reading> readings_of(const NavSource& source, const Numbers& numbers, const NavSource* depth,
+std::vector<Reading> readings_of(const NavSource& source, const NumberExtent& numbers, const NavSource* depth,
                                  PressureUnit unit) {
   const auto is_stated = [unit](const Reading& reading) {
     return unit == PressureUnit::kOpen || reading.unit_pa == 1.0;
@@ -164,7 +114,7 @@ std::vector<Reading> readings_of(const NavSource& source, const Numbers& numbers
 }
 
 /// "its numbers, from 604 to 624, may be kPa (50.0 to 52.0 m deep) or ..."
-std::string fault_of(const std::vector<Reading>& possible, const Numbers& numbers, PressureUnit unit) {
+std::string fault_of(const std::vector<Reading>& possible, const NumberExtent& numbers, PressureUnit unit) {
   const std::string range = fmt::format("its numbers, from {:.6g} to {:.6g},", numbers.lowest, numbers.highest);
   if (possible.empty()) {
     return range + " are no pressures of air or water in " +
@@ -181,7 +131,7 @@ std::string fault_of(const std::vector<Reading>& possible, const Numbers& number
 }  // namespace
 
 void tell_pressure(NavSource& source, const NavSource* depth, PressureUnit unit) {
-  const std::optional<Numbers> numbers = extent_of(source);
+  const std::optional<NumberExtent> numbers = extent_of(source);
   if (!numbers) return;
   const std::vector<Reading> possible = readings_of(source, *numbers, depth, unit);
   if (possible.size() != 1) {

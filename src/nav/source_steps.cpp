@@ -1,10 +1,16 @@
 #include "nav/source_steps.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
+
+#include "base/median.hpp"
 
 namespace pingvox {
 namespace {
@@ -70,12 +76,35 @@ std::optional<OtherFrame> leave_out(NavSource& source, const std::vector<Tracked
   return OtherFrame{begin > 0 ? noted.left_from_s : -kInfinity_s, end < tracked.size() ? noted.left_to_s : kInfinity_s};
 }
 
+/// Of a source that jumps from nearly each sample to the next the unit is wrong.
+std::string fault_of_jumps(const NavSource& source, const std::vector<TrackedSample>& tracked, std::size_t kept) {
+  constexpr std::size_t kFewest = 10, kOneOf = 10;
+  const auto in_frame = static_cast<std::size_t>(std::ranges::count(tracked, kept, &TrackedSample::frame));
+  if (tracked.size() < kFewest || in_frame * kOneOf >= tracked.size()) return {};
+  std::vector<double> moved_m, steps_s;
+  std::size_t jumps = 0;
+  for (std::size_t i = 1; i < tracked.size(); ++i) {
+    if (tracked[i].frame != tracked[i - 1].frame) ++jumps;
+    const NavSample &from = source.samples[tracked[i - 1].index], &to = source.samples[tracked[i].index];
+    moved_m.push_back((to.value - from.value).norm());
+    steps_s.push_back(to.time_s - from.time_s);
+  }
+  if (2 * jumps < tracked.size()) return {};
+  const double move_m = median(std::move(moved_m)), step_s = median(std::move(steps_s));
+  if (source.quantity == NavQuantity::kPosition) {
+    return fmt::format("it moves by {:.3g} m every {:.3g} s: is it in cm or mm?", move_m, step_s);
+  }
+  return fmt::format("it jumps all the time, by {:.3g} every {:.3g} s: is it in another unit?", move_m, step_s);
+}
+
 /// @return when the device was in other frames with all that it tells
 std::vector<OtherFrame> leave_out_other_frames(NavSource& source) {
   const std::vector<TrackedSample> tracked = track(source);
   std::vector<OtherFrame> others;
   if (std::ranges::all_of(tracked, [](const TrackedSample& sample) { return sample.frame == 0; })) return others;
   const std::size_t kept = main_frame(tracked);
+  source.fault = fault_of_jumps(source, tracked, kept);
+  if (!source.fault.empty()) return others;
   for (std::size_t begin = 0; begin < tracked.size();) {
     std::size_t end = begin;
     while (end < tracked.size() && tracked[end].frame != kept) ++end;

@@ -85,7 +85,8 @@ std::string why_nothing(const MappedLog& mapped) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, reason);
   };
   add_reason(report.no_pose.count, "outside the time of the poses");
-  add_reason(report.blocked.count, "towards an obstacle nearer than the blanking range");
+  add_reason(report.blocked.count,
+             "left out: the map has an obstacle nearer than the blanking range in their direction");
   add_reason(report.too_long.count, "of a range out of proportion");
   add_reason(report.outside.count, "outside of the map");
   add_reason(mapped.damaged, fmt::format("damaged, the first: {}", mapped.first_damage));
@@ -147,7 +148,7 @@ Result<MappedLog> map_log(const Recording& recording, OpenedLog& log, const Vehi
   mapped.report = *report;
   mapped.damaged = std::visit([](const auto& source) { return source->skipped(); }, log.log);
   mapped.first_damage = std::visit([](const auto& source) { return source->first_damage(); }, log.log);
-  if (is_of_beams) mapped.note = log.beams()->note();
+  mapped.note = std::visit([](const auto& source) { return source->note(); }, log.log);
   if (with_turns != nullptr) mapped.clock_check = with_turns->clock_error_of(path.trajectory);
   return mapped;
 }

@@ -3,19 +3,38 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "base/median.hpp"
 #include "base/option_errors.hpp"
 
 namespace pingvox {
 namespace {
 
+/// ": that of /temperature is 59 degrees C, and only those above 0 up to 35 are taken"; empty: there is none.
+std::string other_temperatures(const NavLog& nav) {
+  std::string text;
+  for (const NavSource& source : nav.sources()) {
+    if (source.quantity != NavQuantity::kTemperature || !is_usable(source)) continue;
+    std::vector<double> values_c;
+    for (const NavSample& sample : source.samples) {
+      if (sample.valid) values_c.push_back(sample.value.x());
+    }
+    text += fmt::format("{}{} is {:.3g} degrees C", text.empty() ? ": that of " : ", that of ", source.name,
+                        median(std::move(values_c)));
+  }
+  return text.empty() ? text : text + ", and only those above 0 up to 35 are taken";
+}
+
 Result<std::optional<Water>> water_of(const RecordingOptions& options, const NavLog& nav) {
   if (!options.nav_salinity) return std::nullopt;
   const std::optional<WaterAround> around = water_around(nav);
   if (!around) {
-    return fail(Error::Code::kUnsupported, "nav_salinity: the navigation tells no temperature of the water");
+    return fail(Error::Code::kUnsupported,
+                "nav_salinity: the navigation tells no temperature of the water" + other_temperatures(nav));
   }
   const Water water{around->temperature_c, *options.nav_salinity, around->depth_m};
   if (const auto valid = water.validate(); !valid) return tl::unexpected(valid.error());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/words.hpp"
+#include "nav/internal/upright.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/tum.hpp"
@@ -107,7 +108,8 @@ Result<Trajectory> read_trajectory(const InputFile& file) {
 Result<VehiclePath> read_path(const InputFile& file) {
   return read_trajectory(file).map([](const Trajectory& trajectory) {
     CutTrajectory cut = cut_at_steps(trajectory);
-    return VehiclePath{.trajectory = std::move(cut.trajectory), .steps = std::move(cut.steps)};
+    return VehiclePath{
+        .trajectory = std::move(cut.trajectory), .steps = std::move(cut.steps), .doubt = doubt_of_poses(trajectory)};
   });
 }
 

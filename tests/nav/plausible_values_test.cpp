@@ -200,5 +200,68 @@ TEST(LivePoses, LeavesOutWhatIsNotPossible) {
   EXPECT_NEAR(pose->translation().norm(), 0.0, 1e-6) << "the first fix was none";
 }
 
+std::string doubt_of(const NavSource& source) {
+  return log_of({source}).sources().front().doubt;
+}
+
+// Quaternions in the order w x y z: read as x y z w they lay a level vehicle on its back, or roll it as it turns.
+TEST(PlausibleValues, AVehicleOnItsBackAllTheTimeIsDoubtful) {
+  const auto on_its_back = source_of("odom", NavQuantity::kAttitude, 100, [](double time_s) {
+    return Vector3d(std::numbers::pi - 0.01 * time_s, 0.01, 0.3);
+  });
+  EXPECT_THAT(doubt_of(on_its_back), HasSubstr("upside down all the time"));
+  EXPECT_THAT(doubt_of(on_its_back), HasSubstr("w x y z"));
+  EXPECT_THAT(doubt_texts(log_of({on_its_back})), testing::ElementsAre(HasSubstr("attitude of odom: the vehicle is")));
+  EXPECT_THAT(doubt_of(source_of("odom", NavQuantity::kAttitude, 150,
+                                 [](double time_s) { return Vector3d(3.1 - 0.1 * time_s, 0.02, -0.02); })),
+              HasSubstr("rolls over"));
+  // It dives head down, loops, or turns over once.
+  EXPECT_EQ(doubt_of(source_of("odom", NavQuantity::kAttitude, 100,
+                               [](double time_s) { return Vector3d(0.05, 0.02, 0.3 * time_s - 3.0); })),
+            "");
+  EXPECT_EQ(doubt_of(source_of("odom", NavQuantity::kAttitude, 100,
+                               [](double time_s) { return Vector3d(time_s < 8.0 ? 3.1 : 0.0, 0.0, yaw_at(time_s)); })),
+            "");
+}
+
+// Kills a DVL's word for "not known" that is taken for 33 m/s, however often it says so.
+TEST(PlausibleValues, TheLowestNumberOfADvlIsNotKnown) {
+  auto dvl = source_of("dvl", NavQuantity::kVelocity, 100, [](double) { return Vector3d(0.2, 0.1, 0.0); });
+  for (std::size_t i = 20; i < 60; ++i) dvl.samples[i].value = {-32.768, 32.768, 32.768};
+  const NavLog log = log_of({dvl});
+  EXPECT_EQ(log.sources()[0].fault, "");
+  EXPECT_EQ(summary_of(log.sources()[0]).invalid, 40U);
+}
+
+TEST(PlausibleValues, ASpeedOfNoBoatIsAnotherUnit) {
+  EXPECT_EQ(fault_of(source_of("dvl", NavQuantity::kVelocity, 100, [](double) { return Vector3d(20.0, 1.0, 0.0); })),
+            "velocity of 20 m/s most of the time: is it in cm/s or mm/s?");
+  EXPECT_EQ(fault_of(source_of("dvl", NavQuantity::kVelocity, 100,
+                               [](double time_s) { return Vector3d(time_s < 5.0 ? 20.0 : 1.0, 0.0, 0.0); })),
+            "");
+}
+
+// Radians that are read as degrees: kills a map that is turned by nothing.
+TEST(PlausibleValues, AYawThatBeginsAnewWithinSixDegreesIsInRadians) {
+  const auto yaw_of = [](double unit) {
+    return [unit](double time_s) {
+      return Vector3d(0.0, 0.0, 1.5 - std::remainder(0.5 * time_s, 2.0 * std::numbers::pi) * unit);
+    };
+  };
+  EXPECT_THAT(fault_of(source_of("A50", NavQuantity::kAttitude, 150, yaw_of(kDegree))), HasSubstr("is it in radians?"));
+  EXPECT_EQ(fault_of(source_of("A50", NavQuantity::kAttitude, 150, yaw_of(1.0))), "");
+  EXPECT_EQ(fault_of(source_of("A50", NavQuantity::kAttitude, 50, yaw_of(kDegree))), "") << "it never begins anew";
+}
+
+// Kills the advice that times do not fit where next to nothing is left of the positions.
+TEST(PlausibleValues, PositionsThatOnlyJumpAreInAnotherUnit) {
+  EXPECT_THAT(fault_of(source_of("odom", NavQuantity::kPosition, 100,
+                                 [](double time_s) { return Vector3d(100.0 * time_s, 0.0, -5.0); })),
+              HasSubstr("it moves by 20 m every 0.2 s: is it in cm or mm?"));
+  EXPECT_EQ(fault_of(source_of("odom", NavQuantity::kPosition, 100,
+                               [](double time_s) { return Vector3d(0.1 * time_s, 0.0, -5.0); })),
+            "");
+}
+
 }  // namespace
 }  // namespace pingvox

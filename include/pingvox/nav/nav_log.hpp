@@ -77,6 +77,9 @@ struct NavSource {
   /// Why its values cannot be used, as in "latitude of 54.3 rad is beyond pi/2: is it in degrees?"; empty: nothing is
   /// wrong with them. Nothing is computed from a source with a fault.
   std::string fault = {};
+  /// What is strange about its values, which are used as they are, as in "the vehicle is upside down all the time";
+  /// empty: nothing is.
+  std::string doubt = {};
   NavSubject subject = NavSubject::kVehicle;
   /// Name of the frame that the values are in: "odom"; of a velocity and a turn rate that of the body. Empty: not
   /// named.
@@ -145,6 +148,8 @@ Result<void> check_sources(const NavLog& log, std::span<const NavQuantity> quant
 Result<void> check_sources(const NavLog& log);
 /// The sources with a fault, each with its reason, for a warning; empty: there are none.
 std::string faults_text(const NavLog& log);
+/// The sources that are used in spite of a doubt, each with what it is, for warnings.
+std::vector<std::string> doubt_texts(const NavLog& log);
 
 /// What the turns of a vehicle are known by, and what dead reckoning is computed from besides the depth.
 inline constexpr std::array kHeadingQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude};

@@ -31,6 +31,8 @@ struct VehiclePath {
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
   /// Steps of the poses of a file that no vehicle makes, where they are cut. Those of navigation are in its sources.
   std::vector<SourceStep> steps = {};
+  /// What is strange about the poses of a file; empty: nothing is. That of navigation is in its sources.
+  std::string doubt = {};
 };
 
 /// A vehicle that stays at the origin.

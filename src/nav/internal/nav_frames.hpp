@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string_view>
 #include <vector>
 
@@ -12,9 +13,13 @@ namespace pingvox {
 enum class FrameAxes {
   kNotNamed,  ///< as ROS has them by default: x east or ahead, y north or left, z up
   kUp,        ///< the same by name: "_enu", "_flu"
-  kDown       ///< "_ned": x north or forward, y east or right, z down; "_frd": forward, right, down
+  kDown,      ///< "_ned": x north or forward, y east or right, z down; "_frd": forward, right, down
+  kOptical    ///< "_optical": x right, y down, z ahead
 };
 FrameAxes axes_of(std::string_view frame);
+
+/// From the axes of an optical frame to ours.
+Eigen::Matrix3d ours_from_optical();
 
 /// Whether a frame stands still while the vehicle moves: "map", "odom", "world", "local_ned".
 bool is_fixed_frame(std::string_view frame);

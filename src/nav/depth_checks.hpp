@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "pingvox/nav/nav_log.hpp"
+
+namespace pingvox {
+
+/// What is wrong with the unit or the sense of a depth by its own numbers: it changes faster than a vehicle dives, or
+/// is above the surface all the time. Empty: nothing.
+/// @param source  in order of time
+std::string fault_of_depth(const NavSource& source);
+
+/// Compares the depths of a log with the depth by its pressure, and the heights of its positions with both: `fault` of
+/// those says which is in another unit, or points down where up is meant.
+/// @param sources  each in order of time, pressures in Pa
+void compare_depths(std::span<NavSource> sources);
+
+}  // namespace pingvox
