@@ -76,6 +76,8 @@ TEST(Csv, RefusesDegreesInTheColumnOfRadians) {
   EXPECT_THAT(read("bearing_rad", 0.25, 360.0).error, HasSubstr("its numbers go from")) << "a fine step";
   EXPECT_THAT(read("bearing_rad", 2.0, 400.0).error, HasSubstr("bearing_rad holds gradians, it seems"));
   EXPECT_THAT(read("bearing_deg", 0.02, 2.0 * std::numbers::pi).error, HasSubstr("holds radians, it seems"));
+  EXPECT_THAT(read("bearing_deg", 16.0, 6400.0).error, HasSubstr("degrees holds something else, it seems"));
+  EXPECT_THAT(read("bearing_deg", 16.0, 1e9).error, HasSubstr("its numbers go from")) << "no head turns as far at once";
   EXPECT_EQ(read("bearing_rad", 0.04, 1e9).items.size(), 300U) << "radians that go on from turn to turn";
   EXPECT_EQ(read("bearing_deg", 2.5, 1e9).items.size(), 300U) << "degrees that do";
   EXPECT_EQ(read("bearing_rad", 0.5 * std::numbers::pi, 2.0 * std::numbers::pi).items.size(), 300U) << "four sides";
@@ -151,7 +153,8 @@ TEST(Csv, SaysWhichColumnIsMissing) {
   EXPECT_THAT(read_csv("time_s,bearing_rad,intensities\n").error, HasSubstr("bin_length_m"));
   EXPECT_THAT(read_csv("time_s,bearing_rad,bin_length_m\n").error, HasSubstr("intensities"));
   EXPECT_THAT(read_csv("time_s,bearing_rad,intensities,bin_length_m\n").error, HasSubstr("intensities"));
-  EXPECT_THAT(read_csv("time_s,bearing_rad,bearing_deg,bin_length_m,intensities\n").error, HasSubstr("bearing"));
+  EXPECT_THAT(read_csv("time_s,bearing_rad,bearing_deg,bin_length_m,intensities\n").error,
+              HasSubstr("the header has two of the columns bearing_rad"));
 }
 
 TEST(Csv, ReadsBackWhatItWroteToTheLastBit) {

@@ -220,5 +220,30 @@ TEST(Mat, NamesTheFieldThatIsNotThere) {
             "a.mat: parsedData has no field step_dist");
 }
 
+// Kills radians and gradians that are read as degrees: a fan of 6 degrees, or a sweep that is turned.
+TEST(Mat, AnglesInAnotherUnitAreRefused) {
+  const auto error_of = [](float turn) {
+    std::vector<Record> records(400);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      records[i] = {static_cast<float>(i), turn * static_cast<float>(i) / 400.0F, 0.01F, {1, 2}};
+    }
+    const auto all = all_beams({"a.mat", mat5_writer::file({mat5_writer::parsed_data(records, kLittle)}, kLittle)});
+    return all.items.size() == records.size() ? "none" : all.error;
+  };
+  EXPECT_EQ(error_of(360.0F), "none");
+  EXPECT_THAT(error_of(6.2832F),
+              HasSubstr("the field angle, in degrees, holds radians, it seems: its numbers go from"));
+  EXPECT_THAT(error_of(400.0F), HasSubstr("holds gradians"));
+  EXPECT_THAT(error_of(6400.0F), HasSubstr("holds something else"));
+}
+
+TEST(Mat, BinsThatAreTooLongAreDamage) {
+  std::vector<Record> records(1, {1.0F, 90.0F, 2.0F, std::vector<std::uint8_t>(400, 1)});
+  EXPECT_THAT(
+      all_beams({"a.mat", mat5_writer::file({mat5_writer::parsed_data(records, kLittle)}, kLittle)}, Damage::kFail)
+          .error,
+      HasSubstr("a range of 800 m is none of a scanning sonar"));
+}
+
 }  // namespace
 }  // namespace pingvox

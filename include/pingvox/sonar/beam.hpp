@@ -29,9 +29,9 @@ struct Beam {
   std::vector<std::uint8_t> intensities;  ///< bin i covers [i, i + 1) * bin_length_m from the transducer
 };
 
-/// The longest beam that readers accept: far beyond these sonars, and short enough that a damaged number cannot make an
-/// endless ray.
-inline constexpr double kMaxBeamRange_m = 10'000.0;
+/// The longest beam that readers accept: of the heads that turn, the one that hears the farthest, a SeaKing, hears 300
+/// m. Lengths in cm or mm are beyond, and a damaged number cannot make an endless ray.
+inline constexpr double kMaxBeamRange_m = 500.0;
 
 /// Checks the ranges documented in Beam, and kMaxBeamRange_m. Readers call it on each beam, so that other code need
 /// not.

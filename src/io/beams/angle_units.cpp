@@ -34,6 +34,9 @@ constexpr double kMaxTurns = 1.05;
 /// No head turns by less than this many degrees or gradians from beam to beam; in radians it is 2.9 degrees.
 constexpr double kFinestStep = 0.05;
 
+/// Nor by more than this many degrees.
+constexpr double kCoarsestStep = 10.0;
+
 }  // namespace
 
 double radians_of(AngleUnit unit) {
@@ -47,7 +50,8 @@ std::string_view name_of(AngleUnit unit) {
 /// Damaged numbers, up to a fiftieth, are left out.
 struct AngleUnits::Shape {
   double min = 0.0, max = 0.0;
-  double step = 0.0;                 ///< median of those that turn the head; 0: it does not turn
+  double step = 0.0;  ///< median of those that turn the head; 0: it does not turn
+  bool has_jumps = false;
   std::optional<AngleUnit> by_jump;  ///< where the angles begin anew after a turn
 
   double largest() const { return std::max(std::fabs(min), std::fabs(max)); }
@@ -72,6 +76,7 @@ AngleUnits::Shape AngleUnits::shape() const {
     (step > kShareOfJump * extent ? jumps : steps).push_back(step);
   }
   if (!steps.empty()) shape.step = median(std::move(steps));
+  shape.has_jumps = !jumps.empty();
   if (!jumps.empty()) shape.by_jump = unit_of_turn(median(std::move(jumps)) + shape.step, kTolerance_turns);
   return shape;
 }
@@ -80,8 +85,11 @@ std::optional<AngleUnit> AngleUnits::unit() const {
   const Shape is = shape();
   if (is.step > 0.0 && is.step < kFinestStep) return AngleUnit::kRadian;
   if (is.by_jump) return is.by_jump;
-  const bool goes_on = is.largest() > kMaxTurns * turn_of(AngleUnit::kGradian);
-  if (goes_on) return stated_ == AngleUnit::kRadian ? std::nullopt : std::optional(stated_);
+  if (is.largest() > kMaxTurns * turn_of(AngleUnit::kGradian)) {
+    // Turns are counted, by steps that heads make; otherwise it is another unit, as 6400 a turn.
+    const bool counts = stated_ != AngleUnit::kRadian && !is.has_jumps && is.step <= kCoarsestStep;
+    return counts ? std::optional(stated_) : std::nullopt;
+  }
   if (is.max - is.min > turn_of(AngleUnit::kDegree) + is.step + 1.0) return AngleUnit::kGradian;
   if (is.largest() <= kMaxTurns * turn_of(stated_)) return stated_;
   // A single turn, which ends one step before it would begin anew.
@@ -103,6 +111,12 @@ bool AngleUnits::are_enough() const {
 bool AngleUnits::count_turns() const {
   const std::optional<AngleUnit> known = unit();
   return known && shape().largest() > kMaxTurns * turn_of(*known);
+}
+
+std::string AngleUnits::problem_text() const {
+  const std::optional<AngleUnit> known = unit();
+  if (known == stated_) return {};
+  return fmt::format("holds {}, it seems: its numbers go {}", known ? name_of(*known) : "something else", range_text());
 }
 
 std::string AngleUnits::range_text() const {

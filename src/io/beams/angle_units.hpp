@@ -32,6 +32,8 @@ class AngleUnits {
   std::optional<AngleUnit> unit() const;
   /// Whether the angles go on from turn to turn.
   bool count_turns() const;
+  /// "holds gradians, it seems: its numbers go from 0 to 399"; empty: they are in the stated unit.
+  std::string problem_text() const;
   /// "from 0 to 399". REQUIRES an angle.
   std::string range_text() const;
 

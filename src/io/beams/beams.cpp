@@ -92,6 +92,7 @@ class GuardedScans final : public ScanSource {
   }
   std::size_t skipped() const override { return source_->skipped(); }
   std::string first_damage() const override { return source_->first_damage(); }
+  std::string note() const override { return source_->note(); }
   std::optional<double> share_read() const override { return source_->share_read(); }
 
  private:

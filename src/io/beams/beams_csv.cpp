@@ -59,6 +59,7 @@ std::string_view problem_of(const std::vector<Column>& columns) {
   };
   const auto count_of = [&count](Column wanted) { return count([wanted](Column c) { return c == wanted; }); };
   if (count_of(Column::kTime) != 1) return "the header needs one column time_s";
+  if (count(is_bearing) > 1) return "the header has two of the columns bearing_rad, bearing_deg, bearing_cw_deg";
   if (count(is_bearing) != 1) return "the header needs one of the columns bearing_rad, bearing_deg, bearing_cw_deg";
   if (count_of(Column::kBinLength) != 1) return "the header needs one column bin_length_m";
   if (count_of(Column::kIntensities) != 1 || columns.back() != Column::kIntensities) {
@@ -98,8 +99,7 @@ std::string problem_of(Column column, const AngleUnits& bearings) {
   const std::optional<AngleUnit> unit = bearings.unit();
   if (unit == unit_of(column)) return {};
   if (column != Column::kBearingRad) {
-    return fmt::format("the column of bearings in degrees holds {}, it seems: its numbers go {}",
-                       unit ? name_of(*unit) : "something else", bearings.range_text());
+    return "the column of bearings in degrees " + bearings.problem_text();
   }
   if (unit == AngleUnit::kGradian) {
     return fmt::format("the column bearing_rad holds gradians, it seems: its numbers go {}: multiply them by pi/200",

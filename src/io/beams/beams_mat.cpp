@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <utility>
 
+#include "io/beams/angle_units.hpp"
 #include "io/beams/mat5.hpp"
 #include "io/readers.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -58,18 +60,25 @@ class MatSource : public BeamSource {
         beams_(records_.elements_left()),
         places_(places) {}
 
-  Result<std::optional<Beam>> next() override {
-    while (const auto record = records_.next()) {
-      ++record_;
-      std::array<std::optional<mat5::NumericArray>, kFieldCount> fields;
-      for (std::size_t i = 0; i < kFieldCount; ++i) fields[i] = (*record)[places_[i]];
-      tl::expected<Beam, std::string> beam = beam_in(fields);
-      if (beam) return std::move(*beam);
-      const auto damaged =
-          handle_damage(damage_, skipped_, name_, fmt::format("{}({})", kVariable, record_), beam.error());
-      if (!damaged) return tl::unexpected(damaged.error());
+  /// Reads the first beams, as many as tell the unit of their angles.
+  Result<void> look_ahead() {
+    AngleUnits angles(AngleUnit::kDegree);
+    while (ahead_.size() < AngleUnits::kMost && !angles.are_enough()) {
+      ahead_.push_back(read());
+      if (!ahead_.back() || !*ahead_.back()) break;
+      angles.add(angle_deg_);
     }
-    return std::nullopt;
+    const std::string problem = angles.problem_text();
+    if (problem.empty()) return {};
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{}: the field {}, in degrees, {}", name_, kFieldNames[kAngle], problem));
+  }
+
+  Result<std::optional<Beam>> next() override {
+    if (ahead_.empty()) return read();
+    Result<std::optional<Beam>> beam = std::move(ahead_.front());
+    ahead_.pop_front();
+    return beam;
   }
 
   std::size_t skipped() const override { return skipped_.count; }
@@ -77,6 +86,23 @@ class MatSource : public BeamSource {
   std::optional<double> share_read() const override { return read_share(records_.elements_left(), beams_); }
 
  private:
+  Result<std::optional<Beam>> read() {
+    while (const auto record = records_.next()) {
+      ++record_;
+      std::array<std::optional<mat5::NumericArray>, kFieldCount> fields;
+      for (std::size_t i = 0; i < kFieldCount; ++i) fields[i] = (*record)[places_[i]];
+      tl::expected<Beam, std::string> beam = beam_in(fields);
+      if (beam) {
+        angle_deg_ = fields[kAngle]->at(0);
+        return std::move(*beam);
+      }
+      const auto damaged =
+          handle_damage(damage_, skipped_, name_, fmt::format("{}({})", kVariable, record_), beam.error());
+      if (!damaged) return tl::unexpected(damaged.error());
+    }
+    return std::nullopt;
+  }
+
   std::string name_;
   Damage damage_;
   mat5::StructArray records_;
@@ -84,6 +110,8 @@ class MatSource : public BeamSource {
   std::array<std::size_t, kFieldCount> places_;
   std::size_t record_ = 0;  ///< from 1, as MATLAB counts
   SkippedRecords skipped_;
+  std::deque<Result<std::optional<Beam>>> ahead_;
+  double angle_deg_ = 0.0;  ///< of the last beam, as it is in the file
 };
 
 }  // namespace
@@ -104,7 +132,9 @@ Result<std::unique_ptr<BeamSource>> open_mat(FileBytes file, Damage damage) {
     }
     places[i] = *place;
   }
-  return std::make_unique<MatSource>(name, damage, std::move(*records), places);
+  auto source = std::make_unique<MatSource>(name, damage, std::move(*records), places);
+  if (const Result<void> known = source->look_ahead(); !known) return tl::unexpected(known.error());
+  return source;
 }
 
 }  // namespace pingvox

@@ -23,8 +23,10 @@ const DeviceProfile* seanet_device_of(std::span<const std::uint8_t> frame) {
   return line ? device_of(*line) : nullptr;
 }
 
-unsigned only_head(std::span<const std::uint8_t>) {
-  return 0;
+/// By the device that sent the frame.
+unsigned ping_head_of(std::span<const std::uint8_t> frame) {
+  constexpr std::size_t kSource = 6;
+  return frame[kSource];
 }
 
 unsigned seanet_head_of(std::span<const std::uint8_t> frame) {
@@ -204,12 +206,12 @@ class FrameLog final : public DeviceLog {
 }  // namespace
 
 const FrameProtocol& ping_protocol() {
-  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, only_head};
+  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, ping_head_of};
   return kPing;
 }
 
 const FrameProtocol& sonarview_protocol() {
-  static constexpr FrameProtocol kSonarView = {check_sonarview_frame, ping_beam_in, ping_device_of, only_head};
+  static constexpr FrameProtocol kSonarView = {check_sonarview_frame, ping_beam_in, ping_device_of, ping_head_of};
   return kSonarView;
 }
 

@@ -25,6 +25,9 @@
 namespace pingvox {
 namespace {
 
+/// Of the deepest sea, give or take.
+constexpr double kMaxSounding_m = 10'000.0;
+
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kFileHeader = 1024, kPacketHeader = 14, kPingHeader = 256;
@@ -79,7 +82,7 @@ std::optional<HeadPose> head_pose(Bytes packet, bool has_degrees) {
                          std::isfinite(head.heading_rad);
   constexpr double kMaxPosition_m = 1e8;
   const double most = has_degrees ? std::numbers::pi : kMaxPosition_m;
-  if (!is_finite || head.place.cwiseAbs().head<2>().maxCoeff() > most || std::fabs(head.place.z()) > kMaxBeamRange_m) {
+  if (!is_finite || head.place.cwiseAbs().head<2>().maxCoeff() > most || std::fabs(head.place.z()) > kMaxSounding_m) {
     return std::nullopt;
   }
   return head;
@@ -124,7 +127,7 @@ std::optional<std::vector<Eigen::Vector3d>> points_of(Bytes ping) {
   for (std::size_t i = 0; i < count; ++i) {
     angle_rad += step_rad * big<std::uint16_t>(angles, kAngles + 2 * i);
     const double range_m = tick_s * big<std::uint16_t>(times, kTimes + 2 * i) * sound_speed_m_s / 2.0;
-    if (!(range_m <= kMaxBeamRange_m) || !(std::fabs(angle_rad) <= std::numbers::pi)) return std::nullopt;
+    if (!(range_m <= kMaxSounding_m) || !(std::fabs(angle_rad) <= std::numbers::pi)) return std::nullopt;
     if (range_m > 0.0) points_m.emplace_back(0.0, -range_m * std::sin(angle_rad), -range_m * std::cos(angle_rad));
   }
   return points_m;
