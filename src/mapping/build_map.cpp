@@ -109,7 +109,12 @@ Result<BuildReport> build_map(ScanSource& source, const Trajectory& map_from_bod
         if (progress) progress(report);
         continue;
       }
-      move_scan(*pose * options.body_from_sensor, next);
+      const Pose map_from_sensor = *pose * options.body_from_sensor;
+      if (next.has_points_in_map) {
+        next.origin_m = map_from_sensor.translation();
+      } else {
+        move_scan(map_from_sensor, next);
+      }
     }
     if (const auto mapped = detail::without_exceptions([&] { return map_scan(next); }); !mapped) {
       return tl::unexpected(mapped.error());

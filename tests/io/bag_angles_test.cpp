@@ -18,6 +18,7 @@
 #include "pingvox/io/beams.hpp"
 #include "support/bag_writer.hpp"
 #include "support/logs.hpp"
+#include "support/ros_messages.hpp"
 
 namespace pingvox {
 namespace {
@@ -167,6 +168,103 @@ TEST(AngleUnits, AStatedUnitStandsWhereNothingSpeaksAgainstIt) {
     EXPECT_EQ(still.unit(), stated);
     EXPECT_EQ(sides.unit(), stated);
   }
+}
+
+/// Messages of a LaserScan that looks in one direction, of ten bins.
+bags::Bytes scan_with(float range_max_m, const std::vector<float>& ranges_m, const std::vector<float>& intensities) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/scan", "sensor_msgs/msg/LaserScan", "");
+  for (std::size_t i = 0; i < 20; ++i) {
+    const double time_s = 1000.0 + 0.1 * static_cast<double>(i);
+    const float angle_rad = 0.1F * static_cast<float>(i);
+    bags::Cdr scan;
+    scan.header(time_s, "sonar");
+    for (const float number : {angle_rad, angle_rad, 0.0F, 0.0F, 0.0F, 0.0F, range_max_m}) scan.number(number);
+    for (const std::vector<float>& values : {ranges_m, intensities}) {
+      scan.number(static_cast<std::uint32_t>(values.size()));
+      for (const float value : values) scan.number(value);
+    }
+    mcap.message(1, bags::nanoseconds(time_s), scan.bytes());
+  }
+  mcap.end_chunk();
+  return mcap.closed();
+}
+
+/// `count` numbers from a first one on.
+std::vector<float> even(float first, float step, std::size_t count) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(first + step * static_cast<float>(i));
+  return values;
+}
+
+// Kills intensities that are cut off at 255, and an empty map of those of 0 to 1.
+TEST(BagBeams, IntensitiesOfAnotherScaleAreRefusedByName) {
+  const auto error_of = [](const std::vector<float>& intensities) {
+    return beams_in(scan_with(8.0F, {}, intensities)).error;
+  };
+  EXPECT_THAT(error_of(even(0.0F, 0.2F, 5)), HasSubstr("intensities are 0 to 0.8, but 0 to 255 are expected"));
+  EXPECT_THAT(error_of(even(0.0F, 1000.0F, 5)), HasSubstr("intensities are 0 to 4000, but 0 to 255 are expected"));
+  EXPECT_THAT(error_of(even(-80.0F, 1.0F, 5)), HasSubstr("intensities are -80 to -76"));
+  EXPECT_EQ(beams_in(scan_with(8.0F, {}, even(0.0F, 60.0F, 5))).beams.size(), 20U);
+  EXPECT_EQ(beams_in(scan_with(8.0F, {}, even(0.0F, 0.0F, 5))).beams.size(), 20U) << "silence";
+}
+
+TEST(BagBeams, TheRangesOfAScanTellWhereItsBinsAre) {
+  const std::vector<float> some = even(0.0F, 20.0F, 10);
+  const auto plain = beams_in(scan_with(8.0F, even(0.8F, 0.8F, 10), some));
+  ASSERT_EQ(plain.beams.size(), 20U) << plain.error;
+  EXPECT_EQ(plain.beams[0].intensities.size(), 10U);
+  EXPECT_NEAR(plain.beams[0].bin_length_m, 0.8, 1e-6);
+  const auto later = beams_in(scan_with(8.0F, even(2.6F, 0.6F, 10), some));
+  ASSERT_EQ(later.beams.size(), 20U) << later.error;
+  EXPECT_NEAR(later.beams[0].bin_length_m, 0.6, 1e-6);
+  EXPECT_EQ(later.beams[0].intensities.size(), 14U) << "the first bin ends 2.6 m away";
+  EXPECT_THAT(beams_in(scan_with(100.0F, even(0.8F, 0.8F, 10), some)).error,
+              HasSubstr("range_max 100 does not fit ranges up to 8"));
+}
+
+/// Echoes of a Ping360, two a second, of stamps and frames.
+bags::Bytes echoes_of(double (*stamp_s)(double), std::string_view (*frame)(std::size_t)) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+  for (std::size_t i = 0; i < 40; ++i) {
+    const double time_s = 1000.0 + 0.5 * static_cast<double>(i);
+    mcap.message(1, bags::nanoseconds(time_s),
+                 bags::sonar_echo(stamp_s(time_s), frame(i), 0.015F * static_cast<float>(i), 10));
+  }
+  mcap.end_chunk();
+  return mcap.closed();
+}
+
+std::string_view one_frame(std::size_t) {
+  return "sonar";
+}
+
+// Kills a dive whose beams are all at the place of one moment.
+TEST(BagBeams, StampsThatStandStillAreNone) {
+  for (const auto stamp_s :
+       {+[](double) { return 990.0; }, +[](double time_s) { return std::floor(time_s / 5) * 5; }}) {
+    const auto read = beams_in(echoes_of(stamp_s, one_frame));
+    ASSERT_EQ(read.beams.size(), 40U) << read.error;
+    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(read.beams[i].time_s, 1000.0 + 0.5 * static_cast<double>(i)) << i;
+    EXPECT_THAT(read.note, HasSubstr("the stamps of /echo stand still"));
+  }
+  const auto seconds = beams_in(echoes_of([](double time_s) { return std::floor(time_s); }, one_frame));
+  ASSERT_EQ(seconds.beams.size(), 40U);
+  EXPECT_EQ(seconds.beams[3].time_s, 1001.0) << "whole seconds are times";
+  EXPECT_EQ(seconds.note, "");
+  const auto before = beams_in(echoes_of([](double time_s) { return time_s - 0.25; }, one_frame));
+  ASSERT_EQ(before.beams.size(), 40U);
+  EXPECT_EQ(before.beams[39].time_s, 1019.25) << "the last one, too";
+}
+
+// Kills two pictures in one.
+TEST(BagBeams, OfTwoHeadsInATopicTheFirstIsKept) {
+  const auto read = beams_in(echoes_of([](double time_s) { return time_s; },
+                                       [](std::size_t i) -> std::string_view { return i % 2 == 0 ? "fore" : "aft"; }));
+  EXPECT_EQ(read.beams.size(), 20U) << read.error;
+  EXPECT_EQ(read.skipped, 20U);
+  EXPECT_THAT(read.first_damage, HasSubstr("a beam of aft, where the first are of fore"));
 }
 
 }  // namespace

@@ -434,5 +434,44 @@ TEST(BagNav, TurnsADvlThatLooksDown) {
   EXPECT_EQ(ahead[0].value, Eigen::Vector3d(3, 1, 2)) << "of SOLAQUA: x left, y up, z ahead";
 }
 
+/// Odometry of 40 s, two messages a second, with these stamps, and echoes of a sonar with others.
+BagContents dive_with_stamps(double (*stamp_s)(double), double (*echo_s)(double)) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/odom", "nav_msgs/msg/Odometry", "");
+  mcap.topic(2, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
+  for (int i = 0; i < 80; ++i) {
+    const double time_s = 1000.0 + 0.5 * i;
+    mcap.message(1, bags::nanoseconds(time_s),
+                 bags::odometry(stamp_s(time_s), "odom", "base_link", bags::pose_numbers(0.1 * i, 0.0, -5.0, 0.0)));
+    mcap.message(2, bags::nanoseconds(time_s), bags::sonar_echo(echo_s(time_s), "sonar", 0.0F, 10));
+  }
+  mcap.end_chunk();
+  auto contents = read_bag(ByteStream(FileBytes{"dive.mcap", mcap.closed()}));
+  EXPECT_TRUE(contents);
+  return *std::move(contents);
+}
+
+// Kills a path of which all is at one moment.
+TEST(BagNav, StampsThatStandStillAreNone) {
+  const auto now = [](double time_s) { return time_s; };
+  const BagContents contents = dive_with_stamps([](double) { return 1005.0; }, now);
+  for (const NavSource& source : contents.nav.log.sources()) {
+    ASSERT_THAT(source.samples, SizeIs(80));
+    EXPECT_EQ(source.samples[41].time_s, 1020.5);
+    EXPECT_THAT(source.note, HasSubstr("the stamps of /odom stand still"));
+  }
+  EXPECT_THAT(dive_with_stamps(now, now).nav.notes, SizeIs(0));
+}
+
+// Kills beams that are mapped where the vehicle was eight seconds before, without a word.
+TEST(BagNav, StampsOfOneTopicThatLagAreNamed) {
+  const auto now = [](double time_s) { return time_s; };
+  const auto late = [](double time_s) { return time_s - 8.0; };
+  EXPECT_THAT(dive_with_stamps(now, late).nav.notes,
+              ElementsAre(HasSubstr("messages of /echo are recorded 8.0 s after their stamps, those of /odom 0.0 s")));
+  EXPECT_THAT(dive_with_stamps(late, now).nav.notes, SizeIs(1));
+  EXPECT_THAT(dive_with_stamps(late, late).nav.notes, SizeIs(0)) << "one clock";
+}
+
 }  // namespace
 }  // namespace pingvox

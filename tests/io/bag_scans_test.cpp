@@ -340,5 +340,55 @@ TEST(BagScans, OneOfSeveralTopicsIsChosen) {
             "(sensor_msgs/msg/LaserScan): choose one with --topic");
 }
 
+/// A cloud of one point at (1, 2, 3) in a frame.
+bags::Bytes point_in(std::string_view frame) {
+  bags::Cdr cloud;
+  cloud.header(1000.0, frame).number(std::uint32_t{1}).number(1.0F).number(2.0F).number(3.0F);
+  return bag_of("sensor_msgs/msg/PointCloud", cloud.number(std::uint32_t{0}).bytes());
+}
+
+std::string note_of(bags::Bytes file) {
+  Result<BagLog> log = open_bag_log(FileBytes{"dive.mcap", std::move(file)}, Damage::kSkip, {.name = "/points"});
+  return log ? std::get<std::unique_ptr<ScanSource>>(*log)->note() : log.error().message;
+}
+
+// REP-103: kills what is ahead of a camera and is mapped above it.
+TEST(BagScans, PointsInAnOpticalFrameAreTurned) {
+  const auto read = scans_of(point_in("camera_optical_frame"));
+  ASSERT_THAT(read.items, SizeIs(1)) << read.error;
+  EXPECT_THAT(read.items[0].points_m, testing::ElementsAre(Vector3d(3.0, -1.0, -2.0)));
+  EXPECT_THAT(note_of(point_in("camera_optical_frame")), HasSubstr("turned from camera_optical_frame"));
+  EXPECT_EQ(note_of(point_in("camera")), "");
+}
+
+// Kills points that move with the vehicle twice.
+TEST(BagScans, PointsInAFixedFrameAreNotMoved) {
+  for (const std::string_view frame : {"map", "odom", "rov/world"}) {
+    const auto read = scans_of(point_in(frame));
+    ASSERT_THAT(read.items, SizeIs(1)) << read.error;
+    EXPECT_TRUE(read.items[0].has_points_in_map);
+    EXPECT_THAT(note_of(point_in(frame)), HasSubstr("does not move with the sensor"));
+  }
+  const auto ned = scans_of(point_in("map_ned"));
+  ASSERT_THAT(ned.items, SizeIs(1));
+  EXPECT_THAT(ned.items[0].points_m, testing::ElementsAre(Vector3d(2.0, 1.0, -3.0)));
+  EXPECT_FALSE(scans_of(point_in("sonar")).items.at(0).has_points_in_map);
+}
+
+TEST(BagScans, TimesThatContradictEachOtherAreRefused) {
+  const auto scan_of = [](float step_s, float scan_s) {
+    bags::Cdr scan;
+    scan.header(1000.0, "sonar");
+    for (const float number : {0.0F, 0.9F, 0.1F, step_s, scan_s, 0.5F, 20.0F}) scan.number(number);
+    scan.number(std::uint32_t{10});
+    for (int i = 0; i < 10; ++i) scan.number(4.0F);
+    return bag_of(kLaser, scan.number(std::uint32_t{0}).bytes());
+  };
+  EXPECT_THAT(scans_of(scan_of(2.0F, 2.0F)).error,
+              HasSubstr("10 ranges every 2 s (time_increment) do not fit scan_time 2"));
+  EXPECT_THAT(scans_of(scan_of(0.2F, 2.0F)).items, SizeIs(10));
+  EXPECT_THAT(scans_of(scan_of(0.2F, 0.0F)).items, SizeIs(10)) << "not known";
+}
+
 }  // namespace
 }  // namespace pingvox

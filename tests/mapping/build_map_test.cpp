@@ -338,19 +338,35 @@ TEST(BuildMap, PointsFarFromTheirOriginAreRefused) {
 /// One scan of the points ahead and to port, seen from the sensor at a time.
 class TimedScan : public ScanSource {
  public:
-  explicit TimedScan(double time_s) : time_s_(time_s) {}
+  enum class PointsIn { kSensor, kMap };
+  explicit TimedScan(double time_s, PointsIn in = PointsIn::kSensor) : time_s_(time_s), in_(in) {}
 
   Result<std::optional<PointScan>> next() override {
     if (std::exchange(given_, true)) return std::nullopt;
     PointScan scan{.points_m = {{2.0, 0.0, 0.0}, {0.0, 3.0, 0.0}}};
     scan.time_s = time_s_;
+    scan.has_points_in_map = in_ == PointsIn::kMap;
     return scan;
   }
 
  private:
   double time_s_;
+  PointsIn in_;
   bool given_ = false;
 };
+
+// Kills points that move with the vehicle though they are in the map, and rays from the origin.
+TEST(BuildMap, PointsOfTheMapAreSeenFromTheTrajectory) {
+  const auto path = Trajectory::make(
+      {{10.0, Pose(Eigen::Translation3d(2.05, -2.05, 0.05))}, {12.0, Pose(Eigen::Translation3d(2.05, -2.05, 0.05))}});
+  ASSERT_TRUE(path);
+  OccupancyMap map({.resolution_m = 0.1});
+  TimedScan source(11.0, TimedScan::PointsIn::kMap);
+  ASSERT_TRUE(build_map(source, *path, clean_options(), map));
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.025, 0.025, 0.025)), Occupancy::kOccupied);
+  EXPECT_EQ(map.classify(Eigen::Vector3d(2.05, -1.025, 0.05)), Occupancy::kFree) << "from where the sensor was";
+  EXPECT_EQ(map.classify(Eigen::Vector3d(1.025, 0.025, 0.025)), Occupancy::kUnknown) << "not from the origin";
+}
 
 // Kills scans mapped at the origin, with a mount on the wrong side, or at the pose of another time.
 TEST(BuildMap, ScansWithATimeArePlacedAlongTheTrajectory) {

@@ -14,6 +14,7 @@
 #include "io/bags/bag_scans.hpp"
 #include "io/bags/bag_topics.hpp"
 #include "io/bags/sonar_messages.hpp"
+#include "io/bags/stamped_queue.hpp"
 #include "io/beams/device_log.hpp"
 #include "io/bytes/text.hpp"
 #include "io/internal/frame_finder.hpp"
@@ -110,7 +111,9 @@ class BagBeams final : public DeviceLog {
 
   std::vector<DamageKind> damage() const override { return damage_of(*bag_, unusable_); }
   std::string first_damage() const override { return first_damage_of(*bag_, unusable_); }
-  std::string note() const override { return note_; }
+  std::string note() const override {
+    return joined_notes(note_, queue_.stamps_stand_still() ? note_of_stamps(chosen_) : "");
+  }
   std::optional<double> share_read() const override { return bag_->share_read(); }
   const std::string& name() const { return bag_->name(); }
 
@@ -121,7 +124,7 @@ class BagBeams final : public DeviceLog {
       if (!message) return tl::unexpected(message.error());
       has_ended_ = !*message;
       if (damage_ == Damage::kFail && !bag_->damage().empty()) return damage_error();
-      const Result<void> added = has_ended_ ? turn_held() : add(**message);
+      const Result<void> added = has_ended_ ? add_last() : add(**message);
       if (!added) return tl::unexpected(added.error());
       if (damage_ == Damage::kFail && !unusable_.empty()) return damage_error();
     }
@@ -139,11 +142,43 @@ class BagBeams final : public DeviceLog {
     return angle;
   }
 
+  /// The beams of a message, and its first field where that turns them.
+  struct MessageBeams {
+    std::vector<Beam> beams;
+    std::optional<std::pair<double, HeadAngle>> angle;
+    std::optional<std::uint64_t> file_byte;
+  };
+
+  /// Adds the beams whose times are known.
+  Result<void> add_known() {
+    while (auto known = queue_.take()) {
+      auto& [message, later_s] = *known;
+      for (Beam& beam : message.beams) beam.time_s += later_s;
+      if (message.angle) {
+        const auto& [angle, documented] = *message.angle;
+        const auto added = add_turned(std::move(message.beams.front()), angle, documented, message.file_byte);
+        if (!added) return added;
+      } else {
+        beams_.insert(beams_.end(), std::make_move_iterator(message.beams.begin()),
+                      std::make_move_iterator(message.beams.end()));
+      }
+    }
+    return {};
+  }
+
+  /// Adds what was held back, at the end of the log.
+  Result<void> add_last() {
+    queue_.end();
+    if (const auto added = add_known(); !added) return added;
+    return turn_held();
+  }
+
   /// Turns a beam by the first field of its message, once enough of them tell in which unit it is.
-  Result<void> add_turned(Beam beam, double angle, const HeadAngle& documented, const BagMessage& message) {
+  Result<void> add_turned(Beam beam, double angle, const HeadAngle& documented,
+                          std::optional<std::uint64_t> file_byte) {
     constexpr double kAny = 1e6;  // what is no angle in any unit
     if (!(std::fabs(angle) <= kAny)) {
-      unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, message.file_byte);
+      unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, file_byte);
       return {};
     }
     if (!known_angle_) {
@@ -154,7 +189,7 @@ class BagBeams final : public DeviceLog {
     if (known_angle_->turn(beam, angle)) {
       beams_.push_back(std::move(beam));
     } else {
-      unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, message.file_byte);
+      unusable_.add({kImpossible, fmt::format("an angle of {:.6g}", angle)}, file_byte);
     }
     return {};
   }
@@ -225,14 +260,23 @@ class BagBeams final : public DeviceLog {
     }
     if (chosen_.empty()) chosen_ = name;
     if (name != chosen_) return several_topics(*bag_, "beams", is_sonar);
+    const std::string frame = in_ascii(topic->frame_of(message_));
+    if (!is_of_first_head(number_of_frame(frame))) {
+      unusable_.add({kOtherHead, fmt::format("a beam of {}, where the first are of {}", frame, frames_.front())},
+                    message.file_byte);
+      return {};
+    }
     if (!fields_) device_ = find_device(type.device);
-    if (fields_) return add_turned(std::move(beams->front()), values.number(0) - fields_->ahead, by_fields(), message);
-    // The angles of a LaserScan are about z of its frame, those of other drivers are the head's own.
-    const bool is_frd = type.type.name == "LaserScan" && axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
-    const double angle = is_frd ? -values.number(0) : values.number(0);
-    if (type.angle) return add_turned(std::move(beams->front()), angle, *type.angle, message);
-    beams_.insert(beams_.end(), std::make_move_iterator(beams->begin()), std::make_move_iterator(beams->end()));
-    return {};
+    std::optional<std::pair<double, HeadAngle>> turned;
+    if (fields_) {
+      turned.emplace(values.number(0) - fields_->ahead, by_fields());
+    } else if (type.angle) {
+      // The angles of a LaserScan are about z of its frame, those of other drivers are the head's own.
+      const bool is_frd = type.type.name == "LaserScan" && axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
+      turned.emplace(is_frd ? -values.number(0) : values.number(0), *type.angle);
+    }
+    queue_.add({*std::move(beams), turned, message.file_byte}, {time_s, message.time_s});
+    return add_known();
   }
 
   bool is_wanted_scan(const BagMessage& message) const {
@@ -249,6 +293,15 @@ class BagBeams final : public DeviceLog {
     if (!fields_) return known_topic(topic, sonar_types());
     if (topic.name != wanted_ || !topic.is_readable) return std::nullopt;
     return topic_with(topic, std::array<std::string_view, 3>{fields_->angle, fields_->length, fields_->intensities});
+  }
+
+  /// Heads of one topic are told apart by the frames of their messages.
+  unsigned number_of_frame(const std::string& frame) {
+    constexpr std::size_t kMost = 64;
+    const auto known = std::ranges::find(frames_, frame);
+    const auto number = static_cast<unsigned>(known - frames_.begin());
+    if (known == frames_.end() && frames_.size() < kMost) frames_.push_back(frame);
+    return number;
   }
 
   tl::unexpected<Error> missing_field(const BagTopic& topic) const {
@@ -307,11 +360,13 @@ class BagBeams final : public DeviceLog {
   std::optional<BeamFields> fields_;
   std::vector<std::optional<KnownTopic>> topics_;
   std::vector<std::optional<KnownTopic>> scan_topics_;  ///< of each topic, where it is the wanted one
+  std::vector<std::string> frames_;                     ///< of the beams so far
   SonarSettings settings_;
   RosMessage message_;
   std::optional<HeldBeams> held_;
   std::optional<KnownAngle> known_angle_;
   std::string note_;
+  StampedQueue<MessageBeams> queue_;
   std::deque<Beam> beams_;
   bool has_ended_ = false;
   std::optional<BagMessage> scan_;  ///< the first of the wanted topic
@@ -372,6 +427,17 @@ std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&)) {
 tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool (*is_of_kind)(const BagTopic&)) {
   return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with {}: {}: choose one with --topic",
                                                    bag.name(), what, topics_text(bag, is_of_kind)));
+}
+
+std::string note_of_stamps(std::string_view topic) {
+  return fmt::format(
+      "the stamps of {} stand still while its messages are recorded: their times are those of the "
+      "recording",
+      in_ascii(topic));
+}
+
+std::string joined_notes(std::string one, const std::string& other) {
+  return std::move(one) + (one.empty() || other.empty() ? "" : "; ") + other;
 }
 
 bool is_sonar(const BagTopic& topic) {

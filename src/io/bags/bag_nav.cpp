@@ -11,10 +11,13 @@
 #include <string_view>
 #include <utility>
 
+#include "base/median.hpp"
 #include "base/without_exceptions.hpp"
 #include "io/bags/bag_scans.hpp"
 #include "io/bags/bag_topics.hpp"
+#include "io/bags/stamped_queue.hpp"
 #include "io/bags/tf_tree.hpp"
+#include "io/bytes/text.hpp"
 #include "io/internal/frame_finder.hpp"
 #include "io/nav/dvl_a50.hpp"
 #include "io/nav/nav_fields.hpp"
@@ -38,6 +41,8 @@ struct TopicState {
   double altitude_m = 0.0;               ///< the last one that a receiver knew
   std::vector<DeviceTime> report_times;  ///< of a DVL, where they have a time of the device
   std::vector<NavOrigin> origins;        ///< of its messages, the first one's first
+  std::vector<MessageTime> times;        ///< of its messages
+  StampWatch stamps;
 };
 
 /// Where the samples of one message go.
@@ -332,8 +337,9 @@ class BagSurvey {
     if (is_first && summary.use == Use::kBeams && topic.scans && is_scan(*topic.scans, message)) {
       summary.use = Use::kScans;
     }
-    if (is_first && (summary.use == Use::kBeams || summary.use == Use::kScans)) {
-      summary.frame = frame_in(bag_.topics()[message.topic], message);
+    if (summary.use == Use::kBeams || summary.use == Use::kScans) {
+      if (is_first) summary.frame = frame_in(bag_.topics()[message.topic], message);
+      note_lag(message, topic);
     }
     if (!topic.known) return {};
     if (!message_.read(*topic.known->layout, message.bytes)) {
@@ -357,7 +363,10 @@ class BagSurvey {
       reader.add(message_, *topic.known, message.time_s, *name, sources_, origin);
     }
     if (type == nullptr) return {};
-    Samples samples(sources_, *name, topic.known->time_of(message_, message.time_s), topic.state, origin);
+    const MessageTime time{topic.known->time_of(message_, message.time_s), message.time_s};
+    topic.state.times.push_back(time);
+    topic.state.stamps.add(time);
+    Samples samples(sources_, *name, time.stamp_s, topic.state, origin);
     type->add(RosFields(message_, topic.known->fields), samples);
     return {};
   }
@@ -368,12 +377,15 @@ class BagSurvey {
     if (const auto added = add_topics(); !added) return tl::unexpected(added.error());
     std::vector<NavSource> sources = sources_.take();
     set_times(sources);
+    use_recorded_times(sources);
     tell_pressures(sources, named_by_fields());
     for (const auto& [name, tree] : trees_) std::ranges::move(tree.paths(name), std::back_inserter(sources));
     turn_frames(sources);
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
-    BagContents contents{std::move(summaries_), NavFile{*std::move(log), records_, damage()}, {}};
+    NavFile nav{*std::move(log), records_, damage()};
+    if (std::string note = lag_note(); !note.empty()) nav.notes.push_back(std::move(note));
+    BagContents contents{std::move(summaries_), std::move(nav), {}};
     add_mounts(contents);
     return contents;
   }
@@ -384,7 +396,60 @@ class BagSurvey {
     std::optional<KnownTopic> known, scans;
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
     TopicState state;
+    std::optional<KnownTopic> stamped = std::nullopt;  ///< of a sonar, where its messages have stamps
+    std::vector<double> lags_s = {};                   ///< how long after their stamps its messages were recorded
   };
+
+  /// Notes how long after its stamp a message of a sonar was recorded.
+  void note_lag(const BagMessage& message, Topic& topic) {
+    constexpr std::size_t kEnough = 200;
+    if (topic.lags_s.size() >= kEnough) return;
+    const BagTopic& of = bag_.topics()[message.topic];
+    if (!topic.stamped && of.is_readable) topic.stamped = topic_with(of, {});
+    if (!topic.stamped || !message_.read(*topic.stamped->layout, message.bytes)) return;
+    const MessageTime time{topic.stamped->time_of(message_, message.time_s), message.time_s};
+    topic.state.stamps.add(time);
+    topic.lags_s.push_back(time.recorded_s - time.stamp_s);
+  }
+
+  /// Where messages of a sonar were recorded seconds later after their stamps than those of navigation, or earlier: one
+  /// of the two clocks is wrong, or one of the two topics was stamped late. Empty: nowhere.
+  std::string lag_note() const {
+    constexpr std::size_t kFewest = 10;
+    constexpr double kApart_s = 2.0;
+    for (const Topic& sonar : topics_) {
+      if (sonar.lags_s.size() < kFewest || sonar.state.stamps.stand_still()) continue;
+      const double sonar_s = median(sonar.lags_s);
+      for (const Topic& nav : topics_) {
+        if (nav.state.times.size() < kFewest || nav.state.stamps.mostly_stand_still()) continue;
+        std::vector<double> lags_s;
+        for (const MessageTime& time : nav.state.times) lags_s.push_back(time.recorded_s - time.stamp_s);
+        const double nav_s = median(std::move(lags_s));
+        if (std::fabs(sonar_s - nav_s) <= kApart_s) continue;
+        return fmt::format(
+            "messages of {} are recorded {:.1f} s after their stamps, those of {} {:.1f} s after: if one "
+            "of the clocks is wrong, beams and path do not belong together",
+            in_ascii(summaries_[sonar.summary].name), sonar_s, in_ascii(summaries_[nav.summary].name), nav_s);
+      }
+    }
+    return {};
+  }
+
+  /// Gives samples of topics whose stamps stand still the times of the recording.
+  void use_recorded_times(std::span<NavSource> sources) const {
+    for (const Topic& topic : topics_) {
+      const std::vector<MessageTime>& times = topic.state.times;
+      if (!topic.state.stamps.mostly_stand_still() || !topic.state.report_times.empty()) continue;
+      const std::string& name = summaries_[topic.summary].name;
+      for (NavSource& source : sources) {
+        if (source.name != name && !source.name.starts_with(name + ":")) continue;
+        // Each message has as many samples of a source.
+        const std::size_t count = source.samples.size();
+        for (std::size_t i = 0; i < count; ++i) source.samples[i].time_s = times[i * times.size() / count].recorded_s;
+        source.note = joined_notes(source.note, note_of_stamps(name));
+      }
+    }
+  }
 
   /// The topic; messages in other frames than its first are of another source. nullopt: of too many.
   std::optional<std::string> name_of_source(Topic& topic, const NavOrigin& origin) const {

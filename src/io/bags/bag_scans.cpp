@@ -17,8 +17,10 @@
 #include <utility>
 #include <vector>
 
+#include "io/bags/stamped_queue.hpp"
 #include "io/bytes/byte_reader.hpp"
 #include "io/bytes/scalar.hpp"
+#include "io/bytes/text.hpp"
 #include "io/internal/frame_finder.hpp"
 #include "nav/internal/nav_frames.hpp"
 
@@ -41,11 +43,30 @@ bool is_point(const Eigen::Vector3d& point_m) {
   return point_m.allFinite() && !point_m.isZero(0.0);
 }
 
-/// From forward, right, down to ahead, left, up.
-void turn_from_frd(std::vector<PointScan>& scans) {
+/// From the axes of a frame to ours.
+void turn_from(FrameAxes axes, std::vector<PointScan>& scans, bool is_fixed) {
+  if (axes == FrameAxes::kNotNamed || axes == FrameAxes::kUp) return;
+  const Eigen::Matrix3d from_optical = ours_from_optical();
   for (PointScan& scan : scans) {
-    for (Eigen::Vector3d& point_m : scan.points_m) point_m = from_ned::body(point_m);
+    for (Eigen::Vector3d& point_m : scan.points_m) {
+      if (axes == FrameAxes::kOptical) {
+        point_m = from_optical * point_m;
+      } else {
+        point_m = is_fixed ? from_ned::world(point_m) : from_ned::body(point_m);
+      }
+    }
   }
+}
+
+/// How the points of a topic are read by the name of their frame; empty: as they are.
+std::string note_of_frame(const std::string& topic, std::string_view frame) {
+  if (is_fixed_frame(frame)) {
+    return fmt::format(
+        "the points of {} are in {}, which does not move with the sensor: they are mapped where they are", topic,
+        frame);
+  }
+  if (axes_of(frame) != FrameAxes::kOptical) return {};
+  return fmt::format("the points of {} are turned from {} (x right, y down, z ahead)", topic, frame);
 }
 
 /// A scan alone, without a copy of its points.
@@ -185,6 +206,13 @@ Scans laser_scans(RosMessage& message, const KnownTopic& topic, std::span<const 
     return no_scan(kContradiction, problem);
   }
   if (!(std::fabs(step_s) <= kMaxStep_s) || count > kMaxCount) return no_scan(kImpossible);
+  // Whether the way back counts depends on the driver.
+  constexpr double kLongerTimes = 2.5;
+  const double scan_s = fields.number(7), taken_s = std::fabs(step_s) * static_cast<double>(count);
+  if (scan_s > 0.0 && taken_s > kLongerTimes * scan_s) {
+    return no_scan(kContradiction, fmt::format("{} ranges every {:.6g} s (time_increment) do not fit scan_time {:.6g}",
+                                               count, std::fabs(step_s), scan_s));
+  }
   std::vector<PointScan> scans;
   for (std::size_t i = 0; i < count; ++i) {
     const double at_s = time_s + step_s * static_cast<double>(i);
@@ -212,7 +240,8 @@ constexpr std::array kScanTypes = {
              cloud2_scan},
     ScanType{{"PointCloud", {"points.x", "points.y", "points.z"}}, cloud_scan},
     ScanType{{"LaserScan",
-              {"angle_min", "angle_max", "angle_increment", "time_increment", "range_min", "range_max", "ranges"}},
+              {"angle_min", "angle_max", "angle_increment", "time_increment", "range_min", "range_max", "ranges",
+               "scan_time"}},
              laser_scans,
              true},
 };
@@ -254,6 +283,9 @@ class BagScans final : public ScanSource {
   }
   std::size_t skipped() const override { return damage_count(damage_of(*bag_, unusable_)); }
   std::string first_damage() const override { return first_damage_of(*bag_, unusable_); }
+  std::string note() const override {
+    return joined_notes(note_, queue_.stamps_stand_still() ? note_of_stamps(chosen_) : "");
+  }
   std::optional<double> share_read() const override { return bag_->share_read(); }
 
  private:
@@ -268,7 +300,11 @@ class BagScans final : public ScanSource {
       if (damage_ == Damage::kFail && skipped() > 0) {
         return fail(Error::Code::kCorrupt, fmt::format("{}: {}", bag_->name(), first_damage()));
       }
-      if (!*message) return {};
+      if (!*message) {
+        queue_.end();
+        take_known();
+        return {};
+      }
     }
     return {};
   }
@@ -284,7 +320,7 @@ class BagScans final : public ScanSource {
     }
     if (!looks_around(*topic, message_)) return {};
     const double time_s = topic->time_of(message_, message.time_s);
-    const bool is_frd = axes_of(topic->frame_of(message_)) == FrameAxes::kDown;
+    const std::string frame = in_ascii(topic->frame_of(message_));
     Scans scans = kScanTypes[topic->type].scans_in(message_, *topic, message.bytes, time_s);
     if (!scans) {
       unusable_.add(scans.error(), message.file_byte);
@@ -292,16 +328,32 @@ class BagScans final : public ScanSource {
     }
     if (chosen_.empty()) chosen_ = name;
     if (name != chosen_) return several_topics(*bag_, "scans", may_have_scans);
-    if (is_frd) turn_from_frd(*scans);
-    scans_.insert(scans_.end(), std::make_move_iterator(scans->begin()), std::make_move_iterator(scans->end()));
+    if (note_.empty()) note_ = note_of_frame(in_ascii(name), frame);
+    const bool is_fixed = is_fixed_frame(frame);
+    turn_from(axes_of(frame), *scans, is_fixed);
+    for (PointScan& scan : *scans) scan.has_points_in_map = is_fixed;
+    queue_.add(*std::move(scans), {time_s, message.time_s});
+    take_known();
     return {};
+  }
+
+  /// Takes the scans whose times are known.
+  void take_known() {
+    while (auto known = queue_.take()) {
+      auto& [scans, later_s] = *known;
+      for (PointScan& scan : scans) {
+        *scan.time_s += later_s;
+        scans_.push_back(std::move(scan));
+      }
+    }
   }
 
   std::unique_ptr<Bag> bag_;
   Damage damage_;
-  std::string wanted_, chosen_;
+  std::string wanted_, chosen_, note_;
   std::vector<std::optional<KnownTopic>> topics_;
   RosMessage message_;
+  StampedQueue<std::vector<PointScan>> queue_;
   std::deque<PointScan> scans_;
   std::size_t given_ = 0;
   UnusableMessages unusable_;

@@ -36,6 +36,8 @@ class RosFields {
   std::size_t count(std::size_t field) const { return message_.count(fields_[field]); }
   std::string_view text(std::size_t field) const { return message_.text(fields_[field]); }
   std::vector<std::uint8_t> bytes(std::size_t field) const { return message_.bytes(fields_[field]); }
+  /// Whether a field is an array of bytes.
+  bool has_bytes(std::size_t field) const { return !message_.byte_array(fields_[field]).empty(); }
 
  private:
   const RosMessage& message_;
@@ -140,6 +142,11 @@ std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&));
 
 /// The error where nothing says which topic is meant. @param what  that they hold: "beams"
 tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool (*is_of_kind)(const BagTopic&));
+
+/// What is said of a topic whose stamps stand still (StampWatch).
+std::string note_of_stamps(std::string_view topic);
+/// Two notes as one, of which each may be empty.
+std::string joined_notes(std::string one, const std::string& other);
 
 /// Whether messages of the topic are beams.
 bool is_sonar(const BagTopic& topic);

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "io/internal/ping_frame.hpp"
@@ -26,11 +28,9 @@ NoBeam no_beam(std::string_view kind, std::string why = {}) {
 
 /// A beam that looks ahead: it is turned by who knows the unit of its angle.
 Beams beam_of(double bin_length_m, std::vector<std::uint8_t> intensities) {
-  // Of the heads that turn the farthest, a SeaKing, hears 300 m. Lengths in mm are beyond.
-  constexpr double kFarthest_m = 500.0;
   if (intensities.size() < 2) return no_beam(kNoSamples);
   const double range_m = bin_length_m * static_cast<double>(intensities.size());
-  if (!(range_m > 0.0 && range_m <= kFarthest_m)) {
+  if (!(range_m > 0.0 && range_m <= kMaxBeamRange_m)) {
     return no_beam(kImpossible, fmt::format("a range of {:.6g} m is none of a scanning sonar", range_m));
   }
   return std::vector{Beam{0.0, 0.0, bin_length_m, std::move(intensities)}};
@@ -49,8 +49,44 @@ Beams range_beam(double range_m, std::vector<std::uint8_t> samples) {
   return beam_of(bin_length_m, std::move(samples));
 }
 
+/// The intensities in a field; the error names numbers that are another scale's: of 12 bits, decibels, or 0 to 1.
+tl::expected<std::vector<std::uint8_t>, Unusable> intensities_of(const RosFields& message, std::size_t field) {
+  constexpr double kLowest = -0.5, kHighest = 255.5;
+  if (message.has_bytes(field) || message.count(field) == 0) return message.bytes(field);
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  bool has_fractions = false;
+  for (std::size_t i = 0; i < message.count(field); ++i) {
+    const double number = message.number(field, i);
+    if (std::isnan(number)) continue;
+    lowest = std::min(lowest, number);
+    highest = std::max(highest, number);
+    has_fractions = has_fractions || number != std::floor(number);
+  }
+  const bool are_of_1 = has_fractions && lowest >= 0.0 && highest <= 1.0;
+  if (lowest < kLowest || highest >= kHighest || are_of_1) {
+    return no_beam(kImpossible,
+                   fmt::format("intensities are {:.6g} to {:.6g}, but 0 to 255 are expected", lowest, highest));
+  }
+  return message.bytes(field);
+}
+
+/// A beam of a range, with the intensities in a field.
+Beams range_beam_of(double range_m, const RosFields& message, std::size_t field) {
+  auto intensities = intensities_of(message, field);
+  if (!intensities) return NoBeam(intensities.error());
+  return range_beam(range_m, *std::move(intensities));
+}
+
 Beams echo_beam(const RosFields& message, SonarSettings&) {
-  return range_beam(message.number(1), message.bytes(2));
+  return range_beam_of(message.number(1), message, 2);
+}
+
+Beams slice_beam_with_count(const RosFields& message, SonarSettings& settings) {
+  const auto samples = static_cast<double>(message.count(2));
+  if (message.number(3) != samples) {
+    return no_beam(kContradiction, fmt::format("nbins {} does not fit {} data", message.number(3), samples));
+  }
+  return echo_beam(message, settings);
 }
 
 Beams echo_beam_with_speed(const RosFields& message, SonarSettings& settings) {
@@ -88,20 +124,78 @@ Beams ping_settings(const RosFields& message, SonarSettings& settings) {
   return {};
 }
 
+/// Whether numbers differ by more than a driver rounds.
+bool differ(double a, double b) {
+  constexpr double kRounding = 0.1;
+  return std::fabs(a - b) > kRounding * std::max(std::fabs(a), std::fabs(b));
+}
+
 Beams scan_line_beam(const RosFields& message, SonarSettings&) {
-  return beam_of(message.number(1), message.bytes(2));
+  auto intensities = intensities_of(message, 2);
+  if (!intensities) return NoBeam(intensities.error());
+  return beam_of(message.number(1), *std::move(intensities));
+}
+
+Beams scan_line_beam_with_distances(const RosFields& message, SonarSettings& settings) {
+  const std::size_t count = message.count(3);
+  const double step_m =
+      count < 2 ? 0.0 : (message.number(3, count - 1) - message.number(3)) / static_cast<double>(count - 1);
+  if (step_m > 0.0 && differ(step_m, message.number(1))) {
+    return no_beam(kContradiction, fmt::format("bin_distance_step {:.6g} does not fit bins.distance in steps of {:.6g}",
+                                               message.number(1), step_m));
+  }
+  return scan_line_beam(message, settings);
 }
 
 /// A scan is a beam when it looks in one direction and has the profile in its intensities.
 Beams laser_beam(const RosFields& message, SonarSettings&) {
   if (message.number(0) != message.number(1)) return std::vector<Beam>{};
-  return range_beam(message.number(2), message.bytes(3));
+  return range_beam_of(message.number(2), message, 3);
+}
+
+/// The step of numbers that grow evenly; nullopt: they do not.
+std::optional<double> even_step(const RosFields& message, std::size_t field) {
+  const std::size_t count = message.count(field);
+  if (count < 3) return std::nullopt;
+  const double first = message.number(field),
+               step = (message.number(field, count - 1) - first) / static_cast<double>(count - 1);
+  if (!(step > 0.0) || !std::isfinite(step)) return std::nullopt;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(std::fabs(message.number(field, i) - first - step * static_cast<double>(i)) <= 0.5 * step)) {
+      return std::nullopt;
+    }
+  }
+  return step;
+}
+
+/// Where the ranges of a scan are those of its intensities, they tell where the bins are.
+Beams laser_beam_with_ranges(const RosFields& message, SonarSettings& settings) {
+  Beams beams = laser_beam(message, settings);
+  if (!beams || beams->empty() || message.count(4) != message.count(3)) return beams;
+  const std::optional<double> step_m = even_step(message, 4);
+  if (!step_m) return beams;
+  const double first_m = message.number(4), last_m = message.number(4, message.count(4) - 1);
+  if (differ(last_m, message.number(2))) {
+    return no_beam(kContradiction,
+                   fmt::format("range_max {:.6g} does not fit ranges up to {:.6g}", message.number(2), last_m));
+  }
+  // A range is that of the middle of a bin or of its end.
+  constexpr double kMiddle = 0.75, kMostBefore = 1e4;
+  const double before = std::round(first_m / *step_m - kMiddle);
+  if (!(before >= 1.0)) return beams;
+  if (before > kMostBefore) return no_beam(kImpossible);
+  Beam& beam = beams->front();
+  beam.bin_length_m = *step_m;
+  beam.intensities.insert(beam.intensities.begin(), static_cast<std::size_t>(before), std::uint8_t{0});
+  return beams;
 }
 
 /// The points of a beam: the k-th of n (from 1) at k / n of the range, at the angle as the head counts.
 Beams points_beam(const RosFields& message, SonarSettings&) {
   const std::size_t count = message.count(0);
-  std::vector<std::uint8_t> samples = message.bytes(2);
+  auto intensities = intensities_of(message, 2);
+  if (!intensities) return NoBeam(intensities.error());
+  std::vector<std::uint8_t> samples = *std::move(intensities);
   if (samples.size() != count) {
     return no_beam(kContradiction, fmt::format("{} values of a channel do not fit {} points", samples.size(), count));
   }
@@ -167,8 +261,14 @@ constexpr std::array kSonarTypes = {
         {"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, std::nullopt, SonarType::Holds::kSettings},
     SonarType{
         {"Ping360_config", {"sample_period"}}, "ping360", ping_settings, std::nullopt, SonarType::Holds::kSettings},
+    SonarType{{"ScanLine", {"angle", "bin_distance_step", "bins.intensity", "bins.distance"}},
+              "micron",
+              scan_line_beam_with_distances,
+              kClockwiseDegrees},
     SonarType{
         {"ScanLine", {"angle", "bin_distance_step", "bins.intensity"}}, "micron", scan_line_beam, kClockwiseDegrees},
+    SonarType{
+        {"TritechMicronSlice", {"angle", "range", "data", "nbins"}}, "micron", slice_beam_with_count, kHeadRadians},
     SonarType{{"TritechMicronSlice", {"angle", "range", "data"}}, "micron", echo_beam, kHeadRadians},
     SonarType{{"AcousticBeam", {"angle", "range_max", "intensities"}}, "miniking", echo_beam, kHeadDegrees},
     SonarType{{"PointCloud", {"points.x", "points.y", "channels.values"}, "tritech_micron/scan"},
@@ -176,6 +276,10 @@ constexpr std::array kSonarTypes = {
               points_beam,
               std::nullopt,
               SonarType::Holds::kBeamsToo},
+    SonarType{{"LaserScan", {"angle_min", "angle_max", "range_max", "intensities", "ranges"}},
+              "",
+              laser_beam_with_ranges,
+              kRosRadians},
     SonarType{{"LaserScan", {"angle_min", "angle_max", "range_max", "intensities"}}, "", laser_beam, kRosRadians},
     SonarType{{"ProjectedSonarImage",
                {"beam_directions.y", "beam_directions.z", "ranges", "image.beam_count", "image.dtype", "image.data",
@@ -191,8 +295,10 @@ std::span<const SonarType> sonar_types() {
 }
 
 Beams beam_of_fields(const RosFields& message, const BeamFields& fields) {
-  if (fields.length_of == BeamFields::Length::kBin) return beam_of(message.number(1), message.bytes(2));
-  return range_beam(message.number(1), message.bytes(2));
+  auto intensities = intensities_of(message, 2);
+  if (!intensities) return NoBeam(intensities.error());
+  if (fields.length_of == BeamFields::Length::kBin) return beam_of(message.number(1), *std::move(intensities));
+  return range_beam(message.number(1), *std::move(intensities));
 }
 
 std::optional<AngleUnit> unit_of(const BeamFields& fields) {

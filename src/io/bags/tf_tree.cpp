@@ -219,6 +219,7 @@ std::optional<TfTree::Mount> TfTree::mount_of(std::string_view frame) const {
   const auto is_down = [](std::string_view name) { return axes_of(name) == FrameAxes::kDown; };
   const Pose ours_from_frd = pose_from_rpy(Eigen::Vector3d::Zero(), std::numbers::pi, 0.0, 0.0);
   Pose pose = is_down(frame) ? ours_from_frd : Pose::Identity();
+  if (axes_of(frame) == FrameAxes::kOptical) pose.linear() = ours_from_optical().transpose();
   std::size_t at = place->second;
   for (std::size_t length = 0; length < kMaxChain && !is_vehicle_frame(names_[at]); ++length) {
     const Transforms* const link = parents[at];
