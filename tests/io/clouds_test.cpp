@@ -254,5 +254,12 @@ TEST(Clouds, CoordinatesFarFromTheOriginAreKept) {
   }
 }
 
+// Kills decimal commas and those of thousands that are read as separators.
+TEST(XyzCloud, CommasWithinNumbersAreRefused) {
+  EXPECT_THAT(cloud_error_of("1,50 2,50 -3,25\n1,60 2,50 -3,25\n"), HasSubstr("\"1,50\" has a comma"));
+  EXPECT_THAT(cloud_error_of("1,000.50 2,500.25 -3.00\n"), HasSubstr("\"1,000.50\" has a comma"));
+  EXPECT_EQ(cloud_error_of("1.5, 2.5, -3.25, 7\n1.5,2.5,-3.25\n1 2 3 255,0,0\n"), "");
+}
+
 }  // namespace
 }  // namespace pingvox

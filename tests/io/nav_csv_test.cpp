@@ -106,5 +106,14 @@ TEST(NavCsv, ReadsBackWhatItWrote) {
   }
 }
 
+TEST(NavCsv, ValidIsOneOrZero) {
+  const auto nav = read_as_csv(
+      "time_s,source,quantity,x,y,z,valid\n1,dvl,velocity,1,2,3,true\n2,dvl,velocity,1,2,3,1\n3,dvl,velocity,1,2\n");
+  ASSERT_TRUE(nav);
+  EXPECT_EQ(nav->records, 1U);
+  ASSERT_EQ(nav->damage.size(), 2U);
+  EXPECT_EQ(nav->damage[0].what, "line whose valid is neither 0 nor 1");
+}
+
 }  // namespace
 }  // namespace pingvox

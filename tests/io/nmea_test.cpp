@@ -197,5 +197,18 @@ INSTANTIATE_TEST_SUITE_P(
             "raw_gps_data.txt", 1724, NavClock::kUnix, {{"GNRMC", 154}, {"GNGGA", 154}, {"GNGLL", 154}}, 1568320597.0},
         NmeaRecording{"raw_rth_data.txt", 90, NavClock::kUnknown, {}, 0.0}));
 
+// Kills places and directions that are none: 75 minutes, and more than a turn or a quarter of it.
+TEST(Nmea, ImpossibleValuesAreDamage) {
+  const NavFile nav = read_as_nmea(
+      "$GPGGA,120000.00,5475.0000,N,01000.0000,E,1,9,1.0,0,M,0,M,,\n$GPGGA,120001.00,9130.0000,N,01000.0000,E,1,9,1.0,"
+      "0,M,"
+      "0,M,,\n$HEHDT,400.0,T\n$HEHDT,360.0,T\n$GPGGA,120002.00,5415.0000,N,01000.0000,E,1,9,1.0,0,M,0,M,,\n");
+  EXPECT_EQ(samples_of(nav, "GPGGA").size(), 1U);
+  EXPECT_EQ(samples_of(nav, "HEHDT").size(), 1U);
+  ASSERT_EQ(nav.damage.size(), 1U);
+  EXPECT_EQ(nav.damage[0].what, "impossible values");
+  EXPECT_EQ(nav.damage[0].count, 3U);
+}
+
 }  // namespace
 }  // namespace pingvox

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <string>
@@ -42,6 +44,32 @@ XyzStart start_of(std::string_view text) {
   return {announced || names_xyz(*first) ? behind : lines, announced};
 }
 
+/// A number with a comma within, as "1,50" or "2,500.25", in a line whose numbers are separated by blanks; empty: there
+/// is none.
+std::string_view word_with_comma(std::string_view line) {
+  constexpr std::string_view kBlanks = " \t";
+  std::string_view found;
+  std::size_t words = 0;
+  for (line = trim(line); !line.empty() && words < 3; line = trim(line), ++words) {
+    const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+    line.remove_prefix(word.size());
+    const std::string_view within = trim(word, ",");
+    if (found.empty() && within.find(',') != std::string_view::npos) found = word;
+  }
+  return words == 3 ? found : std::string_view();
+}
+
+/// Such a number in one of the first lines.
+std::string_view word_with_comma(Lines lines) {
+  constexpr int kLines = 10;
+  for (int looked_at = 0; looked_at < kLines; ++looked_at) {
+    const auto line = lines.next_with_content();
+    if (!line) break;
+    if (const std::string_view word = word_with_comma(*line); !word.empty()) return word;
+  }
+  return {};
+}
+
 }  // namespace
 
 bool looks_like_xyz(std::span<const std::uint8_t> bytes) {
@@ -66,6 +94,12 @@ Result<std::unique_ptr<ScanSource>> open_xyz(FileBytes file, Damage damage, cons
   for (std::size_t axis = 0; axis < 3; ++axis) cloud.xyz[axis].word = axis;
   const XyzStart start = start_of(text_of(file.view()));
   cloud.announced = start.announced;
+  if (const std::string_view word = word_with_comma(start.points); !word.empty()) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{}: \"{}\" has a comma between blanks: commas of decimals and of thousands are not read, "
+                            "only points",
+                            file.name, printable(word)));
+  }
   return text_cloud(std::move(file), start.points, cloud, damage, origin_m.value_or(Eigen::Vector3d::Zero()));
 }
 

@@ -1,7 +1,11 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
+#include <string>
 
 #include "io/bytes/text.hpp"
 #include "io/clouds/scans.hpp"
@@ -44,6 +48,26 @@ std::optional<OctomapPose> pose_in(std::string_view node_line) {
   const auto n = numbers_in<6>(node_line.substr(end_of_word));
   if (!n) return std::nullopt;
   return OctomapPose::from_rpy({(*n)[0], (*n)[1], (*n)[2]}, (*n)[3], (*n)[4], (*n)[5]);
+}
+
+/// What is wrong with the angles of a log's scans; empty: nothing. Single ones may be damaged.
+std::string problem_of_angles(std::string_view text) {
+  constexpr float kMaxAngle_rad = 2.1F * std::numbers::pi_v<float>;
+  constexpr std::size_t kOneOf = 10;
+  std::size_t scans = 0, beyond = 0;
+  float first_rad = 0.0F;
+  Lines lines(text);
+  while (const auto line = lines.next()) {
+    if (kind_of_line(*line) != LineKind::kScan) continue;
+    ++scans;
+    const auto n = numbers_in<6>(line->substr(kNode.size()));
+    if (!n) continue;
+    const float largest_rad = std::max({std::fabs((*n)[3]), std::fabs((*n)[4]), std::fabs((*n)[5])});
+    if (!(largest_rad > kMaxAngle_rad) || !std::isfinite(largest_rad)) continue;
+    if (beyond++ == 0) first_rad = largest_rad;
+  }
+  if (beyond == 0 || beyond * kOneOf < scans) return {};
+  return fmt::format("an angle of {:.6g} rad behind NODE is beyond 2 pi: are they in degrees?", first_rad);
 }
 
 class ScanLogSource : public ScanSource {
@@ -125,6 +149,9 @@ bool looks_like_scan_log(std::span<const std::uint8_t> bytes) {
 }
 
 Result<std::unique_ptr<ScanSource>> open_scan_log(FileBytes file, Damage damage) {
+  if (const std::string problem = problem_of_angles(text_of(file.view())); !problem.empty()) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, problem));
+  }
   return std::make_unique<ScanLogSource>(std::move(file), damage);
 }
 

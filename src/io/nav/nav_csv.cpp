@@ -57,33 +57,35 @@ struct NamedSample {
   NavSample sample;
 };
 
-/// nullopt: the line is damaged.
-std::optional<NamedSample> sample_in(std::string_view line, const std::vector<std::size_t>& columns) {
+constexpr std::string_view kNoSample = "line that is no sample", kNotValid = "line whose valid is neither 0 nor 1";
+
+/// The error is the kind of damage.
+tl::expected<NamedSample, std::string_view> sample_in(std::string_view line, const std::vector<std::size_t>& columns) {
   std::array<std::string_view, kColumns.size()> fields;
   for (const std::size_t column : columns) {
     const auto field = cut_field(line, ',');
-    if (!field) return std::nullopt;
+    if (!field) return tl::unexpected(kNoSample);
     if (column != kNone) fields[column] = *field;
   }
-  if (!line.empty()) return std::nullopt;
+  if (!line.empty()) return tl::unexpected(kNoSample);
   NamedSample named;
   const auto time_s = number_in(fields[kTime]);
   const auto quantity = nav_quantity_of(fields[kQuantity]);
-  if (!time_s || !quantity || fields[kSource].empty()) return std::nullopt;
+  if (!time_s || !quantity || fields[kSource].empty()) return tl::unexpected(kNoSample);
   named.source = fields[kSource];
   named.quantity = *quantity;
   named.sample.time_s = *time_s;
   for (int i = 0; i < numbers_of(*quantity); ++i) {
     const auto value = number_in(fields[kX + static_cast<std::size_t>(i)]);
-    if (!value) return std::nullopt;
+    if (!value) return tl::unexpected(kNoSample);
     named.sample.value[i] = *value;
     const std::string_view deviation = fields[kSdX + static_cast<std::size_t>(i)];
     if (deviation.empty()) continue;
     const auto number = number_in(deviation);
-    if (!number || *number < 0.0) return std::nullopt;
+    if (!number || *number < 0.0) return tl::unexpected(kNoSample);
     named.sample.deviation[i] = *number;
   }
-  if (fields[kValid] != "" && fields[kValid] != "0" && fields[kValid] != "1") return std::nullopt;
+  if (fields[kValid] != "" && fields[kValid] != "0" && fields[kValid] != "1") return tl::unexpected(kNotValid);
   named.sample.valid = fields[kValid] != "0";
   return named;
 }
@@ -116,7 +118,7 @@ NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
        at = text.size() - lines.left()) {
     const auto named = sample_in(*line, columns);
     if (!named) {
-      add_damage(reading.damage, "line that is no sample", at);
+      add_damage(reading.damage, named.error(), at);
       continue;
     }
     sources.add(named->source, named->quantity, named->sample);

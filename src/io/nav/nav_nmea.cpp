@@ -82,8 +82,8 @@ std::set<std::string_view> talkers_with_checksums(std::string_view text) {
   return talkers;
 }
 
-/// Calls `take` for each sentence with a right checksum, or without one of a device that sends none. Others, and
-/// pieces, are damage.
+/// Calls `take` for each sentence with a right checksum, or without one of a device that sends none, and its place in
+/// the text. Others, and pieces, are damage.
 /// @return how many there were
 template <class Take>
 std::size_t for_each_sentence(std::string_view text, std::vector<DamageKind>& damage, Take take) {
@@ -102,7 +102,7 @@ std::size_t for_each_sentence(std::string_view text, std::vector<DamageKind>& da
       add_damage(damage, "wrong checksum", raw.at);
     } else {
       ++sentences;
-      take(Sentence(raw.body));
+      take(Sentence(raw.body), raw.at);
     }
   });
   return sentences;
@@ -158,7 +158,7 @@ class Clock {
   explicit Clock(std::string_view text) {
     std::vector<DamageKind> ignored;
     std::optional<double> sure_s, unsure_s;
-    for_each_sentence(text, ignored, [&](const Sentence& sentence) {
+    for_each_sentence(text, ignored, [&](const Sentence& sentence, std::size_t) {
       const SentenceTime time = time_in(sentence);
       if (time.of_day_s && !time_s_) time_s_ = time.of_day_s;
       std::optional<double>& date_s = time.is_sure ? sure_s : unsure_s;
@@ -205,6 +205,28 @@ std::optional<Eigen::Vector2d> place_in(const Sentence& sentence, std::size_t fi
   const auto longitude = angle(first + 2, "E", "W", std::numbers::pi);
   if (!latitude || !longitude) return std::nullopt;
   return Eigen::Vector2d(*latitude, *longitude);
+}
+
+/// Whether an angle of degrees and minutes, if there is one, is within a limit.
+bool is_possible_angle(std::optional<double> number, double limit_deg) {
+  constexpr double kDegrees = 100.0, kMinutes = 60.0;
+  if (!number) return true;
+  const double size = std::fabs(*number);
+  return std::fmod(size, kDegrees) < kMinutes && size <= limit_deg * kDegrees;
+}
+
+/// Whether places and directions are some.
+bool is_possible(const Sentence& sentence) {
+  constexpr double kPole_deg = 90.0, kHalfTurn_deg = 180.0, kTurn_deg = 360.0;
+  const auto is_place = [&](std::size_t first) {
+    return is_possible_angle(sentence.number(first), kPole_deg) &&
+           is_possible_angle(sentence.number(first + 2), kHalfTurn_deg);
+  };
+  if (sentence.is("GGA")) return is_place(2);
+  if (sentence.is("RMC")) return is_place(3);
+  if (sentence.is("GLL")) return is_place(1);
+  const bool is_heading = sentence.is("HDT") || sentence.is("HDM") || sentence.is("THS") || sentence.is("HDG");
+  return !is_heading || std::fabs(sentence.number(1).value_or(0.0)) <= kTurn_deg;
 }
 
 class NmeaNav {
@@ -283,7 +305,7 @@ bool looks_like_nmea(std::span<const std::uint8_t> bytes) {
   const bool is_text =
       std::ranges::all_of(beginning, [](char c) { return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r'); });
   std::vector<DamageKind> ignored;
-  return is_text && for_each_sentence(beginning, ignored, [](const Sentence&) {}) > 0;
+  return is_text && for_each_sentence(beginning, ignored, [](const Sentence&, std::size_t) {}) > 0;
 }
 
 NavReading read_nmea(std::span<const std::uint8_t> bytes) {
@@ -292,8 +314,13 @@ NavReading read_nmea(std::span<const std::uint8_t> bytes) {
   Clock clock(text);
   if (clock.has_date()) reading.clock = NavClock::kUnix;
   NmeaNav nav;
-  reading.records = for_each_sentence(text, reading.damage, [&](const Sentence& sentence) {
-    nav.add(sentence, clock.time_of(sentence).value_or(0.0));
+  reading.records = for_each_sentence(text, reading.damage, [&](const Sentence& sentence, std::size_t at) {
+    const double time_s = clock.time_of(sentence).value_or(0.0);
+    if (is_possible(sentence)) {
+      nav.add(sentence, time_s);
+    } else {
+      add_damage(reading.damage, "impossible values", at);
+    }
   });
   reading.sources = nav.take();
   if (clock.has_time()) return reading;
