@@ -119,6 +119,15 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
   const SlamSolution& solution = found->solution;
   for (const std::string& warning : nav_warnings(recording)) console.say(warning);
   for (const auto& [file, note] : found->notes) console.say(fmt::format("{}: {}", file, note));
+  // A few before and after the navigation are usual.
+  if (2 * found->no_pose.count > found->beams) {
+    const auto& poses = solution.trajectory.poses();
+    console.say(
+        fmt::format("{}: {} of {} beams are outside the time of the navigation, {:.3f} s to {:.3f} s, the first "
+                    "at {:.3f} s ({})",
+                    inputs_text(command), found->no_pose.count, found->beams, poses.front().time_s, poses.back().time_s,
+                    found->no_pose.first_s.value_or(0.0), kNavMustCover));
+  }
   seconds.read = found->read_s;
   seconds.solve = found->solve_s;
   SlamInputs inputs{.others = other_sources(recording.nav().log, kMotionQuantities, used_sources(solution))};

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "io/internal/beams_in_order.hpp"
 #include "pingvox/recording/recording.hpp"
@@ -51,8 +52,9 @@ Estimator estimator_of(Estimation estimation, const SlamOptions& options) {
   return SlamSmoother(options);
 }
 
-/// Gives the estimator the beams of a log.
-Result<void> add_beams(const Recording& recording, OpenedLog log, Estimator& estimator, RecordingSlam& slam) {
+/// Gives the estimator the beams of a log, and notes their times.
+Result<void> add_beams(const Recording& recording, OpenedLog log, Estimator& estimator, RecordingSlam& slam,
+                       std::vector<double>& times_s) {
   const std::string name = log.name;
   Result<std::unique_ptr<BeamSource>> source = only_beams(std::move(log.log), name);
   if (!source) return tl::unexpected(source.error());
@@ -64,6 +66,7 @@ Result<void> add_beams(const Recording& recording, OpenedLog log, Estimator& est
     Result<std::optional<Beam>> beam = beams->next();
     if (!beam) return tl::unexpected(beam.error());
     if (!*beam) break;
+    times_s.push_back((*beam)->time_s);
     std::visit([&](auto& to) { to.add(std::move(**beam)); }, estimator);
   }
   slam.skipped += beams->skipped();
@@ -95,10 +98,11 @@ Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& option
     return fail(added.error().code, fmt::format("{}: {}", recording.nav_names(), added.error().message));
   }
   slam.skipped = recording.nav().damaged;
+  std::vector<double> times_s;
   for (std::size_t i = 0; i < recording.logs().size(); ++i) {
     Result<OpenedLog> log = i == 0 && first ? *std::exchange(first, std::nullopt) : recording.open_log(i);
     if (!log) return tl::unexpected(log.error());
-    if (const auto read = add_beams(recording, *std::move(log), estimator, slam); !read) {
+    if (const auto read = add_beams(recording, *std::move(log), estimator, slam, times_s); !read) {
       return tl::unexpected(read.error());
     }
   }
@@ -109,6 +113,10 @@ Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& option
     return fail(solution.error().code, fmt::format("{}: {}", names_of(recording), solution.error().message));
   }
   slam.solution = *std::move(solution);
+  slam.beams = times_s.size();
+  for (const double time_s : times_s) {
+    if (!slam.solution.trajectory.at(time_s)) slam.no_pose.add(time_s);
+  }
   slam.solve_s = seconds_since(start);
   return slam;
 }

@@ -160,6 +160,8 @@ struct RecordingSlam {
   std::size_t skipped = 0;                 ///< records that could not be read
   std::vector<NavFiles::Note> notes = {};  ///< how the logs are read, where that is not as their formats say
   double read_s = 0.0, solve_s = 0.0;      ///< of wall time
+  std::size_t beams = 0;                   ///< that were read
+  LeftOut no_pose = {};                    ///< of these, those outside of the time of the trajectory, or in its gaps
 
   /// For build_map, with the place of the sonar as it was found.
   VehiclePath path() const;

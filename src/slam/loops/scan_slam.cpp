@@ -65,7 +65,7 @@ double reach_of(const std::vector<LevelScan>& scans) {
   for (const LevelScan& scan : scans) {
     for (const Eigen::Vector2d& point : scan.points_m) ranges_m.push_back(point.norm());
   }
-  return reach_of(std::move(ranges_m));
+  return pingvox::reach_of(std::move(ranges_m));
 }
 
 std::vector<PoseEdge> odometry_edges(const std::vector<KeyFrame>& frames, double reach_m) {
