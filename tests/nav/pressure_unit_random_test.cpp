@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "pingvox/nav/pressure_unit.hpp"
+#include "nav/internal/pressure_unit.hpp"
 
 namespace pingvox {
 namespace {

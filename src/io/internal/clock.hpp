@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pingvox/nav/time_span.hpp"
+
 namespace pingvox {
 
 /// The date and time of day anywhere in the name of a log, as Ping Viewer writes it ("20240405-091648974.bin") and
@@ -14,11 +16,6 @@ std::optional<double> date_in_name(std::string_view path);
 
 /// "2023-05-04 17:22:21" of seconds since 1970; "" of the times of clocks that do not count from there.
 std::string date_text(double time_s);
-
-/// A stretch of time.
-struct TimeSpan {
-  double from_s = 0.0, to_s = 0.0;
-};
 
 /// An offset of local time from UTC that is in civil use.
 struct TimeZone {

@@ -60,7 +60,7 @@ Frames key_frames(const std::vector<LevelScan>& scans, double reach_m) {
   return result;
 }
 
-double reach_of(const std::vector<LevelScan>& scans) {
+double reach_of_scans(const std::vector<LevelScan>& scans) {
   std::vector<double> ranges_m;
   for (const LevelScan& scan : scans) {
     for (const Eigen::Vector2d& point : scan.points_m) ranges_m.push_back(point.norm());
@@ -136,7 +136,7 @@ Result<ScanSlamSolution> ScanSlam::solve() const {
     }
     ScanSlamReport report;
     report.scans = scans.size();
-    report.reach_m = reach_of(scans);
+    report.reach_m = reach_of_scans(scans);
     if (!(report.reach_m > 0.0)) return fail(Error::Code::kUnsupported, "the scans have no points");
     const auto [frames, numbers, frame_of] = key_frames(scans, report.reach_m);
     report.key_frames = frames.size();

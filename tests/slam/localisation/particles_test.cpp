@@ -98,10 +98,10 @@ TEST(Particles, TheSpreadNearAPoseIsThatOfTheParticlesThere) {
 TEST(Particles, EachPlaceIsAGroupWithItsShare) {
   std::mt19937_64 random(9);
   Particles particles;
-  add_around({0.0, 0.0, 0.0}, 700, 0.0, random, particles);
-  add_around({5.0, 0.0, 0.0}, 250, 0.0, random, particles);
-  add_around({0.0, 0.0, 2.0}, 45, 0.0, random, particles);  // the same place, turned
-  add_around({0.0, 9.0, 0.0}, 5, 0.0, random, particles);
+  add_around({{0.0, 0.0}, 0.0}, 700, 0.0, random, particles);
+  add_around({{5.0, 0.0}, 0.0}, 250, 0.0, random, particles);
+  add_around({{0.0, 0.0}, 2.0}, 45, 0.0, random, particles);  // the same place, turned
+  add_around({{0.0, 9.0}, 0.0}, 5, 0.0, random, particles);
   const std::vector<PoseHypothesis> groups = groups_of(particles);
   ASSERT_EQ(groups.size(), 4U);
   const std::vector<double> weights = {0.7, 0.25, 0.045, 0.005};
