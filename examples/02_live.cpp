@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     auto goes_on = live->step();
     if (!goes_on) status = report(goes_on.error());
     for (const pingvox::LiveEvent& event : live->take_events()) {
-      if (const pingvox::Error* error = error_of(event)) status = report(*error);
+      if (const pingvox::Error* error = pingvox::error_of(event)) status = report(*error);
     }
     if (!goes_on.value_or(false)) break;
     if (live->time_s() < write_at_s || live->report().beams == 0) continue;
