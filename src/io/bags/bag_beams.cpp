@@ -437,7 +437,8 @@ std::string note_of_stamps(std::string_view topic) {
 }
 
 std::string joined_notes(std::string one, const std::string& other) {
-  return std::move(one) + (one.empty() || other.empty() ? "" : "; ") + other;
+  if (!one.empty() && !other.empty()) one += "; ";
+  return one + other;
 }
 
 bool is_sonar(const BagTopic& topic) {
