@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "pingvox/limits.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -33,6 +37,23 @@ class OptionErrors {
     if (!(value >= low && value <= high)) add(fmt::format("{} must be in {}..{}, is {}", name, low, high, value));
   }
 
+  /// "FIELD must be LIMITS, is NUMBER", unless they contain it.
+  /// @param number  a field of the options, by which limits_of() knows it
+  template <class Number>
+  void require(std::string_view field, const Number& number, const Limits& limits) {
+    if (limits.contain(static_cast<double>(number))) return;
+    require(false, field, limits.text(), number);
+    limits_.emplace_back(&number, limits);
+  }
+
+  /// The limits that a field of the options is not within; nullopt: it is, or its rule is another.
+  std::optional<Limits> limits_of(const void* field) const {
+    for (const auto& [broken, limits] : limits_) {
+      if (broken == field) return limits;
+    }
+    return std::nullopt;
+  }
+
   /// kBadOption, "STAGE: TEXT; TEXT", if there is any.
   Result<void> result(std::string_view stage) const {
     if (texts_.empty()) return {};
@@ -41,6 +62,7 @@ class OptionErrors {
 
  private:
   std::string texts_;
+  std::vector<std::pair<const void*, Limits>> limits_;
 };
 
 }  // namespace pingvox

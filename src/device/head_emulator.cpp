@@ -4,15 +4,19 @@
 
 namespace pingvox {
 
-Result<void> HeadEmulatorOptions::validate() const {
+OptionErrors HeadEmulatorOptions::errors() const {
   OptionErrors errors;
-  errors.require_within("pings_per_s", pings_per_s, 0.1, 100'000.0);
-  errors.require_within("lost", lost, 0.0, 0.5);
-  errors.require_within("doubled", doubled, 0.0, 0.5);
-  errors.require_within("damaged", damaged, 0.0, 0.5);
-  errors.require_within("stall_s", stall_s, 0.0, 3600.0);
-  errors.require_within("lines_per_request", lines_per_request, 1, 2);
-  return errors.result("emulator");
+  errors.require("pings_per_s", pings_per_s, {0.1, 100'000.0});
+  errors.require("lost", lost, {0.0, 0.5});
+  errors.require("doubled", doubled, {0.0, 0.5});
+  errors.require("damaged", damaged, {0.0, 0.5});
+  errors.require("stall_s", stall_s, {0.0, 3600.0});
+  errors.require("lines_per_request", lines_per_request, {1.0, 2.0});
+  return errors;
+}
+
+Result<void> HeadEmulatorOptions::validate() const {
+  return errors().result("emulator");
 }
 
 std::vector<std::uint8_t> LineFaults::pass(std::span<const std::uint8_t> bytes) {

@@ -71,13 +71,17 @@ Message bytes_of(std::string_view text) {
 
 }  // namespace
 
-Result<void> NavEmulatorOptions::validate() const {
+OptionErrors NavEmulatorOptions::errors() const {
   OptionErrors errors;
-  errors.require_within("reports_per_s", reports_per_s, 0.1, 1000.0);
-  errors.require_within("lost", lost, 0.0, 0.5);
-  errors.require_within("doubled", doubled, 0.0, 0.5);
-  errors.require_within("damaged", damaged, 0.0, 0.5);
-  return errors.result("emulator of navigation");
+  errors.require("reports_per_s", reports_per_s, {0.1, 1000.0});
+  errors.require("lost", lost, {0.0, 0.5});
+  errors.require("doubled", doubled, {0.0, 0.5});
+  errors.require("damaged", damaged, {0.0, 0.5});
+  return errors;
+}
+
+Result<void> NavEmulatorOptions::validate() const {
+  return errors().result("emulator of navigation");
 }
 
 NavEmulator::Say NavEmulator::mavlink(PoseAt pose_at) {

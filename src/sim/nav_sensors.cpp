@@ -151,26 +151,29 @@ NavSource simulate_depth(const Trajectory& trajectory, double from_s, double to_
 
 }  // namespace
 
-Result<void> NavSensorOptions::validate() const {
+OptionErrors NavSensorOptions::errors() const {
+  using enum Limits::Ends;
   OptionErrors errors;
-  const auto rate = [&errors](std::string_view name, double value) {
-    errors.require(value > 0.0 && value <= 100.0, name, "> 0 and at most 100", value);
-  };
-  rate("dvl_per_s", dvl_per_s);
-  errors.require_within("dvl_noise_m_s", dvl_noise_m_s, 0.0, 10.0);
-  errors.require_within("dvl_outliers", dvl_outliers, 0.0, 1.0);
-  errors.require(dvl_lost >= 0.0 && dvl_lost < 1.0, "dvl_lost", "0 or more and less than 1", dvl_lost);
-  errors.require_within("dvl_yaw_rad", dvl_yaw_rad, 0.0, 1.0);
-  errors.require_within("dvl_scale", dvl_scale, 0.0, 0.1);
-  rate("attitude_per_s", attitude_per_s);
-  errors.require_within("attitude_noise_rad", attitude_noise_rad, 0.0, 1.0);
-  errors.require_within("compass_deviation_rad", compass_deviation_rad, 0.0, 0.3);
-  errors.require_within("gyro_noise_rad_s", gyro_noise_rad_s, 0.0, 1.0);
-  errors.require_within("gyro_drift_rad_s", gyro_drift_rad_s, 0.0, 1.0);
-  rate("depth_per_s", depth_per_s);
-  errors.require_within("depth_noise_m", depth_noise_m, 0.0, 10.0);
-  errors.require_within("delay_s", delay_s, -3600.0, 3600.0);
-  return errors.result("navigation");
+  constexpr Limits kRates{0.0, 100.0, kLowOut};
+  errors.require("dvl_per_s", dvl_per_s, kRates);
+  errors.require("dvl_noise_m_s", dvl_noise_m_s, {0.0, 10.0});
+  errors.require("dvl_outliers", dvl_outliers, {0.0, 1.0});
+  errors.require("dvl_lost", dvl_lost, {0.0, 1.0, kHighOut});
+  errors.require("dvl_yaw_rad", dvl_yaw_rad, {0.0, 1.0});
+  errors.require("dvl_scale", dvl_scale, {0.0, 0.1});
+  errors.require("attitude_per_s", attitude_per_s, kRates);
+  errors.require("attitude_noise_rad", attitude_noise_rad, {0.0, 1.0});
+  errors.require("compass_deviation_rad", compass_deviation_rad, {0.0, 0.3});
+  errors.require("gyro_noise_rad_s", gyro_noise_rad_s, {0.0, 1.0});
+  errors.require("gyro_drift_rad_s", gyro_drift_rad_s, {0.0, 1.0});
+  errors.require("depth_per_s", depth_per_s, kRates);
+  errors.require("depth_noise_m", depth_noise_m, {0.0, 10.0});
+  errors.require("delay_s", delay_s, {-3600.0, 3600.0});
+  return errors;
+}
+
+Result<void> NavSensorOptions::validate() const {
+  return errors().result("navigation");
 }
 
 SimulatedNav simulate_nav(const Trajectory& map_from_body, double from_s, double to_s,

@@ -168,27 +168,31 @@ std::vector<std::uint32_t> clean_beam(const World& all_world, const Pose& map_fr
 
 }  // namespace
 
-Result<void> SonarOptions::validate() const {
+OptionErrors SonarOptions::errors() const {
+  using enum Limits::Ends;
   OptionErrors errors;
-  errors.require_within("beams_per_turn", beams_per_turn, 4, 6400);
-  errors.require_within("bins", bins, 1, 10'000);
-  errors.require_within("bin_length_m", bin_length_m, 1e-6, 1.0);
+  errors.require("beams_per_turn", beams_per_turn, {4.0, 6400.0});
+  errors.require("bins", bins, {1.0, 10'000.0});
+  errors.require("bin_length_m", bin_length_m, {1e-6, 1.0});
   errors.require(beams_per_s > 0.0 && std::isfinite(beams_per_s), "beams_per_s", "> 0", beams_per_s);
-  errors.require(beam_width_rad > 0.0 && beam_width_rad <= 1.0, "beam_width_rad", "> 0 and at most 1", beam_width_rad);
-  errors.require(beam_height_rad > 0.0 && beam_height_rad <= 2.0, "beam_height_rad", "> 0 and at most 2",
-                 beam_height_rad);
-  errors.require_within("side_lobes", side_lobes, 0.0, 1.0);
-  errors.require_within("bearing_step_rad", bearing_step_rad, 0.0, 1.0);
-  errors.require_within("ringing_m", ringing_m, 0.0, 10'000.0);
-  errors.require_within("gain", gain, 0.0, 1.0);
-  errors.require_within("compression", compression, 0.1, 1.0);
-  errors.require_within("absorption_db_per_m", absorption_db_per_m, 0.0, 10.0);
-  errors.require_within("speckle", speckle, 0.0, 1.0);
-  errors.require_within("noise", noise, 0.0, 255.0);
-  errors.require_within("multipath", multipath, 0.0, 1.0);
-  errors.require_within("silent", silent, 0.0, 1.0);
-  errors.require(lost >= 0.0 && lost < 1.0, "lost", "0 or more and less than 1", lost);
-  return errors.result("sonar");
+  errors.require("beam_width_rad", beam_width_rad, {0.0, 1.0, kLowOut});
+  errors.require("beam_height_rad", beam_height_rad, {0.0, 2.0, kLowOut});
+  errors.require("side_lobes", side_lobes, {0.0, 1.0});
+  errors.require("bearing_step_rad", bearing_step_rad, {0.0, 1.0});
+  errors.require("ringing_m", ringing_m, {0.0, 10'000.0});
+  errors.require("gain", gain, {0.0, 1.0});
+  errors.require("compression", compression, {0.1, 1.0});
+  errors.require("absorption_db_per_m", absorption_db_per_m, {0.0, 10.0});
+  errors.require("speckle", speckle, {0.0, 1.0});
+  errors.require("noise", noise, {0.0, 255.0});
+  errors.require("multipath", multipath, {0.0, 1.0});
+  errors.require("silent", silent, {0.0, 1.0});
+  errors.require("lost", lost, {0.0, 1.0, kHighOut});
+  return errors;
+}
+
+Result<void> SonarOptions::validate() const {
+  return errors().result("sonar");
 }
 
 TrueRange true_range(const World& all_world, const Pose& map_from_sensor, double bearing_rad,

@@ -120,11 +120,16 @@ Eigen::Matrix3d rotate(double yaw_rad) {
 
 }  // namespace
 
-Result<void> TravelOptions::validate() const {
+OptionErrors TravelOptions::errors() const {
+  using enum Limits::Ends;
   OptionErrors errors;
-  errors.require(speed_m_s > 0.0 && speed_m_s <= 100.0, "speed_m_s", "> 0 and at most 100", speed_m_s);
-  errors.require(pose_every_s > 0.0 && pose_every_s <= 3600.0, "pose_every_s", "> 0 and at most 3600", pose_every_s);
-  return errors.result("vehicle");
+  errors.require("speed_m_s", speed_m_s, {0.0, 100.0, kLowOut});
+  errors.require("pose_every_s", pose_every_s, {0.0, 3600.0, kLowOut});
+  return errors;
+}
+
+Result<void> TravelOptions::validate() const {
+  return errors().result("vehicle");
 }
 
 double length_m(const Route& route) {
@@ -195,11 +200,15 @@ Trajectory drive_by_hand(const Route& route, const TravelOptions& options, std::
   return *std::move(trajectory);
 }
 
-Result<void> DriftOptions::validate() const {
+OptionErrors DriftOptions::errors() const {
   OptionErrors errors;
-  errors.require_within("position_m", position_m, 0.0, 1000.0);
-  errors.require_within("heading_rad", heading_rad, 0.0, 10.0);
-  return errors.result("drift");
+  errors.require("position_m", position_m, {0.0, 1000.0});
+  errors.require("heading_rad", heading_rad, {0.0, 10.0});
+  return errors;
+}
+
+Result<void> DriftOptions::validate() const {
+  return errors().result("drift");
 }
 
 Trajectory add_drift(const Trajectory& truth, const DriftOptions& options) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,9 +15,11 @@
 #include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/device/micron_driver.hpp"
 #include "pingvox/device/ping360_driver.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/obstacle_sectors.hpp"
+#include "pingvox/option_errors.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
@@ -111,6 +114,20 @@ TEST(BrokenOptions, OfMapsAreAllNamed) {
   expect_all_named<ViewOptions>({{"min_range_m", [](auto& o) { o.min_range_m = -1.0; }},
                                  {"max_range_m", [](auto& o) { o.max_range_m = kNaN; }},
                                  {"height_rad", [](auto& o) { o.height_rad = 4.0; }}});
+}
+
+// Kills limits that are found by the order of the fields, not by the field.
+TEST(BrokenOptions, LimitsAreThoseOfTheField) {
+  SonarOptions options;
+  EXPECT_EQ(options.errors().limits_of(&options.beam_width_rad), std::nullopt);
+  options.beam_width_rad = 2.0;
+  options.lost = 1.0;
+  const OptionErrors errors = options.errors();
+  ASSERT_TRUE(errors.limits_of(&options.beam_width_rad) && errors.limits_of(&options.lost));
+  EXPECT_EQ(errors.limits_of(&options.beam_width_rad)->text(), "above 0 and at most 1");
+  EXPECT_EQ(errors.limits_of(&options.beam_width_rad)->text(kDegree_rad), "above 0 and at most 57.2958");
+  EXPECT_EQ(errors.limits_of(&options.lost)->text(), "at least 0 and below 1");
+  EXPECT_EQ(errors.limits_of(&options.gain), std::nullopt);
 }
 
 // Kills a message of the first broken field alone.

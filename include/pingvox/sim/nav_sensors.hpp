@@ -9,6 +9,8 @@
 
 namespace pingvox {
 
+class OptionErrors;
+
 /// Navigation sensors of a simulated vehicle, all at the origin of its body frame: a DVL, an attitude sensor with
 /// compass and gyros, and a depth sensor. Errors that are constant over a run are drawn with the standard deviations
 /// given here. Defaults: about those of the marina's recording (docs/slam-figures.md).
@@ -40,6 +42,7 @@ struct NavSensorOptions {
   double delay_s =
       0.1;  ///< by which the clock of all three is ahead of the sonar's: times are too late by it; -3600..3600
 
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 

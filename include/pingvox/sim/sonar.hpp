@@ -16,6 +16,8 @@
 
 namespace pingvox {
 
+class OptionErrors;
+
 /// A mechanically scanning sonar (docs/simulator.md). Defaults: similar to that of the paper's recording.
 struct SonarOptions {
   std::uint64_t seed = 1;  ///< of speckle, noise and dropouts, not of the world
@@ -45,6 +47,7 @@ struct SonarOptions {
   Pose body_from_sensor = Pose::Identity();  ///< the mount: pose of the head on the vehicle
 
   double range_m() const { return static_cast<double>(bins) * bin_length_m; }
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 

@@ -4,6 +4,8 @@
 
 namespace pingvox {
 
+class OptionErrors;
+
 /// A square tank with vertical walls and a floater (a vertical cylinder). The map frame is that of a still sensor in
 /// it. Defaults: similar to the tank of the paper's recording.
 struct TankOptions {
@@ -16,6 +18,7 @@ struct TankOptions {
   double floater_range_m = 1.8;      ///< of its axis; the sensor is outside of it
   double floater_radius_m = 0.15;    ///< >= 0; 0: no floater
 
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 

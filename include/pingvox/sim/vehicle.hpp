@@ -9,6 +9,8 @@
 
 namespace pingvox {
 
+class OptionErrors;
+
 /// A smooth curve through waypoints.
 struct Route {
   enum class End {
@@ -23,6 +25,7 @@ struct TravelOptions {
   double speed_m_s = 0.25;     ///< > 0, at most 100
   double pose_every_s = 0.25;  ///< > 0, at most 3600
 
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
@@ -45,6 +48,7 @@ struct DriftOptions {
   double position_m = 0.0;   ///< standard deviation along x and along y, each, after a minute; >= 0
   double heading_rad = 0.0;  ///< standard deviation after a minute; >= 0
 
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 

@@ -10,6 +10,8 @@
 
 namespace pingvox {
 
+class OptionErrors;
+
 /// Options of the emulator of a sonar head.
 struct HeadEmulatorOptions {
   double pings_per_s = 20.0;  ///< 0.1..100,000
@@ -22,6 +24,7 @@ struct HeadEmulatorOptions {
   /// Of a SeaNet head: 2 as full-duplex ones send.
   int lines_per_request = 1;
 
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 

@@ -11,12 +11,15 @@
 
 namespace pingvox {
 
+class OptionErrors;
+
 struct NavEmulatorOptions {
   double reports_per_s = 10.0;  ///< 0.1..1000
   // Faults of the line, as fractions of the messages.
   double lost = 0.0, doubled = 0.0, damaged = 0.0;  ///< 0..0.5 each
   std::uint64_t seed = 1;                           ///< of the faults
 
+  OptionErrors errors() const;    ///< what is wrong with each field
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
