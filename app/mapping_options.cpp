@@ -173,13 +173,13 @@ Take store_mount(Pose& target) {
 }
 
 Option mount_option(Pose& target) {
-  return {"--mount",
-          0,
-          "X,Y,Z,R,P,Y",
-          "pose of the sonar head on the vehicle: metres ahead, to port and up, then roll, pitch and yaw in degrees, "
-          "yaw to port",
-          "0,0,0,0,0,0",
-          store_mount(target)};
+  return {
+      "--mount",
+      0,
+      "X,Y,Z,R,P,Y",
+      "pose of the sonar head on the vehicle: metres ahead, to port and up; roll, pitch and yaw (to port) in degrees",
+      "0,0,0,0,0,0",
+      store_mount(target)};
 }
 
 Option nav_option(Args& targets, std::string help) {
@@ -198,9 +198,9 @@ Option source_option(std::vector<NamedSource>& targets) {
   return {"--nav-source",
           0,
           "[QUANTITY=]NAME",
-          "source of navigation to take instead of others, for all that it tells or for one quantity (position, fix, "
-          "attitude, heading, velocity, depth ...); 'pingvox info' lists the sources",
-          "chosen by what they are and when they are known",
+          "source of navigation to use instead of others, for all its quantities or for one (position, fix, attitude, "
+          "heading, velocity, depth ...); 'pingvox info' lists the sources",
+          "chosen by kind and by the times they cover",
           take,
           Repeats::kEachCounts};
 }
@@ -263,39 +263,38 @@ OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
   OptionTable::Group group = {
       "Echoes",
-      {{"--min-range", 0, "M|auto", "ignore echoes nearer than M (transducer ringing); auto measures it per sweep",
+      {{"--min-range", 0, "M|auto", "ignore echoes nearer than M (transducer ringing); auto: measured per sweep",
         number_text(EchoOptions::kDefaultBlanking_m),
         within({0.0, kAnyHigh, Limits::Ends::kHighOut}, store_or_auto(echo.min_range_m))},
-       {"--min-bin", 0, "N", "ignore bins before bin N (the first is 0)", fmt::format("{}", echo.min_bin),
-        store_number(echo.min_bin)},
+       number("--min-bin", "N", "ignore bins before bin N (the first is 0)", echo.min_bin),
        {"--max-range", 0, "M",
-        "ignore echoes and cells farther than M; a beam with farther echoes only marks cells up to M free", "none",
+        "ignore echoes and cells farther than M; a beam whose only echoes are farther marks cells up to M free", "none",
         within({0.0, kAnyHigh, Limits::Ends::kLowOut}, store_number(echo.max_range_m))},
        {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
         number_text(kAssumedSoundSpeed_m_s),
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                store_optional(args.sound_speed_m_s))},
        {"--water", 0, water == WaterOfNav::kYes ? "T,S[,D]|nav,S" : "T,S[,D]",
-        std::string("the same from the water: temperature in degrees C, salinity (0 fresh, 35 the ocean), depth in m") +
-            (water == WaterOfNav::kYes ? "; nav: temperature and depth of the log of --nav" : ""),
+        std::string("speed of sound by the water: temperature in degrees C, salinity (0 fresh, 35 ocean), depth in m") +
+            (water == WaterOfNav::kYes ? "; nav: temperature and depth from --nav" : ""),
         "none", store_water(args, water)},
-       choice("--filter", kFilters, "smoothing of a sweep before echoes are detected; without it more beams are silent",
-              args.filter),
+       choice("--filter", kFilters,
+              "smoothing of sweeps before echoes are detected; without it fewer beams have an echo", args.filter),
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",
         store_kernel(args.kernel)},
        {"--sigma", 0, "SIGMA", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
         within({0.0, 1000.0, Limits::Ends::kLowOut}, store_optional(args.sigma))},
        choice("--detect", kDetectors,
-              "what an echo is: the first rise, the first bin above a level, the strongest bin, the first edge of the "
-              "picture (canny), or the first bin above the noise around it (cfar)",
+              "echo detector: the first rise, the first bin above a level, the strongest bin, the first edge in the "
+              "image (canny), or the first bin above the noise around it (cfar)",
               echo.detector),
-       {"--threshold", 0, "T|auto", "lowest rise, level or gradient (canny) of the intensity of an echo",
+       {"--threshold", 0, "T|auto", "lowest rise, level or gradient (canny) of the intensity that is an echo",
         "automatic, from the contrast of nearby beams", store_or_auto(echo.threshold)},
        choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
               echo.cfar.noise),
        {"--background", 0, "M",
-        "subtract echoes up to M that are the same in all sweeps: those of the vehicle itself, and all others if it "
-        "stands still; reads the logs twice",
+        "subtract what is the same in all sweeps up to M: echoes of the vehicle itself, and all others if it stands "
+        "still; reads the logs twice",
         "off",
         within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, store_optional(args.background_m))}}};
   for (Option& option : group.options) {
@@ -351,7 +350,7 @@ std::vector<Option> occupancy_options(OccupancyArgs& args) {
            within(probability, store_optional(args.occupied_from))},
           {"--free", 0, "P", "a cell is free below this probability, and unknown between the two", "0.5; .pvx: its own",
            within(probability, store_optional(args.free_below))},
-          {"--cut-depth", 0, "N", "keep only the upper N levels of the octree: one less doubles the edge of a cell",
+          {"--cut-depth", 0, "N", "keep only the upper N levels of the octree; one less doubles the edge of a cell",
            "all", within({1.0, static_cast<double>(kMaxDepth)}, store_optional(args.cut_depth))}};
 }
 
@@ -391,9 +390,9 @@ OptionTable::Group map_group(BuildArgs& args) {
         number_text(map.clamp.lowest.probability()) + "," + number_text(map.clamp.highest.probability()),
         store_clamp(map.clamp)},
        choice("--vote", kVotes,
-              "update a cell once per sweep (a hit beats a miss), when it ends, or once per beam, as it comes",
+              "update a cell once per sweep, at its end (a hit beats a miss), or once per beam, at once",
               args.build.vote),
-       {"--memory-limit", 0, "BYTES", "fail before the map takes more memory; also 512M, 2G", "none",
+       {"--memory-limit", 0, "BYTES", "fail before the map takes more memory than this, as in 512M or 2G", "none",
         store_bytes(map.memory_limit_bytes)}}};
   for (Option& option : group.options) {
     if (option.name == "--vote") option.only_for = {std::string(kBeamLogs)};
@@ -405,7 +404,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Sensor",
-      {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "it does not move",
+      {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "the vehicle stands still",
         store(args.poses)},
        nav_option(args.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of "
@@ -422,12 +421,12 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        {"--beam-height", 0, "DEG", "vertical beam width, full angle", of_device(model.height_rad),
         within({0.0, 180.0, Limits::Ends::kBothOut}, store_degrees(args.head.beam_height_rad))},
        {"--device", 0, fmt::format("{}", fmt::join(device_names(), "|")),
-        "sonar head, which gives the width and height of its beam in degrees: " + beam_sizes(), "as the log says",
+        "sonar head, for the width and height of its beam in degrees: " + beam_sizes(), "as in the log",
         store_device(args.head.device)},
        {"--free-share", 0, "F", "central fraction of the beam's width and height (0..1) that marks cells free",
         number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, store_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),
-       choice("--hit-from", kHitsFrom, "evidence of an echo: --hit for all, or half to all of it by its intensity",
+       choice("--hit-from", kHitsFrom, "evidence of an echo: --hit, or half to all of it depending on the intensity",
               model.hit_from),
        choice("--silent", kSilents, "how to treat a beam without echo: ignore it, or mark it free", model.silent)}};
   for (Option& option : group.options) {

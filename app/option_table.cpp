@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-// Included only here, as it takes five seconds to compile.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
 #include <sstream>
@@ -11,6 +9,7 @@
 
 #include "pingvox/io/file.hpp"
 #include "suggest.hpp"
+#include "toml_file.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -58,78 +57,163 @@ Result<void> give(const OptionTable& table, const std::string& where, const Take
   return fail(taken.error().code, fmt::format("{}: {}: {}", table.command, where, message));
 }
 
-/// Arguments of one option or position.
-struct Found {
+/// What was given for an option or a positional argument.
+struct Given {
   const Option* option = nullptr;
   const Positional* positional = nullptr;
-  CLI::Option* parsed = nullptr;
-  std::optional<std::string> configured = std::nullopt;  ///< its value in the configuration file
+  std::vector<std::string> typed;                        ///< on the command line
+  std::optional<std::string> configured = std::nullopt;  ///< in the configuration file
+
+  const std::string& name() const { return option != nullptr ? option->name : positional->name; }
+  bool is_flag() const { return option != nullptr && option->value.empty(); }
+};
+
+Given* find_given(std::vector<Given>& given, const Option& option) {
+  return &*std::ranges::find(given, &option, &Given::option);
+}
+
+/// Whether `word` is one of the choices that the value of `option` names, as in "first|all".
+bool is_choice(const Option& option, std::string_view word) {
+  return fmt::format("|{}|", option.value).find(fmt::format("|{}|", word)) != std::string::npos;
+}
+
+/// Sorts the arguments of the command line by the option or position that they are for. Takes --name VALUE,
+/// --name=VALUE, -n VALUE and -nVALUE; what follows -- is positional.
+class Arguments {
+ public:
+  Arguments(const OptionTable& table, const std::vector<std::string>& args, std::vector<Given>& given)
+      : table_(table), args_(args), given_(given) {}
+
+  /// @return whether the help is wanted
+  Result<bool> sort() {
+    bool has_options = true, is_help_wanted = false;
+    while (next_ < args_.size()) {
+      const std::string& word = args_[next_++];
+      if (!has_options || word.size() < 2 || word.front() != '-') {
+        add_positional(word);
+      } else if (word == "--") {
+        has_options = false;
+      } else if (word.starts_with("-h") || word == "--help") {
+        is_help_wanted = true;
+      } else if (const Result<void> added = add_option(word); !added) {
+        return tl::unexpected(added.error());
+      }
+    }
+    if (!is_help_wanted && unexpected_) return tl::unexpected(*unexpected_);
+    return is_help_wanted;
+  }
+
+ private:
+  void add_positional(const std::string& word) {
+    for (Given& given : given_) {
+      const Positional* positional = given.positional;
+      if (positional == nullptr || (positional->count == Positional::Count::kOne && !given.typed.empty())) continue;
+      given.typed.push_back(word);
+      return;
+    }
+    refuse(fmt::format("unexpected argument '{}'", word));
+  }
+
+  /// @param word  "--name", "--name=VALUE", "-n" or "-nVALUE"
+  Result<void> add_option(const std::string& word) {
+    const bool is_long = word.starts_with("--");
+    const std::size_t end = is_long ? std::min(word.find('='), word.size()) : 2;
+    const std::string name = word.substr(0, end);
+    const Option* option = is_long ? find_option(table_, name) : find_letter(name.back());
+    if (option == nullptr) {
+      std::string advice = did_you_mean(name, option_names(table_));
+      if (advice.empty()) advice = fmt::format(" (see 'pingvox {} --help')", table_.command);
+      refuse(fmt::format("unknown option '{}'{}", is_long ? name : word, advice));
+      return {};
+    }
+    std::vector<std::string>& typed = find_given(given_, *option)->typed;
+    const bool has_value = end < word.size();
+    if (option->value.empty()) {
+      if (has_value) return parse_error(table_, option->name + ": takes no value");
+      typed.emplace_back("true");
+    } else if (has_value) {
+      typed.push_back(word.substr(is_long ? end + 1 : end));
+    } else if (!option->implied.empty() && (next_ == args_.size() || !is_choice(*option, args_[next_]))) {
+      typed.push_back(option->implied);
+    } else if (next_ == args_.size()) {
+      return parse_error(table_, option->name + ": needs a value");
+    } else {
+      typed.push_back(args_[next_++]);
+    }
+    return {};
+  }
+
+  const Option* find_letter(char letter) const {
+    for (const auto& group : table_.groups) {
+      const auto found = std::ranges::find(group.options, letter, &Option::letter);
+      if (found != group.options.end()) return &*found;
+    }
+    return nullptr;
+  }
+
+  /// Only the first error is reported, and none where the help is wanted.
+  void refuse(const std::string& what) {
+    if (!unexpected_) unexpected_ = parse_error(table_, what).value();
+  }
+
+  const OptionTable& table_;
+  const std::vector<std::string>& args_;
+  std::vector<Given>& given_;
+  std::size_t next_ = 0;
+  std::optional<Error> unexpected_;
 };
 
 /// Reads a configuration file and gives its values to the options that the command line does not have.
-Result<void> apply_config(const OptionTable& table, const std::string& path, std::vector<Found>& found) {
+Result<void> apply_config(const OptionTable& table, const std::string& path, std::vector<Given>& given) {
   const Result<FileBytes> file = read_file(path);
   if (!file) return tl::unexpected(file.error());
-  std::istringstream text(std::string(file->bytes.begin(), file->bytes.end()));
-  std::vector<CLI::ConfigItem> items;
-  try {
-    items = CLI::ConfigTOML().from_config(text);
-  } catch (const CLI::Error& error) {
-    return parse_error(table, fmt::format("{}: {}", path, error.what()));
+  const Result<std::vector<TomlSection>> sections = read_toml(*file);
+  if (!sections) return parse_error(table, sections.error().message);
+  if (sections->size() > 1) {
+    return parse_error(
+        table, fmt::format("{}: line {}: has a section: options stand at the top, as in 'resolution = 0.1'", path,
+                           (*sections)[1].line));
   }
-  for (const CLI::ConfigItem& item : items) {
-    if (!item.parents.empty() || item.name == "++" || item.name == "--") {
-      return parse_error(table,
-                         fmt::format("{}: has a section: options stand at the top, as in 'resolution = 0.1'", path));
-    }
-    std::string name = "--" + item.name;
-    std::replace(name.begin(), name.end(), '_', '-');
+  for (const auto& [key, value] : sections->front().values) {
+    const std::string where = fmt::format("{}: line {}: {}", path, value.line, key);
+    std::string name = "--" + key;
+    std::ranges::replace(name, '_', '-');
     const Option* option = name == kConfig ? nullptr : find_option(table, name);
-    if (!option) {
-      return parse_error(
-          table, fmt::format("{}: unknown option '{}'{}", path, item.name, did_you_mean(name, option_names(table))));
+    if (option == nullptr) {
+      return parse_error(table, fmt::format("{}: line {}: unknown option '{}'{}", path, value.line, key,
+                                            did_you_mean(name, option_names(table))));
     }
-    Found& entry =
-        *std::find_if(found.begin(), found.end(), [&](const Found& other) { return other.option == option; });
-    if (entry.parsed->count() > 0) continue;
-    if (option->repeats == Repeats::kEachCounts) {
-      for (const std::string& input : item.inputs) {
-        const Result<void> given =
-            give(table, fmt::format("{}: {}", path, item.name), option->take, input, option->value);
-        if (!given) return given;
-      }
-      continue;
+    Given& entry = *find_given(given, *option);
+    if (!entry.typed.empty()) continue;
+    if (entry.is_flag() && value.text == "false") continue;
+    if (entry.is_flag() && value.text != "true") return parse_error(table, where + ": must be true or false");
+    const bool repeats = option->repeats == Repeats::kEachCounts;
+    for (const std::string& text : repeats ? value.items : std::vector<std::string>{value.text}) {
+      if (const auto taken = give(table, where, option->take, text, option->value); !taken) return taken;
     }
-    const std::string value = fmt::format("{}", fmt::join(item.inputs, ","));
-    if (option->value.empty()) {
-      if (value == "false") continue;
-      if (value != "true") return parse_error(table, fmt::format("{}: {}: must be true or false", path, item.name));
-    }
-    entry.configured = value;
-    const std::string where = fmt::format("{}: {}", path, item.name);
-    if (const Result<void> given = give(table, where, option->take, value, option->value); !given) return given;
+    if (!repeats) entry.configured = value.text;
   }
   return {};
 }
 
 /// The value of an option or a positional argument, given or by default; nullopt when there is none.
-std::optional<std::string> value_of(const std::string& name, const std::vector<Found>& found) {
-  for (const Found& entry : found) {
-    if ((entry.option ? entry.option->name : entry.positional->name) != name) continue;
-    if (entry.parsed->count() > 0) return entry.parsed->results().back();
+std::optional<std::string> value_of(const std::string& name, const std::vector<Given>& given) {
+  for (const Given& entry : given) {
+    if (entry.name() != name) continue;
+    if (!entry.typed.empty()) return entry.typed.back();
     if (entry.configured) return entry.configured;
     if (entry.option && !entry.option->standard.empty()) return entry.option->standard;
   }
   return std::nullopt;
 }
 
-bool is_met(const Condition& condition, const std::vector<Found>& found) {
+bool is_met(const Condition& condition, const std::vector<Given>& given) {
   if (condition.values.empty()) {
-    return std::any_of(found.begin(), found.end(), [&](const Found& entry) {
-      return entry.option && entry.option->name == condition.name && (entry.parsed->count() > 0 || entry.configured);
+    return std::any_of(given.begin(), given.end(), [&](const Given& entry) {
+      return entry.option && entry.option->name == condition.name && (!entry.typed.empty() || entry.configured);
     });
   }
-  const auto value = value_of(condition.name, found);
+  const auto value = value_of(condition.name, given);
   return value && std::find(condition.values.begin(), condition.values.end(), *value) != condition.values.end();
 }
 
@@ -139,13 +223,13 @@ std::string text_of(const Condition& condition) {
 }
 
 /// Refuses an option without effect.
-Result<void> check_conditions(const OptionTable& table, const Option& option, const std::vector<Found>& found) {
-  const auto met = [&](const Condition& condition) { return is_met(condition, found); };
+Result<void> check_conditions(const OptionTable& table, const Option& option, const std::vector<Given>& given) {
+  const auto met = [&](const Condition& condition) { return is_met(condition, given); };
   if (option.only_with.empty() || std::any_of(option.only_with.begin(), option.only_with.end(), met)) return {};
   std::vector<std::string> needed;
   for (const Condition& condition : option.only_with) needed.push_back(text_of(condition));
   const Condition& first = option.only_with.front();
-  const auto value = first.values.empty() ? std::nullopt : value_of(first.name, found);
+  const auto value = first.values.empty() ? std::nullopt : value_of(first.name, given);
   const std::string any = fmt::format("{}", fmt::join(needed, " or "));
   return parse_error(table, fmt::format("{}: has no effect {}", option.name,
                                         value ? fmt::format("with {} {}, only with {}", first.name, *value, any)
@@ -187,112 +271,48 @@ std::string help_entry(const std::string& label, const std::string& text) {
   return out + "\n";
 }
 
-/// Gives options that may stand without a value the implied one (Option::implied).
-std::vector<std::string> with_implied_values(const OptionTable& table, const std::vector<std::string>& args) {
-  std::vector<std::string> complete;
-  for (std::size_t i = 0; i < args.size(); ++i) {
-    complete.push_back(args[i]);
-    for (const auto& group : table.groups) {
-      for (const Option& option : group.options) {
-        if (option.implied.empty() || option.name != args[i]) continue;
-        const bool has_value =
-            i + 1 < args.size() &&
-            fmt::format("|{}|", option.value).find(fmt::format("|{}|", args[i + 1])) != std::string::npos;
-        if (!has_value) complete.push_back(option.implied);
-      }
-    }
-  }
-  return complete;
-}
-
 }  // namespace
 
-Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& given_args) {
-  const std::vector<std::string> args = with_implied_values(table, given_args);
-  CLI::App app;
-  app.set_help_flag();
-  app.allow_extras();
-  // Arguments are kept in the parser and converted below.
-  const CLI::callback_t keep = [](const CLI::results_t&) { return true; };
-  std::vector<Found> found;
+Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& args) {
+  std::vector<Given> given;
   for (const auto& group : table.groups) {
-    for (const Option& option : group.options) {
-      const std::string names = option.letter != 0 ? fmt::format("-{},{}", option.letter, option.name) : option.name;
-      CLI::Option* parsed = nullptr;
-      if (option.value.empty()) {
-        parsed = app.add_flag(names);
-      } else {
-        parsed = app.add_option(names, keep)
-                     ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-                     ->expected(1)
-                     ->allow_extra_args(false);
-      }
-      found.push_back({&option, nullptr, parsed});
-    }
+    for (const Option& option : group.options) given.push_back({&option, nullptr, {}});
   }
-  for (const Positional& positional : table.positionals) {
-    CLI::Option* parsed = app.add_option(positional.name, keep);
-    if (positional.count == Positional::Count::kMany)
-      parsed->expected(-1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    found.push_back({nullptr, &positional, parsed});
-  }
-  const CLI::Option* help = app.add_flag("-h,--help");
-
-  try {
-    // CLI11 expects the arguments in reverse order.
-    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
-  } catch (const CLI::ArgumentMismatch& error) {
-    // As in "--resolution: 1 required ...": only the name is used.
-    const std::string message = error.what();
-    return parse_error(table, message.substr(0, message.find(':')) + ": needs a value");
-  } catch (const CLI::Error& error) {
-    return parse_error(table, error.what());
-  }
-  if (help->count() > 0) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}};
-
-  for (const std::string& word : app.remaining()) {
-    if (word == "--") continue;  // what follows are no options
-    if (word.size() > 1 && word.front() == '-') {
-      const std::string name = word.substr(0, word.find('='));
-      std::string advice = did_you_mean(name, option_names(table));
-      if (advice.empty()) advice = fmt::format(" (see 'pingvox {} --help')", table.command);
-      return parse_error(table, fmt::format("unknown option '{}'{}", name, advice));
-    }
-    return parse_error(table, fmt::format("unexpected argument '{}'", word));
-  }
-  for (const Found& entry : found) {
-    if (entry.positional && entry.parsed->count() == 0) {
-      return parse_error(table,
-                         fmt::format("{} is missing (see 'pingvox {} --help')", entry.positional->name, table.command));
+  for (const Positional& positional : table.positionals) given.push_back({nullptr, &positional, {}});
+  const Result<bool> is_help_wanted = Arguments(table, args, given).sort();
+  if (!is_help_wanted) return tl::unexpected(is_help_wanted.error());
+  if (*is_help_wanted) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}};
+  for (const Given& entry : given) {
+    if (entry.positional != nullptr && entry.typed.empty()) {
+      return parse_error(table, fmt::format("{} is missing (see 'pingvox {} --help')", entry.name(), table.command));
     }
   }
 
   Parsed parsed;
-  for (const Found& entry : std::vector<Found>(found)) {
-    if (!entry.option || entry.option->name != kConfig || entry.parsed->count() == 0) continue;
-    parsed.config = entry.parsed->results().back();
-    const Result<void> applied = apply_config(table, parsed.config, found);
-    if (!applied) return tl::unexpected(applied.error());
-  }
-  for (const Found& entry : found) {
-    if (entry.parsed->count() == 0) continue;
-    const std::vector<std::string>& values = entry.parsed->results();
-    const std::string& where = entry.positional ? entry.positional->name : entry.option->name;
-    const bool is_value = entry.option && !entry.option->value.empty();
-    if (is_value && entry.option->repeats == Repeats::kNot && values.size() > 1) {
-      return parse_error(table, fmt::format("{}: given twice: '{}' and '{}'", where, values[0], values[1]));
+  const auto config =
+      std::ranges::find_if(given, [](const Given& entry) { return entry.name() == kConfig && !entry.typed.empty(); });
+  if (config != given.end()) {
+    parsed.config = config->typed.back();
+    if (const auto applied = apply_config(table, parsed.config, given); !applied) {
+      return tl::unexpected(applied.error());
     }
-    for (const std::string& value : values) {
-      if (entry.option && !is_value && value != "true") return parse_error(table, where + ": takes no value");
-      const Take& take = entry.positional ? entry.positional->take : entry.option->take;
-      const auto given = give(table, where, take, value, entry.option ? entry.option->value : "");
-      if (!given) return tl::unexpected(given.error());
+  }
+  for (const Given& entry : given) {
+    const Option* option = entry.option;
+    if (option != nullptr && !entry.is_flag() && option->repeats == Repeats::kNot && entry.typed.size() > 1) {
+      return parse_error(table,
+                         fmt::format("{}: given twice: '{}' and '{}'", entry.name(), entry.typed[0], entry.typed[1]));
+    }
+    for (const std::string& value : entry.typed) {
+      const auto taken = option != nullptr ? give(table, entry.name(), option->take, value, option->value)
+                                           : give(table, entry.name(), entry.positional->take, value, "");
+      if (!taken) return tl::unexpected(taken.error());
     }
   }
   // After the values, whose errors are more helpful.
-  for (const Found& entry : found) {
-    if (!entry.option || entry.parsed->count() == 0) continue;
-    if (const auto useful = check_conditions(table, *entry.option, found); !useful) {
+  for (const Given& entry : given) {
+    if (entry.option == nullptr || entry.typed.empty()) continue;
+    if (const auto useful = check_conditions(table, *entry.option, given); !useful) {
       return tl::unexpected(useful.error());
     }
     if (!entry.option->only_for.empty()) parsed.limited.push_back({entry.option->name, entry.option->only_for});
@@ -331,7 +351,9 @@ std::string help_of(const OptionTable& table) {
   for (const auto& group : table.groups) {
     out += "\n" + group.title + ":\n";
     for (const Option& option : group.options) {
-      out += help_entry(label_of(option), option.help + (option.standard.empty() ? "" : " [" + option.standard + "]"));
+      const std::string repeats = option.repeats == Repeats::kEachCounts ? "; repeatable" : "";
+      const std::string standard = option.standard.empty() ? "" : " [" + option.standard + "]";
+      out += help_entry(label_of(option), option.help + repeats + standard);
     }
   }
   out += help_entry("-h, --help", "show this help");

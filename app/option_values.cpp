@@ -23,18 +23,6 @@ Result<std::size_t> bytes_from(std::string_view text) {
   return *count << shift;
 }
 
-bool Limits::contain(double value) const {
-  return (has_low() ? value >= low : value > low) && (has_high() ? value <= high : value < high);
-}
-
-std::string Limits::text() const {
-  if (std::isfinite(high) && ends == Ends::kIn) return fmt::format("{:.6g}..{:.6g}", low, high);
-  if (!std::isfinite(low) && !std::isfinite(high)) return "finite";
-  const std::string from = fmt::format("{} {:.6g}", has_low() ? "at least" : "above", low);
-  if (!std::isfinite(high)) return from + (has_high() ? "" : " and finite");
-  return fmt::format("{} and {} {:.6g}", from, has_high() ? "at most" : "below", high);
-}
-
 Take within(const Limits& limits, Take take) {
   return [limits, take = std::move(take)](const std::string& text) -> Result<void> {
     if (auto taken = take(text); !taken) return taken;
@@ -45,6 +33,14 @@ Take within(const Limits& limits, Take take) {
 }
 
 Take store(std::string& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    if (text.empty()) return usage_error("is empty");
+    target = text;
+    return {};
+  };
+}
+
+Take store(std::optional<std::string>& target) {
   return [&target](const std::string& text) -> Result<void> {
     if (text.empty()) return usage_error("is empty");
     target = text;
@@ -83,6 +79,15 @@ Take store_bytes(std::size_t& target) {
 
 std::string number_text(double value) {
   return fmt::format("{:.6g}", value);
+}
+
+double size_of_unit(std::string_view unit) {
+  return unit == "DEG" || unit == "DEG/S" ? kDegree_rad : 1.0;
+}
+
+Option only_with(std::vector<Condition> conditions, Option option) {
+  option.only_with = std::move(conditions);
+  return option;
 }
 
 }  // namespace pingvox::app

@@ -16,7 +16,10 @@
 #include <vector>
 
 #include "option_table.hpp"
+#include "pingvox/geometry/degree.hpp"
+#include "pingvox/limits.hpp"
 #include "pingvox/map/log_odds.hpp"
+#include "pingvox/option_errors.hpp"
 #include "pingvox/result.hpp"
 #include "suggest.hpp"
 
@@ -70,6 +73,7 @@ Result<std::size_t> bytes_from(std::string_view text);
 
 /// Any non-empty text.
 Take store(std::string& target);
+Take store(std::optional<std::string>& target);
 /// Any non-empty text, appended to what was given before.
 Take store_each(Args& targets);
 
@@ -94,18 +98,6 @@ Take store_optional(std::optional<Number>& target) {
   };
 }
 
-/// Limits of a number, in the units of the command line.
-struct Limits {
-  enum class Ends { kIn, kLowOut, kHighOut, kBothOut };
-  double low = 0.0, high = 1.0;
-  Ends ends = Ends::kIn;
-
-  bool has_low() const { return ends == Ends::kIn || ends == Ends::kHighOut; }
-  bool has_high() const { return ends == Ends::kIn || ends == Ends::kLowOut; }
-  bool contain(double value) const;
-  std::string text() const;  ///< "0..1", "above 0 and at most 100"
-};
-
 /// Of cells [m].
 inline constexpr Limits kResolutions{0.0, 1000.0, Limits::Ends::kLowOut};
 
@@ -113,6 +105,36 @@ inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
 
 /// Refuses numbers outside of the limits, then calls `take`, which also refuses other text.
 Take within(const Limits& limits, Take take);
+
+/// A default as text.
+std::string number_text(double value);
+
+/// How much of the library's unit one of the command line is: DEG and DEG/S are typed, radians are stored.
+double size_of_unit(std::string_view unit);
+
+/// An option that is a number in `unit`. `target` holds the default.
+template <class Number>
+Option number(std::string name, std::string unit, std::string help, Number& target) {
+  const double size = size_of_unit(unit);
+  std::string standard = number_text(static_cast<double>(target) / size);
+  return {std::move(name),     0,
+          std::move(unit),     std::move(help),
+          std::move(standard), store_number(target, static_cast<Number>(size))};
+}
+
+/// The same for a field of `options`, whose errors() know its limits.
+template <class Options, class Number>
+Option number(std::string name, std::string unit, std::string help, Options& options, Number& field) {
+  Option option = number(std::move(name), std::move(unit), std::move(help), field);
+  option.take = [&options, &field, take = option.take,
+                 size = size_of_unit(option.value)](const std::string& text) -> Result<void> {
+    if (auto taken = take(text); !taken) return taken;
+    const auto limits = options.errors().limits_of(&field);
+    if (limits) return usage_error(fmt::format("must be {}, is {}", limits->text(size), text));
+    return {};
+  };
+  return option;
+}
 
 Take store_probability(LogOdds& target);
 /// At least one byte.
@@ -163,6 +185,19 @@ Option choice(std::string name, const std::array<Choice<Enum>, N>& words, std::s
   return {std::move(name), 0, choices_text(words), std::move(help), choice_name(words, target), take};
 }
 
+/// The same for a target without a value, which `standard` describes.
+template <class Enum, std::size_t N>
+Option choice(std::string name, const std::array<Choice<Enum>, N>& words, std::string help, std::optional<Enum>& target,
+              std::string standard) {
+  const Take take = [&target, &words](const std::string& text) -> Result<void> {
+    const Result<Enum> value = choice_value(words, text);
+    if (!value) return tl::unexpected(value.error());
+    target = *value;
+    return {};
+  };
+  return {std::move(name), 0, choices_text(words), std::move(help), std::move(standard), take};
+}
+
 /// An option without a value: sets `target` to `value`.
 template <class Enum>
 Option flag(std::string name, std::string help, Enum& target, Enum value) {
@@ -173,7 +208,7 @@ Option flag(std::string name, std::string help, Enum& target, Enum value) {
   return {std::move(name), 0, "", std::move(help), "", take};
 }
 
-/// A default as text.
-std::string number_text(double value);
+/// An option with an effect only if one of `conditions` holds.
+Option only_with(std::vector<Condition> conditions, Option option);
 
 }  // namespace pingvox::app

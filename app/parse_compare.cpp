@@ -52,14 +52,14 @@ Result<Command> compare_command(const Args& args) {
                    within({0.0, 1.0, Limits::Ends::kBothOut}, store_optional(command.occupied_probability))}),
          json_option(command.output_options), quiet_option(command.output_options)}},
        {"Only cells that could be seen",
-        {for_maps(
-             {"--visible-from", 0, "POSES",
-              "compare only what could be seen of B from these poses (TUM), and leave out what lies beyond a side of B "
-              "without a wall",
-              "all of B", store(visible_from)}),
+        {for_maps({"--visible-from", 0, "FILE",
+                   "compare only what could be seen of B from the poses in FILE (TUM), and leave out what lies beyond "
+                   "a side of B "
+                   "without a wall",
+                   "all of B", store(visible_from)}),
          seen({"--min-range", 0, "M", "nearest range at which a cell is seen", number_text(view.min_range_m),
                within({0.0, kAnyHigh, Limits::Ends::kHighOut}, store_number(view.min_range_m))}),
-         seen({"--max-range", 0, "M", "farthest range at which a cell is seen, as the range of the log", "no limit",
+         seen({"--max-range", 0, "M", "farthest range at which a cell is seen, such as that of the log", "no limit",
                within({0.0, kAnyHigh, Limits::Ends::kBothOut}, store_number(view.max_range_m))}),
          seen({"--beam-height", 0, "DEG", "vertical beam width, full angle", number_text(view.height_rad / kDegree_rad),
                within({0.0, 180.0, Limits::Ends::kLowOut}, store_number(view.height_rad, kDegree_rad))}),

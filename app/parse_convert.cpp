@@ -30,38 +30,18 @@ constexpr std::array kSurfaces = {Choice<Surface>{"highest", Surface::kHighest},
 Result<Command> convert_command(const Args& args) {
   ConvertCommand command;
   std::optional<Format> asked_format;
-  const Take format = [&](const std::string& text) -> Result<void> {
-    const Result<Format> value = choice_value(kLogAndMapFormats, text);
-    if (!value) return tl::unexpected(value.error());
-    asked_format = *value;
-    return {};
-  };
   std::optional<double> layer_m;
   std::optional<Surface> surface;
-  const Take take_surface = [&](const std::string& text) -> Result<void> {
-    const Result<Surface> value = choice_value(kSurfaces, text);
-    if (!value) return tl::unexpected(value.error());
-    surface = *value;
-    return {};
-  };
   EchoArgs echo;
   OptionTable::Group echo_options = echo_group(echo, WaterOfNav::kNo);
   echo_options.title = "Echoes of a log";
   for (Option& option : echo_options.options) {
     option.only_for = {std::string(kEchoTables)};
   }
-  Option echoes{
-      "--echoes",
-      0,
-      choices_text(kEchoesOfBeam),
-      "write the detected echoes of a log: time, bearing, range, intensity, bins; of each beam the first or all",
-      "",
-      [&](const std::string& text) -> Result<void> {
-        const Result<EchoesOfBeam> which = choice_value(kEchoesOfBeam, text);
-        if (!which) return tl::unexpected(which.error());
-        command.echoes = *which;
-        return {};
-      }};
+  Option echoes =
+      choice("--echoes", kEchoesOfBeam,
+             "write the detected echoes of a log: time, bearing, range, intensity, bins; of each beam the first or all",
+             command.echoes, "");
   echoes.implied = choice_name(kEchoesOfBeam, EchoesOfBeam::kFirst);
   echoes.only_for = {std::string(kBeamLogs)};
   echo_options.options.insert(echo_options.options.begin(), std::move(echoes));
@@ -82,13 +62,10 @@ Result<Command> convert_command(const Args& args) {
                        "mesh, .ply .pcd .xyz (occupied cells as points), .yaml with its .pgm (map_server), .asc (ESRI "
                        "grid of heights); - is standard "
                        "output"),
-         {"--format", 0, choices_text(kLogAndMapFormats),
-          "format of the output where its name has none of these suffixes", "by suffix, else csv", format},
-         strict_option(command.damage),
-         topic_option(command.bag),
-         fields_option(command.bag),
-         source_option(command.nav_sources),
-         quiet_option(command.output_options)}},
+         choice("--format", kLogAndMapFormats, "format of the output where its name has none of these suffixes",
+                asked_format, "by suffix, else csv"),
+         strict_option(command.damage), topic_option(command.bag), fields_option(command.bag),
+         source_option(command.nav_sources), quiet_option(command.output_options)}},
        std::move(echo_options),
        {"Meshes",
         {{"--resolution", 0, "M", "edge length of a cell", number_text(MapOptions{}.resolution_m),
@@ -97,9 +74,9 @@ Result<Command> convert_command(const Args& args) {
         {{"--z", 0, "M", "write only the layer of cells at this height", "all layers", store_optional(layer_m)},
          {"--min-z", 0, "M", "lowest height that is written", "none", store_optional(command.slice.min_z_m)},
          {"--max-z", 0, "M", "greatest height that is written", "none", store_optional(command.slice.max_z_m)},
-         {"--height", 0, choices_text(kSurfaces),
-          "height of a column in .asc: upper face of its highest or its lowest occupied cell",
-          choice_name(kSurfaces, command.surface), take_surface}}}},
+         choice("--height", kSurfaces,
+                "height of a column in .asc: upper face of its highest or its lowest occupied cell", surface,
+                choice_name(kSurfaces, command.surface))}}},
       {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.mat --echoes -o echoes.csv",
        "pingvox convert dive.tlog -o dive.tum", "pingvox convert line.xtf -o line.ply",
        "pingvox convert tank.bt -o tank.ply", "pingvox convert tank.bt -o layer.ply --z 0",

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -28,9 +27,7 @@ Result<Command> emulate_command(const Args& args) {
                                    Choice<Device>{"micron", Device::kMicron},
                                    Choice<Device>{"mavlink", Device::kMavlink}, Choice<Device>{"a50", Device::kA50}};
   std::string listen, send_to;
-  double lost = 0.0, doubled = 0.0, damaged = 0.0;
   double rate = 0.0;  // 0: as usual
-  std::uint64_t seed = 1;
   const Take device = [&](const std::string& text) -> Result<void> {
     const Result<Device> value = choice_value(kDevices, text);
     if (!value) return usage_error(fmt::format("no such device '{}': must be ping360, micron, mavlink or a50", text));
@@ -45,7 +42,6 @@ Result<Command> emulate_command(const Args& args) {
     command.world = text;
     return {};
   };
-  const Limits fault{0.0, 0.5};
   OptionTable table{
       "emulate",
       "Answers like a device in a simulated world, to try 'pingvox live' without one: a sonar head (ping360 or\n"
@@ -54,15 +50,12 @@ Result<Command> emulate_command(const Args& args) {
       {{"Line",
         {{"--listen", 0, "ADDRESS",
           "of a head: udp://HOST:PORT (port 0: any that is free), tcp://HOST:PORT, or pty for a new pseudo terminal; "
-          "a50: tcp://HOST:PORT",
+          "of a50: tcp://HOST:PORT",
           "udp://127.0.0.1:9092, micron: pty, a50: tcp://127.0.0.1:16171", store(listen)},
-         {"--to", 0, "ADDRESS", "mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
-         {"--lost", 0, "F", "fraction of bytes (of a head) or messages that are lost", "0",
-          within(fault, store_number(lost))},
-         {"--doubled", 0, "F", "fraction of bytes or messages that come twice", "0",
-          within(fault, store_number(doubled))},
-         {"--damaged", 0, "F", "fraction of bytes or messages with a wrong bit", "0",
-          within(fault, store_number(damaged))}}},
+         {"--to", 0, "ADDRESS", "of mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
+         number("--lost", "F", "fraction of bytes (of a head) or messages that are lost", head, head.lost),
+         number("--doubled", "F", "fraction of bytes or messages that come twice", head, head.doubled),
+         number("--damaged", "F", "fraction of bytes or messages with a wrong bit", head, head.damaged)}},
        {"Vehicle",
         {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},
          choice("--trajectory", kEmulatedMotions, "path of the vehicle; emulators with the same options agree on it",
@@ -74,11 +67,10 @@ Result<Command> emulate_command(const Args& args) {
          {"--pings", 0, "N", "end after N pings", "never", store_number(command.max_pings)},
          {"--stall-every", 0, "N", "be silent after each N pings, as a head that restarts", "never",
           store_number(head.stall_every)},
-         {"--stall", 0, "S", "length of this silence in seconds", number_text(head.stall_s),
-          within({0.0, 3600.0}, store_number(head.stall_s))},
-         {"--lines", 0, "1|2", "micron: scan lines per request; 2 as full-duplex heads send them",
-          number_text(head.lines_per_request), within({1.0, 2.0}, store_number(head.lines_per_request))},
-         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(seed)}}}},
+         number("--stall", "S", "length of this silence in seconds", head, head.stall_s),
+         number("--lines", "1|2", "of micron: scan lines per request; 2 as full-duplex heads send them", head,
+                head.lines_per_request),
+         number("--seed", "N", "seed of the random numbers", head.seed)}}},
       {"pingvox emulate ping360 --listen udp://127.0.0.1:9092", "pingvox emulate ping360 --listen pty --lost 0.0001",
        "pingvox emulate micron", "pingvox emulate mavlink --trajectory loop", "pingvox emulate a50 --trajectory loop"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
@@ -113,10 +105,10 @@ Result<Command> emulate_command(const Args& args) {
           fmt::format("{}: '{}': must be {}HOST:PORT", sends ? "--to" : "--listen", command.line, scheme));
     }
     if (rate > 0.0) head.pings_per_s = command.nav.reports_per_s = rate;
-    head.lost = command.nav.lost = lost;
-    head.doubled = command.nav.doubled = doubled;
-    head.damaged = command.nav.damaged = damaged;
-    head.seed = command.nav.seed = seed;
+    command.nav.lost = head.lost;
+    command.nav.doubled = head.doubled;
+    command.nav.damaged = head.damaged;
+    command.nav.seed = head.seed;
     if (const auto valid = is_head ? head.validate() : command.nav.validate(); !valid) {
       return tl::unexpected(valid.error());
     }

@@ -9,7 +9,7 @@ Result<Command> info_command(const Args& args) {
   InfoCommand command;
   const OptionTable table{
       "info",
-      "Says what a file holds: a log of beams, of point scans or of navigation, a cloud, a map, a mesh, or a "
+      "Describes a file: a log of beams, of point scans or of navigation, a cloud, a map, a mesh, or a "
       "trajectory.\n"
       "Files are recognised by their content, not by their name.",
       {{"FILE", Positional::Count::kOne, "the file; - is standard input", store(command.file)}},

@@ -259,12 +259,6 @@ Result<Command> live_command(const Args& args) {
     if (taken->kind == LiveHead::Kind::kReplay) return {};
     return Link::check(taken->address);
   };
-  const Take format = [&](const std::string& text) -> Result<void> {
-    const Result<Format> value = choice_value(kTreeFormats, text);
-    if (!value) return tl::unexpected(value.error());
-    typed.asked_format = *value;
-    return {};
-  };
   const Take nav = [&](const std::string& text) -> Result<void> {
     const Result<LiveNav> taken = navigation_from(text);
     if (!taken) return tl::unexpected(taken.error());
@@ -289,8 +283,8 @@ Result<Command> live_command(const Args& args) {
         device}},
       {{"Output",
         {output_option(typed.output, "the map: .bt or .ot (OctoMap), .pvx (any depth)"),
-         {"--format", 0, choices_text(kTreeFormats), "format of the map where its name has none of these suffixes",
-          "by suffix, else bt", format},
+         choice("--format", kTreeFormats, "format of the map where its name has none of these suffixes",
+                typed.asked_format, "by suffix, else bt"),
          {"--record", 0, "FILE",
           "record the bytes of the device: a Ping360's as a log of Ping Viewer, a Micron's as a capture of packets "
           "with their times; in a folder named by the time (a FILE without a suffix is one)",
@@ -311,16 +305,14 @@ Result<Command> live_command(const Args& args) {
          {"--step", 0, "DEG", "angle from beam to beam: a multiple of 0.9 (Ping360) or 0.05625 (Micron)",
           number_text(typed.motion.step_deg), store_number(typed.motion.step_deg)},
          choice("--gain", kGains, "gain of the receiver", command.live.head.ping360.gain),
-         {"--timeout", 0, "S", "seconds to wait for an answer, in which the head may have to turn",
+         {"--timeout", 0, "S", "seconds to wait for an answer, including the turn of the head",
           fmt::format("{}, of a Micron {}", command.live.head.ping360.timeout_s, command.live.head.micron.timeout_s),
           within({0.01, 60.0}, store_optional(typed.timeout_s))}}},
        {"Navigation",
         {{"--nav", 0, "NAV",
-          "where the vehicle is: mavlink:udp://:PORT or mavlink:udp://ADDRESS:PORT, by what its autopilot sends by "
-          "MAVLink "
-          "to this port (at all addresses of this host, or at one), or a50:tcp://HOST[:PORT], by the dead reckoning of "
-          "a Water Linked DVL; recorded beside --record as .tlog or "
-          ".jsonl; several may be given",
+          "source of the vehicle's pose: mavlink:udp://:PORT or mavlink:udp://ADDRESS:PORT, what its autopilot sends "
+          "by MAVLink to this port (at all addresses of this host, or at one), or a50:tcp://HOST[:PORT], the dead "
+          "reckoning of a Water Linked DVL; recorded beside --record as .tlog or .jsonl",
           "the vehicle stands still", nav, Repeats::kEachCounts},
          {"--obstacles", 0, "udp://HOST:PORT",
           "send the nearest obstacle in each of 72 sectors by MAVLink (OBSTACLE_DISTANCE), five times a second", "none",

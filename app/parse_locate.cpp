@@ -93,7 +93,7 @@ Result<Command> locate_command(const Args& args) {
         {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
           "first pose of the vehicle in metres and degrees, with standard deviations (0.5,10); or anywhere", "anywhere",
           store_start(command.start)},
-         flag("--causal", "each pose from what was recorded until then, as on board", command.estimation,
+         flag("--causal", "estimate each pose only from what was recorded before it, as on board", command.estimation,
               Estimation::kCausal),
          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}}},
        std::move(echo_options),

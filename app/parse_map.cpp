@@ -40,12 +40,6 @@ Result<Command> map_command(const Args& args) {
     command.cloud_origin_m = place;
     return {};
   };
-  const Take format = [&](const std::string& text) -> Result<void> {
-    const Result<Format> value = choice_value(kMapFormats, text);
-    if (!value) return tl::unexpected(value.error());
-    asked_format = *value;
-    return {};
-  };
 
   OptionTable::Group map_options = map_group(build);
   map_options.options.push_back(choice("--parents", kParents,
@@ -73,10 +67,9 @@ Result<Command> map_command(const Args& args) {
         {output_option(output,
                        "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply .pcd .xyz (occupied cells as "
                        "points); - is standard output"),
-         {"--format", 0, choices_text(kMapFormats), "format of the map where its name has none of these suffixes",
-          "by suffix, else bt", format},
-         json_option(command.output_options),
-         quiet_option(command.output_options),
+         choice("--format", kMapFormats, "format of the map where its name has none of these suffixes", asked_format,
+                "by suffix, else bt"),
+         json_option(command.output_options), quiet_option(command.output_options),
          choice("--progress", kProgress, "show the progress on standard error; auto: on a terminal",
                 command.output_options.progress)}},
        map_options,

@@ -68,25 +68,19 @@ void note_in(std::vector<std::pair<std::string, std::string>>& given, std::vecto
 /// The options that may differ from panel to panel.
 std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   PanelCommand& panel = args.panel;
-  const Take view = [&panel](const std::string& text) -> Result<void> {
-    const Result<PictureView> value = choice_value(kPictureViews, text);
-    if (!value) return tl::unexpected(value.error());
-    panel.view = *value;
-    return {};
-  };
   std::vector<OptionTable::Group> groups = {
       {"Picture",
-       {{"--view", 0, choices_text(kPictureViews),
-         "a log as recorded (polar, cartesian), or a map, also that of a log, from above, from a side, or one layer of "
-         "it",
-         "polar of a log, above of a map", view},
+       {choice("--view", kPictureViews,
+               "a log as recorded (polar, cartesian), or a map, also of a log, seen from above, from a side, or one "
+               "layer of it",
+               panel.view, "polar of a log, above of a map"),
         choice("--from", kSides, "side from which --view side looks, seen from the vehicle", args.from),
         {"--z", 0, "M", "height of the layer that --view slice draws", "none",
          within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(args.slice_z_m))},
         {"--min-z", 0, "M", "lowest height of a map that is drawn", "none", store_optional(panel.map_picture.min_z_m)},
         {"--max-z", 0, "M", "greatest height of a map that is drawn", "none",
          store_optional(panel.map_picture.max_z_m)},
-        {"--path", 0, "FILE", "draw a trajectory (TUM lines) over a map, in its frame; repeatable, at most 5", "none",
+        {"--path", 0, "FILE", "draw a trajectory (TUM lines) over a map, in its frame, at most 5", "none",
          store_each(panel.drawn_paths), Repeats::kEachCounts},
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as in 'pingvox info'",
          "all; cartesian: the fullest one", store_optional(panel.sweep)},
@@ -244,8 +238,8 @@ Result<Command> render_command(const Args& args) {
   auto& options = table.groups.front().options;
   options.insert(options.begin(), output_option(command.output, "the picture, .png; - is standard output"));
   options.push_back({"--beside", 0, "OPTIONS",
-                     "draw the same again beside it with these options changed, such as '--filter none'; repeatable",
-                     "none", store_each(beside), Repeats::kEachCounts});
+                     "draw the same again beside it with these options changed, such as '--filter none'", "none",
+                     store_each(beside), Repeats::kEachCounts});
   options.push_back({"--title", 0, "TEXT", "text above the picture", "none", store(command.title)});
   options.push_back(strict_option(command.damage));
   options.push_back(topic_option(command.bag));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -12,7 +11,6 @@
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
-#include "pingvox/geometry/degree.hpp"
 #include "shared_options.hpp"
 #include "suggest.hpp"
 
@@ -30,7 +28,9 @@ Result<Command> simulate_command(const Args& args) {
   SimulateCommand command;
   TankOptions& tank = command.tank;
   SonarOptions& sonar = command.sonar;
-  NavSensorOptions& sensors = command.nav_sensors;
+  NavSensorOptions& nav = command.nav_sensors;
+  TravelOptions& travel = command.travel;
+  DriftOptions& drift = command.drift;
   const Take world = [&](const std::string& text) -> Result<void> {
     const Args known = {"tank", "harbour", "marina", "seabed", "cave"};
     std::error_code error;
@@ -42,182 +42,143 @@ Result<Command> simulate_command(const Args& args) {
     command.world = text;
     return {};
   };
-  std::string poses, truth, nav;
+  const std::vector<Condition> moves = {{"--trajectory", {"line", "lawn-mower", "loop", "by-hand"}}};
+  const std::vector<Condition> drifts = {moves.front(), {"--poses"}};
   OptionTable table{
       "simulate",
-      "Simulates the log of a scanning sonar in a world of your choice, with ground truth if asked. The same options\n"
+      "Simulates the log of a scanning sonar in a world of your choice, with ground truth on request. The same "
+      "options\n"
       "give the same bytes.",
       {{"WORLD", Positional::Count::kOne,
         "tank (square, with a floater), harbour (quay walls, piles, a hull), marina (canals and basins, 400 m long), "
-        "seabed (a slope with boulders), cave (a "
-        "tunnel), or the file of a mesh in metres (OFF, PLY, STL)",
+        "seabed (a slope with boulders), cave (a tunnel), or the file of a mesh in metres (OFF, PLY, STL)",
         world}},
       {{"Output",
         {output_option(command.output,
-                       "the log, .csv; - is standard output. For a moving vehicle its reported trajectory is written "
+                       "the log, .csv; - is standard output. The reported trajectory of a moving vehicle is written "
                        "beside it as .tum"),
          {"--truth", 0, "DIR", "folder for ground truth: poses.tum, ranges.csv, world.ply (a mesh), world.bt (a map)",
-          "none", store(truth)},
+          "none", store(command.truth)},
          {"--nav", 0, "FILE",
-          "measurements of the vehicle's navigation sensors, as CSV: a DVL, a compass, gyros, depth", "none",
-          store(nav)},
-         {"--resolution", 0, "M", "edge length of a cell of world.bt", "0.05; marina 0.2",
-          within(kResolutions, store_optional(command.truth_resolution_m))},
+          "measurements of the vehicle's navigation sensors as CSV: a DVL, a compass, gyros and a depth sensor", "none",
+          store(command.nav)},
+         only_with({{"--truth"}}, {"--resolution", 0, "M", "edge length of a cell of world.bt", "0.05; marina 0.2",
+                                   within(kResolutions, store_optional(command.truth_resolution_m))}),
          quiet_option(command.output_options)}},
        {"World and vehicle",
-        {{"--side", 0, "M", "side of the square tank", number_text(tank.side_m),
-          within({2.0 * std::max(std::abs(tank.sensor_x_m), std::abs(tank.sensor_y_m)), 1000.0, Limits::Ends::kLowOut},
-                 store_number(tank.side_m))},
+        {only_with({{"WORLD", {"tank"}}}, number("--side", "M", "side of the square tank", tank, tank.side_m)),
          choice("--trajectory", kMotions,
-                "path of the vehicle; still is at 0,0,0; by-hand is the loop, once, with stops and sudden turns",
+                "path of the vehicle; still: at 0,0,0; by-hand: the loop, once, with stops and sudden turns",
                 command.motion),
-         {"--poses", 0, "FILE", "path of the vehicle as TUM lines, instead of --trajectory", "none", store(poses)},
+         {"--poses", 0, "FILE", "path of the vehicle as TUM lines, instead of --trajectory", "none",
+          store(command.poses)},
          mount_option(sonar.body_from_sensor),
-         {"--speed", 0, "M/S", "speed of the vehicle", number_text(command.travel.speed_m_s),
-          within({0.0, 100.0, Limits::Ends::kLowOut}, store_number(command.travel.speed_m_s))},
+         only_with(moves, number("--speed", "M/S", "speed of the vehicle", travel, travel.speed_m_s)),
          {"--turns", 0, "N", "turns of the head", "5; of a moving vehicle: to the end of its path",
-          store_optional(command.turns)},
-         {"--drift", 0, "M", "error of the reported position after a minute (standard deviation)",
-          number_text(command.drift.position_m), within({0.0, 1000.0}, store_number(command.drift.position_m))},
-         {"--heading-drift", 0, "DEG", "error of the reported heading after a minute (standard deviation)",
-          number_text(command.drift.heading_rad / kDegree_rad),
-          within({0.0, 572.95}, store_number(command.drift.heading_rad, kDegree_rad))}}},
+          within({1.0, 10'000.0}, store_optional(command.turns))},
+         only_with(drifts, number("--drift", "M", "error of the reported position after a minute (standard deviation)",
+                                  drift, drift.position_m)),
+         only_with(drifts,
+                   number("--heading-drift", "DEG", "error of the reported heading after a minute (standard deviation)",
+                          drift, drift.heading_rad))}},
        {"Navigation",
-        {{"--dvl-noise", 0, "M/S", "noise of the velocity (standard deviation on each axis)",
-          number_text(sensors.dvl_noise_m_s), within({0.0, 10.0}, store_number(sensors.dvl_noise_m_s))},
-         {"--dvl-outliers", 0, "F", "fraction of velocities that are wrong by about 1 m/s",
-          number_text(sensors.dvl_outliers), within({0.0, 1.0}, store_number(sensors.dvl_outliers))},
-         {"--dvl-lost", 0, "F", "fraction of time without bottom lock", number_text(sensors.dvl_lost),
-          within({0.0, 1.0, Limits::Ends::kHighOut}, store_number(sensors.dvl_lost))},
-         {"--dvl-yaw", 0, "DEG", "mounting angle of the DVL (standard deviation over seeds)",
-          number_text(sensors.dvl_yaw_rad / kDegree_rad),
-          within({0.0, 57.29}, store_number(sensors.dvl_yaw_rad, kDegree_rad))},
-         {"--dvl-scale", 0, "F", "scale error of the velocity: true over measured, less 1 (likewise)",
-          number_text(sensors.dvl_scale), within({0.0, 0.1}, store_number(sensors.dvl_scale))},
-         {"--compass-deviation", 0, "DEG", "amplitude of the deviation curve of the compass (likewise)",
-          number_text(sensors.compass_deviation_rad / kDegree_rad),
-          within({0.0, 17.18}, store_number(sensors.compass_deviation_rad, kDegree_rad))},
-         {"--attitude-noise", 0, "DEG", "noise of roll, pitch and yaw (standard deviation)",
-          number_text(sensors.attitude_noise_rad / kDegree_rad),
-          within({0.0, 57.29}, store_number(sensors.attitude_noise_rad, kDegree_rad))},
-         {"--gyro-noise", 0, "DEG/S", "noise of the turn rate (standard deviation)",
-          number_text(sensors.gyro_noise_rad_s / kDegree_rad),
-          within({0.0, 57.29}, store_number(sensors.gyro_noise_rad_s, kDegree_rad))},
-         {"--gyro-drift", 0, "DEG/S", "bias of the turn rate, and its change in ten minutes (standard deviation)",
-          number_text(sensors.gyro_drift_rad_s / kDegree_rad),
-          within({0.0, 57.29}, store_number(sensors.gyro_drift_rad_s, kDegree_rad))},
-         {"--depth-noise", 0, "M", "noise of the depth (standard deviation)", number_text(sensors.depth_noise_m),
-          within({0.0, 10.0}, store_number(sensors.depth_noise_m))},
-         {"--nav-delay", 0, "S", "delay of the navigation's times against those of the sonar",
-          number_text(sensors.delay_s), within({-3600.0, 3600.0}, store_number(sensors.delay_s))}}},
+        {number("--dvl-noise", "M/S", "noise of the velocity (standard deviation on each axis)", nav,
+                nav.dvl_noise_m_s),
+         number("--dvl-outliers", "F", "fraction of velocities that are wrong by about 1 m/s", nav, nav.dvl_outliers),
+         number("--dvl-lost", "F", "fraction of time without bottom lock", nav, nav.dvl_lost),
+         number("--dvl-yaw", "DEG", "mounting angle of the DVL (standard deviation over seeds)", nav, nav.dvl_yaw_rad),
+         number("--dvl-scale", "F", "scale error of the velocity: true over measured, less 1 (likewise)", nav,
+                nav.dvl_scale),
+         number("--compass-deviation", "DEG", "amplitude of the deviation curve of the compass (likewise)", nav,
+                nav.compass_deviation_rad),
+         number("--attitude-noise", "DEG", "noise of roll, pitch and yaw (standard deviation)", nav,
+                nav.attitude_noise_rad),
+         number("--gyro-noise", "DEG/S", "noise of the turn rate (standard deviation)", nav, nav.gyro_noise_rad_s),
+         number("--gyro-drift", "DEG/S", "bias of the turn rate, and its change in ten minutes (standard deviation)",
+                nav, nav.gyro_drift_rad_s),
+         number("--depth-noise", "M", "noise of the depth (standard deviation)", nav, nav.depth_noise_m),
+         number("--nav-delay", "S", "seconds by which the times of the navigation are later than those of the sonar",
+                nav, nav.delay_s)}},
        {"Sonar",
-        {{"--seed", 0, "N", "seed of the random numbers", fmt::format("{}", sonar.seed), store_number(sonar.seed)},
+        {number("--seed", "N", "seed of the random numbers", sonar.seed),
          {"--range", 0, "M", "range of a beam, where its last bin ends", "by world", store_optional(command.range_m)},
-         {"--bins", 0, "N", "number of bins of a beam", fmt::format("{}", sonar.bins),
-          within({1.0, 10'000.0}, store_number(sonar.bins))},
+         number("--bins", "N", "number of bins of a beam", sonar, sonar.bins),
          {"--bin-length", 0, "M", "length of a bin, instead of --range", "by world",
-          within({1e-6, 1.0}, store_optional(command.bin_length_m))},
-         {"--beams-per-turn", 0, "N", "number of beams in a full turn", fmt::format("{}", sonar.beams_per_turn),
-          within({4.0, 6400.0}, store_number(sonar.beams_per_turn))},
-         {"--beam-width", 0, "DEG", "horizontal beam width, between the points of half power",
-          number_text(sonar.beam_width_rad / kDegree_rad),
-          within({0.0, 57.29, Limits::Ends::kLowOut}, store_number(sonar.beam_width_rad, kDegree_rad))},
-         {"--beam-height", 0, "DEG", "vertical beam width, likewise", number_text(sonar.beam_height_rad / kDegree_rad),
-          within({0.0, 114.59, Limits::Ends::kLowOut}, store_number(sonar.beam_height_rad, kDegree_rad))},
-         {"--side-lobes", 0, "F", "side lobes: 0 none, 1 those of a rectangular transducer",
-          number_text(sonar.side_lobes), within({0.0, 1.0}, store_number(sonar.side_lobes))},
-         {"--gain", 0, "F", "fraction of the loss with range that the receiver compensates, 0..1",
-          number_text(sonar.gain), within({0.0, 1.0}, store_number(sonar.gain))},
-         {"--compression", 0, "C", "exponent that maps amplitudes to 8 bits: 1 is linear, less amplifies weak ones",
-          number_text(sonar.compression), within({0.1, 1.0}, store_number(sonar.compression))},
-         {"--absorption", 0, "DB/M", "absorption by the water, one way", number_text(sonar.absorption_db_per_m),
-          within({0.0, 10.0}, store_number(sonar.absorption_db_per_m))},
-         {"--ringing", 0, "M", "range up to which the transducer rings", number_text(sonar.ringing_m),
-          within({0.0, 10'000.0}, store_number(sonar.ringing_m))},
-         {"--speckle", 0, "F", "speckle: 0 none, 1 full fading of each bin", number_text(sonar.speckle),
-          within({0.0, 1.0}, store_number(sonar.speckle))},
-         {"--noise", 0, "N", "mean background amplitude near the head, 0..255", number_text(sonar.noise),
-          within({0.0, 255.0}, store_number(sonar.noise))},
-         {"--multipath", 0, "F", "fraction of the mirrored sound that reaches other surfaces, 0..1",
-          number_text(sonar.multipath), within({0.0, 1.0}, store_number(sonar.multipath))},
-         {"--bubbles", 0, "F", "fraction of beams with noise only", number_text(sonar.silent),
-          within({0.0, 1.0}, store_number(sonar.silent))},
-         {"--lost", 0, "F", "fraction of beams missing in the log", number_text(sonar.lost),
-          within({0.0, 1.0, Limits::Ends::kHighOut}, store_number(sonar.lost))},
+          store_optional(command.bin_length_m)},
+         number("--beams-per-turn", "N", "number of beams in a full turn", sonar, sonar.beams_per_turn),
+         number("--beam-width", "DEG", "horizontal beam width, full angle at half power", sonar, sonar.beam_width_rad),
+         number("--beam-height", "DEG", "vertical beam width, full angle at half power", sonar, sonar.beam_height_rad),
+         number("--side-lobes", "F", "side lobes: 0 none, 1 those of a rectangular transducer", sonar,
+                sonar.side_lobes),
+         number("--gain", "F", "fraction of the loss with range that the receiver compensates, 0..1", sonar,
+                sonar.gain),
+         number("--compression", "C", "exponent that maps amplitudes to 8 bits: 1 linear, less amplifies weak echoes",
+                sonar, sonar.compression),
+         number("--absorption", "DB/M", "absorption by the water, one way", sonar, sonar.absorption_db_per_m),
+         number("--ringing", "M", "range up to which the transducer rings", sonar, sonar.ringing_m),
+         number("--speckle", "F", "speckle: 0 none, 1 full fading of each bin", sonar, sonar.speckle),
+         number("--noise", "N", "mean background amplitude near the head, 0..255", sonar, sonar.noise),
+         number("--multipath", "F", "fraction of the mirrored sound that reaches other surfaces, 0..1", sonar,
+                sonar.multipath),
+         number("--bubbles", "F", "fraction of beams with only noise", sonar, sonar.silent),
+         number("--lost", "F", "fraction of beams missing in the log", sonar, sonar.lost),
          config_option()}}},
       {"pingvox simulate tank -o tank.csv", "pingvox simulate tank -o - --seed 7 | pingvox map - -o tank.bt",
        "pingvox simulate harbour -o harbour.csv --trajectory loop --truth harbour-truth",
        "pingvox simulate marina -o marina.csv --trajectory by-hand --nav nav.csv --truth marina-truth",
        "pingvox simulate wreck.stl -o wreck.csv --poses dive.tum --drift 0.3 --truth wreck-truth"},
       ""};
-  for (auto& group : table.groups) {
-    for (Option& option : group.options) {
-      if (group.title == "Navigation") option.only_with = {{"--nav"}};
-      const Condition moves{"--trajectory", {"line", "lawn-mower", "loop", "by-hand"}}, follows{"--poses"};
-      if (option.name == "--side") option.only_with = {{"WORLD", {"tank"}}};
-      if (option.name == "--resolution") option.only_with = {{"--truth"}};
-      if (option.name == "--speed") option.only_with = {moves};
-      if (option.name == "--drift" || option.name == "--heading-drift") option.only_with = {moves, follows};
-    }
-  }
+  for (Option& option : table.groups[2].options) option.only_with = {{"--nav"}};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     const Result<Format> output_as = output_format(command.output, std::nullopt, kCsvOnly);
     if (!output_as) return tl::unexpected(output_as.error());
-    if (!poses.empty()) command.poses = poses;
-    if (!truth.empty()) command.truth = truth;
-    if (!nav.empty()) command.nav = nav;
-    command.drift.seed = sonar.seed;
-    sensors.seed = sonar.seed;
+    drift.seed = nav.seed = sonar.seed;
     if (command.range_m && command.bin_length_m) return usage_error("--range and --bin-length: exclude each other");
     if (command.poses && command.motion != Motion::kStill)
       return usage_error("--poses and --trajectory: exclude each other");
     if (command.output == "-" && (command.poses || command.motion != Motion::kStill)) {
       return usage_error("-o -: a moving vehicle has two files: give the name of the log");
     }
-    if (command.turns && !(*command.turns >= 1 && *command.turns <= 10'000)) {
-      return usage_error(fmt::format("--turns: must be 1..10000, is {}", *command.turns));
-    }
     if (command.truth_resolution_m) {
       const auto lattice = Lattice::make(*command.truth_resolution_m);
       if (!lattice) return tl::unexpected(lattice.error());
     }
-    if (command.range_m) {
-      const auto bins = static_cast<double>(sonar.bins);
-      const Limits bins_m{1e-6 * bins, bins};
-      if (!bins_m.contain(*command.range_m)) {
-        return usage_error(fmt::format("--range: must be {} m with {} bins, is {} m", bins_m.text(), sonar.bins,
-                                       number_text(*command.range_m)));
-      }
-    }
     // The bin length may follow from the world.
     SonarOptions set = sonar;
-    set.bin_length_m = command.range_m ? *command.range_m / static_cast<double>(std::max<std::size_t>(sonar.bins, 1))
-                                       : command.bin_length_m.value_or(sonar.bin_length_m);
+    const auto bins = static_cast<double>(sonar.bins);
+    set.bin_length_m = command.range_m ? *command.range_m / bins : command.bin_length_m.value_or(sonar.bin_length_m);
+    if (const auto limits = set.errors().limits_of(&set.bin_length_m); limits && command.range_m) {
+      return usage_error(fmt::format("--range: must be {} m with {} bins, is {} m", limits->text(1.0 / bins),
+                                     sonar.bins, number_text(*command.range_m)));
+    } else if (limits) {
+      return usage_error(
+          fmt::format("--bin-length: must be {}, is {}", limits->text(), number_text(*command.bin_length_m)));
+    }
     if (const auto valid = set.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = tank.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = command.travel.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = command.drift.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = sensors.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = travel.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = drift.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = nav.validate(); !valid) return tl::unexpected(valid.error());
     CommandFiles files;
     files.read("WORLD", command.world);
-    files.read("--poses", poses);
+    files.read("--poses", command.poses.value_or(""));
     files.read("--config", parsed.config);
     files.write("-o", command.output);
     if (command.poses || command.motion != Motion::kStill) {
       files.write("the trajectory beside -o,",
                   std::filesystem::path(command.output).replace_extension(".tum").string());
     }
-    files.write("--nav", nav);
+    files.write("--nav", command.nav.value_or(""));
     if (command.truth) {
       for (const char* name : {"poses.tum", "ranges.csv", "world.ply", "world.bt", "nav.toml"}) {
-        files.write("--truth", (std::filesystem::path(truth) / name).string());
+        files.write("--truth", (std::filesystem::path(*command.truth) / name).string());
       }
     }
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
-    if (nav == "-") return usage_error("--nav -: give the name of a file");
+    if (command.nav == "-") return usage_error("--nav -: give the name of a file");
     if (command.nav) {
-      if (const auto folder = check_folder_of(nav); !folder) return tl::unexpected(folder.error());
+      if (const auto folder = check_folder_of(*command.nav); !folder) return tl::unexpected(folder.error());
     }
     return command;
   });

@@ -68,7 +68,7 @@ Result<Command> slam_command(const Args& args) {
                               "calibration of the same sensors by an earlier run, taken as a prior")}};
   OptionTable::Group estimation{
       "Estimation",
-      {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none is dead reckoning",
+      {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none: dead reckoning only",
               slam.matching),
        flag("--causal", "estimate each pose only from what was recorded before it, as on board", command.estimation,
             Estimation::kCausal),

@@ -59,9 +59,9 @@ Option fields_option(BagArgs& bag) {
       "--fields",
       0,
       "FILE|KEY=VALUE,...",
-      "fields of messages in ROS bags, for unknown drivers: a TOML file with those of beams and navigation "
-      "(docs/formats.md); or of a message of --topic that makes it a beam: angle, range (of the beam in m) or bin "
-      "(length of one in m), intensities; and unit=rad|deg|grad, turn=ccw|cw, ahead=N of the angle",
+      "fields of messages of unknown drivers in ROS bags: a TOML file for beams and navigation (docs/formats.md), or "
+      "those that make a message of --topic a beam: angle, range (of the beam, in m) or bin (length of a bin, in m), "
+      "intensities; of the angle also unit=rad|deg|grad, turn=ccw|cw and ahead=N",
       "by the type of the message; unit=rad,turn=ccw,ahead=0",
       [&bag](const std::string& text) { return take_fields(text, bag); }};
   option.only_for = {std::string(kBeamLogs), std::string(kBagScans)};

@@ -1,6 +1,7 @@
 #include "toml_file.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,40 +13,55 @@
 namespace pingvox::app {
 namespace {
 
-std::string_view trim(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
+std::size_t line_of_node(const toml::node& node) {
+  return node.source().begin.line;
 }
 
-/// A basic string without escapes but \" and \\, or a bare word; a comment may follow. nullopt: neither.
-std::optional<TomlValue> value_from(std::string_view text) {
+/// nullopt: dates, tables and lists in lists, which no file of ours has.
+std::optional<TomlValue> value_from(const toml::node& node) {
   TomlValue value;
-  std::string_view rest;
-  if (text.starts_with('"')) {
-    value.is_string = true;
-    std::size_t i = 1;
-    for (; i < text.size() && text[i] != '"'; ++i) {
-      if (text[i] == '\\' && (++i == text.size() || (text[i] != '"' && text[i] != '\\'))) return std::nullopt;
-      value.text += text[i];
+  value.line = line_of_node(node);
+  if (const toml::array* list = node.as_array()) {
+    for (const toml::node& item : *list) {
+      const auto text = item.is_array() ? std::nullopt : value_from(item);
+      if (!text) return std::nullopt;
+      value.items.push_back(text->text);
     }
-    if (i >= text.size()) return std::nullopt;
-    rest = trim(text.substr(i + 1));
-  } else {
-    const std::size_t end = std::min(text.find('#'), text.size());
-    value.text = trim(text.substr(0, end));
-    rest = text.substr(end);
+    value.text = fmt::format("{}", fmt::join(value.items, ","));
+    return value;
   }
-  if (value.text.empty() || (!rest.empty() && !rest.starts_with('#'))) return std::nullopt;
+  if (const auto* text = node.as_string()) {
+    value.is_string = true;
+    value.text = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    value.text = fmt::format("{}", whole->get());
+  } else if (const auto* real = node.as_floating_point()) {
+    value.text = fmt::format("{}", real->get());
+  } else if (const auto* truth = node.as_boolean()) {
+    value.text = truth->get() ? "true" : "false";
+  } else {
+    return std::nullopt;
+  }
+  value.items = {value.text};
   return value;
 }
 
-/// Of "[[name]]", which a comment may follow; nullopt: another line.
-std::optional<std::string_view> section_name(std::string_view line) {
-  const std::size_t end = line.find("]]");
-  if (!line.starts_with("[[") || end == std::string_view::npos) return std::nullopt;
-  const std::string_view rest = trim(line.substr(end + 2));
-  if (!rest.empty() && !rest.starts_with('#')) return std::nullopt;
-  return trim(line.substr(2, end - 2));
+Result<TomlSection> section_from(const std::string& file, std::string_view name, const toml::table& table) {
+  TomlSection section;
+  section.name = name;
+  section.line = std::max<std::size_t>(line_of_node(table), 1);
+  for (const auto& [key, node] : table) {
+    const bool is_section = name.empty() && (node.is_table() || node.is_array_of_tables());
+    if (is_section) continue;
+    const std::optional<TomlValue> value = value_from(node);
+    if (!value) {
+      return toml_error(
+          file, line_of_node(node),
+          fmt::format("{}: must be a number, a text, true or false, or a list of these", on_one_line(key.str())));
+    }
+    section.values.emplace(key.str(), *value);
+  }
+  return section;
 }
 
 }  // namespace
@@ -55,27 +71,30 @@ tl::unexpected<Error> toml_error(const std::string& file, std::size_t line, std:
 }
 
 Result<std::vector<TomlSection>> read_toml(const FileBytes& file) {
-  std::vector<TomlSection> sections(1);
-  std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trim(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty() || line.starts_with('#')) continue;
-    if (const std::optional<std::string_view> name = section_name(line)) {
-      sections.push_back({std::string(*name), number, {}});
-      continue;
-    }
-    const std::size_t equals = line.find('=');
-    std::optional<TomlValue> value;
-    if (equals != std::string_view::npos) value = value_from(trim(line.substr(equals + 1)));
-    if (!value) return toml_error(file.name, number, "is not 'name = number', 'name = \"text\"' or '[[name]]'");
-    value->line = number;
-    const std::string name(trim(line.substr(0, equals)));
-    if (!sections.back().values.emplace(name, *value).second) {
-      return toml_error(file.name, number, fmt::format("{}: is there twice", on_one_line(name)));
+  toml::table top;
+  try {
+    top = toml::parse(std::string_view(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()));
+  } catch (const toml::parse_error& error) {
+    return toml_error(file.name, error.source().begin.line, on_one_line(error.description()));
+  }
+  std::vector<TomlSection> sections;
+  const auto add = [&](std::string_view name, const toml::table& table) -> Result<void> {
+    return section_from(file.name, name, table).map([&](TomlSection section) {
+      sections.push_back(std::move(section));
+    });
+  };
+  if (const auto added = add("", top); !added) return tl::unexpected(added.error());
+  for (const auto& [key, node] : top) {
+    if (const toml::table* table = node.as_table()) {
+      if (const auto added = add(key.str(), *table); !added) return tl::unexpected(added.error());
+    } else if (node.is_array_of_tables()) {
+      for (const toml::node& table_of_list : *node.as_array()) {
+        if (const auto added = add(key.str(), *table_of_list.as_table()); !added) return tl::unexpected(added.error());
+      }
     }
   }
+  std::stable_sort(sections.begin() + 1, sections.end(),
+                   [](const TomlSection& a, const TomlSection& b) { return a.line < b.line; });
   return sections;
 }
 

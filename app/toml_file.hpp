@@ -10,23 +10,25 @@
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/result.hpp"
 
-/// The part of TOML that our files need: numbers, basic strings, and arrays of tables.
+/// TOML files of keys and of tables, none within another.
 namespace pingvox::app {
 
 struct TomlValue {
-  std::string text;
+  std::string text;  ///< numbers and truth values as TOML writes them, lists with commas between their items
+  std::vector<std::string> items;  ///< of a list; else `text` alone
   bool is_string = false;
   std::size_t line = 0;
 };
 
-/// The keys under a [[name]], or those before the first.
+/// The keys of a [[name]] (or [name]), or those before the first.
 struct TomlSection {
   std::string name;
   std::size_t line = 1;
   std::map<std::string, TomlValue, std::less<>> values;
 };
 
-/// @return the keys before the first [[name]], then those under each; kCorrupt naming the line
+/// @return the keys before the first [[name]], then those under each, in the order of the file; kCorrupt naming the
+///         line
 Result<std::vector<TomlSection>> read_toml(const FileBytes& file);
 
 /// kCorrupt: "FILE: line N: what"
@@ -44,7 +46,7 @@ class TomlKeys {
   std::string text(std::string_view name);
   double number(std::string_view name);
   void refuse(std::size_t line, std::string_view name, std::string_view what);
-  /// Whether all was right, and nothing is left.
+  /// The first error, if any; a key that is left is one.
   Result<void> finish();
 
  private:
