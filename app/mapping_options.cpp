@@ -275,7 +275,7 @@ OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
         within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
                store_optional(args.sound_speed_m_s))},
        {"--water", 0, water == WaterOfNav::kYes ? "T,S[,D]|nav,S" : "T,S[,D]",
-        std::string("speed of sound by the water: temperature in degrees C, salinity (0 fresh, 35 ocean), depth in m") +
+        std::string("speed of sound from temperature in degrees C, salinity (0 fresh, 35 ocean) and depth in m") +
             (water == WaterOfNav::kYes ? "; nav: temperature and depth from --nav" : ""),
         "none", store_water(args, water)},
        choice("--filter", kFilters,
