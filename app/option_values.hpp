@@ -19,7 +19,7 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/limits.hpp"
 #include "pingvox/map/log_odds.hpp"
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 #include "pingvox/result.hpp"
 #include "suggest.hpp"
 

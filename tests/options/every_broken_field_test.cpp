@@ -19,7 +19,7 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/obstacle_sectors.hpp"
-#include "pingvox/option_errors.hpp"
+#include "base/option_errors.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
