@@ -81,7 +81,7 @@ std::optional<double> slope_of(const Pairs& pairs) {
 }
 
 /// Where a height goes up as a depth does.
-std::string fault_of_height(const NavSource& position, const NavSource& depth) {
+std::string doubt_of_height(const NavSource& position, const NavSource& depth) {
   constexpr double kLeast = 0.5, kMost = 2.0;
   NavSource height = position;
   for (NavSample& sample : height.samples) sample.value.x() = sample.value.z();
@@ -120,7 +120,7 @@ void compare_depths(std::span<NavSource> sources) {
     if (source.quantity != NavQuantity::kPosition || !is_usable(source) || source.subject == NavSubject::kOther) {
       continue;
     }
-    source.fault = fault_of_height(source, *depth);
+    source.doubt = doubt_of_height(source, *depth);
   }
 }
 

@@ -12,8 +12,8 @@ namespace pingvox {
 /// @param source  in order of time
 std::string fault_of_depth(const NavSource& source);
 
-/// Compares the depths of a log with the depth by its pressure, and the heights of its positions with both: `fault` of
-/// those says which is in another unit, or points down where up is meant.
+/// Compares the depths of a log with the depth by its pressure: the `fault` of one says that it is in another unit. And
+/// the heights of its positions with both: the `doubt` of one says that it points down where up is meant.
 /// @param sources  each in order of time, pressures in Pa
 void compare_depths(std::span<NavSource> sources);
 

@@ -289,7 +289,9 @@ Result<NavLog> sources_between(const NavLog& log, double from_s, double to_s) {
   }
   for (std::size_t i = 0; i < sources.size(); ++i) {
     NavSource& source = sources[i];
-    if (source.subject == NavSubject::kOther || known_s[i] >= kCovers * longest_s[group_of(source.quantity)]) continue;
+    // What is wrong with a source is said, however long it is known.
+    if (source.subject == NavSubject::kOther || !source.fault.empty()) continue;
+    if (known_s[i] >= kCovers * longest_s[group_of(source.quantity)]) continue;
     source.subject = NavSubject::kOther;
     source.note = "not known for most of the sonar's log";
   }

@@ -296,5 +296,13 @@ TEST(ScanLog, LeavesDamagedLinesOutAndNamesTheFirstWhenAsked) {
             "a.log: line 3: is not a point of three finite numbers");
 }
 
+// Kills angles in degrees that turn each scan anywhere.
+TEST(ScanLog, AnglesInDegreesAreRefused) {
+  std::string text;
+  for (int i = 0; i < 9; ++i) text += "NODE 0 0 0 0 0 " + std::to_string(10 * i) + "\n1 2 3\n";
+  EXPECT_THAT(all_scans({"a.log", bytes_of(text)}).error,
+              HasSubstr("an angle of 20 rad behind NODE is beyond two turns: are they in degrees?"));
+}
+
 }  // namespace
 }  // namespace pingvox

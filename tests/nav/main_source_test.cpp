@@ -171,6 +171,17 @@ TEST(MainSource, SourcesCoverTheTimeOfTheSonar) {
   EXPECT_EQ(path_sources(*never).position->name, "journey") << "none is known then: the clocks may be wrong";
 }
 
+// Kills a depth in another unit that is left out without a word, as the pressure tells the same.
+TEST(MainSource, AFaultIsSaidWhateverElseCoversTheLog) {
+  NavSource depth = sampled("depth", NavQuantity::kDepth, 0, 30);
+  depth.fault = "is it in cm?";
+  const auto log = NavLog::make({depth, sampled("bar", NavQuantity::kPressure, 0, 30)}, NavClock::kUnix);
+  ASSERT_TRUE(log);
+  const auto during = sources_between(*log, 0, 30);
+  ASSERT_TRUE(during);
+  EXPECT_EQ(faults_text(*during), "the depth of depth cannot be used: is it in cm?");
+}
+
 TEST(MainSource, OneOfANameIsTakenInsteadOfAllOthers) {
   const auto log =
       NavLog::make({sampled("/odom", kPosition, 0, 30), sampled("/odom", kAttitude, 0, 30), sampled("gps", kFix, 0, 30),

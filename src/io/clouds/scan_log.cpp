@@ -52,7 +52,7 @@ std::optional<OctomapPose> pose_in(std::string_view node_line) {
 
 /// What is wrong with the angles of a log's scans; empty: nothing. Single ones may be damaged.
 std::string problem_of_angles(std::string_view text) {
-  constexpr float kMaxAngle_rad = 2.1F * std::numbers::pi_v<float>;
+  constexpr float kMaxAngle_rad = 4.0F * std::numbers::pi_v<float>;  // some count past a turn
   constexpr std::size_t kOneOf = 10;
   std::size_t scans = 0, beyond = 0;
   float first_rad = 0.0F;
@@ -67,7 +67,7 @@ std::string problem_of_angles(std::string_view text) {
     if (beyond++ == 0) first_rad = largest_rad;
   }
   if (beyond == 0 || beyond * kOneOf < scans) return {};
-  return fmt::format("an angle of {:.6g} rad behind NODE is beyond 2 pi: are they in degrees?", first_rad);
+  return fmt::format("an angle of {:.6g} rad behind NODE is beyond two turns: are they in degrees?", first_rad);
 }
 
 class ScanLogSource : public ScanSource {
