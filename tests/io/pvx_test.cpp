@@ -157,7 +157,7 @@ TEST(Pvx, RefusesSenselessHeadersAndTrees) {
   expect_refused(with(16, "00"), corrupt, "depth");
   expect_refused(with(16, "81"), corrupt, "depth");
   expect_refused(with(16, "01"), corrupt, "below the last level");
-  expect_refused(with(17, "02"), corrupt, "parents");
+  expect_refused(with(17, "02"), corrupt, "parent rule");
   expect_refused(with(18, "02"), corrupt, "root");
   expect_refused(with(18, "00"), corrupt, "header says");
   expect_refused(with(19, "01"), corrupt, "reserved");
