@@ -15,7 +15,7 @@ constexpr std::array kFieldOptions = {
     FieldOption{"max_range_m", "--max-range"},   FieldOption{"max_z_m", "--max-z"},
     FieldOption{"min_range_m", "--min-range"},   FieldOption{"min_z_m", "--min-z"},
     FieldOption{"nav_offset_s", "--nav-offset"}, FieldOption{"nav_salinity", "--water nav,S"},
-    FieldOption{"nav_sources", "--nav-source"},  FieldOption{"topic:", "--topic:"},
+    FieldOption{"nav_sources", "--nav-source"},  FieldOption{"topic: has no effect", "--topic: has no effect"},
 };
 
 bool is_of_word(char c) {

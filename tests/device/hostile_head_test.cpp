@@ -129,9 +129,11 @@ TEST(HostileHead, AMicronsLineOfAnotherRangeCostsItsBeam) {
     if (seanet_message(frame) != SeanetMessage::kHeadData) return {};
     constexpr std::size_t kBlock = 15, kInterval = kBlock + 18, kBearing = kBlock + 25;
     Bytes changed = frame;
-    const std::size_t at = ++kind % 8 == 0 ? kInterval : kBearing;  // of each fourth line one or the other
-    changed[at] = 0x88;
-    changed[at + 1] = 0x13;
+    const bool is_range = ++kind % 8 == 0;  // of each fourth line one or the other
+    const std::size_t at = is_range ? kInterval : kBearing;
+    const std::uint16_t number = is_range ? 3000 : 5000;  // some 300 m, and out of the sector
+    changed[at] = static_cast<std::uint8_t>(number & 0xFFU);
+    changed[at + 1] = static_cast<std::uint8_t>(number >> 8U);
     return changed;
   });
   std::vector<Beam> beams;

@@ -128,12 +128,13 @@ TEST(Nmea, CountsDamageByKindAndPlace) {
   EXPECT_EQ(nav.records, 3U);
   EXPECT_EQ(samples_of(nav, "GPRMC").size(), 2U) << "one behind a sentence that was cut";
   EXPECT_TRUE(samples_of(nav, "GPGLL").empty()) << "no place on the earth";
-  ASSERT_EQ(nav.damage.size(), 3U);
+  ASSERT_EQ(nav.damage.size(), 4U);
   EXPECT_EQ(nav.damage[0].what, "wrong checksum");
   EXPECT_EQ(nav.damage[0].first_byte, wrong.size());
   EXPECT_EQ(nav.damage[1].what, "sentence without checksum");
   EXPECT_EQ(nav.damage[1].first_byte, 2 * wrong.size());
-  EXPECT_EQ(nav.damage[2].what, "cut off at the end");
+  EXPECT_EQ(nav.damage[2].what, "impossible values");
+  EXPECT_EQ(nav.damage[3].what, "cut off at the end");
 }
 
 // Checksums are optional: a log without them was "text of no known format".
