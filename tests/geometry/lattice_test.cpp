@@ -21,6 +21,7 @@ TEST(Lattice, RefusesWhatIsNoGridOfCells) {
   }
   for (const int depth : {0, -1, 129}) EXPECT_FALSE(Lattice::make(0.1, depth)) << depth;
   EXPECT_FALSE(Lattice::make(1e300, 128)) << "its edge is no number";
+  EXPECT_TRUE(Lattice::make(6e-309, 16)) << "its inverse is a number";
   for (const int depth : kDepths) EXPECT_TRUE(Lattice::make(0.1, depth)) << depth;
 }
 

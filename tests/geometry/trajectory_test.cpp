@@ -36,7 +36,9 @@ TEST(Pose, AnglesOfARotationAreThoseItWasMadeOf) {
   }
   for (const double pitch : {-kPi / 2, kPi / 2}) {
     // Roll and yaw are one turn there, and rounding must not leave the range of asin.
-    EXPECT_NEAR(rpy_of(pose_from_rpy({0, 0, 0}, 0.3, pitch, 1.2).linear()).y(), pitch, 1e-7);
+    const Eigen::Matrix3d rotation = pose_from_rpy({0, 0, 0}, 0.3, pitch, 1.2).linear();
+    EXPECT_NEAR(rpy_of(rotation).y(), pitch, 1e-7);
+    EXPECT_NEAR(rpy_of((1.0 + 1e-15) * rotation).y(), pitch, 1e-7);
   }
 }
 
