@@ -131,7 +131,7 @@ TEST(HostileHead, AMicronsLineOfAnotherRangeCostsItsBeam) {
     Bytes changed = frame;
     const bool is_range = ++kind % 8 == 0;  // of each fourth line one or the other
     const std::size_t at = is_range ? kInterval : kBearing;
-    const std::uint16_t number = is_range ? 3000 : 5000;  // some 300 m, and out of the sector
+    const std::uint16_t number = is_range ? 600 : 5000;  // a longer range that a sonar may have, and out of the sector
     changed[at] = static_cast<std::uint8_t>(number & 0xFFU);
     changed[at + 1] = static_cast<std::uint8_t>(number >> 8U);
     return changed;

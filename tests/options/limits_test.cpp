@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What the message says of a field: "in 0..1", "> 0 and at most 2 pi"; empty: nothing.
+/// What the message says of a field: "0..1", "> 0 and at most 2 pi"; empty: nothing.
 template <class Options>
 std::string rule_of(const Options& options, const std::string& name) {
   const Result<void> valid = options.validate();
@@ -50,7 +50,8 @@ void expect_limits(const std::string& name, Field field, Options options = {}) {
   const std::string rule = rule_of(options, name);
   ASSERT_NE(rule, "");
   SCOPED_TRACE(rule);
-  const double at_least = limit_in(rule, "^in |at least |>= |^(?=0 or more)"), above = limit_in(rule, "> |above ");
+  const double at_least = limit_in(rule, "^in |^(?=-?[0-9.e-]+\\.\\.)|at least |>= |^(?=0 or more)"),
+               above = limit_in(rule, "> |above ");
   const double at_most = limit_in(rule, "\\.\\.|at most |<= "), below = limit_in(rule, "less than ");
   ASSERT_TRUE(std::isfinite(at_least) || std::isfinite(above));
   if (std::isfinite(at_least)) {
