@@ -18,8 +18,8 @@ std::vector<std::uint8_t> mean_of_beams(const PolarImage& image, const Sweep& sw
                                         std::size_t first, std::size_t end);
 
 /// How far behind the blanking range a near wall may begin: no head sends a pulse that long. Where the bins are still
-/// loud beyond, as in the long echo of a bottom, the mean rises and falls without walls: in three recordings that was
-/// so of all walls that it had there.
+/// loud beyond, as in the long echo of a bottom, the mean rises and falls without walls: all twelve near walls of our
+/// recordings that began there were false.
 inline constexpr double kNearWalls_m = 1.75;
 
 /// The loud bins next to the blanking range: ringing that goes on beyond it, reverberation, or a near wall whose echo
@@ -33,9 +33,10 @@ struct NearField {
   std::size_t walls_end = 0;  ///< of those where a near wall may begin
 };
 
-/// @param mean     of the beams around, all bins
-/// @param nearest  first bin beyond the blanking range. REQUIRES mean[nearest] >= level
-/// @param level    lowest intensity of a loud bin
+/// @param mean          of the beams around, all bins
+/// @param nearest       first bin beyond the blanking range. REQUIRES mean[nearest] >= level
+/// @param level         lowest intensity of a loud bin
+/// @param bin_length_m  of the beam
 NearField near_field_of(std::vector<std::uint8_t> mean, std::size_t nearest, int level, double bin_length_m);
 
 }  // namespace pingvox

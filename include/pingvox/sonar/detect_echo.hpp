@@ -35,11 +35,11 @@ enum class Detector {
   /// threshold below its top, so speckle does not split an echo, and a falling edge starts none.
   ///
   /// Where the blanking range ends within loud bins (the mean of the nine beams around is at the level of kLevel), that
-  /// mean is searched first, from the transducer on. If it rises to a crest beyond the blanking range, and the beam has
-  /// nothing louder behind, that is the echo. A crest within the blanking range, behind the ringing and not fainter
-  /// than
-  /// what follows, leaves the beam without an echo. If the mean does not rise, a rise of the beam alone within the loud
-  /// bins is none, and the beam has an echo only if something behind them is as loud.
+  /// mean is searched first, from the transducer on. If it begins to rise at most 1.75 m behind the blanking range, its
+  /// crest is beyond that range, and the beam is at that level there and has nothing louder behind, that is the echo. A
+  /// crest within the blanking range, behind the ringing and not fainter than what follows, leaves the beam without an
+  /// echo. If the mean does not rise, a rise of the beam alone from and within the loud bins is none, and the beam has
+  /// an echo only if something behind them is as loud.
   kRise,
   /// The first bin that reaches the threshold. Ringing beyond the blanking range counts too.
   kLevel,
