@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/option_errors.hpp"
 #include "option_table.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/limits.hpp"
 #include "pingvox/map/log_odds.hpp"
-#include "base/option_errors.hpp"
 #include "pingvox/result.hpp"
 #include "suggest.hpp"
 

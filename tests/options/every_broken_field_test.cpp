@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/option_errors.hpp"
 #include "device/internal/head_emulator.hpp"
 #include "device/internal/nav_emulator.hpp"
 #include "pingvox/analysis/visible_cells.hpp"
@@ -19,7 +20,6 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/obstacle_sectors.hpp"
-#include "base/option_errors.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
