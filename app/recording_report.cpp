@@ -182,7 +182,7 @@ std::string skipped_text(const MappedLog& mapped, std::string_view unit, const T
       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
                   trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
       gap_advice);
-  add(blocked, "left out: the map has an obstacle nearer than --min-range in their direction",
+  add(blocked, "in whose direction the map has an obstacle nearer than --min-range",
       "they would record its second echo, or what lies around it");
   add(too_long, "with ten times the range of the others, or of too many cells",
       "their range may be damaged; a shorter --max-range or a larger --resolution may do");
