@@ -36,7 +36,7 @@ Result<Format> identify_format(ByteStream& stream) {
 }
 
 Result<Format> identify_log(ByteStream& stream) {
-  const Result<Format> format = identify_format(stream);
+  Result<Format> format = identify_format(stream);
   if (!format || is_bag(*format)) return format;
   const FormatKind kind = kind_of(*format);
   if (kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud) return format;
