@@ -47,7 +47,7 @@ struct NavPart {
   const NavLog& log() const { return contents.nav.log; }
 };
 
-Result<NavPart> read_part(const InputFile& file, const NavReading& reading) {
+Result<NavPart> read_part(const InputFile& file, const NavigationOptions& reading) {
   Result<ByteStream> stream = file.open();
   if (!stream) return tl::unexpected(stream.error());
   const std::string shown = stream->name();
@@ -210,7 +210,7 @@ Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<co
   return read_nav_log(ByteStream(stream.held()), damage, fields);
 }
 
-Result<NavFiles> read_navigation(std::span<const InputFile> files, const NavReading& reading) {
+Result<NavFiles> read_navigation(std::span<const InputFile> files, const NavigationOptions& reading) {
   std::vector<NavPart> parts;
   std::vector<BagTopicSummary> topics;
   std::vector<NavFiles::Note> left_out;

@@ -57,7 +57,7 @@ struct NavFiles {
 };
 
 /// How navigation is read, and what for.
-struct NavReading {
+struct NavigationOptions {
   Damage damage = Damage::kSkip;
   /// Of messages in ROS bags; if one of the logs is a bag, there must be messages of each.
   std::span<const NavFields> fields = {};
@@ -72,10 +72,10 @@ struct NavReading {
 /// @param files  none: the log is empty
 /// @return kUnsupported when the clocks cannot be aligned, or a file is no navigation; kBadOption when there is no
 ///         source of a chosen name, or no messages of `fields`; errors of reading
-Result<NavFiles> read_navigation(std::span<const InputFile> files, const NavReading& reading = {});
+Result<NavFiles> read_navigation(std::span<const InputFile> files, const NavigationOptions& reading = {});
 
 /// One navigation log as it is, with its topics if it is a bag.
-/// @param fields  as in NavReading
+/// @param fields  as in NavigationOptions
 Result<BagContents> read_nav_log(ByteStream stream, Damage damage, std::span<const NavFields> fields);
 /// What a bag holds; the stream can still be read afterwards. A pipe is loaded into memory for that.
 Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<const NavFields> fields);
