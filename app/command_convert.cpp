@@ -177,7 +177,7 @@ Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand
   const Result<void> written =
       write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
   if (!written) return tl::unexpected(written.error());
-  const std::string others = text_of(path->nav->others);
+  const std::string others = pingvox::text_of(path->nav->others);
   return nav_text(*path, damaged_records(contents->nav)) + (others.empty() ? "" : "; others: " + others);
 }
 

@@ -196,7 +196,7 @@ std::string map_report_text(const Totals& totals, const Recording& recording, co
       recording.water() ? report_line("water", water_text(*recording.water())) : sound_line(totals.sound_speed_m_s);
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path, recording.nav().damaged)) + others_line(path.nav->others) +
-                         report_line("nav clock", text_of(*recording.nav_offset(), totals.clock_check)) +
+                         report_line("nav clock", app::text_of(*recording.nav_offset(), totals.clock_check)) +
                          nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(*path.nav))
                    : "") +
          (stands_still ? report_line("vehicle", "stands still: no --poses, no --nav") : "") + beams +

@@ -127,7 +127,7 @@ std::string locate_text(const Recording& recording, const RecordingLocation& loc
                                              : on_one_line(command.output) + "\n";
   text += report_line("motion", motion_text(recording, location)) + others_line(location.others);
   if (!recording.options().nav.empty()) {
-    text += report_line("nav clock", text_of(*recording.nav_offset(), found.clock_check)) +
+    text += report_line("nav clock", app::text_of(*recording.nav_offset(), found.clock_check)) +
             nav_logs_text(recording.nav().clocks);
   }
   text +=

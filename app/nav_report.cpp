@@ -63,7 +63,7 @@ std::vector<std::string> nav_warnings(const Recording& recording) {
 }
 
 std::string others_line(std::span<const OtherSource> others) {
-  const std::string text = text_of(others);
+  const std::string text = pingvox::text_of(others);
   return text.empty() ? "" : report_line("nav others", text);
 }
 
@@ -155,7 +155,7 @@ std::string dates_text(const NavLog& log) {
 /// Samples that were put in order, and clocks that were set.
 std::string order_text(const NavFile& nav) {
   std::string text;
-  for (const ClockSetting& setting : nav.settings) text += report_line("clock set", text_of(setting));
+  for (const ClockSetting& setting : nav.settings) text += report_line("clock set", app::text_of(setting));
   for (const NavSource& source : nav.log.sources()) {
     const std::string name = fmt::format("{} of {}", name_of(source.quantity), on_one_line(source.name));
     if (source.step_back) {

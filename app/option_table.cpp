@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "pingvox/io/file.hpp"
@@ -351,9 +352,9 @@ std::string help_of(const OptionTable& table) {
   for (const auto& group : table.groups) {
     out += "\n" + group.title + ":\n";
     for (const Option& option : group.options) {
-      const std::string repeats = option.repeats == Repeats::kEachCounts ? "; repeatable" : "";
-      const std::string standard = option.standard.empty() ? "" : " [" + option.standard + "]";
-      out += help_entry(label_of(option), option.help + repeats + standard);
+      const std::string_view repeats = option.repeats == Repeats::kEachCounts ? "; repeatable" : "";
+      const std::string standard = option.standard.empty() ? "" : fmt::format(" [{}]", option.standard);
+      out += help_entry(label_of(option), fmt::format("{}{}{}", option.help, repeats, standard));
     }
   }
   out += help_entry("-h, --help", "show this help");

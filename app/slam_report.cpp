@@ -245,7 +245,7 @@ std::string slam_text(const Recording& recording, const RecordingSlam& slam, con
   std::string read = beams_text(report.beams, report.sweeps, report.echoes);
   if (slam.skipped > 0) read += fmt::format("; skipped {}", counted(slam.skipped, "damaged record"));
   text += report_line("read", read);
-  text += report_line("nav clock", text_of(*recording.nav_offset(), report.clock_check));
+  text += report_line("nav clock", app::text_of(*recording.nav_offset(), report.clock_check));
   text += nav_logs_text(recording.nav().clocks);
   text += recording.water() ? report_line("water", water_text(*recording.water()))
                             : sound_line(slam.options.sound_speed_ratio * kAssumedSoundSpeed_m_s);

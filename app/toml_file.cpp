@@ -93,8 +93,7 @@ Result<std::vector<TomlSection>> read_toml(const FileBytes& file) {
       }
     }
   }
-  std::stable_sort(sections.begin() + 1, sections.end(),
-                   [](const TomlSection& a, const TomlSection& b) { return a.line < b.line; });
+  std::ranges::sort(sections.begin() + 1, sections.end(), {}, &TomlSection::line);
   return sections;
 }
 
