@@ -21,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 
 bool is_built() {
-  return std::filesystem::exists(std::filesystem::path(PINGVOX_PROGRAM).parent_path() / "pingvox-bench");
+  return std::filesystem::exists(std::filesystem::path(tested_program()).parent_path() / "pingvox-bench");
 }
 
 /// The first word of each line of `pingvox bench list`.
