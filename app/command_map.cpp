@@ -240,7 +240,7 @@ class LogMapper {
     if (log->beams() != nullptr) {
       if (const auto ranges = check_ranges(build_); !ranges) return ranges;
     }
-    if (const auto done = subtract_background_from(*log); !done) return done;
+    if (const auto done = subtract_background(recording_, *log, background_); !done) return done;
     totals_.report.seconds.read += read.seconds();
     return map(*log);
   }
@@ -310,19 +310,6 @@ class LogMapper {
     });
   }
 
-  /// The background is learned from all logs, as each of them may be short.
-  Result<void> subtract_background_from(OpenedLog& log) {
-    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log.log);
-    if (beams == nullptr || !command_.background_m) return {};
-    if (!background_) {
-      Result<Background> background = learn_background(recording_, *command_.background_m);
-      if (!background) return tl::unexpected(background.error());
-      background_ = *std::move(background);
-    }
-    *beams = subtract_background(std::move(*beams), *background_);
-    return {};
-  }
-
   void draw(std::optional<double> share, std::size_t beams) {
     if (!bar_.is_due()) return;
     // All logs count the same, as the length of later ones is unknown.
@@ -389,6 +376,7 @@ Result<int> run(const MapCommand& command, Console& console) {
   options->body_from_sonar = command.build.body_from_sensor;
   options->nav_salinity = command.nav_salinity;
   options->cloud_origin_m = command.cloud_origin_m;
+  options->background_m = command.background_m;
   const Result<Recording> recording = open_recording(input_files(command.logs), *std::move(options));
   if (!recording) return tl::unexpected(recording.error());
   const Result<VehiclePath> path = path_of(*recording);

@@ -28,9 +28,9 @@ namespace {
 
 /// The files that a solution is made of: "dive.csv, nav.csv"
 std::string inputs_text(const SlamCommand& command) {
-  std::string text = name_of_input(command.logs.front());
-  for (const std::string& nav : command.navs) {
-    if (nav != command.logs.front()) text += ", " + nav;
+  std::string text = name_of_input(command.recording.logs.front());
+  for (const std::string& nav : command.recording.path.navs) {
+    if (nav != command.recording.logs.front()) text += ", " + nav;
   }
   return text;
 }
@@ -68,26 +68,12 @@ std::vector<std::string> used_sources(const SlamSolution& solution) {
   return used;
 }
 
-/// The recording of a command.
-Result<Recording> recording_of(const SlamCommand& command) {
-  const PathArgs path{.poses = {},
-                      .navs = command.navs,
-                      .nav_offset_s = command.nav_offset_s,
-                      .nav_sources = command.nav_sources,
-                      .calibration = command.known_calibration};
-  return recording_options(path, command.bag, command.damage).and_then([&](RecordingOptions options) {
-    options.nav_mounts = command.slam.body_from_source;
-    options.body_from_sonar = command.slam.body_from_sonar;
-    options.nav_salinity = command.nav_salinity;
-    return open_recording(input_files(command.logs), std::move(options));
-  });
-}
-
-/// Refuses options of beams where the format of the log says that it holds scans.
+/// Refuses options of beams where the format of the log says that it holds scans, before other files are read.
 Result<void> check_options_of_scans(const SlamCommand& command) {
-  if (command.logs.front() == "-") return {};
+  const std::string& first = command.recording.logs.front();
+  if (first == "-") return {};
   const Result<Format> format =
-      ByteStream::open(command.logs.front()).and_then([](ByteStream stream) { return identify_format(stream); });
+      ByteStream::open(first).and_then([](ByteStream stream) { return identify_format(stream); });
   if (!format || kind_of(*format) != FormatKind::kScans) return {};
   return check_limited(command.limited, {kind_text(FormatKind::kScans)}).map_error([](const Error& error) {
     return Error{error.code, fmt::format("slam: {}", error.message)};
@@ -98,8 +84,8 @@ Result<void> check_options_of_scans(const SlamCommand& command) {
 Error advise_on_slam(Error error, const SlamCommand& command) {
   // Navigation does not help where there are no beams.
   const bool has_beams = !error.message.ends_with("there are no beams");
-  if (!command.navs.empty() || error.code != Error::Code::kUnsupported || !has_beams) return error;
-  const std::string in_bag = hint_at_nav(command.logs.front());
+  if (!command.recording.path.navs.empty() || error.code != Error::Code::kUnsupported || !has_beams) return error;
+  const std::string in_bag = hint_at_nav(command.recording.logs.front());
   error.message +=
       in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;
   return error;
@@ -175,7 +161,7 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
 
 Result<int> run(const SlamCommand& command, Console& console) {
   if (const auto used = check_options_of_scans(command); !used) return tl::unexpected(used.error());
-  const Result<Recording> recording = recording_of(command);
+  const Result<Recording> recording = open_recording(command.recording);
   if (!recording) return tl::unexpected(recording.error());
   Result<OpenedLog> first = open_log_of(*recording, 0);
   if (!first) return tl::unexpected(first.error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,7 +30,6 @@
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
 #include "pingvox/slam/locate_recording.hpp"
-#include "pingvox/slam/odometry.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"
@@ -69,6 +69,17 @@ struct PathArgs {
   std::optional<double> nav_offset_s;      ///< added to their times; nullopt: to be found
   std::vector<NamedSource> nav_sources;    ///< of them, that are taken instead of others
   std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
+};
+
+/// What 'slam' and 'locate' read as a recording.
+struct RecordingArgs {
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  PathArgs path;
+  std::map<std::string, Pose> nav_mounts;  ///< body_from_source by its name
+  Pose body_from_sonar = Pose::Identity();
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  Damage damage = Damage::kSkip;
+  BagArgs bag;
 };
 
 struct MapCommand {
@@ -192,20 +203,13 @@ struct SimulateCommand {
 
 struct SlamCommand {
   OutputOptions output_options;
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
-  std::vector<std::string> navs;  ///< navigation logs
-  std::string output;             ///< TUM lines; "-" is standard output
+  RecordingArgs recording;
+  std::string output;  ///< TUM lines; "-" is standard output
   std::optional<std::string> map, calibration, covariance, graph;
-  std::optional<std::string> known_calibration;  ///< output of an earlier 'slam --calibration'
   Format map_format = Format::kBt;
   double map_resolution_m = MapOptions{}.resolution_m;
-  Damage damage = Damage::kSkip;
-  BagArgs bag;
   SlamOptions slam;
   Estimation estimation = Estimation::kBatch;
-  std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
-  std::optional<double> nav_offset_s;    ///< added to the times of `navs`; nullopt: to be found
-  std::vector<NamedSource> nav_sources;  ///< of `navs`, that are taken instead of others
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
 };
@@ -218,22 +222,13 @@ enum class WrittenPoses {
 
 struct LocateCommand {
   OutputOptions output_options;
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  RecordingArgs recording;  ///< its poses are odometry, in a frame that may drift
   std::string map;
-  std::string output;             ///< TUM lines; "-" is standard output
-  std::vector<std::string> navs;  ///< navigation logs
-  OdometryOptions nav;
-  std::optional<std::string> calibration;  ///< of the sensors of `navs`: output of 'slam --calibration'
-  std::optional<double> nav_offset_s;      ///< added to the times of `navs`; nullopt: to be found
-  std::vector<NamedSource> nav_sources;    ///< of `navs`, that are taken instead of others
-  std::optional<std::string> odometry;     ///< TUM lines in a frame that may drift; not with `navs`
+  std::string output;                      ///< TUM lines; "-" is standard output
   std::optional<StartPose> start;          ///< nullopt: anywhere
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's
-  Damage damage = Damage::kSkip;
-  BagArgs bag;
   LocalizerOptions localizer;
-  std::optional<double> nav_salinity;          ///< of water whose temperature and depth the navigation log tells
-  Estimation estimation = Estimation::kBatch;  ///< of the poses by `navs`
+  Estimation estimation = Estimation::kBatch;  ///< of the poses by navigation
   WrittenPoses written = WrittenPoses::kAll;
 };
 

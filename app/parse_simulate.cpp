@@ -147,18 +147,17 @@ Result<Command> simulate_command(const Args& args) {
     SonarOptions set = sonar;
     const auto bins = static_cast<double>(sonar.bins);
     set.bin_length_m = command.range_m ? *command.range_m / bins : command.bin_length_m.value_or(sonar.bin_length_m);
-    if (const auto limits = set.errors().limits_of(&set.bin_length_m); limits && command.range_m) {
-      return usage_error(fmt::format("--range: must be {} m with {} bins, is {} m", limits->text(1.0 / bins),
-                                     sonar.bins, number_text(*command.range_m)));
-    } else if (limits) {
+    if (const auto limits = set.errors().limits_of(&set.bin_length_m)) {
       return usage_error(
-          fmt::format("--bin-length: must be {}, is {}", limits->text(), number_text(*command.bin_length_m)));
+          command.range_m
+              ? fmt::format("--range: must be {} m with {} bins, is {} m", limits->text(1.0 / bins), sonar.bins,
+                            number_text(*command.range_m))
+              : fmt::format("--bin-length: must be {}, is {}", limits->text(), number_text(*command.bin_length_m)));
     }
-    if (const auto valid = set.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = tank.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = travel.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = drift.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = nav.validate(); !valid) return tl::unexpected(valid.error());
+    for (const Result<void>& valid :
+         {set.validate(), tank.validate(), travel.validate(), drift.validate(), nav.validate()}) {
+      if (!valid) return tl::unexpected(valid.error());
+    }
     CommandFiles files;
     files.read("WORLD", command.world);
     files.read("--poses", command.poses.value_or(""));
@@ -175,10 +174,9 @@ Result<Command> simulate_command(const Args& args) {
       }
     }
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
-    if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
     if (command.nav == "-") return usage_error("--nav -: give the name of a file");
-    if (command.nav) {
-      if (const auto folder = check_folder_of(*command.nav); !folder) return tl::unexpected(folder.error());
+    for (const std::string& file : {command.output, command.nav.value_or(command.output)}) {
+      if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
     }
     return command;
   });

@@ -26,6 +26,7 @@ Result<Command> slam_command(const Args& args) {
   std::string output, map, calibration, known_calibration, covariance, graph;
   EchoArgs echoes;
   SlamOptions& slam = command.slam;
+  RecordingArgs& recording = command.recording;
   Option resolution{"--resolution",
                     0,
                     "M",
@@ -60,10 +61,10 @@ Result<Command> slam_command(const Args& args) {
   graph_option.only_for = {std::string(kPointLogs)};
   OptionTable::Group navigation{
       "Navigation",
-      {nav_option(command.navs,
+      {nav_option(recording.path.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)"),
-       nav_source_option(command.nav_sources), nav_offset_option(command.nav_offset_s),
-       mount_option(slam.body_from_sonar), nav_mount_option(slam.body_from_source),
+       nav_source_option(recording.path.nav_sources), nav_offset_option(recording.path.nav_offset_s),
+       mount_option(recording.body_from_sonar), nav_mount_option(recording.nav_mounts),
        use_calibration_option(known_calibration,
                               "calibration of the same sensors by an earlier run, taken as a prior")}};
   OptionTable::Group estimation{
@@ -85,7 +86,7 @@ Result<Command> slam_command(const Args& args) {
       "turns. For point scans, whose poses are taken as odometry, the drift is corrected where a place is seen again.",
       {{"LOG", Positional::Count::kMany,
         "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
-        store_each(command.logs)}},
+        store_each(recording.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
@@ -100,7 +101,7 @@ Result<Command> slam_command(const Args& args) {
        std::move(estimation),
        std::move(echo_options),
        {"Input",
-        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+        {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},
       {"pingvox slam dive.csv --nav nav.csv -o dive.tum --map dive.bt",
        "pingvox slam dive.csv --nav dive.tlog --nav dvl.csv --nav-mount A50=0,0,0,0,0,-45 -o dive.tum",
        "pingvox slam scans.graph -o scans.tum --map scans.bt"},
@@ -109,9 +110,9 @@ Result<Command> slam_command(const Args& args) {
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     command.limited = parsed.limited;
-    if (const auto valid = echoes.validate(command.navs); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = echoes.validate(recording.path.navs); !valid) return tl::unexpected(valid.error());
     slam.sound_speed_ratio = echoes.sound_speed_ratio();
-    command.nav_salinity = echoes.nav_salinity;
+    recording.nav_salinity = echoes.nav_salinity;
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
@@ -120,10 +121,10 @@ Result<Command> slam_command(const Args& args) {
       return usage_error("-o - and --json: both write to standard output");
     }
     CommandFiles files;
-    files.read("LOG", command.logs);
-    files.read("--nav", command.navs);
+    files.read("LOG", recording.logs);
+    files.read("--nav", recording.path.navs);
     files.read("--use-calibration", known_calibration);
-    files.read("--fields", command.bag.file);
+    files.read("--fields", recording.bag.file);
     files.read("--config", parsed.config);
     files.write("-o", output);
     files.write("--map", map);
@@ -137,11 +138,11 @@ Result<Command> slam_command(const Args& args) {
       if (!format) return tl::unexpected(format.error());
       command.map = map;
       command.map_format = *format;
-      if (std::ranges::find(command.logs, "-") != command.logs.end()) {
+      if (std::ranges::find(recording.logs, "-") != recording.logs.end()) {
         return usage_error("--map: reads each log twice, and standard input can be read only once");
       }
     }
-    if (!known_calibration.empty()) command.known_calibration = known_calibration;
+    if (!known_calibration.empty()) recording.path.calibration = known_calibration;
     if (!calibration.empty()) command.calibration = calibration;
     if (!covariance.empty()) {
       if (command.estimation == Estimation::kCausal) {

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <filesystem>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
 #include "calibration_file.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "option_names.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
 #include "shell_words.hpp"
@@ -69,6 +69,15 @@ Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions o
   return Recording::open(std::move(logs), std::move(options)).map_error([&](Error error) {
     const std::optional<Format> format = format_of_file(first);
     return advise_on_trajectory(format ? advise_on_log(std::move(error), *format) : std::move(error), navs);
+  });
+}
+
+Result<Recording> open_recording(const RecordingArgs& args) {
+  return recording_options(args.path, args.bag, args.damage).and_then([&](RecordingOptions options) {
+    options.nav_mounts = args.nav_mounts;
+    options.body_from_sonar = args.body_from_sonar;
+    options.nav_salinity = args.nav_salinity;
+    return open_recording(input_files(args.logs), std::move(options));
   });
 }
 
@@ -167,29 +176,29 @@ std::string_view gap_advice(const Recording& recording, const VehiclePath& path)
 
 std::string skipped_text(const MappedLog& mapped, std::string_view unit, const Trajectory& trajectory,
                          std::string_view gap_advice, const Lattice& lattice) {
-  std::string text;
-  const auto& [no_pose, blocked, too_long, outside] =
-      std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.too_long, mapped.report.outside);
-  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count + too_long.count;
-  const auto add = [&text, all, unit](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
-    if (left_out.count == 0) return;
-    text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit, reason);
-    if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
-    text += fmt::format(" ({})", advice);
+  using Why = SkippedBeams::Why;
+  const auto advice_on = [&](Why why) -> std::string_view {
+    switch (why) {
+      case Why::kNoPose:
+        return gap_advice;
+      case Why::kBlocked:
+        return "they would record its second echo, or what lies around it";
+      case Why::kTooLong:
+        return "their range may be damaged; a shorter --max-range or a larger --resolution may do";
+      case Why::kOutside:
+        break;
+    }
+    return "lengths are in metres; a larger --resolution reaches farther";
   };
-  const auto& poses = trajectory.poses();
-  add(no_pose,
-      fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
-                  trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
-      gap_advice);
-  add(blocked, "in whose direction the map has an obstacle nearer than --min-range",
-      "they would record its second echo, or what lies around it");
-  add(too_long, "with ten times the range of the others, or of too many cells",
-      "their range may be damaged; a shorter --max-range or a larger --resolution may do");
-  add(outside,
-      fmt::format("outside of the map, which reaches {:.3g} m from its origin",
-                  std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
-      "lengths are in metres; a larger --resolution reaches farther");
+  const BuildReport& report = mapped.report;
+  const std::size_t all = report.beams + report.no_pose.count + report.blocked.count + report.too_long.count;
+  std::string text;
+  for (const auto& [why, left_out, reason] : skipped_beams(mapped, trajectory, lattice)) {
+    text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit,
+                        with_option_names(reason));
+    if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
+    text += fmt::format(" ({})", advice_on(why));
+  }
   if (mapped.damaged > 0) {
     text += (text.empty() ? "" : "; ") + damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
   }

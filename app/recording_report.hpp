@@ -21,6 +21,8 @@ namespace pingvox::app {
 Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& bag, Damage damage);
 /// Recording::open, with advice in its errors.
 Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options);
+/// The same of all that a command reads.
+Result<Recording> open_recording(const RecordingArgs& args);
 /// Paths of the command line as files.
 std::vector<InputFile> input_files(const std::vector<std::string>& paths);
 /// Recording::open_log, with advice in its errors.

@@ -111,6 +111,11 @@ class Recording {
 /// @return kBadOption for standard input, which cannot be read once more; kUnsupported when there are too few beams
 Result<Background> learn_background(const Recording& recording, double range_m);
 
+/// Subtracts the background (RecordingOptions::background_m) from an opened log of beams, if it is to be.
+/// @param background  of the recording; nullopt: it is learned, and stays there for the next log
+/// @return as learn_background
+Result<void> subtract_background(const Recording& recording, OpenedLog& log, std::optional<Background>& background);
+
 /// What was mapped of a log.
 struct MappedLog {
   std::string name;
@@ -125,6 +130,16 @@ struct MappedLog {
 
   bool is_nothing() const;  ///< no beam or point of it is on the map
 };
+
+/// Beams or points that are not on the map for one reason.
+struct SkippedBeams {
+  enum class Why { kNoPose, kBlocked, kTooLong, kOutside };
+  Why why;
+  LeftOut left_out;    ///< at least one
+  std::string reason;  ///< "outside the time of the poses, 0.000 s to 24.000 s"
+};
+/// What of a log is not on the map along `trajectory`, by reasons; damaged records are not among it.
+std::vector<SkippedBeams> skipped_beams(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice);
 
 /// Adds a log to a map, reading it to its end.
 /// @param build  all but the size of the beam and the mount, which are the recording's
