@@ -5,9 +5,9 @@
 #include <array>
 #include <string_view>
 
+#include "base/suggest.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
-#include "suggest.hpp"
 
 namespace pingvox::app {
 namespace {

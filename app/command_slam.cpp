@@ -9,7 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "mapping_options.hpp"
@@ -133,7 +132,7 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
   if (!written) return tl::unexpected(written.error());
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
-      out << calibration_toml({solution.calibration, found->options.body_from_source});
+      out << kCalibrationComment << calibration_toml({solution.calibration, found->options.body_from_source});
       return {};
     });
     if (!calibrated) return tl::unexpected(calibrated.error());

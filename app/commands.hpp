@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-#include "bag_args.hpp"
 #include "console.hpp"
 #include "device/internal/head_emulator.hpp"
 #include "device/internal/nav_emulator.hpp"
@@ -16,6 +15,7 @@
 #include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/io/bag_fields.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/live/live_options.hpp"
@@ -44,6 +44,13 @@ namespace pingvox::app {
 struct ShowText {
   OutputOptions output_options;
   std::string text;
+};
+
+/// How ROS bags are read, where the types of their messages do not tell: --topic and --fields.
+struct BagArgs {
+  BeamTopic beams;
+  std::vector<NavFields> nav;
+  std::string file = {};  ///< that --fields names; empty: none
 };
 
 /// Interpretation of a map: thresholds for occupied and free, and the deepest level.

@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include "geometry/internal/mount_text.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/analysis/map_agreement.hpp"
@@ -161,13 +162,9 @@ std::string beam_sizes() {
 
 Take store_mount(Pose& target) {
   return [&target](const std::string& text) -> Result<void> {
-    const auto n = numbers_from<6>(text);
-    if (!n) return usage_error(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
-    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); })) {
-      return usage_error(fmt::format("'{}': must be finite", text));
-    }
-    const auto& [x, y, z, roll, pitch, yaw] = *n;
-    target = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
+    const Result<Pose> mount = mount_from(text);
+    if (!mount) return tl::unexpected(mount.error());
+    target = *mount;
     return {};
   };
 }

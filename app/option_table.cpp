@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/suggest.hpp"
+#include "io/internal/toml_file.hpp"
 #include "pingvox/io/file.hpp"
-#include "suggest.hpp"
-#include "toml_file.hpp"
 
 namespace pingvox::app {
 namespace {

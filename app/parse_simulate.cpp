@@ -6,13 +6,13 @@
 #include <string>
 #include <system_error>
 
+#include "base/suggest.hpp"
 #include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
 #include "shared_options.hpp"
-#include "suggest.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -9,13 +9,13 @@
 #include <system_error>
 #include <utility>
 
-#include "calibration_file.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "option_names.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
+#include "pingvox/io/file.hpp"
 #include "shell_words.hpp"
 #include "step_report.hpp"
 
@@ -48,7 +48,7 @@ Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& 
   options.nav_offset_s = path.nav_offset_s;
   options.nav_sources = path.nav_sources;
   if (path.calibration) {
-    Result<CalibrationFile> calibration = read_calibration(*path.calibration);
+    Result<CalibrationFile> calibration = read_file(*path.calibration).and_then(read_calibration);
     if (!calibration) return tl::unexpected(calibration.error());
     options.calibration = *std::move(calibration);
   }

@@ -46,6 +46,10 @@ std::string frame_text(const VehiclePath::Nav& nav);
 /// The same of a path that begins at 0, 0 and is turned as a heading says.
 std::string frame_text(std::string_view heading);
 
+/// The first line of a file of a calibration.
+inline constexpr std::string_view kCalibrationComment =
+    "# Calibration for --use-calibration; -sd is the standard deviation of the line above.\n";
+
 /// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);
 
