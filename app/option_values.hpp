@@ -62,7 +62,15 @@ Take store_optional(std::optional<Number>& target) {
 /// Of cells [m].
 inline constexpr Limits kResolutions{0.0, 1000.0, Limits::Ends::kLowOut};
 
-inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
+inline constexpr Limits kProbabilities{0.0, 1.0, Limits::Ends::kBothOut};
+inline constexpr Limits kPositive{0.0, std::numeric_limits<double>::infinity(), Limits::Ends::kBothOut};
+inline constexpr Limits kFinite{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                Limits::Ends::kBothOut};
+
+/// Limits of the library in units of the command line.
+inline Limits in_units_of(double unit, const Limits& limits) {
+  return {limits.low / unit, limits.high / unit, limits.ends};
+}
 
 /// Refuses numbers outside of the limits, then calls `take`, which also refuses other text.
 Take within(const Limits& limits, Take take);

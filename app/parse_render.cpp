@@ -76,7 +76,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
                panel.view, "polar of a log, above of a map"),
         choice("--from", kSides, "side from which --view side looks, seen from the vehicle", args.from),
         {"--z", 0, "M", "height of the layer that --view slice draws", "none",
-         within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(args.slice_z_m))},
+         within(kFinite, store_optional(args.slice_z_m))},
         {"--min-z", 0, "M", "lowest height of a map that is drawn", "none", store_optional(panel.map_picture.min_z_m)},
         {"--max-z", 0, "M", "greatest height of a map that is drawn", "none",
          store_optional(panel.map_picture.max_z_m)},
@@ -91,7 +91,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
         {"--size", 0, "PX",
          "size of the drawing without axes and legend, 16..3072: longer side of a map, largest width of a polar "
          "picture, both sides of a Cartesian one",
-         "1000; of several pictures 640", within({16.0, 3072.0}, store_optional(args.size_px))},
+         "1000; of several pictures 640", within(kPictureSizes_px, store_optional(args.size_px))},
         {"--caption", 0, "TEXT", "text below the picture", "the options that differ between pictures",
          store(panel.caption)}}},
       echo_group(args.build.echoes, WaterOfNav::kYes),

@@ -342,7 +342,7 @@ std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, c
 
 Result<void> MapPictureOptions::validate() const {
   OptionErrors errors;
-  errors.require_within("target_px", target_px, 16, 3072);
+  errors.require("target_px", target_px, kPictureSizes_px);
   if ((min_z_m && std::isnan(*min_z_m)) || (max_z_m && std::isnan(*max_z_m)) ||
       (min_z_m && max_z_m && *min_z_m >= *max_z_m)) {
     errors.add("min_z_m must be below max_z_m");

@@ -16,6 +16,7 @@
 #include "pingvox/io/input_file.hpp"
 #include "pingvox/io/nav_fields.hpp"
 #include "pingvox/io/open_log.hpp"
+#include "pingvox/limits.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
@@ -36,6 +37,8 @@
 namespace pingvox {
 
 struct RecordingOptions {
+  static constexpr Limits kNavOffsets_s{-1e10, 1e10};
+
   std::vector<InputFile> nav = {};                            ///< navigation logs, in any order
   std::optional<double> nav_offset_s = std::nullopt;          ///< added to their times; nullopt: to be found
   std::vector<NamedSource> nav_sources = {};                  ///< of them, that are taken instead of others
