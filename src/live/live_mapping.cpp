@@ -16,8 +16,8 @@
 #include "live/obstacle_sender.hpp"
 #include "live/open_head.hpp"
 #include "live/recordings.hpp"
+#include "mapping/internal/obstacle_sectors.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
-#include "pingvox/mapping/obstacle_sectors.hpp"
 
 namespace pingvox {
 namespace {

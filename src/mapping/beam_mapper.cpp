@@ -7,7 +7,7 @@
 #include "base/without_exceptions.hpp"
 #include "mapping/echo_mapper.hpp"
 #include "mapping/stopwatch.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
+#include "sonar/internal/echo_stream.hpp"
 
 namespace pingvox {
 

@@ -12,7 +12,7 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/build_options.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
+#include "sonar/internal/echo_stream.hpp"
 
 namespace pingvox::detail {
 

@@ -12,7 +12,7 @@
 
 #include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/recording/recording.hpp"
-#include "pingvox/slam/picture_turns.hpp"
+#include "slam/internal/picture_turns.hpp"
 #include "sonar/internal/beam_source_decorator.hpp"
 
 namespace pingvox {

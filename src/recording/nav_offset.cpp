@@ -16,7 +16,7 @@
 #include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
-#include "pingvox/slam/picture_turns.hpp"
+#include "slam/internal/picture_turns.hpp"
 
 namespace pingvox {
 namespace {

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "base/words.hpp"
+#include "nav/internal/trajectory_steps.hpp"
 #include "nav/internal/upright.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
-#include "pingvox/nav/trajectory_steps.hpp"
 #include "pingvox/slam/odometry.hpp"
 
 namespace pingvox {

@@ -309,4 +309,9 @@ std::optional<AngleUnit> unit_of(const BeamFields& fields) {
   return std::nullopt;
 }
 
+bool is_sonar(const BagTopic& topic) {
+  const std::optional<KnownTopic> known = known_topic(topic, sonar_types());
+  return known && sonar_types()[known->type].holds != SonarType::Holds::kSettings;
+}
+
 }  // namespace pingvox
