@@ -19,14 +19,14 @@ namespace {
 constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
                                    Choice<Matching>{"none", Matching::kNone}};
 
-}  // namespace
-
-Result<Command> slam_command(const Args& args) {
-  SlamCommand command;
+/// What is typed, where it is not in the command as such.
+struct SlamArgs {
   std::string output, map, calibration, known_calibration, covariance, graph;
   EchoArgs echoes;
-  SlamOptions& slam = command.slam;
-  RecordingArgs& recording = command.recording;
+};
+
+OptionTable::Group slam_output_group(SlamCommand& command, SlamArgs& typed) {
+  const std::vector<std::string> beams = {std::string(kBeamLogs)};
   Option resolution{"--resolution",
                     0,
                     "M",
@@ -34,16 +34,12 @@ Result<Command> slam_command(const Args& args) {
                     number_text(command.map_resolution_m),
                     within(kResolutions, store_number(command.map_resolution_m))};
   resolution.only_with = {{"--map"}};
-  Option seed{"--seed", 0,
-              "N",      "seed of the random choice of sweeps that a sweep is matched with",
-              "1",      store_number(slam.seed)};
-  seed.only_with = {{"--matching", {"pairs"}}};
-  OptionTable::Group echo_options = echo_group(echoes, WaterOfNav::kYes);
-  std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
-  const std::vector<std::string> beams = {std::string(kBeamLogs)};
-  Option calibration_option{
-      "--calibration",   0, "FILE", "write the estimated calibration of the sensors, as TOML for --use-calibration", "",
-      store(calibration)};
+  Option calibration_option{"--calibration",
+                            0,
+                            "FILE",
+                            "write the estimated calibration of the sensors, as TOML for --use-calibration",
+                            "",
+                            store(typed.calibration)};
   calibration_option.only_for = beams;
   calibration_option.only_with = {{"--matching", {"pairs"}}};
   Option covariance_option{
@@ -53,19 +49,103 @@ Result<Command> slam_command(const Args& args) {
       "covariances of the poses, about four per sweep, as CSV: time, x x, x y, y y, x yaw, y yaw, yaw yaw [m, "
       "rad]",
       "",
-      store(covariance)};
+      store(typed.covariance)};
   covariance_option.only_for = beams;
   Option graph_option{"--graph", 0,
                       "FILE",    "graph of the poses of point scans as .g2o: key frames, odometry and loops",
-                      "",        store(graph)};
+                      "",        store(typed.graph)};
   graph_option.only_for = {std::string(kPointLogs)};
+  return {
+      "Output",
+      {output_option(typed.output,
+                     "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
+       {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", store(typed.map)},
+       std::move(resolution),
+       std::move(calibration_option),
+       std::move(covariance_option),
+       std::move(graph_option),
+       json_option(command.output_options),
+       quiet_option(command.output_options)}};
+}
+
+Result<Command> finish_slam(SlamCommand command, const SlamArgs& typed, const Parsed& parsed, const Args& args) {
+  command.limited = parsed.limited;
+  if (const auto valid = typed.echoes.validate(command.recording.path.navs); !valid)
+    return tl::unexpected(valid.error());
+  command.slam.sound_speed_ratio = typed.echoes.sound_speed_ratio();
+  command.recording.nav_salinity = typed.echoes.nav_salinity;
+  command.slam.filter = typed.echoes.filter_options();
+  command.slam.echo = typed.echoes.echo;
+  if (const auto valid = command.slam.validate(); !valid) return tl::unexpected(valid.error());
+  if (typed.output.empty()) return usage_error("-o FILE is missing");
+  if (typed.output == "-" && command.output_options.report == Report::kJson) {
+    return usage_error("-o - and --json: both write to standard output");
+  }
+  CommandFiles files;
+  files.read("LOG", command.recording.logs);
+  files.read("--nav", command.recording.path.navs);
+  files.read("--use-calibration", typed.known_calibration);
+  files.read("--fields", command.recording.bag.file);
+  files.read("--config", parsed.config);
+  files.write("-o", typed.output);
+  files.write("--map", typed.map);
+  files.write("--calibration", typed.calibration);
+  files.write("--covariance", typed.covariance);
+  files.write("--graph", typed.graph);
+  if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = check_trajectory_output(typed.output); !valid) return tl::unexpected(valid.error());
+  if (!typed.map.empty()) {
+    const Result<Format> format = output_format(typed.map, std::nullopt, kMapFormats);
+    if (!format) return tl::unexpected(format.error());
+    command.map = typed.map;
+    command.map_format = *format;
+    if (std::ranges::find(command.recording.logs, "-") != command.recording.logs.end()) {
+      return usage_error("--map: reads each log twice, and standard input can be read only once");
+    }
+  }
+  if (!typed.known_calibration.empty()) command.recording.path.calibration = typed.known_calibration;
+  if (!typed.calibration.empty()) command.calibration = typed.calibration;
+  if (!typed.covariance.empty()) {
+    if (command.estimation == Estimation::kCausal) {
+      return usage_error("--covariance and --causal: exclude each other: covariances need the whole log");
+    }
+    command.covariance = typed.covariance;
+  }
+  if (!typed.graph.empty()) command.graph = typed.graph;
+  for (const std::string& file : {typed.output, typed.map, typed.calibration, typed.covariance, typed.graph}) {
+    if (file.empty()) continue;
+    if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
+  }
+  command.output = typed.output;
+  command.made_by = "pingvox " PINGVOX_VERSION " slam";
+  for (const std::string& word : args) {
+    command.made_by += ' ';
+    command.made_by += quote_for_shell(word);
+  }
+  return command;
+}
+
+}  // namespace
+
+Result<Command> slam_command(const Args& args) {
+  SlamCommand command;
+  SlamArgs typed;
+  SlamOptions& slam = command.slam;
+  RecordingArgs& recording = command.recording;
+  Option seed{"--seed", 0,
+              "N",      "seed of the random choice of sweeps that a sweep is matched with",
+              "1",      store_number(slam.seed)};
+  seed.only_with = {{"--matching", {"pairs"}}};
+  OptionTable::Group echo_options = echo_group(typed.echoes, WaterOfNav::kYes);
+  std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
+  const std::vector<std::string> beams = {std::string(kBeamLogs)};
   OptionTable::Group navigation{
       "Navigation",
       {nav_option(recording.path.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)"),
        nav_source_option(recording.path.nav_sources), nav_offset_option(recording.path.nav_offset_s),
        mount_option(recording.body_from_sonar), nav_mount_option(recording.nav_mounts),
-       use_calibration_option(known_calibration,
+       use_calibration_option(typed.known_calibration,
                               "calibration of the same sensors by an earlier run, taken as a prior")}};
   OptionTable::Group estimation{
       "Estimation",
@@ -87,16 +167,7 @@ Result<Command> slam_command(const Args& args) {
       {{"LOG", Positional::Count::kMany,
         "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
         store_each(recording.logs)}},
-      {{"Output",
-        {output_option(output,
-                       "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
-         {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", store(map)},
-         std::move(resolution),
-         std::move(calibration_option),
-         std::move(covariance_option),
-         std::move(graph_option),
-         json_option(command.output_options),
-         quiet_option(command.output_options)}},
+      {slam_output_group(command, typed),
        std::move(navigation),
        std::move(estimation),
        std::move(echo_options),
@@ -108,61 +179,7 @@ Result<Command> slam_command(const Args& args) {
       "A log with only one intensity besides 0 is taken to hold detected echoes. Trajectories of point scans have the\n"
       "number of the scan, from 0, as time.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
-  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
-    command.limited = parsed.limited;
-    if (const auto valid = echoes.validate(recording.path.navs); !valid) return tl::unexpected(valid.error());
-    slam.sound_speed_ratio = echoes.sound_speed_ratio();
-    recording.nav_salinity = echoes.nav_salinity;
-    slam.filter = echoes.filter_options();
-    slam.echo = echoes.echo;
-    if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
-    if (output.empty()) return usage_error("-o FILE is missing");
-    if (output == "-" && command.output_options.report == Report::kJson) {
-      return usage_error("-o - and --json: both write to standard output");
-    }
-    CommandFiles files;
-    files.read("LOG", recording.logs);
-    files.read("--nav", recording.path.navs);
-    files.read("--use-calibration", known_calibration);
-    files.read("--fields", recording.bag.file);
-    files.read("--config", parsed.config);
-    files.write("-o", output);
-    files.write("--map", map);
-    files.write("--calibration", calibration);
-    files.write("--covariance", covariance);
-    files.write("--graph", graph);
-    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = check_trajectory_output(output); !valid) return tl::unexpected(valid.error());
-    if (!map.empty()) {
-      const Result<Format> format = output_format(map, std::nullopt, kMapFormats);
-      if (!format) return tl::unexpected(format.error());
-      command.map = map;
-      command.map_format = *format;
-      if (std::ranges::find(recording.logs, "-") != recording.logs.end()) {
-        return usage_error("--map: reads each log twice, and standard input can be read only once");
-      }
-    }
-    if (!known_calibration.empty()) recording.path.calibration = known_calibration;
-    if (!calibration.empty()) command.calibration = calibration;
-    if (!covariance.empty()) {
-      if (command.estimation == Estimation::kCausal) {
-        return usage_error("--covariance and --causal: exclude each other: covariances need the whole log");
-      }
-      command.covariance = covariance;
-    }
-    if (!graph.empty()) command.graph = graph;
-    for (const std::string& file : {output, map, calibration, covariance, graph}) {
-      if (file.empty()) continue;
-      if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
-    }
-    command.output = output;
-    command.made_by = "pingvox " PINGVOX_VERSION " slam";
-    for (const std::string& word : args) {
-      command.made_by += ' ';
-      command.made_by += quote_for_shell(word);
-    }
-    return command;
-  });
+  return parse_command(table, args, [&](const Parsed& parsed) { return finish_slam(command, typed, parsed, args); });
 }
 
 }  // namespace pingvox::app

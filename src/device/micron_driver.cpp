@@ -44,9 +44,9 @@ MicronSampling micron_sampling(double range_m) {
 
 Result<void> MicronSettings::validate() const {
   OptionErrors errors;
-  errors.require("range_m", range_m, kRanges_m);
+  errors.require_within("range_m", range_m, kRanges_m.low, kRanges_m.high);
   errors.require_within("step", step, 1, 255);
-  errors.require("timeout_s", timeout_s, kHeadTimeouts_s);
+  errors.require_within("timeout_s", timeout_s, kHeadTimeouts_s.low, kHeadTimeouts_s.high);
   if (sector) {
     errors.require_within("left", sector->left, 0, kMicronTurn - 1);
     errors.require_within("right", sector->right, 0, kMicronTurn - 1);

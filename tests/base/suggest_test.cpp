@@ -10,7 +10,7 @@ namespace pingvox {
 namespace {
 
 TEST(NearestWord, IsTheOneThatWasMeantOrNone) {
-  const Args words = {"--resolution", "--min-range", "--max-range", "--ray", "map", "none"};
+  const std::vector<std::string> words = {"--resolution", "--min-range", "--max-range", "--ray", "map", "none"};
   EXPECT_EQ(nearest_word("--resoluton", words), "--resolution");
   EXPECT_EQ(nearest_word("--reslution", words), "--resolution");
   EXPECT_EQ(nearest_word("--min_range", words), "--min-range");
