@@ -101,9 +101,10 @@ Result<int> run(const LocateCommand& command, Console& console) {
     console.say(fmt::format("{}: {}", *command.odometry, step));
   }
   if (found.clock_check && found.clock_check->is_apart()) {
-    const char* const option = command.odometry ? "the clock of --odometry" : "--nav-offset";
+    const std::string advice = command.odometry ? "is the clock of --odometry right?"
+                                                : nav_offset_advice(*recording->nav_offset(), *found.clock_check);
     console.say(
-        fmt::format("{}: {}", name_of_input(command.logs.front()), wrong_clock_text(*found.clock_check, option)));
+        fmt::format("{}: {}", name_of_input(command.logs.front()), wrong_clock_text(*found.clock_check, advice)));
   }
   const Result<std::optional<Trajectory>> trajectory = found_trajectory(found, command, console);
   if (!trajectory) return tl::unexpected(trajectory.error());

@@ -36,10 +36,9 @@ std::string inputs_text(const SlamCommand& command) {
 }
 
 /// Adds all logs to the map, along the path.
-Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& slam, OccupancyMap& map,
-                              Console& console) {
+Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& slam, BuildOptions build,
+                              OccupancyMap& map, Console& console) {
   const VehiclePath path = slam.path();
-  BuildOptions build;
   build.filter = slam.options.filter;
   build.echo = slam.options.echo;
   build.sound_speed_ratio = slam.options.sound_speed_ratio;
@@ -79,8 +78,25 @@ Result<Recording> recording_of(const SlamCommand& command) {
     options.nav_mounts = command.slam.body_from_source;
     options.body_from_sonar = command.slam.body_from_sonar;
     options.nav_salinity = command.nav_salinity;
+    options.head = command.head;
     return open_recording(input_files(command.logs), std::move(options));
   });
+}
+
+/// What SLAM does not know of the vehicle, and takes to be.
+std::vector<std::string> taken_for_granted(const Recording& recording) {
+  std::vector<std::string> texts;
+  const RecordingOptions& options = recording.options();
+  if (const std::string hint = mount_hint(recording); !hint.empty()) {
+    texts.push_back(hint);
+  } else if (options.body_from_sonar.matrix().isIdentity(0.0)) {
+    texts.emplace_back(
+        "without --mount the head is taken to be upright at the origin of the vehicle and to look ahead");
+  }
+  if (!options.nav.empty() && recording.nav().log.best(NavQuantity::kAttitude) == nullptr) {
+    texts.push_back(fmt::format("{}: no attitude: the vehicle is taken to be level", recording.nav_names()));
+  }
+  return texts;
 }
 
 /// Refuses options of beams where the format of the log says that it holds scans.
@@ -108,9 +124,7 @@ Error advise_on_slam(Error error, const SlamCommand& command) {
 Result<int> run_beams(const SlamCommand& command, const Recording& recording, OpenedLog first, Console& console) {
   const Stopwatch total;
   SlamSeconds seconds;
-  Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
-  if (!map) return tl::unexpected(map.error());
-  if (const std::string hint = mount_hint(recording); !hint.empty()) console.say(hint);
+  for (const std::string& taken : taken_for_granted(recording)) console.say(taken);
   ProgressBar bar(command.output_options);
   bar.draw(std::nullopt, "solving");
   const Result<RecordingSlam> found = slam(recording, command.slam, command.estimation, std::move(first));
@@ -132,18 +146,29 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
   seconds.solve = found->solve_s;
   SlamInputs inputs{.others = other_sources(recording.nav().log, kMotionQuantities, used_sources(solution))};
 
+  Result<OccupancyMap> map = OccupancyMap::make(command.map_options);
+  if (!map) return tl::unexpected(map.error());
   if (command.map) {
-    bar.draw(std::nullopt, "mapping");
     const Stopwatch mapping;
-    const Result<MappedBeams> mapped = map_along(recording, *found, *map, console);
+    const Result<MapForecast> forecast = forecast_map(recording, command.map_options, command.build);
+    if (!forecast) return tl::unexpected(forecast.error());
+    if (const std::string cost = cost_text(*forecast); !cost.empty()) console.say(*command.map + ": " + cost);
+    MapOptions map_options = command.map_options;
+    map_options.resolution_m = forecast->resolution_m;
+    map = OccupancyMap::make(map_options);
+    if (!map) return tl::unexpected(map.error());
+    bar.draw(std::nullopt, "mapping");
+    const Result<MappedBeams> mapped = map_along(recording, *found, command.build, *map, console);
     if (!mapped) return tl::unexpected(mapped.error());
     inputs.mapped = *mapped;
+    inputs.mapped->resolution = resolution_text(*forecast, command.map_options);
+    inputs.mapped->resolution_m = forecast->resolution_m;
     seconds.map = mapping.seconds();
   }
   bar.clear();
 
   const Stopwatch write;
-  const auto written = write_slam_results(solution.trajectory, *map, command);
+  const auto written = write_slam_results(solution.trajectory, *map, MapAxes::kEastNorth, command);
   if (!written) return tl::unexpected(written.error());
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
@@ -173,7 +198,11 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
 
 }  // namespace
 
-Result<int> run(const SlamCommand& command, Console& console) {
+Result<int> run(const SlamCommand& typed, Console& console) {
+  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.logs, console);
+  if (!logs) return tl::unexpected(logs.error());
+  SlamCommand command = typed;
+  command.logs = *logs;
   if (const auto used = check_options_of_scans(command); !used) return tl::unexpected(used.error());
   const Result<Recording> recording = recording_of(command);
   if (!recording) return tl::unexpected(recording.error());

@@ -152,8 +152,9 @@ struct PanelCommand {
   BetweenBeams between = BetweenBeams::kInterpolate;
   EchoPictureOptions echo_picture;
   MapPictureOptions map_picture;
-  MapOptions map;           ///< for logs that are mapped
-  OccupancyArgs occupancy;  ///< of the map that is drawn
+  std::optional<MapAxes> axes;  ///< of the map; nullopt: as the map or the navigation says
+  MapOptions map;               ///< for logs that are mapped
+  OccupancyArgs occupancy;      ///< of the map that is drawn
   BuildOptions build;
   HeadOptions head;
   std::optional<double> background_m;
@@ -198,7 +199,9 @@ struct SlamCommand {
   std::optional<std::string> map, calibration, covariance, graph;
   std::optional<std::string> known_calibration;  ///< output of an earlier 'slam --calibration'
   Format map_format = Format::kBt;
-  double map_resolution_m = MapOptions{}.resolution_m;
+  MapOptions map_options;  ///< these three of the map
+  BuildOptions build;      ///< but for filter, echoes and speed of sound, which are those of `slam`
+  HeadOptions head;
   Damage damage = Damage::kSkip;
   BagArgs bag;
   SlamOptions slam;

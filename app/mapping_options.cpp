@@ -37,6 +37,7 @@ constexpr std::array kRays = {Choice<RayAlgorithm>{"dda", RayAlgorithm::kDda},
 constexpr std::array kVotes = {Choice<Vote>{"sweep", Vote::kPerSweep}, Choice<Vote>{"beam", Vote::kPerBeam}};
 constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
+constexpr std::array kParents = {Choice<Parents>{"max", Parents::kMax}, Choice<Parents>{"mean", Parents::kMean}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
 /// "T,S", "T,S,D" or "nav,S".
@@ -376,8 +377,10 @@ OptionTable::Group map_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Map",
-      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m),
-        within(kResolutions, store_number(map.resolution_m))},
+      {{"--resolution", 0, "M", "edge length of a cell",
+        fmt::format("{} up to a range of 10 m, coarser beyond by the width of the beam",
+                    number_text(MapOptions::kDefaultResolution_m)),
+        within(kResolutions, store_optional(map.resolution_m))},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
         within({1.0, 128.0}, store_number(map.depth))},
        {"--hit", 0, "P",
@@ -398,6 +401,19 @@ OptionTable::Group map_group(BuildArgs& args) {
     if (option.name == "--vote") option.only_for = {std::string(kBeamLogs)};
   }
   return group;
+}
+
+std::vector<Option> tree_options(BuildArgs& args) {
+  const Take thread_count = [&args](const std::string& text) -> Result<void> {
+    int threads = 0;
+    if (auto taken = store_number(threads)(text); !taken) return taken;
+    if (threads < 1 || threads > 256) return usage_error(fmt::format("{} is not in 1..256", text));
+    args.build.threads = static_cast<std::size_t>(threads);
+    return {};
+  };
+  return {choice("--parents", kParents, "value of an inner node: maximum or mean of its children; only .pvx keeps it",
+                 args.map.parents),
+          {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count}};
 }
 
 OptionTable::Group sensor_group(BuildArgs& args) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "command_files.hpp"
 #include "mapping_options.hpp"
@@ -19,20 +21,44 @@ namespace {
 constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
                                    Choice<Matching>{"none", Matching::kNone}};
 
+/// Options of the beam, which depend on each other.
+constexpr auto kOfBeam = std::to_array<std::string_view>({"--beam-width", "--beam-height", "--device", "--free-share"});
+
+/// How a map is made, but for the echoes, which are those of the trajectory.
+OptionTable::Group map_of_slam(BuildArgs& args) {
+  constexpr auto kOfSensor = std::to_array<std::string_view>({"--beam", "--hit-from", "--silent"});
+  OptionTable::Group group = map_group(args);
+  for (Option& option : tree_options(args)) group.options.push_back(std::move(option));
+  for (Option& option : group.options) option.only_with = {{"--map"}};
+  for (Option& option : sensor_group(args).options) {
+    const bool is_of_beam = std::ranges::find(kOfBeam, option.name) != kOfBeam.end();
+    if (!is_of_beam && std::ranges::find(kOfSensor, option.name) == kOfSensor.end()) continue;
+    // With --beam, those have a condition already.
+    if (!is_of_beam) option.only_with = {{"--map"}};
+    group.options.push_back(std::move(option));
+  }
+  return group;
+}
+
+/// Refuses the size of a beam where there is no map.
+Result<void> check_has_map(const std::string& map, const std::vector<LimitedOption>& given) {
+  if (!map.empty()) return {};
+  for (const LimitedOption& option : given) {
+    if (std::ranges::find(kOfBeam, option.name) == kOfBeam.end()) continue;
+    return usage_error(fmt::format("{}: has no effect without --map", option.name));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Command> slam_command(const Args& args) {
   SlamCommand command;
   std::string output, map, calibration, known_calibration, covariance, graph;
-  EchoArgs echoes;
+  BuildArgs build;
+  EchoArgs& echoes = build.echoes;
   SlamOptions& slam = command.slam;
-  Option resolution{"--resolution",
-                    0,
-                    "M",
-                    "edge length of a cell of the map",
-                    number_text(command.map_resolution_m),
-                    within(kResolutions, store_number(command.map_resolution_m))};
-  resolution.only_with = {{"--map"}};
+  OptionTable::Group map_options = map_of_slam(build);
   Option seed{"--seed", 0,
               "N",      "seed of the random choice of sweeps that a sweep is matched with",
               "1",      store_number(slam.seed)};
@@ -90,7 +116,6 @@ Result<Command> slam_command(const Args& args) {
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
          {"--map", 0, "FILE", "map of the logs along the trajectory: .bt .ot .pvx .ply .pcd .xyz", "", store(map)},
-         std::move(resolution),
          std::move(calibration_option),
          std::move(covariance_option),
          std::move(graph_option),
@@ -98,6 +123,7 @@ Result<Command> slam_command(const Args& args) {
          quiet_option(command.output_options)}},
        std::move(navigation),
        std::move(estimation),
+       std::move(map_options),
        std::move(echo_options),
        {"Input",
         {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
@@ -115,6 +141,12 @@ Result<Command> slam_command(const Args& args) {
     slam.filter = echoes.filter_options();
     slam.echo = echoes.echo;
     if (const auto valid = slam.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto has_map = check_has_map(map, parsed.limited); !has_map) return tl::unexpected(has_map.error());
+    command.map_options = build.map;
+    command.build = build.build_options();
+    command.head = build.head;
+    if (const auto valid = command.map_options.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
     if (output.empty()) return usage_error("-o FILE is missing");
     if (output == "-" && command.output_options.report == Report::kJson) {
       return usage_error("-o - and --json: both write to standard output");
@@ -137,6 +169,10 @@ Result<Command> slam_command(const Args& args) {
       if (!format) return tl::unexpected(format.error());
       command.map = map;
       command.map_format = *format;
+      if (build.map.depth != Lattice::kDefaultDepth && (*format == Format::kBt || *format == Format::kOt)) {
+        return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", map, name_of(*format),
+                                       Lattice::kDefaultDepth, build.map.depth));
+      }
       if (std::ranges::find(command.logs, "-") != command.logs.end()) {
         return usage_error("--map: reads each log twice, and standard input can be read only once");
       }

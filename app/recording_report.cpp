@@ -16,6 +16,7 @@
 #include "open_log.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
+#include "pingvox/io/folder_logs.hpp"
 #include "shell_words.hpp"
 #include "step_report.hpp"
 
@@ -135,14 +136,102 @@ std::string nav_text(const VehiclePath& path, std::size_t damaged) {
   return text;
 }
 
-std::string frame_text(const VehiclePath::Nav& nav) {
+namespace {
+
+bool follows_log(const MapForecast& forecast, const MapOptions& asked) {
+  return !asked.resolution_m && forecast.range_m;
+}
+
+/// "40 s", "5 minutes", "2.1 hours"
+std::string about_text(double seconds) {
+  constexpr double kMinute_s = 60.0, kHour_s = 3600.0;
+  if (seconds < 2.0 * kMinute_s) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 2.0 * kHour_s) return fmt::format("{:.0f} minutes", seconds / kMinute_s);
+  return fmt::format("{:.1f} hours", seconds / kHour_s);
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console) {
+  std::vector<std::string> all;
+  for (const std::string& log : logs) {
+    std::error_code error;
+    if (log == "-" || !std::filesystem::is_directory(log, error)) {
+      all.push_back(log);
+      continue;
+    }
+    const Result<ByteStream> bag = ByteStream::open(log);
+    if (bag) {
+      all.push_back(log);
+      continue;
+    }
+    const Result<FolderLogs> found = logs_in_folder(log);
+    if (!found) return tl::unexpected(found.error());
+    if (found->logs.empty()) return tl::unexpected(bag.error());
+    std::string text = fmt::format("{}: takes {} in it", log, counted(found->logs.size(), "log"));
+    if (!found->nav.empty()) text += fmt::format("; navigation (--nav): {}", fmt::join(found->nav, ", "));
+    if (!found->others.empty()) text += fmt::format("; left out: {}", fmt::join(found->others, ", "));
+    console.say(text);
+    all.insert(all.end(), found->logs.begin(), found->logs.end());
+  }
+  return all;
+}
+
+std::string resolution_text(const MapForecast& forecast, const MapOptions& asked) {
+  std::string text = fmt::format("{} m", forecast.resolution_m);
+  if (follows_log(forecast, asked)) {
+    text += fmt::format(", by a range of {:.3g} m and a beam {:.3g} degrees wide", *forecast.range_m,
+                        rounded_degrees(forecast.beam_width_rad));
+  }
+  return text;
+}
+
+JsonObject resolution_json(const MapForecast& forecast, const MapOptions& asked) {
+  JsonObject json;
+  if (!follows_log(forecast, asked)) return json.add_null("range_m").add_null("beam_width_deg");
+  return json.add("range_m", *forecast.range_m).add("beam_width_deg", rounded_degrees(forecast.beam_width_rad));
+}
+
+std::string cost_text(const MapForecast& forecast) {
+  constexpr double kLong_s = 30.0, kMuch_bytes = 2e9;
+  const auto& cost = forecast.cost;
+  if (!cost || (cost->seconds < kLong_s && cost->bytes < kMuch_bytes)) return {};
+  return fmt::format(
+      "{:.0f} beams of {:.3g} m in cells of {} m may take up to {} and {}; cells of twice the size (--resolution {}) "
+      "take an eighth of it",
+      cost->beams, forecast.range_m.value_or(0.0), forecast.resolution_m, about_text(cost->seconds),
+      bytes_text(static_cast<std::size_t>(cost->bytes)), 2.0 * forecast.resolution_m);
+}
+
+std::string frame_text(const VehiclePath& path) {
+  assert(path.nav);
+  const VehiclePath::Nav& nav = *path.nav;
   if (nav.position.empty()) return frame_text(nav.attitude);
   if (!nav.origin_fix) {
-    return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position,
-                                   nav.frame_note.empty() ? "" : ": " + nav.frame_note));
+    const std::string note = nav.frame_note.empty() ? "" : ": " + nav.frame_note;
+    if (path.axes == MapAxes::kRightAhead) {
+      return on_one_line(
+          fmt::format("origin where {} began; x right, y ahead as the vehicle was then{}", nav.position, note));
+    }
+    if (!nav.north_by.empty()) {
+      return on_one_line(fmt::format("origin where {} began; x east, y north as far as {} points north{}", nav.position,
+                                     nav.north_by, note));
+    }
+    return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position, note));
   }
   return fmt::format("x east, y north of latitude {:.7f}, longitude {:.7f} degrees", nav.origin_fix->x() / kDegree_rad,
                      nav.origin_fix->y() / kDegree_rad);
+}
+
+std::string frame_text(const RecordingSlam& slam) {
+  const std::string& heading = slam.solution.report.heading;
+  if (!slam.frame_of || (slam.frame_of->position.empty() && !slam.frame_of->origin_fix)) return frame_text(heading);
+  VehiclePath path = still_path();
+  path.nav = slam.frame_of;
+  path.axes = MapAxes::kEastNorth;
+  const std::string text = frame_text(path);
+  return path.nav->north_by == heading ? text
+                                       : fmt::format("{}; north as far as {} points north", text, on_one_line(heading));
 }
 
 std::string frame_text(std::string_view heading) {

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "json.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/mapping/build_options.hpp"
@@ -40,7 +41,18 @@ std::vector<std::string> warnings_of(const Recording& recording, const VehiclePa
 /// @param damaged  records of the navigation that could not be read
 std::string nav_text(const VehiclePath& path, std::size_t damaged);
 /// What the axes of the map are. REQUIRES a path from navigation.
-std::string frame_text(const VehiclePath::Nav& nav);
+std::string frame_text(const VehiclePath& path);
+std::string frame_text(const RecordingSlam& slam);
+/// Puts the logs of folders in their places, and says which those are; a folder that is one bag stays as it is.
+/// @return as InputFile::open for a folder without a log
+Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console);
+/// "0.25 m, by a range of 50 m and a beam of 3 degrees"
+/// @param asked  by the command line
+std::string resolution_text(const MapForecast& forecast, const MapOptions& asked);
+/// {"range_m": 50, "beam_width_deg": 3}: what a resolution follows, with null where it does not.
+JsonObject resolution_json(const MapForecast& forecast, const MapOptions& asked);
+/// What a map may take, where that is long or much; empty: it is not.
+std::string cost_text(const MapForecast& forecast);
 /// The same of a path that begins at 0, 0 and is turned as a heading says.
 std::string frame_text(std::string_view heading);
 

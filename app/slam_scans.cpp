@@ -53,7 +53,7 @@ Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command,
   auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
   if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));
   MovedScans moved(std::move(*scans), trajectory);
-  const auto report = build_map(moved, Trajectory::still(Pose::Identity()), BuildOptions{}, map);
+  const auto report = build_map(moved, Trajectory::still(Pose::Identity()), command.build, map);
   return report ? Result<void>() : tl::unexpected(report.error());
 }
 
@@ -66,7 +66,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   }
   const Stopwatch total;
   SlamSeconds seconds;
-  Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
+  Result<OccupancyMap> map = OccupancyMap::make(command.map_options);
   if (!map) return tl::unexpected(map.error());
   const Stopwatch read;
   ScanSlam slam;
@@ -102,7 +102,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   }
   bar.clear();
   const Stopwatch write;
-  const auto written = write_slam_results(solution->trajectory, *map, command);
+  const auto written = write_slam_results(solution->trajectory, *map, MapAxes::kNotTold, command);
   if (!written) return tl::unexpected(written.error());
   if (command.graph) {
     const auto drawn = write_file(*command.graph, [&](std::ostream& out) { return write_g2o(solution->graph, out); });

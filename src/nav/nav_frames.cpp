@@ -139,6 +139,11 @@ FrameAxes axes_of(std::string_view frame) {
   return axes;
 }
 
+bool has_north(const NavSource& position) {
+  constexpr auto kNorth = std::to_array<std::string_view>({"ned", "enu"});
+  return position.frame.empty() || has_part(own_name(position.frame), kNorth);
+}
+
 Eigen::Matrix3d ours_from_optical() {
   Eigen::Matrix3d turn;
   turn << 0, 0, 1, -1, 0, 0, 0, -1, 0;

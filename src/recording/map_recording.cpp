@@ -191,14 +191,19 @@ Result<RecordingMap> build_map(const Recording& recording, const MapOptions& map
 
 Result<RecordingMap> build_map(const Recording& recording, VehiclePath path, const MapOptions& map,
                                const BuildOptions& build, const Progress& progress) {
-  Result<OccupancyMap> made = OccupancyMap::make(map);
+  Result<MapForecast> forecast = forecast_map(recording, map, build);
+  if (!forecast) return tl::unexpected(forecast.error());
+  MapOptions map_options = map;
+  map_options.resolution_m = forecast->resolution_m;
+  Result<OccupancyMap> made = OccupancyMap::make(map_options);
   if (!made) return tl::unexpected(made.error());
-  RecordingMap mapped{*std::move(made), {}, std::move(path), {}};
+  RecordingMap mapped{*std::move(made), *std::move(forecast), {}, std::move(path), {}};
   BuildOptions options = build;
   if (recording.water()) options.sound_speed_ratio = sound_speed_ratio(*recording.water());
   std::optional<Background> background;
   for (std::size_t i = 0; i < recording.logs().size(); ++i) {
-    Result<OpenedLog> log = recording.open_log(i);
+    auto opened = mapped.forecast.opened.extract(i);
+    Result<OpenedLog> log = opened ? std::move(opened.mapped()) : recording.open_log(i);
     if (!log) return tl::unexpected(log.error());
     if (auto* const beams = std::get_if<std::unique_ptr<BeamSource>>(&log->log);
         beams != nullptr && recording.options().background_m) {

@@ -733,7 +733,7 @@ TEST(Nav, APathOnAnotherClockIsNamed) {
   const auto json = flat_json(mapped.out);
   ASSERT_TRUE(json) << mapped.out;
   EXPECT_NEAR(std::stod(json->at("nav.clock_check.offset_s")), -4.0, 0.3);
-  EXPECT_THAT(mapped.err, HasSubstr("is --nav-offset right?"));
+  EXPECT_THAT(mapped.err, HasSubstr("should be added to the times of the poses: try --nav-offset "));
 }
 
 // Kills a map whose place on Earth nobody can tell.

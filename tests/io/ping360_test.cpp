@@ -349,6 +349,47 @@ TEST(PingViewer, DamageIsToldByItsPlaceInTheFile) {
             "a.bin: byte " + std::to_string(at) + ": wrong checksum");
 }
 
+// A transceiver that is switched adds single bytes; a frame that lost its head leaves more than a frame has at least.
+TEST(PingViewer, FewBytesBetweenFramesAreNoDamageAndMoreAre) {
+  const auto ping = from_hex(kPing);
+  std::size_t cases = 0;
+  for (std::size_t count = 0; count <= 20; ++count) {
+    for (const std::size_t in_first : {std::size_t{0}, count / 2, count}) {
+      const std::vector<std::uint8_t> noise(count, 0xfe);
+      auto log = LogWriter();
+      log.record(U"00:00:01.000", joined({ping, cut(noise, 0, in_first)}));
+      const std::size_t at = log.bytes().size() - in_first;
+      log.record(U"00:00:02.000", joined({cut(noise, in_first, count), ping}));
+      const auto source = open_beams({"noise.bin", log.bytes()});
+      ASSERT_TRUE(source);
+      EXPECT_EQ(read_all(**source)->size(), 2U);
+      EXPECT_EQ((*source)->skipped(), count < 10 ? 0U : 1U) << count;
+      if (count >= 10 && in_first > 0) {
+        EXPECT_EQ((*source)->damage()[0].first_byte, at) << count;
+      }
+      EXPECT_EQ(all_beams({"noise.bin", log.bytes()}, Damage::kFail).error.empty(), count < 10) << count;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 63U);
+}
+
+// Kills noise that hides the frame that is lost beside it.
+TEST(PingViewer, NoiseBesideADamagedFrameHidesNoDamage) {
+  const auto ping = from_hex(kPing);
+  auto wrong = ping;
+  wrong[25] ^= 4;
+  auto headless = cut(ping, 2, ping.size());
+  const std::vector<std::uint8_t> noise = {0xfe};
+  for (const auto& bad : {wrong, headless, cut(ping, 0, 30)}) {
+    for (const auto& stream :
+         {joined({ping, noise, bad, ping}), joined({ping, bad, noise, ping}), joined({noise, bad})}) {
+      const auto log = LogWriter().record(U"00:00:01.000", stream);
+      EXPECT_GE(all_beams({"a.bin", log.bytes()}).skipped, 1U);
+    }
+  }
+}
+
 TEST(PingViewer, AnEndWithinARecordKeepsWhatIsWhole) {
   const auto ping = from_hex(kPing);
   const auto whole = LogWriter().record(U"00:00:01.000", ping).record(U"00:00:02.000", joined({ping, ping})).bytes();

@@ -111,6 +111,28 @@ class Recording {
 /// @return kBadOption for standard input, which cannot be read once more; kUnsupported when there are too few beams
 Result<Background> learn_background(const Recording& recording, double range_m);
 
+/// What the beginnings of the logs tell of a map, before they are read.
+struct MapForecast {
+  double resolution_m = MapOptions::kDefaultResolution_m;  ///< as asked, else by `resolution_for`
+  /// The usual range of their beams, at most that of the options: of the log with the longest one; nullopt: no log of
+  /// beams can be looked at.
+  std::optional<double> range_m = std::nullopt;
+  double beam_width_rad = 0.0;  ///< of that log
+  /// What it may take at most, as far as that is more or less known; nullopt: the logs do not tell their length.
+  struct Cost {
+    double beams = 0.0, seconds = 0.0, bytes = 0.0;
+  };
+  std::optional<Cost> cost = std::nullopt;
+  /// Logs that can be opened only once, by their number: opened, and not read yet as far as their users can see.
+  std::map<std::size_t, OpenedLog> opened = {};
+};
+
+/// Looks at the first beams of each log. A log that fails here will fail when it is mapped, where it says why.
+/// @param map  whether it tells the resolution
+/// @return the error of opening a log that can be opened only once
+Result<MapForecast> forecast_map(const Recording& recording, const MapOptions& map = {},
+                                 const BuildOptions& build = {});
+
 /// What was mapped of a log.
 struct MappedLog {
   std::string name;
@@ -138,12 +160,14 @@ void add(const BuildReport& log, BuildReport& all);
 /// A map of a recording, and how it was made.
 struct RecordingMap {
   OccupancyMap map;
-  BuildReport report;  ///< of all logs together
+  MapForecast forecast;  ///< what its resolution follows
+  BuildReport report;    ///< of all logs together
   VehiclePath path;
   std::vector<MappedLog> logs;
 };
 
 /// Maps all logs of a recording along its path (Recording::path).
+/// @param map    where it does not tell the resolution, that is found by `forecast_map`
 /// @param build  filter, echoes, votes: size of the beam, mount, speed of sound in known water and background are the
 ///               recording's
 /// @return kCorrupt when nothing of any log is on the map; errors of Recording::path and map_log
@@ -162,6 +186,8 @@ struct RecordingSlam {
   double read_s = 0.0, solve_s = 0.0;      ///< of wall time
   std::size_t beams = 0;                   ///< that were read
   LeftOut no_pose = {};                    ///< of these, those outside of the time of the trajectory, or in its gaps
+  /// The navigation in whose frame the trajectory lies (Recording::path); nullopt: its origin is its first pose.
+  std::optional<VehiclePath::Nav> frame_of = std::nullopt;
 
   /// For build_map, with the place of the sonar as it was found.
   VehiclePath path() const;

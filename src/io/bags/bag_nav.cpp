@@ -53,8 +53,10 @@ class Samples {
 
   /// Adds a position by dead reckoning and its attitude.
   void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
-    add(NavQuantity::kPosition, position_m, true);
-    add(NavQuantity::kAttitude, attitude, true);
+    NavOrigin origin = origin_;
+    origin.frame = kStartFrame;
+    add(NavQuantity::kPosition, position_m, true, origin);
+    add(NavQuantity::kAttitude, attitude, true, origin);
   }
 
   /// A report of a DVL in its own format, which contains the delay of the message.
@@ -71,14 +73,18 @@ class Samples {
   }
 
   void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
+    add(quantity, value, valid, origin_);
+  }
+
+ private:
+  void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid, const NavOrigin& origin) {
     NavSample sample;
     sample.time_s = time_s_;
     sample.value = value;
     sample.valid = valid;
-    sources_.add(name_, quantity, sample, origin_);
+    sources_.add(name_, quantity, sample, origin);
   }
 
- private:
   NavSources& sources_;
   const std::string& name_;
   double time_s_;
