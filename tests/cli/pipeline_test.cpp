@@ -65,7 +65,9 @@ Args map_keys() {
           "map.occupied_cells",
           "map.free_cells",
           "map.bounds.min",
-          "map.bounds.max"};
+          "map.bounds.max",
+          "resolution_from.range_m",
+          "resolution_from.beam_width_deg"};
 }
 
 Args info_log_keys() {
