@@ -83,17 +83,16 @@ Result<Recording> recording_of(const SlamCommand& command) {
   });
 }
 
-/// What SLAM does not know of the vehicle, and takes to be.
-std::vector<std::string> taken_for_granted(const Recording& recording) {
+/// What SLAM was not told of the vehicle, and takes to be.
+std::vector<std::string> taken_for_granted(const SlamCommand& command, const Recording& recording) {
   std::vector<std::string> texts;
-  const RecordingOptions& options = recording.options();
-  if (const std::string hint = mount_hint(recording); !hint.empty()) {
-    texts.push_back(hint);
-  } else if (options.body_from_sonar.matrix().isIdentity(0.0)) {
+  const bool has_mount = std::ranges::find(command.limited, "--mount", &LimitedOption::name) != command.limited.end() ||
+                         !command.slam.body_from_sonar.matrix().isIdentity(0.0);
+  if (!has_mount && mount_hint(recording).empty()) {
     texts.emplace_back(
         "without --mount the head is taken to be upright at the origin of the vehicle and to look ahead");
   }
-  if (!options.nav.empty() && recording.nav().log.best(NavQuantity::kAttitude) == nullptr) {
+  if (!command.navs.empty() && recording.nav().log.best(NavQuantity::kAttitude) == nullptr) {
     texts.push_back(fmt::format("{}: no attitude: the vehicle is taken to be level", recording.nav_names()));
   }
   return texts;
@@ -124,13 +123,14 @@ Error advise_on_slam(Error error, const SlamCommand& command) {
 Result<int> run_beams(const SlamCommand& command, const Recording& recording, OpenedLog first, Console& console) {
   const Stopwatch total;
   SlamSeconds seconds;
-  for (const std::string& taken : taken_for_granted(recording)) console.say(taken);
+  if (const std::string hint = mount_hint(recording); !hint.empty()) console.say(hint);
   ProgressBar bar(command.output_options);
   bar.draw(std::nullopt, "solving");
   const Result<RecordingSlam> found = slam(recording, command.slam, command.estimation, std::move(first));
   bar.clear();
   if (!found) return tl::unexpected(advise_on_slam(found.error(), command));
   const SlamSolution& solution = found->solution;
+  for (const std::string& taken : taken_for_granted(command, recording)) console.say(taken);
   for (const std::string& warning : nav_warnings(recording)) console.say(warning);
   for (const auto& [file, note] : found->notes) console.say(fmt::format("{}: {}", file, note));
   // A few before and after the navigation are usual.
