@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "pingvox/map/trace_ray.hpp"
 #include "pingvox/mapping/map_resolution.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "sonar/internal/beams_ahead.hpp"
@@ -40,6 +41,12 @@ std::optional<LogBeginning> look_at(OpenedLog& log, const HeadOptions& head, con
     beginning.beams = count / *share;
   }
   return beginning;
+}
+
+/// Whether none of its beams is refused for its size.
+bool can_be_mapped(const LogBeginning& log, double resolution_m) {
+  return log.range_m / resolution_m <= kMaxCellsInRay &&
+         cells_in_beam(log.model, log.range_m, resolution_m) <= kMaxCellsInBeam;
 }
 
 /// How long its beams take when each of them is silent up to its range, and the memory of cells that they can reach
@@ -80,8 +87,9 @@ Result<MapForecast> forecast_map(const Recording& recording, const MapOptions& m
   } else if (forecast.range_m) {
     forecast.resolution_m = resolution_for(*forecast.range_m, forecast.beam_width_rad);
   }
-  if (!beginnings.empty() &&
-      std::ranges::all_of(beginnings, [](const LogBeginning& log) { return log.beams.has_value(); })) {
+  const bool is_cost_known = std::ranges::all_of(
+      beginnings, [&](const LogBeginning& log) { return log.beams && can_be_mapped(log, forecast.resolution_m); });
+  if (!beginnings.empty() && is_cost_known) {
     forecast.cost.emplace();
     for (const LogBeginning& log : beginnings) {
       const MapForecast::Cost cost = cost_of(log, forecast.resolution_m);

@@ -118,7 +118,8 @@ struct MapForecast {
   /// beams can be looked at.
   std::optional<double> range_m = std::nullopt;
   double beam_width_rad = 0.0;  ///< of that log
-  /// What it may take at most, as far as that is more or less known; nullopt: the logs do not tell their length.
+  /// What it may take at most, as far as that is more or less known; nullopt: the logs do not tell their length, or
+  /// have beams of too many cells.
   struct Cost {
     double beams = 0.0, seconds = 0.0, bytes = 0.0;
   };
