@@ -176,6 +176,7 @@ void add(const BuildReport& log, BuildReport& all) {
   }
   all.cells_freed += log.cells_freed;
   all.cells_hit += log.cells_hit;
+  if (log.coverage.sweeps > all.coverage.sweeps) all.coverage = log.coverage;
   all.seconds.read += log.seconds.read;
   all.seconds.detect += log.seconds.detect;
   all.seconds.trace += log.seconds.trace;

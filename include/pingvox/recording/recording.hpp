@@ -132,7 +132,8 @@ struct MappedLog {
 Result<MappedLog> map_log(const Recording& recording, OpenedLog& log, const VehiclePath& path,
                           const BuildOptions& build, OccupancyMap& map, const Progress& progress = {});
 
-/// Adds what was mapped of another log. First and last time are those of all.
+/// Adds what was mapped of another log. First and last time are those of all; the coverage is that of the log with most
+/// sweeps.
 void add(const BuildReport& log, BuildReport& all);
 
 /// A map of a recording, and how it was made.
