@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "evaluation_text.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
@@ -160,6 +161,7 @@ std::string report_json(const Totals& totals, const Recording& recording, const 
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
       .add("map", held);
+  if (report.coverage.sweeps > 0) json.add("coverage", coverage_json(report.coverage));
   if (!other_beams.empty()) json.add("other_beams", other_beams);
   if (path.nav) json.add("nav", nav_json(recording, path, totals.clock_check));
   return json.text() + "\n";
@@ -199,6 +201,9 @@ std::string map_report_text(const Totals& totals, const Recording& recording, co
                          report_line("nav clock", app::text_of(*recording.nav_offset(), totals.clock_check)) +
                          nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(*path.nav))
                    : "") +
+         (report.coverage.sweeps > 0 ? report_line("sweeps", movement_text(report.coverage)) +
+                                           report_line("places", places_text(report.coverage))
+                                     : "") +
          (stands_still ? report_line("vehicle", "stands still: no --poses, no --nav") : "") + beams +
          map_text(map, map.counts()) +
          report_line("seconds",
@@ -283,6 +288,9 @@ class LogMapper {
     if (!mapped->note.empty()) say(fmt::format("{}: {}", log.name, mapped->note));
     if (!skipped.empty()) say(fmt::format("{}: skipped {}", log.name, skipped));
     say_what_is_odd(*mapped);
+    for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
+      say(fmt::format("{}: {}", log.name, warning));
+    }
     if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", log.name, cloud->origin_text()));
     const bool is_on_vehicle = is_of_beams || is_bag(log.format);
     if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {

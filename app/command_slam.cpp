@@ -12,6 +12,7 @@
 #include "calibration_file.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "evaluation_text.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
@@ -55,6 +56,9 @@ Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& s
       nothing.push_back(text_of_nothing(log->name, skipped));
     } else if (!skipped.empty()) {
       console.say(fmt::format("{}: left out of the map: {}", log->name, skipped));
+    }
+    for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
+      console.say(fmt::format("{}: {}", log->name, warning));
     }
     all.beams += mapped->report.beams;
     all.skipped += mapped->report.skipped;

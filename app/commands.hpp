@@ -22,6 +22,8 @@
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/head_options.hpp"
 #include "pingvox/nav/main_source.hpp"
+#include "pingvox/recording/evaluate.hpp"
+#include "pingvox/recording/fit.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -237,6 +239,20 @@ struct LocateCommand {
   WrittenPoses written = WrittenPoses::kAll;
 };
 
+struct EvaluateCommand {
+  OutputOptions output_options;
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  PathArgs path;
+  Damage damage = Damage::kSkip;
+  BagArgs bag;
+  EvaluateOptions evaluation;
+  std::optional<FitParameter> fit;  ///< what is searched that predicts more echoes; nullopt: nothing
+  HeadOptions head;
+  std::optional<double> background_m;  ///< range of the background to subtract
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  std::vector<LimitedOption> limited;
+};
+
 struct LiveCommand {
   OutputOptions output_options;
   LiveOptions live;
@@ -267,7 +283,7 @@ struct BenchCommand {
 };
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
-                             SimulateCommand, SlamCommand, LocateCommand, LiveCommand, EmulateCommand, BenchCommand>;
+                             SimulateCommand, SlamCommand, LocateCommand, EvaluateCommand, LiveCommand, EmulateCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -277,6 +293,7 @@ Result<int> run(const RenderCommand& command, Console& console);
 Result<int> run(const SimulateCommand& command, Console& console);
 Result<int> run(const SlamCommand& command, Console& console);
 Result<int> run(const LocateCommand& command, Console& console);
+Result<int> run(const EvaluateCommand& command, Console& console);
 Result<int> run(const LiveCommand& command, Console& console);
 Result<int> run(const EmulateCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);

@@ -400,6 +400,17 @@ OptionTable::Group map_group(BuildArgs& args) {
   return group;
 }
 
+Option threads_option(std::size_t& target) {
+  const Take take = [&target](const std::string& text) -> Result<void> {
+    int threads = 0;
+    if (auto taken = store_number(threads)(text); !taken) return taken;
+    if (threads < 1 || threads > 256) return usage_error(fmt::format("{} is not in 1..256", text));
+    target = static_cast<std::size_t>(threads);
+    return {};
+  };
+  return {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", take};
+}
+
 OptionTable::Group sensor_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {

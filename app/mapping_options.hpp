@@ -96,6 +96,8 @@ enum class WaterOfNav { kNo, kYes };
 OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water);
 std::vector<Option> occupancy_options(OccupancyArgs& args);
 OptionTable::Group map_group(BuildArgs& args);
+/// --threads: for tracing.
+Option threads_option(std::size_t& target);
 OptionTable::Group sensor_group(BuildArgs& args);
 
 }  // namespace pingvox::app

@@ -25,13 +25,6 @@ Result<Command> map_command(const Args& args) {
   std::optional<Format> asked_format;
   BuildArgs build;
   MapOptions& map = build.map;
-  const Take thread_count = [&](const std::string& text) -> Result<void> {
-    int threads = 0;
-    if (auto taken = store_number(threads)(text); !taken) return taken;
-    if (threads < 1 || threads > 256) return usage_error(fmt::format("{} is not in 1..256", text));
-    build.build.threads = static_cast<std::size_t>(threads);
-    return {};
-  };
   const Take origin = [&](const std::string& text) -> Result<void> {
     const auto n = numbers_from<3>(text);
     if (!n) return tl::unexpected(n.error());
@@ -45,8 +38,7 @@ Result<Command> map_command(const Args& args) {
   map_options.options.push_back(choice("--parents", kParents,
                                        "value of an inner node: maximum or mean of its children; only .pvx keeps it",
                                        map.parents));
-  map_options.options.push_back(
-      {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count});
+  map_options.options.push_back(threads_option(build.build.threads));
   for (Option& option : occupancy_options(command.occupancy)) map_options.options.push_back(std::move(option));
   OptionTable::Group sensor_options = sensor_group(build);
   Option origin_option{
