@@ -112,9 +112,9 @@ class Fitting {
         map_(options.map),
         axes_(axes_of(parameter)),
         progress_(progress) {
-    constexpr double kNear_m = 0.1;
+    constexpr double kLeastTolerance_m = 0.1;
     at_.folds = 2;
-    at_.tolerance_m = std::max(kNear_m, map_.resolution_m);
+    at_.tolerance_m = std::max(kLeastTolerance_m, map_.resolution_m);
     for (const FitAxis& axis : axes_) at_.*axis.member = axis.middle;
   }
 
