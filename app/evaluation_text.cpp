@@ -17,15 +17,17 @@ double percent(std::size_t part, std::size_t all) {
 std::string why_not_judged(const Evaluation& evaluation) {
   const SweepCoverage& sweeps = evaluation.sweeps;
   if (sweeps.echoes == 0) return "there are no echoes";
-  if (sweeps.sweeps < 2) return "there is one sweep only, and no other to compare it with";
   const std::string movement =
-      fmt::format("one sweep takes {:.3g} s while the vehicle makes {:.2g} m", sweeps.sweep_s, sweeps.moved_m);
+      fmt::format("takes {:.3g} s while the vehicle makes {:.2g} m", sweeps.sweep_s, sweeps.moved_m);
+  if (sweeps.sweeps < 2) {
+    return fmt::format("there is one sweep only, and no other to compare it with; it {}", movement);
+  }
   constexpr double kHalf = 50.0;
   if (const double once = percent(sweeps.places_heard_once, sweeps.places); once >= kHalf) {
-    return fmt::format("{:.0f} % of the places were seen in one sweep only, {}", once, movement);
+    return fmt::format("{:.0f} % of the places were seen in one sweep only, one sweep {}", once, movement);
   }
   const EchoCounts& all = evaluation.all;
-  return fmt::format("{} of {} came from places that a map of the other sweeps knows, {}", all.judged,
+  return fmt::format("{} of {} came from places that a map of the other sweeps knows, one sweep {}", all.judged,
                      counted(all.echoes, "echo"), movement);
 }
 
