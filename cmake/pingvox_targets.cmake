@@ -113,3 +113,15 @@ function(pingvox_layer name)
   target_link_libraries(pingvox_${name} ${scope} ${LAYER_DEPENDS})
   set(PINGVOX_LAYERS ${PINGVOX_LAYERS} pingvox_${name} PARENT_SCOPE)
 endfunction()
+
+# pingvox_unity_by_folder(LAYER): the sources of each folder in src/LAYER are compiled together, where sources are
+# compiled several at once. Readers of formats name their parts alike: names have to differ within a folder only.
+function(pingvox_unity_by_folder layer)
+  get_target_property(sources pingvox_${layer} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET folder FILENAME folder)
+    set_source_files_properties("${source}" TARGET_DIRECTORY pingvox_${layer} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
+  set_target_properties(pingvox_${layer} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()

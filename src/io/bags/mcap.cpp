@@ -20,8 +20,8 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
-constexpr std::uint8_t kFooter = 2, kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kLastKnown = 15;
+constexpr std::array<std::uint8_t, 8> kMcapMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+constexpr std::uint8_t kFooter = 2, kSchema = 3, kChannel = 4, kMcapMessage = 5, kMcapChunk = 6, kLastKnown = 15;
 constexpr std::size_t kRecordHeader = 9;
 
 std::optional<std::string_view> read_text(ByteReader& reader) {
@@ -60,9 +60,9 @@ std::optional<Compression> compression_of(std::string_view name) {
 }
 
 /// Where the next chunk may begin, behind the first byte; nullopt: not in these bytes.
-std::optional<std::size_t> next_chunk(Bytes bytes) {
+std::optional<std::size_t> next_mcap_chunk(Bytes bytes) {
   for (std::size_t at = 1; at < bytes.size(); ++at) {
-    if (bytes[at] != kChunk || bytes.size() - at < kRecordHeader) continue;
+    if (bytes[at] != kMcapChunk || bytes.size() - at < kRecordHeader) continue;
     const auto length = value_from<std::uint64_t>(bytes.subspan(at + 1, 8), std::endian::little);
     const auto chunk = chunk_in(bytes.subspan(at + kRecordHeader), length);
     if (chunk && compression_of(chunk->compression) && chunk->data_at + chunk->packed == length) return at;
@@ -122,7 +122,7 @@ class Mcap final : public Bag {
       is_whole = add_schema(body);
     } else if (op == kChannel) {
       is_whole = add_channel(body);
-    } else if (op == kMessage) {
+    } else if (op == kMcapMessage) {
       ByteReader reader(body);
       const auto channel = reader.read<std::uint16_t>();
       const auto sequence = reader.read<std::uint32_t>();
@@ -193,12 +193,12 @@ class Mcap final : public Bag {
     // Records of the format that need not be read may be of any length, others are not longer than a chunk.
     const bool is_known = op >= 1 && op <= kLastKnown;
     if (!is_known && op < 0x80) return skip_damage();
-    if (op != kSchema && op != kChannel && op != kMessage && op != kChunk) return pass_over(length);
+    if (op != kSchema && op != kChannel && op != kMcapMessage && op != kMcapChunk) return pass_over(length);
     if (length > kMaxChunk) return skip_damage();
     const auto bytes = reader_.peek(kRecordHeader + static_cast<std::size_t>(length));
     if (!bytes) return tl::unexpected(bytes.error());
     const Bytes body = bytes->subspan(kRecordHeader);
-    if (op == kChunk) return open_chunk(body, length);
+    if (op == kMcapChunk) return open_chunk(body, length);
     if (body.size() < length) return skip_damage();
     held_ = bytes->size();
     return take(op, body, reader_.position());
@@ -239,7 +239,7 @@ class Mcap final : public Bag {
 
   /// The file ends with its magic bytes behind the footer.
   Result<std::optional<BagMessage>> end_at_footer(std::uint64_t length) {
-    constexpr std::size_t kLength = 20, kFooterSize = kRecordHeader + kLength, kEnd = kFooterSize + kMagic.size();
+    constexpr std::size_t kLength = 20, kFooterSize = kRecordHeader + kLength, kEnd = kFooterSize + kMcapMagic.size();
     if (length != kLength) return skip_damage();
     const auto bytes = reader_.peek(kEnd + 1);
     if (!bytes) return tl::unexpected(bytes.error());
@@ -279,7 +279,7 @@ class Mcap final : public Bag {
     for (;;) {
       const auto bytes = reader_.peek(kBlock);
       if (!bytes) return tl::unexpected(bytes.error());
-      if (const auto chunk = next_chunk(*bytes)) {
+      if (const auto chunk = next_mcap_chunk(*bytes)) {
         reader_.skip(*chunk);
         return std::nullopt;
       }
@@ -312,12 +312,12 @@ class Mcap final : public Bag {
 }  // namespace
 
 bool looks_like_mcap(Bytes beginning) {
-  return beginning.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), beginning.begin());
+  return beginning.size() >= kMcapMagic.size() && std::equal(kMcapMagic.begin(), kMcapMagic.end(), beginning.begin());
 }
 
 Result<std::unique_ptr<Bag>> open_mcap(ByteStream stream) {
   StreamReader reader(std::move(stream));
-  const auto magic = reader.peek(kMagic.size());
+  const auto magic = reader.peek(kMcapMagic.size());
   if (!magic) return tl::unexpected(magic.error());
   reader.skip(magic->size());
   return std::make_unique<Mcap>(std::move(reader));

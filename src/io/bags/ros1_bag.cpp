@@ -18,8 +18,8 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint8_t kMessage = 2, kBagHeader = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7;
+constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+constexpr std::uint8_t kBagMessage = 2, kBagHeader = 3, kIndex = 4, kBagChunk = 5, kChunkInfo = 6, kConnection = 7;
 constexpr std::size_t kMaxHeader = 65'536;
 
 /// The fields of a record header that are needed.
@@ -128,11 +128,11 @@ bool is_chunk(Bytes bytes) {
   const auto length = ByteReader(bytes).read<std::uint32_t>();
   if (!length || *length > kMaxChunkHeader) return false;
   const std::optional<Record> record = record_in(bytes);
-  return record && record->header.op == kChunk && compression_of(record->header) && record->data <= kMaxChunk;
+  return record && record->header.op == kBagChunk && compression_of(record->header) && record->data <= kMaxChunk;
 }
 
 /// Where the next chunk may begin, behind the first byte; nullopt: not in these bytes.
-std::optional<std::size_t> next_chunk(Bytes bytes) {
+std::optional<std::size_t> next_bag_chunk(Bytes bytes) {
   constexpr std::string_view kOp = "op=\x05";
   constexpr std::size_t kMaxOffset = 64;  // of this field from the beginning of the record
   const std::string_view text = text_of(bytes);
@@ -169,7 +169,7 @@ class Ros1Bag final : public Bag {
   std::optional<BagMessage> next_in_chunk() {
     const std::uint64_t at = is_packed_ ? chunk_at_ : chunk_at_ + (chunk_size_ - rest_.size());
     const std::optional<Record> record = record_in(rest_);
-    if (!is_packed_ && record && record->header.op == kChunk && is_chunk(rest_)) {
+    if (!is_packed_ && record && record->header.op == kBagChunk && is_chunk(rest_)) {
       // The length of the chunk before it was wrong.
       add_damage(damage_, "damaged record", at);
       held_ -= rest_.size();
@@ -191,7 +191,7 @@ class Ros1Bag final : public Bag {
   /// A message; nullopt: another record.
   std::optional<BagMessage> take(const RecordHeader& header, Bytes data, std::uint64_t at) {
     if (header.op == kConnection) add_connection(header, data, at);
-    if (header.op != kMessage) return std::nullopt;
+    if (header.op != kBagMessage) return std::nullopt;
     if (!connections_.contains(header.connection)) read_index();
     const auto topic = connections_.find(header.connection);
     if (topic == connections_.end()) {
@@ -246,7 +246,7 @@ class Ros1Bag final : public Bag {
       record = record_in(*bytes);
     }
     if (!record || !has_possible_length(*record)) return skip_damage();
-    if (record->header.op == kChunk) return open_chunk(*record);
+    if (record->header.op == kBagChunk) return open_chunk(*record);
     if (record->header.op == kBagHeader) index_at_ = record->header.index_at;
     return pass_over(*record);
   }
@@ -272,7 +272,7 @@ class Ros1Bag final : public Bag {
       const auto [is_whole, packed, is_refused] = unpack(*compression, rest_, record.header.size, budget_, unpacked_);
       // What is packed ends by itself: with another chunk behind it, the length is wrong.
       const Bytes behind = data.subspan(is_whole ? packed : 0);
-      if (!is_cut_ && (!is_whole || next_chunk(behind))) {
+      if (!is_cut_ && (!is_whole || next_bag_chunk(behind))) {
         add_damage(damage_, is_refused ? kTooLargeUnpacked : "damaged chunk", reader_.position());
         give_back_next_chunk(behind);
       }
@@ -285,7 +285,7 @@ class Ros1Bag final : public Bag {
 
   /// Reads on at a chunk in the last bytes of what is held: its own chunk has a wrong length.
   void give_back_next_chunk(Bytes last) {
-    if (const auto chunk = next_chunk(last)) held_ -= last.size() - *chunk;
+    if (const auto chunk = next_bag_chunk(last)) held_ -= last.size() - *chunk;
   }
 
   /// Skips a record of the index.
@@ -313,7 +313,7 @@ class Ros1Bag final : public Bag {
     for (;;) {
       const auto bytes = reader_.peek(kBlock);
       if (!bytes) return tl::unexpected(bytes.error());
-      if (const auto chunk = next_chunk(*bytes)) {
+      if (const auto chunk = next_bag_chunk(*bytes)) {
         reader_.skip(*chunk);
         return true;
       }
@@ -339,12 +339,12 @@ class Ros1Bag final : public Bag {
 }  // namespace
 
 bool looks_like_ros1_bag(Bytes beginning) {
-  return text_of(beginning).starts_with(kMagic);
+  return text_of(beginning).starts_with(kBagMagic);
 }
 
 Result<std::unique_ptr<Bag>> open_ros1_bag(ByteStream stream) {
   StreamReader reader(std::move(stream));
-  const auto magic = reader.peek(kMagic.size());
+  const auto magic = reader.peek(kBagMagic.size());
   if (!magic) return tl::unexpected(magic.error());
   reader.skip(magic->size());
   return std::make_unique<Ros1Bag>(std::move(reader));

@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::string_view kMagic("SQLite format 3\0", 16);
+constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 
 struct CloseDatabase {
   void operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -250,7 +250,7 @@ class SqliteBag final : public Bag {
 }  // namespace
 
 bool looks_like_sqlite(Bytes beginning) {
-  return text_of(beginning).starts_with(kMagic);
+  return text_of(beginning).starts_with(kSqliteMagic);
 }
 
 Result<std::unique_ptr<Bag>> open_sqlite_bag(ByteStream stream) {

@@ -21,10 +21,10 @@
 namespace pingvox {
 namespace {
 
-constexpr std::string_view kHeader = "# turn beam count bin";
+constexpr std::string_view kHitsHeader = "# turn beam count bin";
 constexpr std::string_view kTimesEnd = "_IS_timestamps.log";
-constexpr std::size_t kBeamsPerTurn = 200, kBins = 500;
-constexpr double kBinLength_m = 0.1;
+constexpr std::size_t kBeamsPerTurn = 200, kHitBins = 500;
+constexpr double kHitBinLength_m = 0.1;
 /// Lines of the file of times that come before the first turn.
 constexpr std::size_t kLinesBefore = 147;
 
@@ -50,8 +50,8 @@ tl::expected<HitBeam, std::string> hits_in(std::string_view line, std::size_t be
   HitBeam hits{(turn - 1) * kBeamsPerTurn + (kBeamsPerTurn - 1 - beam), {}};
   while (const auto word = cut_word(line)) {
     const auto bin = count_in(*word);
-    if (!bin || *bin == 0 || *bin > kBins) {
-      return tl::unexpected(fmt::format("bin \"{}\" is not in 1..{}", printable(*word), kBins));
+    if (!bin || *bin == 0 || *bin > kHitBins) {
+      return tl::unexpected(fmt::format("bin \"{}\" is not in 1..{}", printable(*word), kHitBins));
     }
     hits.bins.push_back(static_cast<std::uint16_t>(*bin - 1));
   }
@@ -112,8 +112,8 @@ class HitSource : public BeamSource {
     beam.time_s = times_s_[next_];
     const auto angle = static_cast<double>(kBeamsPerTurn - 1 - next_ % kBeamsPerTurn);
     beam.bearing_rad = wrap_bearing(-2.0 * std::numbers::pi * angle / kBeamsPerTurn);
-    beam.bin_length_m = kBinLength_m;
-    beam.intensities.assign(kBins, 0);
+    beam.bin_length_m = kHitBinLength_m;
+    beam.intensities.assign(kHitBins, 0);
     if (const auto hits = hits_.find(next_); hits != hits_.end()) {
       for (const std::uint16_t bin : hits->second) beam.intensities[bin] = 255;
     }
@@ -136,7 +136,7 @@ class HitSource : public BeamSource {
 }  // namespace
 
 bool looks_like_beam_hits(std::span<const std::uint8_t> bytes) {
-  return text_of(bytes).starts_with(kHeader);
+  return text_of(bytes).starts_with(kHitsHeader);
 }
 
 Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage damage) {

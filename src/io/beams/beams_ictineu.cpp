@@ -16,8 +16,8 @@
 namespace pingvox {
 namespace {
 
-constexpr std::size_t kBins = 500;
-constexpr double kBinLength_m = 0.1;
+constexpr std::size_t kIctineuBins = 500;
+constexpr double kIctineuBinLength_m = 0.1;
 
 bool is_comment_or_blank(std::string_view line) {
   const std::string_view content = trim(line);
@@ -34,15 +34,15 @@ tl::expected<Beam, std::string> ictineu_beam_in(std::string_view line) {
   beam.time_s = *time_s;
   // The transducer's angle counts clockwise, as in the hits.
   beam.bearing_rad = wrap_bearing(-*angle_rad);
-  beam.bin_length_m = kBinLength_m;
-  beam.intensities.reserve(kBins);
+  beam.bin_length_m = kIctineuBinLength_m;
+  beam.intensities.reserve(kIctineuBins);
   while (const auto word = cut_word(line)) {
     const auto sample = count_in(*word);
     if (!sample || *sample > 255) return tl::unexpected(fmt::format("\"{}\" is no sample", printable(*word)));
     beam.intensities.push_back(static_cast<std::uint8_t>(*sample));
   }
-  if (beam.intensities.size() != kBins) {
-    return tl::unexpected(fmt::format("has {} samples, not {}", beam.intensities.size(), kBins));
+  if (beam.intensities.size() != kIctineuBins) {
+    return tl::unexpected(fmt::format("has {} samples, not {}", beam.intensities.size(), kIctineuBins));
   }
   if (const Result<void> valid = validate(beam); !valid) return tl::unexpected(valid.error().message);
   return beam;

@@ -15,7 +15,7 @@ namespace {
 
 using Verdict = FrameCheck::Verdict;
 
-constexpr std::size_t kHeader = 8, kChecksum = 2;
+constexpr std::size_t kPingHeaderBytes = 8, kChecksumBytes = 2;
 /// More than any message of a Ping360 needs; limits how many frames a damaged length delays.
 constexpr std::size_t kMaxPing360Payload = 4096;
 
@@ -36,17 +36,17 @@ FrameCheck check_frame(const FrameBytes& at, std::size_t max_payload) {
 
   const std::size_t payload = u16_at(bytes, 2);
   if (payload > max_payload) return {Verdict::kBroken, 4, "impossible length"};
-  const std::size_t size = kHeader + payload + kChecksum;
-  if (bytes.size() < kHeader) return {Verdict::kIncomplete};
+  const std::size_t size = kPingHeaderBytes + payload + kChecksumBytes;
+  if (bytes.size() < kPingHeaderBytes) return {Verdict::kIncomplete};
   if (const std::size_t fixed = fixed_part(u16_at(bytes, 4)); fixed > 0) {
     // Before the frame is whole: a live head would be silent until a damaged length is filled.
-    if (payload < fixed) return {Verdict::kBroken, kHeader, "impossible length"};
-    if (bytes.size() < kHeader + fixed) return {Verdict::kIncomplete};
-    const bool fits = payload - fixed == u16_at(bytes, kHeader + fixed - 2);
-    if (!fits) return {Verdict::kBroken, kHeader + fixed, "impossible length"};
+    if (payload < fixed) return {Verdict::kBroken, kPingHeaderBytes, "impossible length"};
+    if (bytes.size() < kPingHeaderBytes + fixed) return {Verdict::kIncomplete};
+    const bool fits = payload - fixed == u16_at(bytes, kPingHeaderBytes + fixed - 2);
+    if (!fits) return {Verdict::kBroken, kPingHeaderBytes + fixed, "impossible length"};
   }
   if (bytes.size() < size) return {Verdict::kIncomplete};
-  if (at.sum(size - kChecksum) != u16_at(bytes, size - kChecksum)) return {Verdict::kBroken, size, "wrong checksum"};
+  if (at.sum(size - kChecksumBytes) != u16_at(bytes, size - kChecksumBytes)) return {Verdict::kBroken, size, "wrong checksum"};
   return {Verdict::kFrame, size};
 }
 
@@ -65,7 +65,7 @@ PingMessage ping_message(std::span<const std::uint8_t> frame) {
 }
 
 std::span<const std::uint8_t> ping_payload(std::span<const std::uint8_t> frame) {
-  return frame.subspan(kHeader, frame.size() - kHeader - kChecksum);
+  return frame.subspan(kPingHeaderBytes, frame.size() - kPingHeaderBytes - kChecksumBytes);
 }
 
 std::vector<std::uint8_t> make_ping_frame(PingMessage message, std::uint8_t source, std::uint8_t destination,
@@ -94,8 +94,8 @@ std::optional<Ping360Ping> ping360_ping(std::span<const std::uint8_t> frame) {
   ping.transmit_us = u16_at(frame, 12);
   ping.period_25ns = u16_at(frame, 14);
   ping.frequency_khz = u16_at(frame, 16);
-  ping.samples = u16_at(frame, kHeader + fixed - 4);
-  ping.data = frame.subspan(kHeader + fixed, frame.size() - kHeader - fixed - kChecksum);
+  ping.samples = u16_at(frame, kPingHeaderBytes + fixed - 4);
+  ping.data = frame.subspan(kPingHeaderBytes + fixed, frame.size() - kPingHeaderBytes - fixed - kChecksumBytes);
   return ping;
 }
 

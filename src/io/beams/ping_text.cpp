@@ -19,36 +19,36 @@
 namespace pingvox {
 namespace {
 
-struct Field {
+struct PrintedField {
   std::string_view name;
   std::size_t size;  ///< in the frame [bytes]
 };
 
-constexpr std::array kDeviceData = {Field{"mode", 1},
-                                    Field{"gain_setting", 1},
-                                    Field{"angle", 2},
-                                    Field{"transmit_duration", 2},
-                                    Field{"sample_period", 2},
-                                    Field{"transmit_frequency", 2},
-                                    Field{"number_of_samples", 2},
-                                    Field{"data_length", 2}};
-constexpr std::array kAutoDeviceData = {Field{"mode", 1},
-                                        Field{"gain_setting", 1},
-                                        Field{"angle", 2},
-                                        Field{"transmit_duration", 2},
-                                        Field{"sample_period", 2},
-                                        Field{"transmit_frequency", 2},
-                                        Field{"start_angle", 2},
-                                        Field{"stop_angle", 2},
-                                        Field{"num_steps", 1},
-                                        Field{"delay", 1},
-                                        Field{"number_of_samples", 2},
-                                        Field{"data_length", 2}};
+constexpr std::array kDeviceData = {PrintedField{"mode", 1},
+                                    PrintedField{"gain_setting", 1},
+                                    PrintedField{"angle", 2},
+                                    PrintedField{"transmit_duration", 2},
+                                    PrintedField{"sample_period", 2},
+                                    PrintedField{"transmit_frequency", 2},
+                                    PrintedField{"number_of_samples", 2},
+                                    PrintedField{"data_length", 2}};
+constexpr std::array kAutoDeviceData = {PrintedField{"mode", 1},
+                                        PrintedField{"gain_setting", 1},
+                                        PrintedField{"angle", 2},
+                                        PrintedField{"transmit_duration", 2},
+                                        PrintedField{"sample_period", 2},
+                                        PrintedField{"transmit_frequency", 2},
+                                        PrintedField{"start_angle", 2},
+                                        PrintedField{"stop_angle", 2},
+                                        PrintedField{"num_steps", 1},
+                                        PrintedField{"delay", 1},
+                                        PrintedField{"number_of_samples", 2},
+                                        PrintedField{"data_length", 2}};
 
 constexpr std::uint64_t kStart = 0x5242;  // "BR"
 
 /// The fields before the samples; empty: another message.
-std::span<const Field> fields_of(std::uint64_t id) {
+std::span<const PrintedField> fields_of(std::uint64_t id) {
   if (id == 2300) return kDeviceData;
   if (id == 2301) return kAutoDeviceData;
   return {};
@@ -163,7 +163,7 @@ class PrintedFrames final : public FrameContainer {
 
   /// "angle: 150", in the order of the frame.
   bool take_field(std::string_view line) {
-    const std::span<const Field> fields = fields_of(id_);
+    const std::span<const PrintedField> fields = fields_of(id_);
     if (bytes_.empty() || has_samples_) return false;
     if (fields_ == fields.size()) {
       has_samples_ = true;

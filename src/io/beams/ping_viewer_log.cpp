@@ -19,7 +19,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::string_view kMagic = "PingViewer sensor log file";
+constexpr std::string_view kViewerMagic = "PingViewer sensor log file";
 
 /// Encoding of strings: of Qt, or of scripts that write such logs.
 enum class Encoding { kUtf16, kUtf8 };
@@ -206,11 +206,11 @@ bool hold_ping360(Bytes records, Encoding encoding) {
 
 std::optional<Encoding> encoding_of(Bytes bytes) {
   if (bytes.size() < 4) return std::nullopt;
-  const bool is_wide = u32_at(bytes, 0) == 2 * kMagic.size();
-  if (!is_wide && u32_at(bytes, 0) != kMagic.size()) return std::nullopt;
+  const bool is_wide = u32_at(bytes, 0) == 2 * kViewerMagic.size();
+  if (!is_wide && u32_at(bytes, 0) != kViewerMagic.size()) return std::nullopt;
   const Encoding encoding = is_wide ? Encoding::kUtf16 : Encoding::kUtf8;
   Bytes text = bytes.subspan(4);
-  for (const char wanted : kMagic) {
+  for (const char wanted : kViewerMagic) {
     if (cut_character(text, encoding) != static_cast<unsigned char>(wanted)) return std::nullopt;
   }
   return encoding;

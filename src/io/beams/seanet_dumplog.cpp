@@ -21,9 +21,9 @@ namespace pingvox {
 namespace {
 
 /// Columns of a line of an imaging sonar.
-enum Column : std::size_t {
+enum DumplogColumn : std::size_t {
   kKind,
-  kTime,
+  kTimeOfDay,
   kNode,
   kStatus,
   kControl,
@@ -38,15 +38,15 @@ struct NodeBeam {
   Beam beam;
 };
 
-tl::expected<NodeBeam, std::string> beam_in(std::string_view line) {
+tl::expected<NodeBeam, std::string> dumplog_beam_in(std::string_view line) {
   std::array<std::string_view, kFirstSample> fields;
   for (std::string_view& field : fields) {
     const auto cut = cut_field(line, ',');
     if (!cut) return tl::unexpected(std::string("has too few columns"));
     field = *cut;
   }
-  const std::optional<double> time_s = time_of_day_s(fields[kTime]);
-  if (!time_s) return tl::unexpected(fmt::format("\"{}\" is no time of day", printable(fields[kTime])));
+  const std::optional<double> time_s = time_of_day_s(fields[kTimeOfDay]);
+  if (!time_s) return tl::unexpected(fmt::format("\"{}\" is no time of day", printable(fields[kTimeOfDay])));
   const auto bearing = count_in(fields[kBearing]), range_scale = count_in(fields[kRangeScale]);
   const auto samples = count_in(fields[kSamples]);
   const std::optional<double> bearing_rad = bearing ? seanet_bearing_rad(*bearing) : std::nullopt;
@@ -98,7 +98,7 @@ class DumpLog : public BeamSource {
       if (!*line) return std::nullopt;
       // Lines of other devices.
       if (!(*line)->starts_with("SON,")) continue;
-      tl::expected<NodeBeam, std::string> read = beam_in(**line);
+      tl::expected<NodeBeam, std::string> read = dumplog_beam_in(**line);
       if (read && first_head_.is(read->node)) {
         set_time(read->beam);
         return std::move(read->beam);
@@ -139,7 +139,7 @@ bool looks_like_dumplog(std::span<const std::uint8_t> beginning) {
   if (header && header->starts_with("SOf") && header->find("Bearing") != std::string_view::npos) return true;
   // If the log begins within a line, the next one is whole.
   const auto second = lines.next();
-  return second && second->starts_with("SON,") && beam_in(*second);
+  return second && second->starts_with("SON,") && dumplog_beam_in(*second);
 }
 
 Result<std::unique_ptr<BeamSource>> open_dumplog(ByteStream stream, Damage damage) {

@@ -20,11 +20,11 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::string_view kMagic = "SeaNetV4 Log File V";
+constexpr std::string_view kV4Magic = "SeaNetV4 Log File V";
 
 /// Of a record: offsets of its time, its sender, its message and mtHeadData's device block; minimum and maximum size.
-constexpr std::size_t kTime = 2, kFrom = 10, kMessage = 12, kDeviceBlock = 17, kMinRecord = 17, kMaxRecord = 4096;
-constexpr std::uint8_t kHeadData = 2;
+constexpr std::size_t kV4Time = 2, kFrom = 10, kMessage = 12, kV4DeviceBlock = 17, kMinRecord = 17, kMaxRecord = 4096;
+constexpr std::uint8_t kV4HeadData = 2;
 
 template <class T>
 T value_at(Bytes bytes, std::size_t place) {
@@ -42,10 +42,10 @@ std::optional<double> time_s_of(double days) {
 std::optional<std::size_t> record_size(Bytes bytes) {
   if (bytes.size() < kMinRecord) return std::nullopt;
   const std::size_t size = value_at<std::uint16_t>(bytes, 0);
-  if (size < kMinRecord || size > kMaxRecord || !time_s_of(value_at<double>(bytes, kTime))) return std::nullopt;
+  if (size < kMinRecord || size > kMaxRecord || !time_s_of(value_at<double>(bytes, kV4Time))) return std::nullopt;
   // mtHeadData also holds its own length.
-  const bool is_line = bytes[kMessage] == kHeadData;
-  if (is_line && value_at<std::uint16_t>(bytes, kDeviceBlock - 2) + kDeviceBlock - 2U != size) return std::nullopt;
+  const bool is_line = bytes[kMessage] == kV4HeadData;
+  if (is_line && value_at<std::uint16_t>(bytes, kV4DeviceBlock - 2) + kV4DeviceBlock - 2U != size) return std::nullopt;
   return size;
 }
 
@@ -92,7 +92,7 @@ class V4Log final : public DeviceLog {
       in_damage_ = false;
       const Bytes record = bytes->first(*size);
       missing_ -= missing_ > 0 ? 1 : 0;
-      if (record[kMessage] == kHeadData) {
+      if (record[kMessage] == kV4HeadData) {
         tl::expected<Beam, std::string> beam = beam_in(record);
         const bool is_other = beam && !is_of_first_head(record[kFrom]);
         if (is_other) beam = tl::unexpected(std::string(kOtherHead));
@@ -112,7 +112,7 @@ class V4Log final : public DeviceLog {
   /// counts records that the header has and the log has not.
   Result<void> check_end(Bytes behind) {
     const std::optional<std::size_t> size = record_size(behind);
-    if (size && *size <= behind.size() && behind[kMessage] == kHeadData) {
+    if (size && *size <= behind.size() && behind[kMessage] == kV4HeadData) {
       end_.reset();
       return report_damage("damaged header", "records follow behind the end that the header says");
     }
@@ -121,10 +121,10 @@ class V4Log final : public DeviceLog {
   }
 
   tl::expected<Beam, std::string> beam_in(Bytes record) {
-    const auto line = seanet_line_in(record.subspan(kDeviceBlock));
+    const auto line = seanet_line_in(record.subspan(kV4DeviceBlock));
     if (!line) return tl::unexpected(std::string(line.error()));
     if (device_ == nullptr) device_ = device_of(*line);
-    return beam_of(*line, *time_s_of(value_at<double>(record, kTime)));
+    return beam_of(*line, *time_s_of(value_at<double>(record, kV4Time)));
   }
 
   /// Counts damage at the reader's position, or fails.
@@ -143,7 +143,7 @@ class V4Log final : public DeviceLog {
 }  // namespace
 
 bool looks_like_v4log(Bytes beginning) {
-  return text_of(beginning).starts_with(kMagic);
+  return text_of(beginning).starts_with(kV4Magic);
 }
 
 Result<std::unique_ptr<BeamSource>> open_v4log(ByteStream stream, Damage damage) {

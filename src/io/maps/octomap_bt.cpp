@@ -24,10 +24,10 @@ namespace {
 constexpr int kBrickDepth = kOctomapDepth - 2;
 
 /// Builds the tree bottom-up by whole groups and bricks.
-class TreeReader {
+class BtTreeReader {
  public:
   /// @param map  an empty map for a .bt file
-  TreeReader(const FileBytes& file, std::size_t tree_at, const OccupancyMap& map)
+  BtTreeReader(const FileBytes& file, std::size_t tree_at, const OccupancyMap& map)
       : file_(file),
         tree_at_(tree_at),
         reader_(file.view().subspan(tree_at)),
@@ -140,7 +140,8 @@ class TreeWords {
         end_(words_.get()) {
     const unsigned state = add(tree_.root, 0);
     // A root without children would be read as occupied by liboctomap.
-    if (state == bt::kFree || state == bt::kOccupied) *end_++ = state == bt::kFree ? kAllFree : kAllOccupied;
+    if (state == bt::kFree) *end_++ = kAllFree;
+    if (state == bt::kOccupied) *end_++ = kAllOccupied;
   }
 
   std::span<std::uint16_t> words() { return {words_.get(), end_}; }
@@ -248,7 +249,7 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
   }
   auto map = empty_octomap(file, header.resolution_m, memory_limit_bytes);
   if (!map) return map;
-  return TreeReader(file, header.tree_at, *map).read(header.nodes);
+  return BtTreeReader(file, header.tree_at, *map).read(header.nodes);
 }
 
 Result<void> write_bt(const OccupancyMap& map, std::ostream& out) {

@@ -13,9 +13,9 @@
 namespace pingvox {
 namespace {
 
-class TreeReader {
+class OtTreeReader {
  public:
-  TreeReader(const FileBytes& file, std::size_t tree_at, std::size_t colour_bytes, OccupancyMap& map,
+  OtTreeReader(const FileBytes& file, std::size_t tree_at, std::size_t colour_bytes, OccupancyMap& map,
              std::size_t memory_limit_bytes)
       : file_(file),
         tree_at_(tree_at),
@@ -65,7 +65,7 @@ class TreeReader {
   std::uint64_t nodes_ = 0;
 };
 
-void write_node(const NodeView& node, ByteWriter& writer) {
+void write_ot_node(const NodeView& node, ByteWriter& writer) {
   unsigned children = 0;
   for (int octant = 0; octant < 8; ++octant) {
     if (node.child(octant)) children |= 1U << octant;
@@ -73,7 +73,7 @@ void write_node(const NodeView& node, ByteWriter& writer) {
   writer.put(node.belief().value());
   writer.put(static_cast<std::uint8_t>(children));
   for (int octant = 0; octant < 8; ++octant) {
-    if (const auto child = node.child(octant)) write_node(*child, writer);
+    if (const auto child = node.child(octant)) write_ot_node(*child, writer);
   }
 }
 
@@ -91,7 +91,7 @@ Result<OccupancyMap> read_ot(const FileBytes& file, std::size_t memory_limit_byt
   }
   auto map = empty_octomap(file, header->resolution_m, memory_limit_bytes);
   if (!map) return map;
-  const auto done = TreeReader(file, header->tree_at, coloured ? 3 : 0, *map, memory_limit_bytes).read(header->nodes);
+  const auto done = OtTreeReader(file, header->tree_at, coloured ? 3 : 0, *map, memory_limit_bytes).read(header->nodes);
   if (!done) return tl::unexpected(done.error());
   return map;
 }
@@ -100,7 +100,7 @@ Result<void> write_ot(const OccupancyMap& map, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".ot"); !fits) return fits;
   ByteWriter writer(out);
   writer.put(octomap_header(kOtFirstLine, map.counts().nodes(), map.lattice().resolution_m()));
-  if (const auto root = map.root()) write_node(*root, writer);
+  if (const auto root = map.root()) write_ot_node(*root, writer);
   return writer.finish();
 }
 

@@ -62,9 +62,9 @@ Result<Header> read_header(const FileBytes& file, std::size_t memory_limit_bytes
   return header;
 }
 
-class TreeReader {
+class PvxTreeReader {
  public:
-  TreeReader(const FileBytes& file, const Header& header, std::size_t tree_at, OccupancyMap& map)
+  PvxTreeReader(const FileBytes& file, const Header& header, std::size_t tree_at, OccupancyMap& map)
       : file_(file),
         levels_(header.options.depth),
         tree_at_(tree_at),
@@ -120,7 +120,7 @@ unsigned state_of(const std::optional<NodeView>& node) {
   return node->is_leaf() ? kLeaf : kInner;
 }
 
-void write_node(const NodeView& node, ByteWriter& writer) {
+void write_pvx_node(const NodeView& node, ByteWriter& writer) {
   if (node.is_leaf()) {
     writer.put(node.belief().value());
     return;
@@ -129,7 +129,7 @@ void write_node(const NodeView& node, ByteWriter& writer) {
   for (int octant = 0; octant < 8; ++octant) word |= state_of(node.child(octant)) << (2 * octant);
   writer.put(static_cast<std::uint16_t>(word));
   for (int octant = 0; octant < 8; ++octant) {
-    if (const auto child = node.child(octant)) write_node(*child, writer);
+    if (const auto child = node.child(octant)) write_pvx_node(*child, writer);
   }
 }
 
@@ -163,7 +163,7 @@ Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) 
   auto map = OccupancyMap::make(header->options);
   if (!map) return tl::unexpected(map.error());
   const std::size_t tree_at = kHeaderBytes + header->made_by_bytes;
-  const auto done = TreeReader(file, *header, tree_at, *map).read(*header);
+  const auto done = PvxTreeReader(file, *header, tree_at, *map).read(*header);
   if (!done) return tl::unexpected(done.error());
   return MapFile{Format::kPvx, *std::move(map),
                  std::string(text_of(bytes.subspan(kHeaderBytes, header->made_by_bytes)))};
@@ -193,7 +193,7 @@ Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, std::o
   writer.put(counts.inner);
   writer.put(counts.leaves);
   writer.put(made_by);
-  if (root) write_node(*root, writer);
+  if (root) write_pvx_node(*root, writer);
   writer.put(writer.crc32());
   return writer.finish();
 }

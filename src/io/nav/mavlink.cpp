@@ -8,7 +8,7 @@ namespace pingvox {
 namespace {
 
 constexpr std::uint8_t kMagic1 = 0xfe, kMagic2 = 0xfd;
-constexpr std::size_t kHeader1 = 6, kHeader2 = 10, kChecksum = 2, kSignature = 13;
+constexpr std::size_t kHeader1 = 6, kHeader2 = 10, kChecksumBytes = 2, kSignature = 13;
 constexpr std::uint8_t kSigned = 0x01;
 
 /// What the checksum needs of a message's definition (mavlink/c_library_v2).
@@ -105,7 +105,7 @@ MavlinkRead read_mavlink(std::span<const std::uint8_t> bytes) {
   // An unknown flag may change the layout: such frames have to be dropped.
   if (is_version_2 && (bytes[2] & ~kSigned) != 0) return read;
   const std::size_t length =
-      header + payload + kChecksum + (is_version_2 && (bytes[2] & kSigned) != 0 ? kSignature : 0);
+      header + payload + kChecksumBytes + (is_version_2 && (bytes[2] & kSigned) != 0 ? kSignature : 0);
   if (bytes.size() < length) return cut();
 
   MavlinkFrame& frame = read.frame.emplace();

@@ -21,10 +21,10 @@ namespace {
 constexpr std::string_view kClockLine = "# clock: ";
 constexpr std::array<std::string_view, 10> kColumns = {"time_s", "source", "quantity", "x",    "y",
                                                        "z",      "sd_x",   "sd_y",     "sd_z", "valid"};
-enum Column : std::size_t { kTime, kSource, kQuantity, kX, kY, kZ, kSdX, kSdY, kSdZ, kValid };
+enum NavColumn : std::size_t { kTime, kSource, kQuantity, kX, kY, kZ, kSdX, kSdY, kSdZ, kValid };
 constexpr std::size_t kNone = kColumns.size();
 
-std::vector<std::size_t> columns_in(std::string_view header) {
+std::vector<std::size_t> csv_columns_in(std::string_view header) {
   std::vector<std::size_t> columns;
   while (const auto name = cut_field(header, ',')) {
     // No file of ours has more; a line of nothing but commas is no header.
@@ -103,7 +103,7 @@ std::string as_field(std::string name) {
 
 bool looks_like_nav_csv(std::span<const std::uint8_t> bytes) {
   Lines lines(text_of(bytes));
-  const auto columns = columns_in(lines.next_with_content().value_or(""));
+  const auto columns = csv_columns_in(lines.next_with_content().value_or(""));
   return has(columns, kTime) && has(columns, kSource) && has(columns, kQuantity) && has(columns, kX);
 }
 
@@ -112,7 +112,7 @@ NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
   const std::string_view text = text_of(bytes);
   reading.clock = clock_in(text);
   Lines lines(text);
-  const auto columns = columns_in(lines.next_with_content().value_or(""));
+  const auto columns = csv_columns_in(lines.next_with_content().value_or(""));
   NavSources sources;
   for (std::size_t at = text.size() - lines.left(); const auto line = lines.next_with_content();
        at = text.size() - lines.left()) {

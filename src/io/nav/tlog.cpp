@@ -10,14 +10,14 @@
 namespace pingvox {
 namespace {
 
-constexpr std::size_t kTime = 8;
+constexpr std::size_t kTimeBytes = 8;
 constexpr std::uint64_t kYear2005_us = 1'104'537'600'000'000, kYear2100_us = 4'102'444'800'000'000;
 constexpr std::uint64_t kMinute_us = 60'000'000;
 
 /// The time in front of a possible record. A computer without a clock starts in 1970, 1980 or 2000.
 std::optional<std::uint64_t> time_at(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() <= kTime || (bytes[kTime] != 0xfe && bytes[kTime] != 0xfd)) return std::nullopt;
-  const auto time_us = value_from<std::uint64_t>(bytes.first(kTime), std::endian::big);
+  if (bytes.size() <= kTimeBytes || (bytes[kTimeBytes] != 0xfe && bytes[kTimeBytes] != 0xfd)) return std::nullopt;
+  const auto time_us = value_from<std::uint64_t>(bytes.first(kTimeBytes), std::endian::big);
   if (time_us == 0 || time_us > kYear2100_us) return std::nullopt;
   return time_us;
 }
@@ -33,7 +33,7 @@ std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
 
 /// Whether a record may follow here: the end of the file may too.
 bool may_follow(std::span<const std::uint8_t> bytes, std::uint64_t before_us) {
-  if (bytes.size() <= kTime) return true;
+  if (bytes.size() <= kTimeBytes) return true;
   const std::optional<std::uint64_t> time_us = time_at(bytes);
   return time_us && difference(*time_us, before_us) <= kMinute_us;
 }
@@ -49,12 +49,12 @@ bool leads_to_right_record(std::span<const std::uint8_t> bytes, std::uint64_t be
   constexpr int kMaxRecords = 64;
   for (int i = 0; i < kMaxRecords; ++i) {
     if (!may_follow(bytes, before_us)) return false;
-    if (bytes.size() <= kTime) return true;
+    if (bytes.size() <= kTimeBytes) return true;
     before_us = *time_at(bytes);
-    const MavlinkRead read = read_mavlink(bytes.subspan(kTime));
+    const MavlinkRead read = read_mavlink(bytes.subspan(kTimeBytes));
     if (!read.frame) return read.is_cut;
     if (is_right(*read.frame)) return true;
-    bytes = bytes.subspan(kTime + read.length);
+    bytes = bytes.subspan(kTimeBytes + read.length);
   }
   return false;
 }
@@ -122,14 +122,14 @@ std::size_t for_each_tlog_record(std::span<const std::uint8_t> bytes, std::vecto
   while (at < bytes.size()) {
     const auto rest = bytes.subspan(at);
     const std::optional<std::uint64_t> time_us = time_at(rest);
-    const MavlinkRead read = time_us ? read_mavlink(rest.subspan(kTime)) : MavlinkRead{};
-    const std::size_t length = kTime + read.length;
+    const MavlinkRead read = time_us ? read_mavlink(rest.subspan(kTimeBytes)) : MavlinkRead{};
+    const std::size_t length = kTimeBytes + read.length;
     // Without a correct checksum, the bytes that follow decide whether this was a record.
     const std::optional<std::uint64_t> latest_us = held ? held->record.time_us : before_us;
     if (!read.frame || (!is_right(*read.frame) && !is_between_records(*time_us, latest_us, rest.subspan(length)))) {
       if (!is_stray) stray_from = at;
       is_stray = true;
-      is_cut = is_cut || read.is_cut || rest.size() <= kTime;
+      is_cut = is_cut || read.is_cut || rest.size() <= kTimeBytes;
       ++at;
       continue;
     }
