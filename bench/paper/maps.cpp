@@ -218,8 +218,8 @@ struct Followed {
 };
 
 /// @param followed  nullptr: not made, so nothing was followed in it
-Row row_of(std::string_view place, std::string_view structure, const std::vector<Built>& runs,
-           const Followed* followed) {
+Row row_of_map(std::string_view place, std::string_view structure, const std::vector<Built>& runs,
+               const Followed* followed) {
   Built sum;
   for (const Built& run : runs) {
     sum.parts += run.parts;
@@ -346,11 +346,11 @@ Result<void> add_rows(const Place& place, std::vector<Row>& rows, std::vector<Ro
     round += recall(features, place.truths[n].round_m) / count;
   }
   // The grid has the cells of the octree, so that the vehicle is found at the same places.
-  rows.push_back(row_of(place.name, "grid, one layer", grids, &in_rays));
-  rows.push_back(row_of(place.name, "lines and corners", line_maps, &in_lines));
-  rows.push_back(row_of(place.name, "octree, one layer", ray_maps, &in_rays));
-  rows.push_back(row_of(place.name, "grid, as high as the cones", high_grids, nullptr));
-  rows.push_back(row_of(place.name, "octree, cones", cone_maps, &in_cones));
+  rows.push_back(row_of_map(place.name, "grid, one layer", grids, &in_rays));
+  rows.push_back(row_of_map(place.name, "lines and corners", line_maps, &in_lines));
+  rows.push_back(row_of_map(place.name, "octree, one layer", ray_maps, &in_rays));
+  rows.push_back(row_of_map(place.name, "grid, as high as the cones", high_grids, nullptr));
+  rows.push_back(row_of_map(place.name, "octree, cones", cone_maps, &in_cones));
   Row row;
   row.add("name", "maps-lines")
       .add("place", place.name)

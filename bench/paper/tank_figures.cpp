@@ -16,7 +16,7 @@ namespace {
 
 using Echoes = std::vector<std::optional<Echo>>;
 
-constexpr std::size_t kPanel_px = 320;
+constexpr std::size_t kTankPanel_px = 320;
 
 Picture cartesian(const Sweep& sweep, const PolarImage& image, const Echoes& echoes,
                   BetweenBeams between = BetweenBeams::kInterpolate) {
@@ -49,7 +49,7 @@ Result<Picture> map_picture(const Sweep& sweep, const FilterOptions& filter, con
   if (!report) return tl::unexpected(report.error());
   // All maps to the same scale.
   const Box tank{{-2.9, -2.3, 0.0}, {2.7, 3.1, 0.0}};
-  return render_map(map, {.target_px = kPanel_px, .at_least = tank});
+  return render_map(map, {.target_px = kTankPanel_px, .at_least = tank});
 }
 
 /// Collects pictures as panels of one figure, or the first error.
