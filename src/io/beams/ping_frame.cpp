@@ -46,7 +46,8 @@ FrameCheck check_frame(const FrameBytes& at, std::size_t max_payload) {
     if (!fits) return {Verdict::kBroken, kPingHeaderBytes + fixed, "impossible length"};
   }
   if (bytes.size() < size) return {Verdict::kIncomplete};
-  if (at.sum(size - kChecksumBytes) != u16_at(bytes, size - kChecksumBytes)) return {Verdict::kBroken, size, "wrong checksum"};
+  if (at.sum(size - kChecksumBytes) != u16_at(bytes, size - kChecksumBytes))
+    return {Verdict::kBroken, size, "wrong checksum"};
   return {Verdict::kFrame, size};
 }
 

@@ -16,7 +16,7 @@ namespace {
 class OtTreeReader {
  public:
   OtTreeReader(const FileBytes& file, std::size_t tree_at, std::size_t colour_bytes, OccupancyMap& map,
-             std::size_t memory_limit_bytes)
+               std::size_t memory_limit_bytes)
       : file_(file),
         tree_at_(tree_at),
         colour_bytes_(colour_bytes),
