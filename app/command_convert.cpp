@@ -120,7 +120,9 @@ Result<std::string> convert_scans(ByteStream stream, const ConvertCommand& comma
     const Result<std::size_t> count = write_points(**scans, command.format, out);
     if (!count) return tl::unexpected(count.error());
     points = *count;
-    return {};
+    if (points > 0 || (*scans)->skipped() == 0) return {};
+    return fail(Error::Code::kCorrupt, fmt::format("{}: no scan could be read: {}", name_of_input(command.input),
+                                                   damage_text((*scans)->skipped(), (*scans)->first_damage())));
   });
   if (!written) return tl::unexpected(written.error());
   std::string what = fmt::format("{} points", points);

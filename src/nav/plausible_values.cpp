@@ -87,9 +87,23 @@ std::optional<std::size_t> impossible_number(const std::array<ValueLimit, 3>& li
   return std::nullopt;
 }
 
-/// "latitude of 54.3 rad is beyond pi/2: is it in degrees?"
+/// Whether an angle was a round number of degrees before it was brought to radians.
+bool was_in_degrees(double angle_rad) {
+  constexpr double kStep_deg = 0.01, kRounding = 1e-4;
+  const double steps = angle_rad / kDegree_rad / kStep_deg;
+  return std::fabs(steps - std::round(steps)) < kRounding;
+}
+
+/// "latitude of 54.3 rad is beyond pi/2: is it in degrees?", and where the log has degrees "latitude of 5418 degrees is
+/// beyond pi/2: is it in another unit?"
 std::string text_of(const ValueLimit& limit, double number) {
   constexpr double kMaxDegrees = 400.0;  // gradians, too
+  if (limit.unit.starts_with("rad") && was_in_degrees(number)) {
+    const bool may_be_longitude = limit.name == "latitude" && std::fabs(number) <= std::numbers::pi;
+    return fmt::format("{} of {:.6g} degrees{} is beyond {}: is it {}in another unit?", limit.name,
+                       number / kDegree_rad, limit.unit.substr(3), limit.limit,
+                       may_be_longitude ? "the longitude, or " : "");
+  }
   std::string text = fmt::format("{} of {:.6g} {} is beyond {}", limit.name, number, limit.unit, limit.limit);
   const bool is_angle = limit.unit.starts_with("rad");
   if (is_angle && std::fabs(number) <= kMaxDegrees) {

@@ -318,6 +318,21 @@ TEST(Nav, InfoSaysInWhichUnitAPressureWasRead) {
   EXPECT_THAT(here.call({"info", "nav.csv", "--json"}).out, HasSubstr(R"("note": "read as kPa")"));
 }
 
+// Kills a unit that only `info` tells.
+TEST(Nav, MapSaysInWhichUnitAPressureWasRead) {
+  const Workplace here;
+  here.simulate_tank();
+  std::string nav = "time_s,source,quantity,x,y,z\n";
+  for (int i = 0; i <= 400; ++i) {
+    nav += fmt::format("{0},ahrs,attitude,0,0,0\n{0},dvl,velocity,0.05,0,0\n{0},bar,pressure,{1},,\n", 0.5 * i,
+                       101.3 + 0.05 * i);
+  }
+  here.write("nav.csv", nav);
+  const Outcome mapped = here.call({"map", "tank.csv", "--nav", "nav.csv", "--nav-offset", "0", "-o", "o.bt"});
+  EXPECT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.err, HasSubstr("nav.csv: pressure of bar: read as kPa"));
+}
+
 // The log of a moving vehicle was mapped as if it stood still, and nothing said so.
 TEST(Nav, BesideALogThatIsMappedWithoutIsNamed) {
   const Workplace here;

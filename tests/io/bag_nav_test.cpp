@@ -111,7 +111,7 @@ TEST(BagNav, ATopicHasOneUnitOfPressure) {
   EXPECT_NEAR(values[4].x(), 700'000.0, 1e-6);
 }
 
-// 604 kPa at the beginning were read as 604 hPa, which is above the surface, and a gauge's Pa as hPa.
+// A gauge's Pa were read as hPa.
 TEST(BagNav, ThePressuresOfFluidsAreAbsolutePascals) {
   const auto pressures = [](double first_pa, double zero_pa, double unit_pa) {
     std::vector<std::vector<double>> messages;
@@ -120,7 +120,7 @@ TEST(BagNav, ThePressuresOfFluidsAreAbsolutePascals) {
                      NavQuantity::kPressure);
   };
   const std::vector<std::tuple<double, double, double>> drivers = {
-      {603'916.0, 0.0, 1.0}, {603'916.0, 0.0, 1e3}, {106'351.0, 101'325.0, 1.0}, {106'351.0, 0.0, 1e2}};
+      {603'916.0, 0.0, 1.0}, {106'351.0, 101'325.0, 1.0}, {106'351.0, 0.0, 1e2}};
   for (const auto& [first_pa, zero_pa, unit_pa] : drivers) {
     const auto values = pressures(first_pa, zero_pa, unit_pa);
     ASSERT_THAT(values, SizeIs(100));
@@ -435,12 +435,12 @@ TEST(BagNav, TurnsADvlThatLooksDown) {
 }
 
 /// Odometry of 40 s, two messages a second, with these stamps, and echoes of a sonar with others.
-BagContents dive_with_stamps(double (*stamp_s)(double), double (*echo_s)(double)) {
+BagContents dive_with_stamps(double (*stamp_s)(double), double (*echo_s)(double), double first_s = 1000.0) {
   bags::Mcap mcap;
   mcap.topic(1, "/odom", "nav_msgs/msg/Odometry", "");
   mcap.topic(2, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
   for (int i = 0; i < 80; ++i) {
-    const double time_s = 1000.0 + 0.5 * i;
+    const double time_s = first_s + 0.5 * i;
     mcap.message(1, bags::nanoseconds(time_s),
                  bags::odometry(stamp_s(time_s), "odom", "base_link", bags::pose_numbers(0.1 * i, 0.0, -5.0, 0.0)));
     mcap.message(2, bags::nanoseconds(time_s), bags::sonar_echo(echo_s(time_s), "sonar", 0.0F, 10));
@@ -471,6 +471,42 @@ TEST(BagNav, StampsOfOneTopicThatLagAreNamed) {
               ElementsAre(HasSubstr("messages of /echo are recorded 8.0 s after their stamps, those of /odom 0.0 s")));
   EXPECT_THAT(dive_with_stamps(late, now).nav.notes, SizeIs(1));
   EXPECT_THAT(dive_with_stamps(late, late).nav.notes, SizeIs(0)) << "one clock";
+}
+
+// Kills a vehicle that does all of its dive at once, where the recorder's times are none.
+TEST(BagNav, StampsWithDatesAreTakenWhereTheRecordingHasNone) {
+  const auto date = [](double time_s) { return 1.6e9 + time_s; };
+  const BagContents contents = dive_with_stamps(date, date);
+  EXPECT_THAT(contents.nav.notes, SizeIs(0));
+  for (const NavSource& source : contents.nav.log.sources()) {
+    ASSERT_THAT(source.samples, SizeIs(80));
+    EXPECT_NEAR(source.samples[41].time_s, 1.6e9 + 1020.5, 1e-6);
+  }
+}
+
+// Kills a bag that was played five times as fast, and recorded again, without a word.
+TEST(BagNav, StampsThatGoFasterThanTheRecordingAreNamed) {
+  const auto faster = [](double time_s) { return 1.6e9 + 5.0 * (time_s - 1.7e9); };
+  const auto as_fast = [](double time_s) { return time_s - 1e8; };
+  EXPECT_THAT(dive_with_stamps(faster, faster, 1.7e9).nav.notes,
+              ElementsAre(HasSubstr("the stamps of /odom go 5 times as fast as the recording")));
+  EXPECT_THAT(dive_with_stamps(as_fast, as_fast, 1.7e9).nav.notes, SizeIs(0)) << "played again as it was";
+}
+
+// Kills 604 kPa that are read as one of several units.
+TEST(BagNav, APressureOfSeveralPossibleUnitsIsNotUsed) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/ctd/pressure", "std_msgs/msg/Float64", "");
+  for (int i = 0; i < 100; ++i) {
+    bags::Bytes message = {0, 1, 0, 0};
+    bags::put(message, 20.0 + 0.01 * i);  // dbar
+    mcap.message(1, 1'000'000'000'000U + static_cast<std::uint64_t>(i) * 1'000'000'000U, message);
+  }
+  mcap.end_chunk();
+  const auto nav = read_nav(FileBytes{"dive.mcap", mcap.closed()});
+  ASSERT_TRUE(nav);
+  ASSERT_THAT(nav->log.sources(), SizeIs(1));
+  EXPECT_THAT(nav->log.sources()[0].fault, HasSubstr("dbar above that of air (20.0 to 20.8 m deep)"));
 }
 
 }  // namespace

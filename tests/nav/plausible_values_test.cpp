@@ -54,6 +54,14 @@ TEST(PlausibleValues, ValuesInAnotherUnitAreAFault) {
   };
   EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, all({54.25, 10.0, 0.0}))),
             "latitude of 54.25 rad is beyond pi/2: is it in degrees?");
+  // Of a log in degrees that has another number than is right.
+  const auto in_degrees = [](double latitude_deg) {
+    return [latitude_deg](double) -> Vector3d { return {latitude_deg * std::numbers::pi / 180.0, 0.1, 0.0}; };
+  };
+  EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, in_degrees(5418.0))),
+            "latitude of 5418 degrees is beyond pi/2: is it in another unit?");
+  EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, in_degrees(-122.3))),
+            "latitude of -122.3 degrees is beyond pi/2: is it the longitude, or in another unit?");
   EXPECT_THAT(fault_of(source_of("gps", NavQuantity::kFix, 50, all({0.5, 103.8, 0.0}))),
               HasSubstr("longitude of 103.8 rad"));
   EXPECT_THAT(fault_of(source_of("gps", NavQuantity::kFix, 50, all({9.4e6, 1.8e6, 0.0}))),

@@ -366,6 +366,7 @@ class BagSurvey {
     const MessageTime time{topic.known->time_of(message_, message.time_s), message.time_s};
     topic.state.times.push_back(time);
     topic.state.stamps.add(time);
+    if (const auto stamp_s = topic.known->stamp_of(message_)) note_span(topic, {*stamp_s, message.time_s});
     Samples samples(sources_, *name, time.stamp_s, topic.state, origin);
     type->add(RosFields(message_, topic.known->fields), samples);
     return {};
@@ -385,6 +386,7 @@ class BagSurvey {
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
     NavFile nav{*std::move(log), records_, damage()};
     if (std::string note = lag_note(); !note.empty()) nav.notes.push_back(std::move(note));
+    if (std::string note = speed_note(); !note.empty()) nav.notes.push_back(std::move(note));
     BagContents contents{std::move(summaries_), std::move(nav), {}};
     add_mounts(contents);
     return contents;
@@ -398,7 +400,35 @@ class BagSurvey {
     TopicState state;
     std::optional<KnownTopic> stamped = std::nullopt;  ///< of a sonar, where its messages have stamps
     std::vector<double> lags_s = {};                   ///< how long after their stamps its messages were recorded
+    std::optional<std::pair<MessageTime, MessageTime>> span = std::nullopt;  ///< first and last, with their own stamps
   };
+
+  static void note_span(Topic& topic, const MessageTime& time) {
+    if (!topic.span) topic.span.emplace(time, time);
+    topic.span->second = time;
+  }
+
+  /// Where stamps that are not used, as they are far from the recording, go faster or slower than it: a bag that was
+  /// played at another speed and recorded again. Empty: nowhere.
+  std::string speed_note() const {
+    constexpr std::size_t kFewest = 10;
+    constexpr double kFar_s = 60.0, kShortest_s = 2.0, kLeast = 0.9, kMost = 1.1;
+    for (const Topic& topic : topics_) {
+      if (!topic.span || topic.state.times.size() < kFewest || topic.state.stamps.mostly_stand_still()) continue;
+      const auto& [first, last] = *topic.span;
+      const double stamped_s = last.stamp_s - first.stamp_s, recorded_s = last.recorded_s - first.recorded_s;
+      const bool are_far = std::fabs(first.stamp_s - first.recorded_s) > kFar_s;
+      const bool are_dates = first.stamp_s >= kFirstDate_s && first.recorded_s >= kFirstDate_s;
+      if (!are_far || !are_dates || std::min(stamped_s, recorded_s) < kShortest_s) continue;
+      const double times = stamped_s / recorded_s;
+      if (times >= kLeast && times <= kMost) continue;
+      return fmt::format(
+          "the stamps of {} go {:.3g} times as fast as the recording, whose times are used: was it played at another "
+          "speed and recorded again? Then all speeds are wrong",
+          in_ascii(summaries_[topic.summary].name), times);
+    }
+    return {};
+  }
 
   /// Notes how long after its stamp a message of a sonar was recorded.
   void note_lag(const BagMessage& message, Topic& topic) {

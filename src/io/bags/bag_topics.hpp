@@ -15,6 +15,7 @@
 
 #include "io/bags/bag.hpp"
 #include "io/bags/ros_message.hpp"
+#include "pingvox/nav/receiver_clock.hpp"
 
 namespace pingvox {
 
@@ -62,13 +63,21 @@ struct KnownTopic {
   std::string_view frame_of(const RosMessage& message) const { return name_in(message, frame); }
   std::string_view child_of(const RosMessage& message) const { return name_in(message, child); }
 
-  /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording, else the
-  /// recording's time.
+  /// nullopt: the message has none.
+  std::optional<double> stamp_of(const RosMessage& message) const {
+    if (!stamp_s || !stamp_ns) return std::nullopt;
+    return message.number(*stamp_s) + message.number(*stamp_ns) * 1e-9;
+  }
+
+  /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording or has a
+  /// date where the recording has none; else the recording's time.
   double time_of(const RosMessage& message, double recorded_s) const {
     constexpr double kNear_s = 60.0;
-    if (!stamp_s || !stamp_ns) return recorded_s;
-    const double time_s = message.number(*stamp_s) + message.number(*stamp_ns) * 1e-9;
-    return std::fabs(time_s - recorded_s) <= kNear_s ? time_s : recorded_s;
+    const std::optional<double> time_s = stamp_of(message);
+    if (!time_s) return recorded_s;
+    const bool has_date = *time_s >= kFirstDate_s;
+    const bool is_near = std::fabs(*time_s - recorded_s) <= kNear_s;
+    return is_near || (has_date && recorded_s < kFirstDate_s) ? *time_s : recorded_s;
   }
 
  private:
