@@ -350,6 +350,10 @@ class LogMapper {
   }
 
   void say_what_is_odd(const MappedLog& mapped) {
+    if (path_.nav) {
+      const std::string odd = odd_nav_times_text(path_.trajectory, mapped.report);
+      if (!odd.empty()) say(fmt::format("{}: {}", recording_.nav_names(), odd));
+    }
     if (!command_.path.poses) return;
     for (const std::string& odd :
          {odd_times_text(path_.trajectory, mapped.report), odd_attitudes_text(path_.trajectory)}) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -206,14 +208,36 @@ Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size
   return {};
 }
 
-std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
-  // More than 100 times as long: likely in milliseconds.
+namespace {
+
+/// How long the poses and a log last [s], where the poses last more than 100 times as long: likely in milliseconds.
+std::optional<std::pair<double, double>> odd_durations_s(const Trajectory& trajectory, const BuildReport& report) {
   constexpr double kTooLong = 100.0;
-  if (!report.first_s || !report.last_s) return {};
+  if (!report.first_s || !report.last_s) return std::nullopt;
   const double poses_s = trajectory.poses().back().time_s - trajectory.poses().front().time_s;
   const double log_s = *report.last_s - *report.first_s;
-  if (!(log_s > 0.0 && poses_s > kTooLong * log_s)) return {};
-  return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", poses_s, log_s);
+  if (!(log_s > 0.0 && poses_s > kTooLong * log_s)) return std::nullopt;
+  return std::pair(poses_s, log_s);
+}
+
+}  // namespace
+
+std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
+  const auto lasts_s = odd_durations_s(trajectory, report);
+  if (!lasts_s) return {};
+  return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", lasts_s->first,
+                     lasts_s->second);
+}
+
+std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& report) {
+  const auto lasts_s = odd_durations_s(trajectory, report);
+  if (!lasts_s) return {};
+  const auto in_log = std::ranges::count_if(trajectory.poses(), [&](const StampedPose& pose) {
+    return pose.time_s >= *report.first_s && pose.time_s <= *report.last_s;
+  });
+  if (static_cast<double>(in_log) >= lasts_s->second) return {};
+  return fmt::format("its poses last {:.0f} s, the log {:.0f} s, with {} in it: are their times in seconds?",
+                     lasts_s->first, lasts_s->second, counted(static_cast<std::size_t>(in_log), "pose"));
 }
 
 std::string odd_attitudes_text(const Trajectory& trajectory) {

@@ -63,6 +63,9 @@ Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size
 
 /// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
+/// "its poses last 29900 s, the log 27 s, with 1 pose in it: ..."; empty: nothing is odd. Navigation may well be longer
+/// than a log, but then has poses in it.
+std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& report);
 /// "its poses move but never turn: is the attitude known?"; empty: nothing is odd.
 std::string odd_attitudes_text(const Trajectory& trajectory);
 

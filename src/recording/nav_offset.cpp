@@ -200,6 +200,12 @@ Result<NavOffset> find_nav_offset(const NavLog& nav, const SonarLog& sonar) {
   const Result<std::optional<SonarTimes>> times = times_of(sonar, Want::kSpan, nav_span);
   if (!times || !*times) return kOneClock;  // mapping the log reports the error
   const TimeSpan& span = (*times)->span;
+  constexpr double kTooLate_s = 1e11;
+  if (span.from_s >= kTooLate_s) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{}: its times begin at {:.6g} s, thousands of years after 1970: are they in ms, us or ns?",
+                            sonar.file.name(), span.from_s));
+  }
   if (nav.clock() == NavClock::kUnix) {
     auto found = by_dates(*nav_span, sonar, **times);
     if (found) return *std::move(found);

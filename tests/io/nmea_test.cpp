@@ -220,6 +220,9 @@ TEST(Nmea, DecimalDegreesAreNoPlace) {
   ASSERT_EQ(nav.damage.size(), 1U);
   EXPECT_EQ(nav.damage[0].count, 2U);
   EXPECT_NE(nav.damage[0].what.find("is it in decimal degrees"), std::string_view::npos);
+  const NavFile all = read_as_nmea("$GPRMC,221320.00,A,54.300000,N,10.100000,E,0.5,90.0,141123,,\n");
+  ASSERT_EQ(all.log.sources().size(), 1U);
+  EXPECT_NE(all.log.sources()[0].fault.find("is it in decimal degrees"), std::string::npos);
 }
 
 TEST(Nmea, APlaceIsNotSouthTwice) {

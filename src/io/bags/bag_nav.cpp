@@ -446,7 +446,7 @@ class BagSurvey {
   /// of the two clocks is wrong, or one of the two topics was stamped late. Empty: nowhere.
   std::string lag_note() const {
     constexpr std::size_t kFewest = 10;
-    constexpr double kApart_s = 2.0;
+    constexpr double kApart_s = 2.0, kYears_s = 1e8;
     for (const Topic& sonar : topics_) {
       if (sonar.lags_s.size() < kFewest || sonar.state.stamps.stand_still()) continue;
       const double sonar_s = median(sonar.lags_s);
@@ -455,7 +455,9 @@ class BagSurvey {
         std::vector<double> lags_s;
         for (const MessageTime& time : nav.state.times) lags_s.push_back(time.recorded_s - time.stamp_s);
         const double nav_s = median(std::move(lags_s));
-        if (std::fabs(sonar_s - nav_s) <= kApart_s) continue;
+        // Of a recorder without dates: the stamps of both are used.
+        const bool are_stamps = std::max(sonar_s, nav_s) < -kYears_s;
+        if (are_stamps || std::fabs(sonar_s - nav_s) <= kApart_s) continue;
         return fmt::format(
             "messages of {} are recorded {:.1f} s after their stamps, those of {} {:.1f} s after: if one "
             "of the clocks is wrong, beams and path do not belong together",

@@ -335,16 +335,25 @@ NavReading read_nmea(std::span<const std::uint8_t> bytes) {
   const std::string_view text = text_of(bytes);
   Clock clock(text);
   if (clock.has_date()) reading.clock = NavClock::kUnix;
-  NmeaNav nav;
+  NmeaNav nav, decimal;
   reading.records = for_each_sentence(text, reading.damage, [&](const Sentence& sentence, std::size_t at) {
     const double time_s = clock.time_of(sentence).value_or(0.0);
     if (const std::string_view fault = fault_of(sentence); fault.empty()) {
       nav.add(sentence, time_s);
     } else {
+      if (fault == kDecimalDegrees) decimal.add(sentence, time_s);
       add_damage(reading.damage, fault, at);
     }
   });
   reading.sources = nav.take();
+  for (NavSource& source : decimal.take()) {
+    const bool has_others = std::ranges::any_of(reading.sources, [&](const NavSource& other) {
+      return other.quantity == source.quantity && other.name == source.name;
+    });
+    if (has_others) continue;
+    source.fault = kDecimalDegrees;
+    reading.sources.push_back(std::move(source));
+  }
   if (clock.has_time()) return reading;
   std::size_t samples = 0;
   for (const NavSource& source : reading.sources) samples += source.samples.size();
