@@ -393,6 +393,9 @@ Result<int> run(const MapCommand& command, Console& console) {
   if (!recording) return tl::unexpected(recording.error());
   const Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
+  if (const auto reached = check_reach(*recording, *path, map->lattice()); !reached) {
+    return tl::unexpected(reached.error());
+  }
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
   BuildOptions build = command.build;
   if (recording->water()) build.sound_speed_ratio = sound_speed_ratio(*recording->water());

@@ -127,6 +127,7 @@ std::string nav_text(const VehiclePath& path, std::size_t damaged) {
   } else if (attitude != position) {
     sources += " and " + on_one_line(position);
   }
+  if (!path.nav->depth.empty()) sources += ", depth by " + on_one_line(path.nav->depth);
   std::string text = fmt::format("{} from {}", counted(path.trajectory.poses().size(), "pose"), sources);
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += ", " + counted(gaps, "gap");
@@ -155,6 +156,23 @@ Result<void> check_ranges(const BuildOptions& options) {
   return fail(Error::Code::kBadOption,
               fmt::format("--max-range: must be above --min-range ({:.6g} m{}), is {:.6g} m", nearest_m,
                           nearest_m == EchoOptions::kDefaultBlanking_m ? " by default" : "", options.echo.max_range_m));
+}
+
+Result<void> check_reach(const Recording& recording, const VehiclePath& path, const Lattice& lattice) {
+  constexpr int kMaxDepth = 32;
+  constexpr double kKilometre_m = 1000.0;
+  const double reach_m = std::ldexp(lattice.resolution_m(), lattice.depth() - 1);
+  const auto is_outside = [&](const StampedPose& pose) {
+    return pose.map_from_body.translation().cwiseAbs().maxCoeff() > reach_m;
+  };
+  const auto& poses = path.trajectory.poses();
+  if (poses.empty() || !std::ranges::all_of(poses, is_outside)) return {};
+  const std::string name = recording.options().poses ? recording.options().poses->name() : recording.nav_names();
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: the poses are {:.6g} km from the origin, and the map reaches {:.6g} km: {}make them "
+                          "relative to a place near the dive",
+                          name, poses.front().map_from_body.translation().norm() / kKilometre_m, reach_m / kKilometre_m,
+                          lattice.depth() < kMaxDepth ? "use --depth 32 with -o FILE.pvx, or " : ""));
 }
 
 std::string_view gap_advice(const Recording& recording, const VehiclePath& path) {
@@ -189,7 +207,7 @@ std::string skipped_text(const MappedLog& mapped, std::string_view unit, const T
   add(outside,
       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
-      "lengths are in metres; a larger --resolution reaches farther");
+      "lengths are in metres; a larger --resolution reaches farther, and so does --depth 32 with -o FILE.pvx");
   if (mapped.damaged > 0) {
     text += (text.empty() ? "" : "; ") + damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
   }

@@ -47,6 +47,9 @@ std::string frame_text(std::string_view heading);
 /// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);
 
+/// kUnsupported, with how far they are and what helps, where all poses are outside of the map, as in UTM.
+Result<void> check_reach(const Recording& recording, const VehiclePath& path, const Lattice& lattice);
+
 /// What to do where beams have no pose.
 inline constexpr std::string_view kNavMustCover = "--nav must cover the log; --nav-offset corrects its clock";
 std::string_view gap_advice(const Recording& recording, const VehiclePath& path);

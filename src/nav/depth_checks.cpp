@@ -23,7 +23,8 @@ std::optional<NavSource> depth_by_pressure(std::span<const NavSource> sources) {
   const NavSource* chosen = nullptr;
   double highest_pa = kMaxInAir_pa;
   for (const NavSource& source : sources) {
-    if (source.quantity != NavQuantity::kPressure || !is_usable(source)) continue;
+    if (source.quantity != NavQuantity::kPressure || source.subject == NavSubject::kOther || !is_usable(source))
+      continue;
     const std::optional<NumberExtent> numbers = extent_of(source);
     if (!numbers || numbers->highest <= highest_pa) continue;
     highest_pa = numbers->highest;
@@ -111,7 +112,7 @@ void compare_depths(std::span<NavSource> sources) {
   const std::optional<NavSource> by_pressure = depth_by_pressure(sources);
   const NavSource* depth = by_pressure ? &*by_pressure : nullptr;
   for (NavSource& source : sources) {
-    if (source.quantity != NavQuantity::kDepth || !is_usable(source)) continue;
+    if (source.quantity != NavQuantity::kDepth || source.subject == NavSubject::kOther || !is_usable(source)) continue;
     if (by_pressure) source.fault = fault_by_pressure(source, *by_pressure);
     if (source.fault.empty()) depth = &source;
   }
@@ -120,7 +121,7 @@ void compare_depths(std::span<NavSource> sources) {
     if (source.quantity != NavQuantity::kPosition || !is_usable(source) || source.subject == NavSubject::kOther) {
       continue;
     }
-    source.doubt = doubt_of_height(source, *depth);
+    if (std::string doubt = doubt_of_height(source, *depth); !doubt.empty()) source.doubt = std::move(doubt);
   }
 }
 

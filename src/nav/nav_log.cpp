@@ -14,6 +14,7 @@
 #include "nav/depth_checks.hpp"
 #include "nav/plausible_values.hpp"
 #include "nav/source_steps.hpp"
+#include "nav/turn_checks.hpp"
 #include "nav/water_column.hpp"
 #include "pingvox/nav/main_source.hpp"
 

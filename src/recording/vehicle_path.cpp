@@ -39,6 +39,7 @@ std::string unused_text(const NavLog& nav) {
 
 std::string unused_text(const NavFiles& nav) {
   std::string text = unused_text(nav.log);
+  for (const auto& [file, note] : nav.left_out) text += fmt::format("; {}: {}", file, on_one_line(note));
   for (const auto& [file, note] : nav.not_joined) text += fmt::format("; {}: {}", file, on_one_line(note));
   return text;
 }
@@ -52,10 +53,14 @@ std::string frame_note_of(const NavLog& nav, const std::string& position) {
 }
 
 VehiclePath::Nav sources_of(const NavTrajectory& made, const NavLog& nav) {
+  std::vector<NavQuantity> quantities(kPathQuantities.begin(), kPathQuantities.end());
+  if (made.origin_fix) quantities.push_back(NavQuantity::kDepth);
+  if (made.origin_fix && made.depth.empty()) quantities.push_back(NavQuantity::kPressure);
   return {.attitude = made.attitude,
           .position = made.position,
           .origin_fix = made.origin_fix,
-          .others = other_sources(nav, kPathQuantities, std::array{made.attitude, made.position}),
+          .others = other_sources(nav, quantities, std::array{made.attitude, made.position, made.depth}),
+          .depth = made.depth,
           .frame_note = frame_note_of(nav, made.position)};
 }
 
@@ -106,10 +111,15 @@ Result<Trajectory> read_trajectory(const InputFile& file) {
 }
 
 Result<VehiclePath> read_path(const InputFile& file) {
-  return read_trajectory(file).map([](const Trajectory& trajectory) {
+  return read_trajectory(file).and_then([&](const Trajectory& trajectory) -> Result<VehiclePath> {
+    std::string doubt;
+    for (const NavSource& source : sources_of_poses(trajectory)) {
+      if (!source.fault.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name(), source.fault));
+      if (!source.doubt.empty()) doubt += (doubt.empty() ? "" : "; ") + source.doubt;
+    }
     CutTrajectory cut = cut_at_steps(trajectory);
     return VehiclePath{
-        .trajectory = std::move(cut.trajectory), .steps = std::move(cut.steps), .doubt = doubt_of_poses(trajectory)};
+        .trajectory = std::move(cut.trajectory), .steps = std::move(cut.steps), .doubt = std::move(doubt)};
   });
 }
 

@@ -355,6 +355,24 @@ TEST(BagNav, OdometryInNedIsTheSamePathAsInEnu) {
               HasSubstr("no valid attitude"));
 }
 
+// At rest it is 9.8 m/s2 upward (REP-145).
+TEST(BagNav, AnAccelerationThatPointsDownIsDoubtful) {
+  const auto doubt_of = [](const char* frame, double upward_m_s2) {
+    bags::Mcap mcap;
+    mcap.topic(1, "/imu", "sensor_msgs/msg/Imu", "");
+    for (int i = 0; i < 30; ++i) {
+      const double time_s = 1000.0 + 0.1 * i;
+      mcap.message(1, bags::nanoseconds(time_s), bags::imu(time_s, frame, {0, 0, 0, 1}, {0, 0, 0}, upward_m_s2));
+    }
+    std::string doubts;
+    for (const NavSource& source : sources_in(mcap)) doubts += source.doubt;
+    return doubts;
+  };
+  EXPECT_THAT(doubt_of("imu_link", -9.8), HasSubstr("its acceleration points down"));
+  EXPECT_EQ(doubt_of("imu_link", 9.8), "");
+  EXPECT_EQ(doubt_of("imu_link_ned", -9.8), "") << "as its name says";
+}
+
 TEST(BagNav, PosesTwistsAndImusInNedAreTurned) {
   bags::Mcap mcap;
   mcap.topic(1, "/pose", "geometry_msgs/msg/PoseStamped", "");

@@ -25,6 +25,7 @@ struct VehiclePath {
     std::string velocity = {};       ///< dead reckoning: its source; there is no position then
     std::optional<Eigen::Vector3d> origin_fix = std::nullopt;  ///< NavTrajectory::origin_fix
     std::vector<OtherSource> others = {};                      ///< sources that were not used
+    std::string depth = {};                                    ///< NavTrajectory::depth
     std::string frame_note = {};  ///< how the frame of the position was read; empty: as it is
   };
   std::optional<Nav> nav = std::nullopt;                    ///< nullopt: it is not from navigation

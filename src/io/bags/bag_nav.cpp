@@ -43,6 +43,7 @@ struct TopicState {
   std::vector<NavOrigin> origins;        ///< of its messages, the first one's first
   std::vector<MessageTime> times;        ///< of its messages
   StampWatch stamps;
+  std::size_t upward = 0, downward = 0;  ///< accelerations of an Imu, by its own attitude
 };
 
 /// Where the samples of one message go.
@@ -62,6 +63,13 @@ class Samples {
     const double time_s = time_s_ - report.latency_s;
     if (report.made_s) state_.report_times.push_back({time_s, *report.made_s});
     add_a50_report(sources_, name_, time_s, report);
+  }
+
+  /// Of an Imu, by its own attitude. At rest it is that of what it lies on, upward (REP-145).
+  void count_acceleration(double upward_m_s2) {
+    constexpr double kLeast_m_s2 = 5.0;
+    if (upward_m_s2 > kLeast_m_s2) ++state_.upward;
+    if (upward_m_s2 < -kLeast_m_s2) ++state_.downward;
   }
 
   /// Degrees; NaN for an altitude that is not known. The last one is taken then, so that the height does not jump.
@@ -102,6 +110,9 @@ void add_imu(const RosFields& message, Samples& samples) {
   const bool has_attitude = message.number(7) != -1.0;  // of the covariance
   add_attitude(message, 0, has_attitude, samples);
   samples.add(NavQuantity::kTurnRate, three(message, 4));
+  const auto rotation =
+      rotation_of_quaternion({message.number(0), message.number(1), message.number(2), message.number(3)});
+  if (rotation && has_attitude) samples.count_acceleration((*rotation * three(message, 8)).z());
 }
 
 void add_pose(const RosFields& message, Samples& samples) {
@@ -250,10 +261,11 @@ NavOrigin origin_by_name(const KnownTopic& topic, const RosMessage& message) {
   const bool is_of_pose = topic.child || is_fixed_frame(topic.frame_of(message));
   NavOrigin origin = origin_of(is_of_pose ? FrameId::kOfOdometry : FrameId::kOfSensor, topic, message);
   if (!topic.child && is_of_pose) origin.child = origin.frame;
+  origin.subject = NavSubject::kChosen;
   return origin;
 }
 
-constexpr std::array<std::string_view, 10> kTransformFields = {
+constexpr std::array<std::string_view, 11> kTransformFields = {
     "transforms.header.frame_id",         "transforms.child_frame_id",          "transforms.transform.translation.x",
     "transforms.transform.translation.y", "transforms.transform.translation.z", "transforms.transform.rotation.x",
     "transforms.transform.rotation.y",    "transforms.transform.rotation.z",    "transforms.transform.rotation.w"};
@@ -261,7 +273,8 @@ constexpr std::array<std::string_view, 10> kTransformFields = {
 constexpr std::array kNavTypes = {
     NavType{{"Imu",
              {"orientation.x", "orientation.y", "orientation.z", "orientation.w", "angular_velocity.x",
-              "angular_velocity.y", "angular_velocity.z", "orientation_covariance"}},
+              "angular_velocity.y", "angular_velocity.z", "orientation_covariance", "linear_acceleration.x",
+              "linear_acceleration.y", "linear_acceleration.z"}},
             add_imu,
             FrameId::kOfSensor},
     NavType{{"PoseStamped",
@@ -282,7 +295,7 @@ constexpr std::array kNavTypes = {
     NavType{{"TwistWithCovarianceStamped", {"twist.twist.linear.x", "twist.twist.linear.y", "twist.twist.linear.z"}},
             add_velocity,
             FrameId::kOfTwist},
-    NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix},
+    NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix, FrameId::kOfSensor},
     // Its driver writes the latitude into `lon` and the longitude into `lat`: so in the recordings on the lake of
     // Ratzeburg (53.8 N, 10.8 E; NilsKompe/Bluerov2), the only ones that are known.
     NavType{{"Xsens700Position", {"lon", "lat", "fixind"}, "", "monsun_msgs/"}, add_xsens_fix},
@@ -380,6 +393,7 @@ class BagSurvey {
     use_recorded_times(sources);
     tell_pressures(sources, named_by_fields());
     for (const auto& [name, tree] : trees_) std::ranges::move(tree.paths(name), std::back_inserter(sources));
+    doubt_accelerations(sources);
     turn_frames(sources);
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
@@ -447,6 +461,20 @@ class BagSurvey {
         const std::size_t count = source.samples.size();
         for (std::size_t i = 0; i < count; ++i) source.samples[i].time_s = times[i * times.size() / count].recorded_s;
         source.note = joined_notes(source.note, note_of_stamps(name));
+      }
+    }
+  }
+
+  /// Doubts the attitudes of Imus whose acceleration points down, but for those whose frame says that z does.
+  void doubt_accelerations(std::span<NavSource> sources) const {
+    constexpr std::size_t kFewest = 10, kMost = 20;
+    for (const Topic& topic : topics_) {
+      const TopicState& state = topic.state;
+      if (state.downward < kFewest || state.downward < kMost * state.upward) continue;
+      for (NavSource& source : sources) {
+        if (source.name != summaries_[topic.summary].name || source.quantity != NavQuantity::kAttitude) continue;
+        if (axes_of(source.child) == FrameAxes::kDown) continue;
+        source.doubt = "its acceleration points down by its attitude: are its axes north, east, down?";
       }
     }
   }

@@ -22,7 +22,7 @@ namespace pingvox {
 /// renamed more often than messages.
 struct RosType {
   std::string_view name;
-  std::array<std::string_view, 10> fields;  ///< empty ones are none
+  std::array<std::string_view, 11> fields;  ///< empty ones are none
   std::string_view topic_end = {};          ///< end of the topic's name, for numbers that only it explains
   std::string_view package = {};            ///< for fields that mean something else in one package; empty: any
 };
