@@ -120,7 +120,9 @@ Result<std::string> convert_scans(ByteStream stream, const ConvertCommand& comma
     const Result<std::size_t> count = write_points(**scans, command.format, out);
     if (!count) return tl::unexpected(count.error());
     points = *count;
-    return {};
+    if (points > 0 || (*scans)->skipped() == 0) return {};
+    return fail(Error::Code::kCorrupt, fmt::format("{}: no scan could be read: {}", name_of_input(command.input),
+                                                   damage_text((*scans)->skipped(), (*scans)->first_damage())));
   });
   if (!written) return tl::unexpected(written.error());
   std::string what = fmt::format("{} points", points);
@@ -191,7 +193,7 @@ Result<MapFile> map_of_mesh(const FileBytes& file, const ConvertCommand& command
   const Result<TriangleMesh> mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
   MapOptions options;
-  options.resolution_m = command.resolution_m.value_or(options.resolution_m);
+  options.resolution_m = command.resolution_m;
   Result<OccupancyMap> map = surface_map(*mesh, options);
   if (!map) return tl::unexpected(with_name(map.error(), file.name));
   return MapFile{command.format, *std::move(map), fmt::format("the surface of {}", file.name)};
@@ -230,7 +232,7 @@ Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
     if (!layers) return tl::unexpected(with_name(layers.error(), command.input));
     read.map = *std::move(layers);
   }
-  const Result<void> written = write_map(read.map, command.format, read.made_by, command.output);
+  const Result<void> written = write_map(read.map, command.format, read.made_by, command.output, read.axes);
   if (!written) return tl::unexpected(written.error());
   const MapCounts counts = read.map.counts();
   if (kind_of(command.format) == FormatKind::kCloud) {

@@ -5,9 +5,9 @@
 #include <array>
 #include <string_view>
 
+#include "base/suggest.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
-#include "suggest.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -39,6 +39,7 @@ constexpr std::array kCommands = {
     CommandName{"simulate", "simulate the log of a sonar in a known world", &simulate_command},
     CommandName{"slam", "estimate the trajectory of the vehicle from beams and navigation, and map", &slam_command},
     CommandName{"locate", "find the vehicle in a known map", &locate_command},
+    CommandName{"evaluate", "say how well a map predicts echoes that were kept out of it", &evaluate_command},
     CommandName{"live", "record and map with a sonar while it runs", &live_command},
     CommandName{"emulate", "stand in for a sonar or navigation device, by simulation", &emulate_command},
     CommandName{"bench", "measure speed and accuracy, where pingvox-bench is installed", &bench_command},

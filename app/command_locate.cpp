@@ -39,21 +39,6 @@ Result<void> check_start(const LocateCommand& command, const OccupancyMap& map) 
                                                    at.y(), command.map, bounds_text(bounds)));
 }
 
-/// The recording of a command.
-Result<Recording> recording_of(const LocateCommand& command) {
-  const PathArgs path{.poses = command.odometry,
-                      .navs = command.navs,
-                      .nav_offset_s = command.nav_offset_s,
-                      .nav_sources = command.nav_sources,
-                      .calibration = command.calibration};
-  return recording_options(path, command.bag, command.damage).and_then([&](RecordingOptions options) {
-    options.nav_mounts = command.nav.body_from_source;
-    options.body_from_sonar = command.localizer.body_from_sonar;
-    options.nav_salinity = command.nav_salinity;
-    return open_recording(input_files(command.logs), std::move(options));
-  });
-}
-
 Result<OccupancyMap> map_in(const std::string& name) {
   return read_file(name).and_then([](const FileBytes& file) { return read_map(file); }).map([](MapFile map) {
     return std::move(map.map);
@@ -68,7 +53,7 @@ Result<std::optional<Trajectory>> found_trajectory(const LocatedRecording& found
     console.say(
         fmt::format("{}: {} of {} poses may be wrong, while several places fit, or none does: --only-sure leaves them "
                     "out",
-                    command.logs.front(), unsure, found.poses.size()));
+                    command.recording.logs.front(), unsure, found.poses.size()));
   }
   return found.trajectory().map([](Trajectory all) { return std::optional(std::move(all)); });
 }
@@ -81,7 +66,7 @@ Result<int> run(const LocateCommand& command, Console& console) {
   const Result<OccupancyMap> map = map_in(command.map);
   if (!map) return tl::unexpected(map.error());
   if (const auto inside = check_start(command, *map); !inside) return tl::unexpected(inside.error());
-  const Result<Recording> recording = recording_of(command);
+  const Result<Recording> recording = open_recording(command.recording);
   if (!recording) return tl::unexpected(recording.error());
   for (const std::string& warning : nav_warnings(*recording)) console.say(warning);
   if (const std::string hint = mount_hint(*recording); !hint.empty()) console.say(hint);
@@ -98,12 +83,14 @@ Result<int> run(const LocateCommand& command, Console& console) {
   seconds.read += location->read_s;
   const LocatedRecording& found = location->found;
   for (const std::string& step : step_texts(location->steps, location->odometry_poses)) {
-    console.say(fmt::format("{}: {}", *command.odometry, step));
+    console.say(fmt::format("{}: {}", *command.recording.path.poses, step));
   }
   if (found.clock_check && found.clock_check->is_apart()) {
-    const char* const option = command.odometry ? "the clock of --odometry" : "--nav-offset";
-    console.say(
-        fmt::format("{}: {}", name_of_input(command.logs.front()), wrong_clock_text(*found.clock_check, option)));
+    const std::string advice = command.recording.path.poses
+                                   ? "is the clock of --odometry right?"
+                                   : nav_offset_advice(*recording->nav_offset(), *found.clock_check);
+    console.say(fmt::format("{}: {}", name_of_input(command.recording.logs.front()),
+                            wrong_clock_text(*found.clock_check, advice)));
   }
   const Result<std::optional<Trajectory>> trajectory = found_trajectory(found, command, console);
   if (!trajectory) return tl::unexpected(trajectory.error());
@@ -120,8 +107,8 @@ Result<int> run(const LocateCommand& command, Console& console) {
           : console.summarise(locate_text(*recording, *location, command, written, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (!*trajectory) {
-    return fail(Error::Code::kUnsupported,
-                fmt::format("{}: it is never sure where the vehicle was", name_of_input(command.logs.front())));
+    return fail(Error::Code::kUnsupported, fmt::format("{}: it is never sure where the vehicle was",
+                                                       name_of_input(command.recording.logs.front())));
   }
   return 0;
 }

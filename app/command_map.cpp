@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "evaluation_text.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
@@ -111,14 +112,14 @@ JsonObject nav_json(const Recording& recording, const VehiclePath& path,
       .add("velocity", path.nav->velocity)
       .add("clock", json_of(*recording.nav_offset()))
       .add("logs", nav_logs_json(recording.nav().clocks))
-      .add("frame", frame_text(*path.nav));
+      .add("frame", frame_text(path));
   if (!warnings.empty()) json.add("warnings", fmt::format("{}", fmt::join(warnings, "; ")));
   clock_check ? json.add("clock_check", json_of(*clock_check)) : json.add_null("clock_check");
   return json.add("others", json_of(path.nav->others));
 }
 
 std::string report_json(const Totals& totals, const Recording& recording, const VehiclePath& path,
-                        const OccupancyMap& map) {
+                        const OccupancyMap& map, const JsonObject& resolution_from) {
   const BuildReport& report = totals.report;
   const MapCounts counts = map.counts();
   JsonObject seconds;
@@ -159,14 +160,16 @@ std::string report_json(const Totals& totals, const Recording& recording, const 
       .add("cells_freed", report.cells_freed)
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
-      .add("map", held);
+      .add("map", held)
+      .add("resolution_from", resolution_from);
+  if (report.coverage.sweeps > 0) json.add("coverage", coverage_json(report.coverage));
   if (!other_beams.empty()) json.add("other_beams", other_beams);
   if (path.nav) json.add("nav", nav_json(recording, path, totals.clock_check));
   return json.text() + "\n";
 }
 
 std::string map_report_text(const Totals& totals, const Recording& recording, const VehiclePath& path,
-                            const OccupancyMap& map, const MapCommand& command) {
+                            const OccupancyMap& map, const MapForecast& forecast, const MapCommand& command) {
   const std::string& output = command.output;
   const BuildReport& report = totals.report;
   const auto& s = report.seconds;
@@ -197,10 +200,13 @@ std::string map_report_text(const Totals& totals, const Recording& recording, co
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path, recording.nav().damaged)) + others_line(path.nav->others) +
                          report_line("nav clock", app::text_of(*recording.nav_offset(), totals.clock_check)) +
-                         nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(*path.nav))
+                         nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(path))
                    : "") +
+         (report.coverage.sweeps > 0 ? report_line("sweeps", movement_text(report.coverage)) +
+                                           report_line("places", places_text(report.coverage))
+                                     : "") +
          (stands_still ? report_line("vehicle", "stands still: no --poses, no --nav") : "") + beams +
-         map_text(map, map.counts()) +
+         map_text(map, map.counts(), resolution_text(forecast, command.map)) +
          report_line("seconds",
                      fmt::format("{:.3f} = {:.3f} read + {:.3f} detect + {:.3f} trace + {:.3f} apply + {:.3f} "
                                  "write + rest",
@@ -210,10 +216,11 @@ std::string map_report_text(const Totals& totals, const Recording& recording, co
 /// Maps the logs of a command, one by one.
 class LogMapper {
  public:
-  LogMapper(const MapCommand& command, const Recording& recording, const VehiclePath& path, const BuildOptions& build,
-            OccupancyMap& map, Totals& totals, Console& console)
+  LogMapper(const MapCommand& command, const Recording& recording, MapForecast& forecast, const VehiclePath& path,
+            const BuildOptions& build, OccupancyMap& map, Totals& totals, Console& console)
       : command_(command),
         recording_(recording),
+        forecast_(forecast),
         path_(path),
         build_(build),
         map_(map),
@@ -233,14 +240,15 @@ class LogMapper {
         return check_options_used();
       }
     }
-    Result<OpenedLog> log = open_log_of(recording_, number);
+    auto opened = forecast_.opened.extract(number);
+    Result<OpenedLog> log = opened ? std::move(opened.mapped()) : open_log_of(recording_, number);
     if (!log) return tl::unexpected(log.error());
     add_kinds(*log);
     if (const auto used = check_options_used(); !used) return used;
     if (log->beams() != nullptr) {
       if (const auto ranges = check_ranges(build_); !ranges) return ranges;
     }
-    if (const auto done = subtract_background_from(*log); !done) return done;
+    if (const auto done = subtract_background(recording_, *log, background_); !done) return done;
     totals_.report.seconds.read += read.seconds();
     return map(*log);
   }
@@ -256,10 +264,9 @@ class LogMapper {
     if (std::ranges::find(kinds_, kind) == kinds_.end()) kinds_.push_back(std::move(kind));
   }
 
-  /// Standard input is read once.
   Result<bool> is_empty_file(std::size_t number) const {
     const InputFile& file = recording_.logs()[number];
-    if (file.is_standard_input()) return false;
+    if (file.is_read_once()) return false;
     return file.open().map([](const ByteStream& stream) { return stream.beginning().empty(); });
   }
 
@@ -283,6 +290,9 @@ class LogMapper {
     if (!mapped->note.empty()) say(fmt::format("{}: {}", log.name, mapped->note));
     if (!skipped.empty()) say(fmt::format("{}: skipped {}", log.name, skipped));
     say_what_is_odd(*mapped);
+    for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
+      say(fmt::format("{}: {}", log.name, warning));
+    }
     if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", log.name, cloud->origin_text()));
     const bool is_on_vehicle = is_of_beams || is_bag(log.format);
     if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {
@@ -310,25 +320,21 @@ class LogMapper {
     });
   }
 
-  /// The background is learned from all logs, as each of them may be short.
-  Result<void> subtract_background_from(OpenedLog& log) {
-    auto* beams = std::get_if<std::unique_ptr<BeamSource>>(&log.log);
-    if (beams == nullptr || !command_.background_m) return {};
-    if (!background_) {
-      Result<Background> background = learn_background(recording_, *command_.background_m);
-      if (!background) return tl::unexpected(background.error());
-      background_ = *std::move(background);
-    }
-    *beams = subtract_background(std::move(*beams), *background_);
-    return {};
-  }
-
   void draw(std::optional<double> share, std::size_t beams) {
     if (!bar_.is_due()) return;
     // All logs count the same, as the length of later ones is unknown.
     if (share) share = (static_cast<double>(opened_ - 1) + *share) / static_cast<double>(command_.logs.size());
-    bar_.draw(share, fmt::format("{}, {:.0f} s, {}", counted(totals_.report.beams + beams, "beam"), total_.seconds(),
+    bar_.draw(share, fmt::format("{}, {}, {}", counted(totals_.report.beams + beams, "beam"), time_text(share),
                                  bytes_text(map_.memory_bytes())));
+  }
+
+  /// "12 s, 34 s left"
+  std::string time_text(std::optional<double> share) const {
+    constexpr double kFirst_s = 1.0, kFirstShare = 0.01;  // before that it would be a guess
+    const double done_s = total_.seconds();
+    std::string done = fmt::format("{:.0f} s", done_s);
+    if (!share || done_s < kFirst_s || *share < kFirstShare) return done;
+    return fmt::format("{}, {:.0f} s left", done, done_s * (1.0 - *share) / *share);
   }
 
   /// A cloud whose origin was not given. nullptr: else.
@@ -345,11 +351,16 @@ class LogMapper {
     std::optional<ClockOffset>& greatest = totals_.clock_check;
     if (!greatest || std::abs(error.offset_s) > std::abs(greatest->offset_s)) greatest = error;
     if (!error.is_apart()) return;
-    const char* const option = path_.nav ? "--nav-offset" : "the clock of --poses";
-    say(fmt::format("{}: {}", name, wrong_clock_text(error, option)));
+    say(fmt::format("{}: {}", name,
+                    wrong_clock_text(error, path_.nav ? nav_offset_advice(*recording_.nav_offset(), error)
+                                                      : "is the clock of --poses right?")));
   }
 
   void say_what_is_odd(const MappedLog& mapped) {
+    if (path_.nav) {
+      const std::string odd = odd_nav_times_text(path_.trajectory, mapped.report);
+      if (!odd.empty()) say(fmt::format("{}: {}", recording_.nav_names(), odd));
+    }
     if (!command_.path.poses) return;
     for (const std::string& odd :
          {odd_times_text(path_.trajectory, mapped.report), odd_attitudes_text(path_.trajectory)}) {
@@ -364,6 +375,7 @@ class LogMapper {
 
   const MapCommand& command_;
   const Recording& recording_;
+  MapForecast& forecast_;
   const VehiclePath& path_;
   const BuildOptions& build_;
   OccupancyMap& map_;
@@ -379,16 +391,19 @@ class LogMapper {
 
 }  // namespace
 
-Result<int> run(const MapCommand& command, Console& console) {
+Result<int> run(const MapCommand& typed, Console& console) {
   const Stopwatch total;
-  Result<OccupancyMap> map = OccupancyMap::make(command.map);
-  if (!map) return tl::unexpected(map.error());
+  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.logs, console);
+  if (!logs) return tl::unexpected(logs.error());
+  MapCommand command = typed;
+  command.logs = *logs;
   Result<RecordingOptions> options = recording_options(command.path, command.bag, command.damage);
   if (!options) return tl::unexpected(options.error());
   options->head = command.head;
   options->body_from_sonar = command.build.body_from_sensor;
   options->nav_salinity = command.nav_salinity;
   options->cloud_origin_m = command.cloud_origin_m;
+  options->background_m = command.background_m;
   const Result<Recording> recording = open_recording(input_files(command.logs), *std::move(options));
   if (!recording) return tl::unexpected(recording.error());
   const Result<VehiclePath> path = path_of(*recording);
@@ -396,11 +411,21 @@ Result<int> run(const MapCommand& command, Console& console) {
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
   BuildOptions build = command.build;
   if (recording->water()) build.sound_speed_ratio = sound_speed_ratio(*recording->water());
+  Result<MapForecast> forecast = forecast_map(*recording, command.map, build);
+  if (!forecast) return tl::unexpected(forecast.error());
+  MapOptions map_options = command.map;
+  map_options.resolution_m = forecast->resolution_m;
+  Result<OccupancyMap> map = OccupancyMap::make(map_options);
+  if (!map) return tl::unexpected(map.error());
+  if (const auto reached = check_reach(*recording, *path, map->lattice()); !reached) {
+    return tl::unexpected(reached.error());
+  }
+  if (const std::string cost = cost_text(*forecast); !cost.empty()) console.say(cost);
   Totals totals;
   totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
 
   {
-    LogMapper mapper(command, *recording, *path, build, *map, totals, console);
+    LogMapper mapper(command, *recording, *forecast, *path, build, *map, totals, console);
     for (std::size_t i = 0; i < command.logs.size(); ++i) {
       if (const auto added = mapper.add_next(); !added) return tl::unexpected(added.error());
     }
@@ -409,15 +434,15 @@ Result<int> run(const MapCommand& command, Console& console) {
   if (command.occupancy.cut_depth) map = cut_tree(*map, *command.occupancy.cut_depth);
 
   const Stopwatch write;
-  const Result<void> written = write_map(*map, command.format, command.made_by, command.output);
+  const Result<void> written = write_map(*map, command.format, command.made_by, command.output, path->axes);
   if (!written) return tl::unexpected(written.error());
   totals.write_s = write.seconds();
   totals.total_s = total.seconds();
 
   const Result<void> summary =
       command.output_options.report == Report::kJson
-          ? console.print(report_json(totals, *recording, *path, *map))
-          : console.summarise(map_report_text(totals, *recording, *path, *map, command), command.output);
+          ? console.print(report_json(totals, *recording, *path, *map, resolution_json(*forecast, command.map)))
+          : console.summarise(map_report_text(totals, *recording, *path, *map, *forecast, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (map->empty()) {
     console.say(empty_map_text(command.output));

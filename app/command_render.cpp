@@ -87,25 +87,43 @@ std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> e
   return text;
 }
 
-/// "; nearly all echoes within 5 m (--max-range 5 shows them larger)" where they fill a small part of the picture.
-std::string small_text(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,
-                       const PanelCommand& panel) {
-  if (std::isfinite(panel.build.echo.max_range_m)) return {};
-  std::vector<double> ranges_m;
-  for (const auto& echo : echoes) {
-    if (echo) ranges_m.push_back(echo->range_m);
-  }
-  if (ranges_m.empty()) return {};
-  // A single echo far away must not count.
-  const auto last = ranges_m.begin() + static_cast<std::ptrdiff_t>((ranges_m.size() - 1) * 99 / 100);
-  std::ranges::nth_element(ranges_m, last);
+double longest_range_m(std::span<const Beam> beams) {
   double longest_m = 0.0;
   for (const Beam& beam : beams) {
     longest_m = std::max(longest_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
   }
-  if (!(4.0 * *last < longest_m)) return {};
-  const double wanted_m = std::ceil(1.1 * *last);
-  return fmt::format("; nearly all echoes within {:g} m (--max-range {:g} shows them larger)", wanted_m, wanted_m);
+  return longest_m;
+}
+
+/// Where nearly all echoes fill less than half of the picture: the range that shows them larger. nullopt: all of it,
+/// also where the range is asked for.
+std::optional<double> zoomed_range_m(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,
+                                     const PanelCommand& panel) {
+  if (std::isfinite(panel.build.echo.max_range_m)) return std::nullopt;
+  std::vector<double> ranges_m;
+  for (const auto& echo : echoes) {
+    if (echo) ranges_m.push_back(echo->range_m);
+  }
+  if (ranges_m.empty()) return std::nullopt;
+  // A single echo far away must not count.
+  const auto last = ranges_m.begin() + static_cast<std::ptrdiff_t>((ranges_m.size() - 1) * 99 / 100);
+  std::ranges::nth_element(ranges_m, last);
+  const double wanted_m = std::ceil(1.2 * *last);
+  return 2.0 * wanted_m < longest_range_m(beams) ? std::optional(wanted_m) : std::nullopt;
+}
+
+/// "; drawn to 5 m of 50 m, where nearly all echoes are (--max-range 50 draws all)"
+std::string zoom_text(double drawn_m, double longest_m) {
+  return fmt::format("; drawn to {:g} m of {:.3g} m, where nearly all echoes are (--max-range {:g} draws all)", drawn_m,
+                     longest_m, std::ceil(longest_m));
+}
+
+/// Shortens beams, and removes the echoes beyond.
+void cut_beams(std::vector<Beam>& beams, std::vector<std::optional<Echo>>& echoes, double range_m) {
+  for (Beam& beam : beams) cut_beam(beam, range_m);
+  for (auto& echo : echoes) {
+    if (echo && echo->range_m > range_m) echo.reset();
+  }
 }
 
 /// Collects the beams of a polar picture.
@@ -120,10 +138,14 @@ class PolarCollector {
     echoes_.insert(echoes_.end(), next.echoes.begin(), next.echoes.end());
   }
 
-  std::optional<Drawn> draw(std::size_t skipped) const {
+  std::optional<Drawn> draw(std::size_t skipped) {
     if (beams_.empty()) return std::nullopt;
-    return Drawn{render_echoes(beams_, echoes_, panel_.echo_picture),
-                 count_text(beams_.size(), echoes_, panel_, skipped) + small_text(beams_, echoes_, panel_)};
+    std::string what = count_text(beams_.size(), echoes_, panel_, skipped);
+    if (const auto zoomed_m = zoomed_range_m(beams_, echoes_, panel_)) {
+      what += zoom_text(*zoomed_m, longest_range_m(beams_));
+      cut_beams(beams_, echoes_, *zoomed_m);
+    }
+    return Drawn{render_echoes(beams_, echoes_, panel_.echo_picture), what};
   }
 
  private:
@@ -148,12 +170,17 @@ class CartesianCollector {
 
   std::optional<Drawn> draw(std::size_t skipped) const {
     if (!chosen_) return std::nullopt;
-    const ProcessedSweep shown = process_sweep(chosen_->first, chosen_->second, panel_);
+    ProcessedSweep shown = process_sweep(chosen_->first, chosen_->second, panel_);
+    std::vector<Beam>& beams = shown.sweep.beams;
+    std::string what =
+        fmt::format("sweep {}, {}", shown.number, count_text(beams.size(), shown.echoes, panel_, skipped));
+    if (const auto zoomed_m = zoomed_range_m(beams, shown.echoes, panel_)) {
+      what += zoom_text(*zoomed_m, longest_range_m(beams));
+      cut_beams(beams, shown.echoes, *zoomed_m);
+      shown.image = PolarImage(shown.sweep);
+    }
     const CartesianPictureOptions options{panel_.echo_picture, panel_.between, panel_.build.model.width_rad};
-    return Drawn{
-        render_cartesian(shown.sweep, shown.image, shown.echoes, options),
-        fmt::format("sweep {}, {}{}", shown.number, count_text(shown.sweep.beams.size(), shown.echoes, panel_, skipped),
-                    small_text(shown.sweep.beams, shown.echoes, panel_))};
+    return Drawn{render_cartesian(shown.sweep, shown.image, shown.echoes, options), what};
   }
 
  private:
@@ -249,8 +276,16 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
               fmt::format("render: {}: there is no sweep {}, only {}", name, panel.sweep.value_or(0), sweeps));
 }
 
-Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
-                                Console& console) {
+/// A map to draw, and what is known of its frame.
+struct MapToDraw {
+  OccupancyMap map;
+  MapAxes axes = MapAxes::kNotTold;
+  std::optional<MapPath> path = std::nullopt;  ///< of the vehicle that made it
+  PictureView view = PictureView::kAbove;
+};
+
+Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
+                             Console& console) {
   Result<RecordingOptions> options = panel_options(panel, command);
   if (!options) return tl::unexpected(options.error());
   const Result<Recording> recording = open_recording({input_file(std::move(file), panel.input)}, *std::move(options));
@@ -260,14 +295,10 @@ Result<OccupancyMap> map_of_log(FileBytes file, const PanelCommand& panel, const
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
   Result<RecordingMap> mapped = build_map(*recording, *std::move(path), panel.map, panel.build);
   if (!mapped) return tl::unexpected(mapped.error());
-  return std::move(mapped->map);
+  MapToDraw made{std::move(mapped->map), mapped->path.axes};
+  if (mapped->path.trajectory.poses().size() > 1) made.path = MapPath{"the vehicle", mapped->path.trajectory};
+  return made;
 }
-
-/// A map and its viewpoint.
-struct MapToDraw {
-  OccupancyMap map;
-  PictureView view;
-};
 
 Drawn draw_map(const MapToDraw& shown, const MapPictureOptions& options) {
   const std::string what = shown.view == PictureView::kSlice  ? "a layer of the map"
@@ -309,8 +340,8 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
                                                        description_of(*format), hint));
   }
   const PictureView view = view_of(panel, kind);
-  const auto to_draw = [&](OccupancyMap map) -> Result<Prepared> {
-    Result<OccupancyMap> looked_at = panel.occupancy.apply_to(std::move(map));
+  const auto to_draw = [&](MapToDraw shown) -> Result<Prepared> {
+    Result<OccupancyMap> looked_at = panel.occupancy.apply_to(std::move(shown.map));
     if (!looked_at) return fail(looked_at.error().code, fmt::format("render: {}", looked_at.error().message));
     // Leaves that reach beyond the limits end there. Where nothing is known the picture says so.
     const SliceOptions limits{panel.map_picture.min_z_m, panel.map_picture.max_z_m};
@@ -318,7 +349,7 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
       Result<OccupancyMap> within = map_of_slice(*looked_at, limits);
       if (within) looked_at = std::move(within);
     }
-    return Prepared(MapToDraw{*std::move(looked_at), view});
+    return Prepared(MapToDraw{*std::move(looked_at), panel.axes.value_or(shown.axes), std::move(shown.path), view});
   };
   if (view == PictureView::kPolar || view == PictureView::kCartesian) {
     if (kind != FormatKind::kBeams) {
@@ -334,18 +365,32 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
     if (const auto used = panel.occupancy.check(*format); !used) {
       return fail(used.error().code, fmt::format("render: {}: {}", file.name, used.error().message));
     }
-    return read_map(file).and_then([&](MapFile read) { return to_draw(std::move(read.map)); });
+    return read_map(file).and_then([&](MapFile read) { return to_draw({std::move(read.map), read.axes}); });
   }
   return map_of_log(std::move(file), panel, command, console).and_then(to_draw);
 }
 
-Result<std::vector<MapPath>> read_paths(const std::vector<std::string>& files) {
+/// The poses of a file: a trajectory, or a navigation log on its own clock.
+Result<Trajectory> path_in(const std::string& file, const RenderCommand& command) {
+  Result<ByteStream> stream = ByteStream::open(file);
+  if (!stream) return tl::unexpected(stream.error());
+  const Result<Format> format = identify_format(*stream);
+  const bool is_nav = format && (kind_of(*format) == FormatKind::kNav || is_bag(*format));
+  if (!is_nav) return read_trajectory(file);
+  return read_nav_log(*std::move(stream), command.damage, command.bag.nav)
+      .and_then([&](const BagContents& contents) { return positions_of(contents, file, {}); })
+      .map([](const VehiclePath& path) { return path.trajectory; });
+}
+
+Result<std::vector<MapPath>> read_paths(const PanelCommand& panel, const MapToDraw& shown,
+                                        const RenderCommand& command) {
   std::vector<MapPath> paths;
-  for (const std::string& file : files) {
-    Result<Trajectory> path = trajectory_of(file);
+  for (const std::string& file : panel.drawn_paths) {
+    Result<Trajectory> path = path_in(file, command);
     if (!path) return tl::unexpected(path.error());
     paths.push_back({std::filesystem::path(file).filename().string(), *std::move(path)});
   }
+  if (paths.empty() && shown.path) paths.push_back(*shown.path);
   return paths;
 }
 
@@ -392,9 +437,10 @@ Result<Drawn> draw(const RenderCommand& command, Console& console) {
     MapPictureOptions& picture = pictures.emplace_back(panel.map_picture);
     if (const auto* shown = std::get_if<MapToDraw>(&*work)) {
       if (const auto layer = check_layer(*shown, panel); !layer) return tl::unexpected(layer.error());
-      Result<std::vector<MapPath>> paths = read_paths(panel.drawn_paths);
+      Result<std::vector<MapPath>> paths = read_paths(panel, *shown, command);
       if (!paths) return tl::unexpected(paths.error());
       picture.paths = *std::move(paths);
+      picture.axes = shown->axes;
       auto& part = parts[{panel.input, picture.view}];
       if (const auto box = shown_part(shown->map, picture)) part = around(part, *box);
     }

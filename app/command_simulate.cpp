@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "io/internal/unknown_file.hpp"
 #include "option_values.hpp"
@@ -175,7 +174,7 @@ Result<void> write_nav_errors(const std::string& path, const NavSensorErrors& er
     out << fmt::format("# Errors of the simulated navigation.\n# nav-offset = {:.6g}\n", -sensors.delay_s)
         << fmt::format("# turn-rate-bias-start-deg-s = {:.6g}\n# turn-rate-bias-end-deg-s = {:.6g}\n",
                        errors.gyro_bias_start_rad_s / kDegree_rad, errors.gyro_bias_end_rad_s / kDegree_rad)
-        << calibration_toml({calibration_of(errors), {}});
+        << kCalibrationComment << calibration_toml({calibration_of(errors), {}});
     if (!out.flush()) return fail(Error::Code::kIo, fmt::format("{}: could not be written", path));
     return {};
   });

@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "calibration_file.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "evaluation_text.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
@@ -28,18 +28,17 @@ namespace {
 
 /// The files that a solution is made of: "dive.csv, nav.csv"
 std::string inputs_text(const SlamCommand& command) {
-  std::string text = name_of_input(command.logs.front());
-  for (const std::string& nav : command.navs) {
-    if (nav != command.logs.front()) text += ", " + nav;
+  std::string text = name_of_input(command.recording.logs.front());
+  for (const std::string& nav : command.recording.path.navs) {
+    if (nav != command.recording.logs.front()) text += ", " + nav;
   }
   return text;
 }
 
 /// Adds all logs to the map, along the path.
-Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& slam, OccupancyMap& map,
-                              Console& console) {
+Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& slam, BuildOptions build,
+                              OccupancyMap& map, Console& console) {
   const VehiclePath path = slam.path();
-  BuildOptions build;
   build.filter = slam.options.filter;
   build.echo = slam.options.echo;
   build.sound_speed_ratio = slam.options.sound_speed_ratio;
@@ -56,6 +55,9 @@ Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& s
     } else if (!skipped.empty()) {
       console.say(fmt::format("{}: left out of the map: {}", log->name, skipped));
     }
+    for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
+      console.say(fmt::format("{}: {}", log->name, warning));
+    }
     all.beams += mapped->report.beams;
     all.skipped += mapped->report.skipped;
   }
@@ -68,26 +70,27 @@ std::vector<std::string> used_sources(const SlamSolution& solution) {
   return used;
 }
 
-/// The recording of a command.
-Result<Recording> recording_of(const SlamCommand& command) {
-  const PathArgs path{.poses = {},
-                      .navs = command.navs,
-                      .nav_offset_s = command.nav_offset_s,
-                      .nav_sources = command.nav_sources,
-                      .calibration = command.known_calibration};
-  return recording_options(path, command.bag, command.damage).and_then([&](RecordingOptions options) {
-    options.nav_mounts = command.slam.body_from_source;
-    options.body_from_sonar = command.slam.body_from_sonar;
-    options.nav_salinity = command.nav_salinity;
-    return open_recording(input_files(command.logs), std::move(options));
-  });
+/// What SLAM was not told of the vehicle, and takes to be.
+std::vector<std::string> taken_for_granted(const SlamCommand& command, const Recording& recording) {
+  std::vector<std::string> texts;
+  const bool has_mount = std::ranges::find(command.limited, "--mount", &LimitedOption::name) != command.limited.end() ||
+                         !command.recording.body_from_sonar.matrix().isIdentity(0.0);
+  if (!has_mount && mount_hint(recording).empty()) {
+    texts.emplace_back(
+        "without --mount the head is taken to be upright at the origin of the vehicle and to look ahead");
+  }
+  if (!command.recording.path.navs.empty() && recording.nav().log.best(NavQuantity::kAttitude) == nullptr) {
+    texts.push_back(fmt::format("{}: no attitude: the vehicle is taken to be level", recording.nav_names()));
+  }
+  return texts;
 }
 
-/// Refuses options of beams where the format of the log says that it holds scans.
+/// Refuses options of beams where the format of the log says that it holds scans, before other files are read.
 Result<void> check_options_of_scans(const SlamCommand& command) {
-  if (command.logs.front() == "-") return {};
+  const std::string& first = command.recording.logs.front();
+  if (first == "-") return {};
   const Result<Format> format =
-      ByteStream::open(command.logs.front()).and_then([](ByteStream stream) { return identify_format(stream); });
+      ByteStream::open(first).and_then([](ByteStream stream) { return identify_format(stream); });
   if (!format || kind_of(*format) != FormatKind::kScans) return {};
   return check_limited(command.limited, {kind_text(FormatKind::kScans)}).map_error([](const Error& error) {
     return Error{error.code, fmt::format("slam: {}", error.message)};
@@ -98,8 +101,8 @@ Result<void> check_options_of_scans(const SlamCommand& command) {
 Error advise_on_slam(Error error, const SlamCommand& command) {
   // Navigation does not help where there are no beams.
   const bool has_beams = !error.message.ends_with("there are no beams");
-  if (!command.navs.empty() || error.code != Error::Code::kUnsupported || !has_beams) return error;
-  const std::string in_bag = hint_at_nav(command.logs.front());
+  if (!command.recording.path.navs.empty() || error.code != Error::Code::kUnsupported || !has_beams) return error;
+  const std::string in_bag = hint_at_nav(command.recording.logs.front());
   error.message +=
       in_bag.empty() ? ": give the navigation with --nav, a heading or a turn rate at least" : ": " + in_bag;
   return error;
@@ -108,8 +111,6 @@ Error advise_on_slam(Error error, const SlamCommand& command) {
 Result<int> run_beams(const SlamCommand& command, const Recording& recording, OpenedLog first, Console& console) {
   const Stopwatch total;
   SlamSeconds seconds;
-  Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
-  if (!map) return tl::unexpected(map.error());
   if (const std::string hint = mount_hint(recording); !hint.empty()) console.say(hint);
   ProgressBar bar(command.output_options);
   bar.draw(std::nullopt, "solving");
@@ -117,6 +118,7 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
   bar.clear();
   if (!found) return tl::unexpected(advise_on_slam(found.error(), command));
   const SlamSolution& solution = found->solution;
+  for (const std::string& taken : taken_for_granted(command, recording)) console.say(taken);
   for (const std::string& warning : nav_warnings(recording)) console.say(warning);
   for (const auto& [file, note] : found->notes) console.say(fmt::format("{}: {}", file, note));
   // A few before and after the navigation are usual.
@@ -132,22 +134,33 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
   seconds.solve = found->solve_s;
   SlamInputs inputs{.others = other_sources(recording.nav().log, kMotionQuantities, used_sources(solution))};
 
+  Result<OccupancyMap> map = OccupancyMap::make(command.map_options);
+  if (!map) return tl::unexpected(map.error());
   if (command.map) {
-    bar.draw(std::nullopt, "mapping");
     const Stopwatch mapping;
-    const Result<MappedBeams> mapped = map_along(recording, *found, *map, console);
+    const Result<MapForecast> forecast = forecast_map(recording, command.map_options, command.build);
+    if (!forecast) return tl::unexpected(forecast.error());
+    if (const std::string cost = cost_text(*forecast); !cost.empty()) console.say(*command.map + ": " + cost);
+    MapOptions map_options = command.map_options;
+    map_options.resolution_m = forecast->resolution_m;
+    map = OccupancyMap::make(map_options);
+    if (!map) return tl::unexpected(map.error());
+    bar.draw(std::nullopt, "mapping");
+    const Result<MappedBeams> mapped = map_along(recording, *found, command.build, *map, console);
     if (!mapped) return tl::unexpected(mapped.error());
     inputs.mapped = *mapped;
+    inputs.mapped->resolution = resolution_text(*forecast, command.map_options);
+    inputs.mapped->resolution_m = forecast->resolution_m;
     seconds.map = mapping.seconds();
   }
   bar.clear();
 
   const Stopwatch write;
-  const auto written = write_slam_results(solution.trajectory, *map, command);
+  const auto written = write_slam_results(solution.trajectory, *map, MapAxes::kEastNorth, command);
   if (!written) return tl::unexpected(written.error());
   if (command.calibration) {
     const auto calibrated = write_file(*command.calibration, [&](std::ostream& out) -> Result<void> {
-      out << calibration_toml({solution.calibration, found->options.body_from_source});
+      out << kCalibrationComment << calibration_toml({solution.calibration, found->options.body_from_source});
       return {};
     });
     if (!calibrated) return tl::unexpected(calibrated.error());
@@ -173,9 +186,13 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
 
 }  // namespace
 
-Result<int> run(const SlamCommand& command, Console& console) {
+Result<int> run(const SlamCommand& typed, Console& console) {
+  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.recording.logs, console);
+  if (!logs) return tl::unexpected(logs.error());
+  SlamCommand command = typed;
+  command.recording.logs = *logs;
   if (const auto used = check_options_of_scans(command); !used) return tl::unexpected(used.error());
-  const Result<Recording> recording = recording_of(command);
+  const Result<Recording> recording = open_recording(command.recording);
   if (!recording) return tl::unexpected(recording.error());
   Result<OpenedLog> first = open_log_of(*recording, 0);
   if (!first) return tl::unexpected(first.error());

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "bag_args.hpp"
 #include "console.hpp"
 #include "device/internal/head_emulator.hpp"
 #include "device/internal/nav_emulator.hpp"
@@ -15,6 +15,7 @@
 #include "pingvox/analysis/visible_cells.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/io/bag_fields.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/live/live_options.hpp"
@@ -22,6 +23,8 @@
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/head_options.hpp"
 #include "pingvox/nav/main_source.hpp"
+#include "pingvox/recording/evaluate.hpp"
+#include "pingvox/recording/fit.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -29,7 +32,6 @@
 #include "pingvox/sim/tank.hpp"
 #include "pingvox/sim/vehicle.hpp"
 #include "pingvox/slam/locate_recording.hpp"
-#include "pingvox/slam/odometry.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"
@@ -44,6 +46,13 @@ namespace pingvox::app {
 struct ShowText {
   OutputOptions output_options;
   std::string text;
+};
+
+/// How ROS bags are read, where the types of their messages do not tell: --topic and --fields.
+struct BagArgs {
+  BeamTopic beams;
+  std::vector<NavFields> nav;
+  std::string file = {};  ///< that --fields names; empty: none
 };
 
 /// Interpretation of a map: thresholds for occupied and free, and the deepest level.
@@ -69,6 +78,18 @@ struct PathArgs {
   std::optional<double> nav_offset_s;      ///< added to their times; nullopt: to be found
   std::vector<NamedSource> nav_sources;    ///< of them, that are taken instead of others
   std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
+};
+
+/// What 'slam' and 'locate' read as a recording.
+struct RecordingArgs {
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  PathArgs path;
+  std::map<std::string, Pose> nav_mounts;  ///< body_from_source by its name
+  Pose body_from_sonar = Pose::Identity();
+  HeadOptions head;
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  Damage damage = Damage::kSkip;
+  BagArgs bag;
 };
 
 struct MapCommand {
@@ -152,8 +173,9 @@ struct PanelCommand {
   BetweenBeams between = BetweenBeams::kInterpolate;
   EchoPictureOptions echo_picture;
   MapPictureOptions map_picture;
-  MapOptions map;           ///< for logs that are mapped
-  OccupancyArgs occupancy;  ///< of the map that is drawn
+  std::optional<MapAxes> axes;  ///< of the map; nullopt: as the map or the navigation says
+  MapOptions map;               ///< for logs that are mapped
+  OccupancyArgs occupancy;      ///< of the map that is drawn
   BuildOptions build;
   HeadOptions head;
   std::optional<double> background_m;
@@ -192,20 +214,14 @@ struct SimulateCommand {
 
 struct SlamCommand {
   OutputOptions output_options;
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
-  std::vector<std::string> navs;  ///< navigation logs
-  std::string output;             ///< TUM lines; "-" is standard output
+  RecordingArgs recording;
+  std::string output;  ///< TUM lines; "-" is standard output
   std::optional<std::string> map, calibration, covariance, graph;
-  std::optional<std::string> known_calibration;  ///< output of an earlier 'slam --calibration'
   Format map_format = Format::kBt;
-  double map_resolution_m = MapOptions{}.resolution_m;
-  Damage damage = Damage::kSkip;
-  BagArgs bag;
+  MapOptions map_options;  ///< these two of the map
+  BuildOptions build;      ///< but for filter, echoes and speed of sound, which are those of `slam`
   SlamOptions slam;
   Estimation estimation = Estimation::kBatch;
-  std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
-  std::optional<double> nav_offset_s;    ///< added to the times of `navs`; nullopt: to be found
-  std::vector<NamedSource> nav_sources;  ///< of `navs`, that are taken instead of others
   std::vector<LimitedOption> limited;
   std::string made_by;  ///< the command line, written into the map
 };
@@ -218,23 +234,28 @@ enum class WrittenPoses {
 
 struct LocateCommand {
   OutputOptions output_options;
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  RecordingArgs recording;  ///< its poses are odometry, in a frame that may drift
   std::string map;
-  std::string output;             ///< TUM lines; "-" is standard output
-  std::vector<std::string> navs;  ///< navigation logs
-  OdometryOptions nav;
-  std::optional<std::string> calibration;  ///< of the sensors of `navs`: output of 'slam --calibration'
-  std::optional<double> nav_offset_s;      ///< added to the times of `navs`; nullopt: to be found
-  std::vector<NamedSource> nav_sources;    ///< of `navs`, that are taken instead of others
-  std::optional<std::string> odometry;     ///< TUM lines in a frame that may drift; not with `navs`
+  std::string output;                      ///< TUM lines; "-" is standard output
   std::optional<StartPose> start;          ///< nullopt: anywhere
   std::optional<double> min_z_m, max_z_m;  ///< heights of the map that are used; nullopt: near the sonar's
+  LocalizerOptions localizer;
+  Estimation estimation = Estimation::kBatch;  ///< of the poses by navigation
+  WrittenPoses written = WrittenPoses::kAll;
+};
+
+struct EvaluateCommand {
+  OutputOptions output_options;
+  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  PathArgs path;
   Damage damage = Damage::kSkip;
   BagArgs bag;
-  LocalizerOptions localizer;
-  std::optional<double> nav_salinity;          ///< of water whose temperature and depth the navigation log tells
-  Estimation estimation = Estimation::kBatch;  ///< of the poses by `navs`
-  WrittenPoses written = WrittenPoses::kAll;
+  EvaluateOptions evaluation;
+  std::optional<FitParameter> fit;  ///< what is searched that predicts more echoes; nullopt: nothing
+  HeadOptions head;
+  std::optional<double> background_m;  ///< range of the background to subtract
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  std::vector<LimitedOption> limited;
 };
 
 struct LiveCommand {
@@ -266,8 +287,9 @@ struct BenchCommand {
   std::vector<std::string> args;
 };
 
-using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
-                             SimulateCommand, SlamCommand, LocateCommand, LiveCommand, EmulateCommand, BenchCommand>;
+using Command =
+    std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand, SimulateCommand,
+                 SlamCommand, LocateCommand, EvaluateCommand, LiveCommand, EmulateCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -277,6 +299,7 @@ Result<int> run(const RenderCommand& command, Console& console);
 Result<int> run(const SimulateCommand& command, Console& console);
 Result<int> run(const SlamCommand& command, Console& console);
 Result<int> run(const LocateCommand& command, Console& console);
+Result<int> run(const EvaluateCommand& command, Console& console);
 Result<int> run(const LiveCommand& command, Console& console);
 Result<int> run(const EmulateCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);

@@ -144,7 +144,8 @@ JsonObject live_json(const LiveMapping& live, const LiveStatus& status, const Li
       .add("damaged", head.damaged)
       .add("unexpected", head.unexpected)
       .add_truth("recording_failed", head.recording_error.has_value())
-      .add("memory_bytes", live.map().memory_bytes());
+      .add("memory_bytes", live.map().memory_bytes())
+      .add("resolution", live.map().lattice().resolution_m());
   if (status.nav.empty()) {
     json.add_null("nav");
   } else {

@@ -65,9 +65,10 @@ std::string sound_line(double sound_speed_m_s) {
   return report_line("sound", fmt::format("{:.1f} m/s", sound_speed_m_s));
 }
 
-std::string map_text(const OccupancyMap& map, const MapCounts& counts) {
+std::string map_text(const OccupancyMap& map, const MapCounts& counts, std::string_view resolution) {
   const Lattice& lattice = map.lattice();
-  std::string out = report_line("cells", fmt::format("{} m, {} levels", lattice.resolution_m(), lattice.depth())) +
+  const std::string cells = resolution.empty() ? fmt::format("{} m", lattice.resolution_m()) : std::string(resolution);
+  std::string out = report_line("cells", fmt::format("{}, {} levels", cells, lattice.depth())) +
                     report_line("occupied", fmt::format("{}", counts.occupied_cells)) +
                     report_line("free", fmt::format("{}", counts.free_cells));
   if (counts.undecided_cells > 0) out += report_line("undecided", fmt::format("{}", counts.undecided_cells));

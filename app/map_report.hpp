@@ -40,6 +40,7 @@ std::string report_line(std::string_view label, std::string_view value);
 std::string sound_line(double sound_speed_m_s);
 
 /// Summary of a map as text.
-std::string map_text(const OccupancyMap& map, const MapCounts& counts);
+/// @param resolution  how it was chosen; empty: only what it is
+std::string map_text(const OccupancyMap& map, const MapCounts& counts, std::string_view resolution = {});
 
 }  // namespace pingvox::app

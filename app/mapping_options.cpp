@@ -9,12 +9,16 @@
 #include <map>
 #include <string>
 
+#include "geometry/internal/mount_text.hpp"
+#include "mapping/internal/option_limits.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/analysis/map_agreement.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/recording/recording.hpp"
 #include "pingvox/sonar/device_profile.hpp"
+#include "sonar/internal/option_limits.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -37,6 +41,7 @@ constexpr std::array kRays = {Choice<RayAlgorithm>{"dda", RayAlgorithm::kDda},
 constexpr std::array kVotes = {Choice<Vote>{"sweep", Vote::kPerSweep}, Choice<Vote>{"beam", Vote::kPerBeam}};
 constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
+constexpr std::array kParents = {Choice<Parents>{"max", Parents::kMax}, Choice<Parents>{"mean", Parents::kMean}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
 /// "T,S", "T,S,D" or "nav,S".
@@ -110,7 +115,7 @@ Take store_device(const DeviceProfile*& target) {
 }
 
 Take store_kernel(std::optional<int>& target) {
-  const Take take = within({1.0, 99.0}, store_optional(target));
+  const Take take = within(kFilterKernels, store_optional(target));
   return [&target, take](const std::string& text) -> Result<void> {
     if (auto taken = take(text); !taken) return taken;
     if (*target % 2 == 0) return usage_error(fmt::format("must be odd, is {}", text));
@@ -161,13 +166,9 @@ std::string beam_sizes() {
 
 Take store_mount(Pose& target) {
   return [&target](const std::string& text) -> Result<void> {
-    const auto n = numbers_from<6>(text);
-    if (!n) return usage_error(n.error().message + ": x,y,z in metres and roll,pitch,yaw in degrees");
-    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); })) {
-      return usage_error(fmt::format("'{}': must be finite", text));
-    }
-    const auto& [x, y, z, roll, pitch, yaw] = *n;
-    target = pose_from_rpy({x, y, z}, roll * kDegree_rad, pitch * kDegree_rad, yaw * kDegree_rad);
+    const Result<Pose> mount = mount_from(text);
+    if (!mount) return tl::unexpected(mount.error());
+    target = *mount;
     return {};
   };
 }
@@ -217,7 +218,7 @@ Option nav_offset_option(std::optional<double>& target_s) {
                 "S",
                 "seconds to add to the times of --nav to get those of the sonar log",
                 "estimated",
-                within({-1e10, 1e10}, store_optional(target_s))};
+                within(RecordingOptions::kNavOffsets_s, store_optional(target_s))};
   option.only_with = {{"--nav"}};
   return option;
 }
@@ -264,16 +265,14 @@ OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
   OptionTable::Group group = {
       "Echoes",
       {{"--min-range", 0, "M|auto", "ignore echoes nearer than M (transducer ringing); auto: measured per sweep",
-        number_text(EchoOptions::kDefaultBlanking_m),
-        within({0.0, kAnyHigh, Limits::Ends::kHighOut}, store_or_auto(echo.min_range_m))},
+        number_text(EchoOptions::kDefaultBlanking_m), within(kNearestRanges_m, store_or_auto(echo.min_range_m))},
        number("--min-bin", "N", "ignore bins before bin N (the first is 0)", echo.min_bin),
        {"--max-range", 0, "M",
         "ignore echoes and cells farther than M; a beam whose only echoes are farther marks cells up to M free", "none",
-        within({0.0, kAnyHigh, Limits::Ends::kLowOut}, store_number(echo.max_range_m))},
+        within(kFarthestRanges_m, store_number(echo.max_range_m))},
        {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
         number_text(kAssumedSoundSpeed_m_s),
-        within({0.1 * kAssumedSoundSpeed_m_s, 10.0 * kAssumedSoundSpeed_m_s, Limits::Ends::kBothOut},
-               store_optional(args.sound_speed_m_s))},
+        within(in_units_of(1.0 / kAssumedSoundSpeed_m_s, kSoundSpeedRatios), store_optional(args.sound_speed_m_s))},
        {"--water", 0, water == WaterOfNav::kYes ? "T,S[,D]|nav,S" : "T,S[,D]",
         std::string("speed of sound from temperature in degrees C, salinity (0 fresh, 35 ocean) and depth in m") +
             (water == WaterOfNav::kYes ? "; nav: temperature and depth from --nav" : ""),
@@ -283,7 +282,7 @@ OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
        {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",
         store_kernel(args.kernel)},
        {"--sigma", 0, "SIGMA", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
-        within({0.0, 1000.0, Limits::Ends::kLowOut}, store_optional(args.sigma))},
+        within(kFilterSigmas, store_optional(args.sigma))},
        choice("--detect", kDetectors,
               "echo detector: the first rise, the first bin above a level, the strongest bin, the first edge in the "
               "image (canny), or the first bin above the noise around it (cfar)",
@@ -295,8 +294,7 @@ OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
        {"--background", 0, "M",
         "subtract what is the same in all sweeps up to M: echoes of the vehicle itself, and all others if it stands "
         "still; reads the logs twice",
-        "off",
-        within({0.0, BackgroundOptions::kMaxRange_m, Limits::Ends::kLowOut}, store_optional(args.background_m))}}};
+        "off", within(kBackgroundRanges_m, store_optional(args.background_m))}}};
   for (Option& option : group.options) {
     if (option.name != "--max-range") option.only_for = beams;
     if (option.name == "--kernel") option.only_with = {{"--filter", {"mean", "median", "gaussian"}}};
@@ -345,11 +343,10 @@ Result<OccupancyMap> OccupancyArgs::apply_to(OccupancyMap map) const {
 }
 
 std::vector<Option> occupancy_options(OccupancyArgs& args) {
-  const Limits probability{0.0, 1.0, Limits::Ends::kBothOut};
   return {{"--occupied", 0, "P", "lowest probability of an occupied cell", "0.5; .pvx: its own",
-           within(probability, store_optional(args.occupied_from))},
+           within(kProbabilities, store_optional(args.occupied_from))},
           {"--free", 0, "P", "a cell is free below this probability, and unknown between the two", "0.5; .pvx: its own",
-           within(probability, store_optional(args.free_below))},
+           within(kProbabilities, store_optional(args.free_below))},
           {"--cut-depth", 0, "N", "keep only the upper N levels of the octree; one less doubles the edge of a cell",
            "all", within({1.0, static_cast<double>(kMaxDepth)}, store_optional(args.cut_depth))}};
 }
@@ -376,16 +373,17 @@ OptionTable::Group map_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Map",
-      {{"--resolution", 0, "M", "edge length of a cell", number_text(map.resolution_m),
-        within(kResolutions, store_number(map.resolution_m))},
+      {{"--resolution", 0, "M", "edge length of a cell",
+        fmt::format("{} up to a range of 10 m, coarser beyond by the width of the beam",
+                    number_text(MapOptions::kDefaultResolution_m)),
+        within(kResolutions, store_optional(map.resolution_m))},
        {"--depth", 0, "N", "levels of the octree, 1..128; .bt and .ot need 16", fmt::format("{}", map.depth),
-        within({1.0, 128.0}, store_number(map.depth))},
+        within({1.0, static_cast<double>(kMaxDepth)}, store_number(map.depth))},
        {"--hit", 0, "P",
         "probability that a cell is occupied after one echo in it, the strongest one with --hit-from intensity",
-        number_text(model.hit.probability()), within({0.5, 1.0, Limits::Ends::kBothOut}, store_probability(model.hit))},
+        number_text(model.hit.probability()), within(kHits, store_probability(model.hit))},
        {"--miss", 0, "P", "probability that a cell is occupied after one beam passed through it",
-        number_text(args.build.miss.probability()),
-        within({0.0, 0.5, Limits::Ends::kBothOut}, store_probability(args.build.miss))},
+        number_text(args.build.miss.probability()), within(kMisses, store_probability(args.build.miss))},
        {"--clamp", 0, "P,P", "lowest and highest probability a cell can reach",
         number_text(map.clamp.lowest.probability()) + "," + number_text(map.clamp.highest.probability()),
         store_clamp(map.clamp)},
@@ -398,6 +396,23 @@ OptionTable::Group map_group(BuildArgs& args) {
     if (option.name == "--vote") option.only_for = {std::string(kBeamLogs)};
   }
   return group;
+}
+
+Option threads_option(std::size_t& target) {
+  const Take take = [&target](const std::string& text) -> Result<void> {
+    int threads = 0;
+    if (auto taken = store_number(threads)(text); !taken) return taken;
+    if (threads < 1 || threads > 256) return usage_error(fmt::format("{} is not in 1..256", text));
+    target = static_cast<std::size_t>(threads);
+    return {};
+  };
+  return {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", take};
+}
+
+std::vector<Option> tree_options(BuildArgs& args) {
+  return {choice("--parents", kParents, "value of an inner node: maximum or mean of its children; only .pvx keeps it",
+                 args.map.parents),
+          threads_option(args.build.threads)};
 }
 
 OptionTable::Group sensor_group(BuildArgs& args) {
@@ -417,14 +432,14 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
               model.shape),
        {"--beam-width", 0, "DEG", "horizontal beam width, full angle", of_device(model.width_rad),
-        within({0.0, 180.0, Limits::Ends::kLowOut}, store_degrees(args.head.beam_width_rad))},
+        within(in_units_of(kDegree_rad, kBeamWidths_rad), store_degrees(args.head.beam_width_rad))},
        {"--beam-height", 0, "DEG", "vertical beam width, full angle", of_device(model.height_rad),
-        within({0.0, 180.0, Limits::Ends::kBothOut}, store_degrees(args.head.beam_height_rad))},
+        within(in_units_of(kDegree_rad, kBeamHeights_rad), store_degrees(args.head.beam_height_rad))},
        {"--device", 0, fmt::format("{}", fmt::join(device_names(), "|")),
         "sonar head, for the width and height of its beam in degrees: " + beam_sizes(), "as in the log",
         store_device(args.head.device)},
        {"--free-share", 0, "F", "central fraction of the beam's width and height (0..1) that marks cells free",
-        number_text(model.free_share), within({0.0, 1.0, Limits::Ends::kLowOut}, store_number(model.free_share))},
+        number_text(model.free_share), within(kFreeShares, store_number(model.free_share))},
        choice("--ray", kRays, "traversal of cells along a ray (beams as rays, point scans)", model.ray),
        choice("--hit-from", kHitsFrom, "evidence of an echo: --hit, or half to all of it depending on the intensity",
               model.hit_from),

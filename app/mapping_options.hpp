@@ -96,6 +96,10 @@ enum class WaterOfNav { kNo, kYes };
 OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water);
 std::vector<Option> occupancy_options(OccupancyArgs& args);
 OptionTable::Group map_group(BuildArgs& args);
+/// --threads: for tracing.
+Option threads_option(std::size_t& target);
+/// --parents and --threads: of maps that are made at once.
+std::vector<Option> tree_options(BuildArgs& args);
 OptionTable::Group sensor_group(BuildArgs& args);
 
 }  // namespace pingvox::app

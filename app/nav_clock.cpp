@@ -61,7 +61,7 @@ std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& c
   return fmt::format("{:+.3f} s{}: {}; {}", offset.offset_s, deviation, from_text(offset), checked);
 }
 
-std::string wrong_clock_text(const ClockOffset& check, std::string_view option) {
+std::string wrong_clock_text(const ClockOffset& check, std::string_view advice) {
   if (check.from_s) {
     return fmt::format(
         "by the turning of the sonar's picture the clock of the {} jumped ahead by {:.1f} +- {:.1f} s, "
@@ -69,9 +69,12 @@ std::string wrong_clock_text(const ClockOffset& check, std::string_view option) 
         check.offset_s < 0.0 ? "poses" : "log", std::abs(check.offset_s), check.deviation_s, *check.from_s);
   }
   return fmt::format(
-      "by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of the "
-      "poses: is {} right?",
-      check.offset_s, check.deviation_s, check.is_one_of_several ? ", or another number," : "", option);
+      "by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of the poses: {}",
+      check.offset_s, check.deviation_s, check.is_one_of_several ? ", or another number," : "", advice);
+}
+
+std::string nav_offset_advice(const NavOffset& offset, const ClockOffset& check) {
+  return fmt::format("try --nav-offset {:.3f}", offset.offset_s + check.offset_s);
 }
 
 JsonObject json_of(const ClockOffset& check) {

@@ -20,8 +20,10 @@ std::string from_text(NavLogClock::By by);
 
 /// "+12.345 s (sd 0.021 s), by ...; -0.1 +- 0.3 s from how the sonar's picture turns"
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check);
-/// What to do where the check is apart. @param option  the option that may be wrong
-std::string wrong_clock_text(const ClockOffset& check, std::string_view option);
+/// What is wrong where the check is apart, and what to do.
+std::string wrong_clock_text(const ClockOffset& check, std::string_view advice);
+/// "try --nav-offset -3.250"
+std::string nav_offset_advice(const NavOffset& offset, const ClockOffset& check);
 /// {"offset_s": ..., "sd_s": ..., "changes": ..., "several": ...}
 JsonObject json_of(const ClockOffset& check);
 /// {"offset_s": ..., "sd_s": ..., "from": ...}

@@ -56,6 +56,12 @@ std::vector<std::string> nav_warnings(const Recording& recording) {
   if (const std::string faults = faults_text(nav.log); !faults.empty()) {
     warnings.push_back(fmt::format("{}: {}", names, faults));
   }
+  const bool tells_depth = nav.log.best(NavQuantity::kDepth) == nullptr;  // a pressure, then
+  for (const NavSource& source : nav.log.sources()) {
+    const bool is_taken = source.quantity == NavQuantity::kPressure && source.subject != NavSubject::kOther;
+    if (!tells_depth || !is_taken || source.note.empty()) continue;
+    warnings.push_back(fmt::format("{}: pressure of {}: {}", names, source.name, source.note));
+  }
   for (const std::string& doubt : doubt_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, doubt));
   for (const std::string& step : step_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, step));
   if (std::string doubt = mount_doubt(recording.options()); !doubt.empty()) warnings.push_back(std::move(doubt));

@@ -24,8 +24,8 @@ Error advise_on_log(Error error, Format format);
 /// pingvox::open_log, with advice in its errors.
 Result<Log> open_file_log(ByteStream stream, Damage damage, const BeamTopic& topic);
 
-/// The bytes of a file that may be a log. Of a bag only the beginning, which shows its format: `open_input` opens it
-/// again, as it may be several files, or have changes beside it.
+/// Reads a file that may be a log. Of a ROS bag it reads only the beginning, which is enough to identify the format: a
+/// bag may consist of several files, so it is opened by its path later.
 Result<FileBytes> read_input(const std::string& path);
 /// A file that was read by `read_input(path)`, to be read by a recording.
 InputFile input_file(FileBytes file, const std::string& path);

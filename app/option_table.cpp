@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/suggest.hpp"
+#include "io/internal/toml_file.hpp"
 #include "pingvox/io/file.hpp"
-#include "suggest.hpp"
-#include "toml_file.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -348,7 +348,9 @@ std::string help_of(const OptionTable& table) {
   }
   out += " [OPTION]...\n";
   out += table.purpose + "\n\n";
-  for (const Positional& positional : table.positionals) out += help_entry(positional.name, positional.help);
+  for (const Positional& positional : table.positionals) {
+    out += help_entry(positional.name + (positional.count == Positional::Count::kMany ? "..." : ""), positional.help);
+  }
   for (const auto& group : table.groups) {
     out += "\n" + group.title + ":\n";
     for (const Option& option : group.options) {

@@ -3,25 +3,21 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/option_errors.hpp"
+#include "base/option_text.hpp"
 #include "option_table.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/limits.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/result.hpp"
-#include "suggest.hpp"
 
 /// Parses values of options (independent of the locale, all of the text) into their targets.
 namespace pingvox::app {
@@ -31,41 +27,6 @@ using Args = std::vector<std::string>;
 /// Invalid usage: kBadOption.
 inline tl::unexpected<Error> usage_error(std::string what) {
   return fail(Error::Code::kBadOption, std::move(what));
-}
-
-template <class Number>
-Result<Number> number_from(std::string_view text) {
-  std::string_view digits = text;
-  if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
-  Number value{};
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  constexpr bool kReal = std::is_floating_point_v<Number>;
-  if (error == std::errc::result_out_of_range) return usage_error(fmt::format("'{}' is out of range", text));
-  if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty()) {
-    return usage_error(fmt::format("'{}' is not a {}", text, kReal ? "number" : "whole number"));
-  }
-  if constexpr (kReal) {
-    if (std::isnan(value)) return usage_error(fmt::format("'{}' is not a number", text));
-  }
-  return value;
-}
-
-template <std::size_t N>
-Result<std::array<double, N>> numbers_from(std::string_view text) {
-  std::array<double, N> values{};
-  std::size_t count = 0;
-  for (std::string_view rest = text;; ++count) {
-    const std::size_t comma = rest.find(',');
-    if (count < N) {
-      const Result<double> value = number_from<double>(rest.substr(0, comma));
-      if (!value) return tl::unexpected(value.error());
-      values[count] = *value;
-    }
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
-  }
-  if (count + 1 != N) return usage_error(fmt::format("'{}': must be {} numbers with commas between them", text, N));
-  return values;
 }
 
 /// A number of bytes, optionally with suffix K, M, G or T.
@@ -101,7 +62,15 @@ Take store_optional(std::optional<Number>& target) {
 /// Of cells [m].
 inline constexpr Limits kResolutions{0.0, 1000.0, Limits::Ends::kLowOut};
 
-inline constexpr double kAnyHigh = std::numeric_limits<double>::infinity();
+inline constexpr Limits kProbabilities{0.0, 1.0, Limits::Ends::kBothOut};
+inline constexpr Limits kPositive{0.0, std::numeric_limits<double>::infinity(), Limits::Ends::kBothOut};
+inline constexpr Limits kFinite{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                                Limits::Ends::kBothOut};
+
+/// Limits of the library in units of the command line.
+inline Limits in_units_of(double unit, const Limits& limits) {
+  return {limits.low / unit, limits.high / unit, limits.ends};
+}
 
 /// Refuses numbers outside of the limits, then calls `take`, which also refuses other text.
 Take within(const Limits& limits, Take take);
@@ -140,13 +109,6 @@ Take store_probability(LogOdds& target);
 /// At least one byte.
 Take store_bytes(std::size_t& target);
 
-/// A word that an option accepts, and its value.
-template <class Enum>
-struct Choice {
-  std::string_view word;
-  Enum value;
-};
-
 /// The words separated by |, for the help.
 template <class Enum, std::size_t N>
 std::string choices_text(const std::array<Choice<Enum>, N>& words) {
@@ -161,16 +123,6 @@ std::string choice_name(const std::array<Choice<Enum>, N>& words, Enum value) {
     if (word.value == value) return std::string(word.word);
   }
   return {};
-}
-
-template <class Enum, std::size_t N>
-Result<Enum> choice_value(const std::array<Choice<Enum>, N>& words, const std::string& text) {
-  Args known;
-  for (const auto& word : words) {
-    if (word.word == text) return word.value;
-    known.emplace_back(word.word);
-  }
-  return usage_error(fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), text, did_you_mean(text, known)));
 }
 
 /// An option that accepts one of `words`, which must outlive it. `target` holds the default.

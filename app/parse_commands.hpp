@@ -15,6 +15,7 @@ Result<Command> compare_command(const std::vector<std::string>& args);
 Result<Command> convert_command(const std::vector<std::string>& args);
 Result<Command> render_command(const std::vector<std::string>& args);
 Result<Command> locate_command(const std::vector<std::string>& args);
+Result<Command> evaluate_command(const std::vector<std::string>& args);
 Result<Command> slam_command(const std::vector<std::string>& args);
 Result<Command> live_command(const std::vector<std::string>& args);
 Result<Command> emulate_command(const std::vector<std::string>& args);

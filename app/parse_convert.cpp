@@ -68,7 +68,7 @@ Result<Command> convert_command(const Args& args) {
          source_option(command.nav_sources), quiet_option(command.output_options)}},
        std::move(echo_options),
        {"Meshes",
-        {{"--resolution", 0, "M", "edge length of a cell", number_text(MapOptions{}.resolution_m),
+        {{"--resolution", 0, "M", "edge length of a cell", number_text(MapOptions::kDefaultResolution_m),
           within(kResolutions, store_optional(command.resolution_m))}}},
        {"Maps and meshes",
         {{"--z", 0, "M", "write only the layer of cells at this height", "all layers", store_optional(layer_m)},

@@ -299,7 +299,7 @@ Result<Command> live_command(const Args& args) {
                 command.output_options.progress)}},
        {"Head",
         {{"--range", 0, "M", "range of a ping", number_text(typed.range_m),
-          within({0.5, 300.0}, store_number(typed.range_m))},
+          within(MicronSettings::kRanges_m, store_number(typed.range_m))},
          {"--sector", 0, "FROM,TO", "sector to scan, in degrees from ahead, counter-clockwise", "full turns",
           store_sector(typed.motion)},
          {"--step", 0, "DEG", "angle from beam to beam: a multiple of 0.9 (Ping360) or 0.05625 (Micron)",
@@ -307,7 +307,7 @@ Result<Command> live_command(const Args& args) {
          choice("--gain", kGains, "gain of the receiver", command.live.head.ping360.gain),
          {"--timeout", 0, "S", "seconds to wait for an answer, including the turn of the head",
           fmt::format("{}, of a Micron {}", command.live.head.ping360.timeout_s, command.live.head.micron.timeout_s),
-          within({0.01, 60.0}, store_optional(typed.timeout_s))}}},
+          within(kHeadTimeouts_s, store_optional(typed.timeout_s))}}},
        {"Navigation",
         {{"--nav", 0, "NAV",
           "source of the vehicle's pose: mavlink:udp://:PORT or mavlink:udp://ADDRESS:PORT, what its autopilot sends "

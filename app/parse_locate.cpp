@@ -55,6 +55,7 @@ Result<Command> locate_command(const Args& args) {
   std::string output, odometry;
   EchoArgs echoes;
   LocalizerOptions& localizer = command.localizer;
+  RecordingArgs& recording = command.recording;
   std::string calibration;
   OptionTable::Group echo_options = echo_group(echoes, WaterOfNav::kYes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
@@ -66,7 +67,7 @@ Result<Command> locate_command(const Args& args) {
       "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
       "several places fit equally well, all are reported. It says how many poses may be wrong; --only-sure leaves\n"
       "them out.",
-      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
+      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(recording.logs)}},
       {{"Output",
         {output_option(output,
                        "the trajectory of the vehicle as TUM lines 't x y z qx qy qz qw'; - is standard output"),
@@ -80,15 +81,15 @@ Result<Command> locate_command(const Args& args) {
          {"--max-z", 0, "M", "highest height of the map that is used", "0.5 above the sonar at the first beam",
           store_optional(command.max_z_m)}}},
        {"Navigation",
-        {nav_option(command.navs,
+        {nav_option(recording.path.navs,
                     "navigation log, as for 'slam': a heading, and velocity over ground where it has one"),
-         nav_source_option(command.nav_sources),
-         nav_offset_option(command.nav_offset_s),
-         nav_mount_option(command.nav.body_from_source),
+         nav_source_option(recording.path.nav_sources),
+         nav_offset_option(recording.path.nav_offset_s),
+         nav_mount_option(recording.nav_mounts),
          use_calibration_option(calibration, "correct --nav with a file of 'slam --calibration'"),
          {"--odometry", 0, "FILE", "odometry of the vehicle as TUM lines, in a frame that may drift, instead of --nav",
           "", store(odometry)},
-         mount_option(localizer.body_from_sonar)}},
+         mount_option(recording.body_from_sonar)}},
        {"Estimation",
         {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
           "first pose of the vehicle in metres and degrees, with standard deviations (0.5,10); or anywhere", "anywhere",
@@ -98,14 +99,14 @@ Result<Command> locate_command(const Args& args) {
          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}}},
        std::move(echo_options),
        {"Input",
-        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+        {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},
       {"pingvox locate dive.csv --map harbour.bt --nav dvl.csv -o dive.tum",
        "pingvox locate tank.csv --map tank.bt --start 0.1,0.2,45 -o tank.tum --json"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
-    if (const auto valid = echoes.validate(command.navs); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = echoes.validate(recording.path.navs); !valid) return tl::unexpected(valid.error());
     localizer.sound_speed_ratio = echoes.sound_speed_ratio();
-    command.nav_salinity = echoes.nav_salinity;
+    recording.nav_salinity = echoes.nav_salinity;
     localizer.filter = echoes.filter_options();
     localizer.echo = echoes.echo;
     if (const auto valid = localizer.validate(); !valid) return tl::unexpected(valid.error());
@@ -118,17 +119,17 @@ Result<Command> locate_command(const Args& args) {
       return usage_error("-o - and --json: both write to standard output");
     }
     if (!odometry.empty()) {
-      if (!command.navs.empty()) return usage_error("--nav and --odometry: exclude each other");
-      command.odometry = odometry;
+      if (!recording.path.navs.empty()) return usage_error("--nav and --odometry: exclude each other");
+      recording.path.poses = odometry;
     }
-    if (!calibration.empty()) command.calibration = calibration;
+    if (!calibration.empty()) recording.path.calibration = calibration;
     CommandFiles files;
-    files.read("LOG", command.logs);
+    files.read("LOG", recording.logs);
     files.read("--map", command.map);
-    files.read("--nav", command.navs);
+    files.read("--nav", recording.path.navs);
     files.read("--odometry", odometry);
     files.read("--use-calibration", calibration);
-    files.read("--fields", command.bag.file);
+    files.read("--fields", recording.bag.file);
     files.read("--config", parsed.config);
     files.write("-o", output);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());

@@ -1,8 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "command_files.hpp"
 #include "mapping_options.hpp"
@@ -15,7 +20,20 @@
 namespace pingvox::app {
 namespace {
 
-constexpr std::array kParents = {Choice<Parents>{"max", Parents::kMax}, Choice<Parents>{"mean", Parents::kMean}};
+/// Takes options out of their groups, in this order, for a group that comes first.
+OptionTable::Group options_first(std::vector<OptionTable::Group>& groups, std::string title,
+                                 std::initializer_list<std::string_view> names) {
+  OptionTable::Group first{std::move(title), {}};
+  for (const std::string_view name : names) {
+    for (OptionTable::Group& group : groups) {
+      const auto option = std::ranges::find(group.options, name, &Option::name);
+      if (option == group.options.end()) continue;
+      first.options.push_back(std::move(*option));
+      group.options.erase(option);
+    }
+  }
+  return first;
+}
 
 }  // namespace
 
@@ -25,13 +43,6 @@ Result<Command> map_command(const Args& args) {
   std::optional<Format> asked_format;
   BuildArgs build;
   MapOptions& map = build.map;
-  const Take thread_count = [&](const std::string& text) -> Result<void> {
-    int threads = 0;
-    if (auto taken = store_number(threads)(text); !taken) return taken;
-    if (threads < 1 || threads > 256) return usage_error(fmt::format("{} is not in 1..256", text));
-    build.build.threads = static_cast<std::size_t>(threads);
-    return {};
-  };
   const Take origin = [&](const std::string& text) -> Result<void> {
     const auto n = numbers_from<3>(text);
     if (!n) return tl::unexpected(n.error());
@@ -42,11 +53,7 @@ Result<Command> map_command(const Args& args) {
   };
 
   OptionTable::Group map_options = map_group(build);
-  map_options.options.push_back(choice("--parents", kParents,
-                                       "value of an inner node: maximum or mean of its children; only .pvx keeps it",
-                                       map.parents));
-  map_options.options.push_back(
-      {"--threads", 0, "N", "threads for tracing, 1..256; the map does not depend on it", "1", thread_count});
+  for (Option& option : tree_options(build)) map_options.options.push_back(std::move(option));
   for (Option& option : occupancy_options(command.occupancy)) map_options.options.push_back(std::move(option));
   OptionTable::Group sensor_options = sensor_group(build);
   Option origin_option{
@@ -54,6 +61,24 @@ Result<Command> map_command(const Args& args) {
       origin};
   origin_option.only_for = {std::string(kClouds)};
   sensor_options.options.push_back(std::move(origin_option));
+  std::vector<OptionTable::Group> groups = {
+      {"Output",
+       {output_option(output,
+                      "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply .pcd .xyz (occupied cells as "
+                      "points); - is standard output"),
+        choice("--format", kMapFormats, "format of the map where its name has none of these suffixes", asked_format,
+               "by suffix, else bt"),
+        json_option(command.output_options), quiet_option(command.output_options),
+        choice("--progress", kProgress, "show the progress on standard error; auto: on a terminal",
+               command.output_options.progress)}},
+      std::move(map_options),
+      std::move(sensor_options),
+      echo_group(build.echoes, WaterOfNav::kYes),
+      {"Input",
+       {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}};
+  groups.insert(groups.begin(), options_first(groups, "Most used",
+                                              {"--output", "--nav", "--nav-offset", "--poses", "--mount",
+                                               "--resolution", "--min-range", "--max-range", "--beam", "--threshold"}));
   const OptionTable table{
       "map",
       "Builds a 3D occupancy map from sonar logs, in the order given: detects the echo of each beam, marks the cells\n"
@@ -63,20 +88,7 @@ Result<Command> map_command(const Args& args) {
         ".graph and .log, .xtf of a multibeam) or "
         "clouds of points (PLY, PCD, XYZ), recognised by content; - is standard input",
         store_each(command.logs)}},
-      {{"Output",
-        {output_option(output,
-                       "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply .pcd .xyz (occupied cells as "
-                       "points); - is standard output"),
-         choice("--format", kMapFormats, "format of the map where its name has none of these suffixes", asked_format,
-                "by suffix, else bt"),
-         json_option(command.output_options), quiet_option(command.output_options),
-         choice("--progress", kProgress, "show the progress on standard error; auto: on a terminal",
-                command.output_options.progress)}},
-       map_options,
-       sensor_options,
-       echo_group(build.echoes, WaterOfNav::kYes),
-       {"Input",
-        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+      std::move(groups),
       {"pingvox map tank.csv -o tank.bt",
        "pingvox map dive1.csv dive2.csv -o reef.ot --poses dive.tum --mount 0.4,0,-0.2,180,0,0",
        "pingvox map dive.csv -o reef.ot --nav dive.tlog --nav-offset -1712333808.974",

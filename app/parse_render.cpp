@@ -32,6 +32,8 @@ constexpr std::array kShownImages = {Choice<ShownImage>{"raw", ShownImage::kRaw}
 constexpr std::array kEchoMarks = {Choice<EchoMarks>{"on", EchoMarks::kOn}, Choice<EchoMarks>{"off", EchoMarks::kOff}};
 constexpr std::array kBetweens = {Choice<BetweenBeams>{"interpolate", BetweenBeams::kInterpolate},
                                   Choice<BetweenBeams>{"nothing", BetweenBeams::kNothing}};
+constexpr std::array kUps = {Choice<MapAxes>{"ahead", MapAxes::kNotTold},
+                             Choice<MapAxes>{"north", MapAxes::kEastNorth}};
 constexpr std::array kPngOnly = {Choice<Format>{"png", Format::kPng}};
 
 /// The options of one panel. --beside copies them and changes some.
@@ -75,13 +77,16 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
                "layer of it",
                panel.view, "polar of a log, above of a map"),
         choice("--from", kSides, "side from which --view side looks, seen from the vehicle", args.from),
+        choice("--up", kUps, "what is up in a map from above: north (y), or ahead (x) of a vehicle that stands still",
+               panel.axes, "north where the map or --nav tells it"),
         {"--z", 0, "M", "height of the layer that --view slice draws", "none",
-         within({-kAnyHigh, kAnyHigh, Limits::Ends::kBothOut}, store_optional(args.slice_z_m))},
+         within(kFinite, store_optional(args.slice_z_m))},
         {"--min-z", 0, "M", "lowest height of a map that is drawn", "none", store_optional(panel.map_picture.min_z_m)},
         {"--max-z", 0, "M", "greatest height of a map that is drawn", "none",
          store_optional(panel.map_picture.max_z_m)},
-        {"--path", 0, "FILE", "draw a trajectory (TUM lines) over a map, in its frame, at most 5", "none",
-         store_each(panel.drawn_paths), Repeats::kEachCounts},
+        {"--path", 0, "FILE",
+         "draw a path over a map, in its frame, at most 5: a trajectory (TUM lines) or a navigation log",
+         "of a log, the path of --nav or --poses", store_each(panel.drawn_paths), Repeats::kEachCounts},
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as in 'pingvox info'",
          "all; cartesian: the fullest one", store_optional(panel.sweep)},
         choice("--show", kShownImages,
@@ -91,7 +96,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
         {"--size", 0, "PX",
          "size of the drawing without axes and legend, 16..3072: longer side of a map, largest width of a polar "
          "picture, both sides of a Cartesian one",
-         "1000; of several pictures 640", within({16.0, 3072.0}, store_optional(args.size_px))},
+         "1000; of several pictures 640", within(kPictureSizes_px, store_optional(args.size_px))},
         {"--caption", 0, "TEXT", "text below the picture", "the options that differ between pictures",
          store(panel.caption)}}},
       echo_group(args.build.echoes, WaterOfNav::kYes),
@@ -112,7 +117,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   }
   limit("--z", {view_kind(PictureView::kSlice)});
   limit("--from", {view_kind(PictureView::kSide)});
-  for (const char* name : {"--min-z", "--max-z", "--occupied", "--free", "--cut-depth", "--path"}) {
+  for (const char* name : {"--min-z", "--max-z", "--occupied", "--free", "--cut-depth", "--path", "--up"}) {
     limit(name, {std::string(kDrawnMaps)});
   }
   for (const char* name : {"--sweep", "--show", "--echoes"}) limit(name, {polar, cartesian});

@@ -6,13 +6,13 @@
 #include <string>
 #include <system_error>
 
+#include "base/suggest.hpp"
 #include "command_files.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
 #include "shared_options.hpp"
-#include "suggest.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -22,13 +22,119 @@ constexpr std::array kMotions = {Choice<Motion>{"still", Motion::kStill}, Choice
                                  Choice<Motion>{"loop", Motion::kLoop}, Choice<Motion>{"by-hand", Motion::kByHand}};
 constexpr std::array kCsvOnly = {Choice<Format>{"csv", Format::kCsv}};
 
+OptionTable::Group simulated_nav_group(NavSensorOptions& nav) {
+  OptionTable::Group group = {
+      "Navigation",
+      {number("--dvl-noise", "M/S", "noise of the velocity (standard deviation on each axis)", nav, nav.dvl_noise_m_s),
+       number("--dvl-outliers", "F", "fraction of velocities that are wrong by about 1 m/s", nav, nav.dvl_outliers),
+       number("--dvl-lost", "F", "fraction of time without bottom lock", nav, nav.dvl_lost),
+       number("--dvl-yaw", "DEG", "mounting angle of the DVL (standard deviation over seeds)", nav, nav.dvl_yaw_rad),
+       number("--dvl-scale", "F", "scale error of the velocity: true over measured, less 1 (likewise)", nav,
+              nav.dvl_scale),
+       number("--compass-deviation", "DEG", "amplitude of the deviation curve of the compass (likewise)", nav,
+              nav.compass_deviation_rad),
+       number("--attitude-noise", "DEG", "noise of roll, pitch and yaw (standard deviation)", nav,
+              nav.attitude_noise_rad),
+       number("--gyro-noise", "DEG/S", "noise of the turn rate (standard deviation)", nav, nav.gyro_noise_rad_s),
+       number("--gyro-drift", "DEG/S", "bias of the turn rate, and its change in ten minutes (standard deviation)", nav,
+              nav.gyro_drift_rad_s),
+       number("--depth-noise", "M", "noise of the depth (standard deviation)", nav, nav.depth_noise_m),
+       number("--nav-delay", "S", "seconds by which the times of the navigation are later than those of the sonar", nav,
+              nav.delay_s)}};
+  for (Option& option : group.options) option.only_with = {{"--nav"}};
+  return group;
+}
+
+OptionTable::Group simulated_sonar_group(SimulateCommand& command) {
+  SonarOptions& sonar = command.sonar;
+  return {
+      "Sonar",
+      {number("--seed", "N", "seed of the random numbers", sonar.seed),
+       {"--range", 0, "M", "range of a beam, where its last bin ends", "by world", store_optional(command.range_m)},
+       number("--bins", "N", "number of bins of a beam", sonar, sonar.bins),
+       {"--bin-length", 0, "M", "length of a bin, instead of --range", "by world",
+        store_optional(command.bin_length_m)},
+       number("--beams-per-turn", "N", "number of beams in a full turn", sonar, sonar.beams_per_turn),
+       number("--beam-width", "DEG", "horizontal beam width, full angle at half power", sonar, sonar.beam_width_rad),
+       number("--beam-height", "DEG", "vertical beam width, full angle at half power", sonar, sonar.beam_height_rad),
+       number("--side-lobes", "F", "side lobes: 0 none, 1 those of a rectangular transducer", sonar, sonar.side_lobes),
+       number("--gain", "F", "fraction of the loss with range that the receiver compensates, 0..1", sonar, sonar.gain),
+       number("--compression", "C", "exponent that maps amplitudes to 8 bits: 1 linear, less amplifies weak echoes",
+              sonar, sonar.compression),
+       number("--absorption", "DB/M", "absorption by the water, one way", sonar, sonar.absorption_db_per_m),
+       number("--ringing", "M", "range up to which the transducer rings", sonar, sonar.ringing_m),
+       number("--speckle", "F", "speckle: 0 none, 1 full fading of each bin", sonar, sonar.speckle),
+       number("--noise", "N", "mean background amplitude near the head, 0..255", sonar, sonar.noise),
+       number("--multipath", "F", "fraction of the mirrored sound that reaches other surfaces, 0..1", sonar,
+              sonar.multipath),
+       number("--bubbles", "F", "fraction of beams with only noise", sonar, sonar.silent),
+       number("--lost", "F", "fraction of beams missing in the log", sonar, sonar.lost),
+       config_option()}};
+}
+
+/// Refuses a bin length that is out of range, which may follow from the world.
+Result<void> check_sonar(const SimulateCommand& command) {
+  SonarOptions set = command.sonar;
+  const auto bins = static_cast<double>(command.sonar.bins);
+  set.bin_length_m =
+      command.range_m ? *command.range_m / bins : command.bin_length_m.value_or(command.sonar.bin_length_m);
+  if (const auto limits = set.errors().limits_of(&set.bin_length_m)) {
+    return usage_error(
+        command.range_m
+            ? fmt::format("--range: must be {} m with {} bins, is {} m", limits->text(1.0 / bins), command.sonar.bins,
+                          number_text(*command.range_m))
+            : fmt::format("--bin-length: must be {}, is {}", limits->text(), number_text(*command.bin_length_m)));
+  }
+  return set.validate();
+}
+
+Result<Command> finish_simulate(SimulateCommand command, const Parsed& parsed) {
+  const Result<Format> output_as = output_format(command.output, std::nullopt, kCsvOnly);
+  if (!output_as) return tl::unexpected(output_as.error());
+  command.drift.seed = command.nav_sensors.seed = command.sonar.seed;
+  if (command.range_m && command.bin_length_m) return usage_error("--range and --bin-length: exclude each other");
+  if (command.poses && command.motion != Motion::kStill)
+    return usage_error("--poses and --trajectory: exclude each other");
+  if (command.output == "-" && (command.poses || command.motion != Motion::kStill)) {
+    return usage_error("-o -: a moving vehicle has two files: give the name of the log");
+  }
+  if (command.truth_resolution_m) {
+    const auto lattice = Lattice::make(*command.truth_resolution_m);
+    if (!lattice) return tl::unexpected(lattice.error());
+  }
+  if (const auto valid = check_sonar(command); !valid) return tl::unexpected(valid.error());
+  for (const Result<void>& valid :
+       {command.tank.validate(), command.travel.validate(), command.drift.validate(), command.nav_sensors.validate()}) {
+    if (!valid) return tl::unexpected(valid.error());
+  }
+  CommandFiles files;
+  files.read("WORLD", command.world);
+  files.read("--poses", command.poses.value_or(""));
+  files.read("--config", parsed.config);
+  files.write("-o", command.output);
+  if (command.poses || command.motion != Motion::kStill) {
+    files.write("the trajectory beside -o,", std::filesystem::path(command.output).replace_extension(".tum").string());
+  }
+  files.write("--nav", command.nav.value_or(""));
+  if (command.truth) {
+    for (const char* name : {"poses.tum", "ranges.csv", "world.ply", "world.bt", "nav.toml"}) {
+      files.write("--truth", (std::filesystem::path(*command.truth) / name).string());
+    }
+  }
+  if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+  if (command.nav == "-") return usage_error("--nav -: give the name of a file");
+  for (const std::string& file : {command.output, command.nav.value_or(command.output)}) {
+    if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
+  }
+  return command;
+}
+
 }  // namespace
 
 Result<Command> simulate_command(const Args& args) {
   SimulateCommand command;
   TankOptions& tank = command.tank;
   SonarOptions& sonar = command.sonar;
-  NavSensorOptions& nav = command.nav_sensors;
   TravelOptions& travel = command.travel;
   DriftOptions& drift = command.drift;
   const Take world = [&](const std::string& text) -> Result<void> {
@@ -44,7 +150,7 @@ Result<Command> simulate_command(const Args& args) {
   };
   const std::vector<Condition> moves = {{"--trajectory", {"line", "lawn-mower", "loop", "by-hand"}}};
   const std::vector<Condition> drifts = {moves.front(), {"--poses"}};
-  OptionTable table{
+  const OptionTable table{
       "simulate",
       "Simulates the log of a scanning sonar in a world of your choice, with ground truth on request. The same "
       "options\n"
@@ -81,107 +187,14 @@ Result<Command> simulate_command(const Args& args) {
          only_with(drifts,
                    number("--heading-drift", "DEG", "error of the reported heading after a minute (standard deviation)",
                           drift, drift.heading_rad))}},
-       {"Navigation",
-        {number("--dvl-noise", "M/S", "noise of the velocity (standard deviation on each axis)", nav,
-                nav.dvl_noise_m_s),
-         number("--dvl-outliers", "F", "fraction of velocities that are wrong by about 1 m/s", nav, nav.dvl_outliers),
-         number("--dvl-lost", "F", "fraction of time without bottom lock", nav, nav.dvl_lost),
-         number("--dvl-yaw", "DEG", "mounting angle of the DVL (standard deviation over seeds)", nav, nav.dvl_yaw_rad),
-         number("--dvl-scale", "F", "scale error of the velocity: true over measured, less 1 (likewise)", nav,
-                nav.dvl_scale),
-         number("--compass-deviation", "DEG", "amplitude of the deviation curve of the compass (likewise)", nav,
-                nav.compass_deviation_rad),
-         number("--attitude-noise", "DEG", "noise of roll, pitch and yaw (standard deviation)", nav,
-                nav.attitude_noise_rad),
-         number("--gyro-noise", "DEG/S", "noise of the turn rate (standard deviation)", nav, nav.gyro_noise_rad_s),
-         number("--gyro-drift", "DEG/S", "bias of the turn rate, and its change in ten minutes (standard deviation)",
-                nav, nav.gyro_drift_rad_s),
-         number("--depth-noise", "M", "noise of the depth (standard deviation)", nav, nav.depth_noise_m),
-         number("--nav-delay", "S", "seconds by which the times of the navigation are later than those of the sonar",
-                nav, nav.delay_s)}},
-       {"Sonar",
-        {number("--seed", "N", "seed of the random numbers", sonar.seed),
-         {"--range", 0, "M", "range of a beam, where its last bin ends", "by world", store_optional(command.range_m)},
-         number("--bins", "N", "number of bins of a beam", sonar, sonar.bins),
-         {"--bin-length", 0, "M", "length of a bin, instead of --range", "by world",
-          store_optional(command.bin_length_m)},
-         number("--beams-per-turn", "N", "number of beams in a full turn", sonar, sonar.beams_per_turn),
-         number("--beam-width", "DEG", "horizontal beam width, full angle at half power", sonar, sonar.beam_width_rad),
-         number("--beam-height", "DEG", "vertical beam width, full angle at half power", sonar, sonar.beam_height_rad),
-         number("--side-lobes", "F", "side lobes: 0 none, 1 those of a rectangular transducer", sonar,
-                sonar.side_lobes),
-         number("--gain", "F", "fraction of the loss with range that the receiver compensates, 0..1", sonar,
-                sonar.gain),
-         number("--compression", "C", "exponent that maps amplitudes to 8 bits: 1 linear, less amplifies weak echoes",
-                sonar, sonar.compression),
-         number("--absorption", "DB/M", "absorption by the water, one way", sonar, sonar.absorption_db_per_m),
-         number("--ringing", "M", "range up to which the transducer rings", sonar, sonar.ringing_m),
-         number("--speckle", "F", "speckle: 0 none, 1 full fading of each bin", sonar, sonar.speckle),
-         number("--noise", "N", "mean background amplitude near the head, 0..255", sonar, sonar.noise),
-         number("--multipath", "F", "fraction of the mirrored sound that reaches other surfaces, 0..1", sonar,
-                sonar.multipath),
-         number("--bubbles", "F", "fraction of beams with only noise", sonar, sonar.silent),
-         number("--lost", "F", "fraction of beams missing in the log", sonar, sonar.lost),
-         config_option()}}},
+       simulated_nav_group(command.nav_sensors),
+       simulated_sonar_group(command)},
       {"pingvox simulate tank -o tank.csv", "pingvox simulate tank -o - --seed 7 | pingvox map - -o tank.bt",
        "pingvox simulate harbour -o harbour.csv --trajectory loop --truth harbour-truth",
        "pingvox simulate marina -o marina.csv --trajectory by-hand --nav nav.csv --truth marina-truth",
        "pingvox simulate wreck.stl -o wreck.csv --poses dive.tum --drift 0.3 --truth wreck-truth"},
       ""};
-  for (Option& option : table.groups[2].options) option.only_with = {{"--nav"}};
-  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
-    const Result<Format> output_as = output_format(command.output, std::nullopt, kCsvOnly);
-    if (!output_as) return tl::unexpected(output_as.error());
-    drift.seed = nav.seed = sonar.seed;
-    if (command.range_m && command.bin_length_m) return usage_error("--range and --bin-length: exclude each other");
-    if (command.poses && command.motion != Motion::kStill)
-      return usage_error("--poses and --trajectory: exclude each other");
-    if (command.output == "-" && (command.poses || command.motion != Motion::kStill)) {
-      return usage_error("-o -: a moving vehicle has two files: give the name of the log");
-    }
-    if (command.truth_resolution_m) {
-      const auto lattice = Lattice::make(*command.truth_resolution_m);
-      if (!lattice) return tl::unexpected(lattice.error());
-    }
-    // The bin length may follow from the world.
-    SonarOptions set = sonar;
-    const auto bins = static_cast<double>(sonar.bins);
-    set.bin_length_m = command.range_m ? *command.range_m / bins : command.bin_length_m.value_or(sonar.bin_length_m);
-    if (const auto limits = set.errors().limits_of(&set.bin_length_m); limits && command.range_m) {
-      return usage_error(fmt::format("--range: must be {} m with {} bins, is {} m", limits->text(1.0 / bins),
-                                     sonar.bins, number_text(*command.range_m)));
-    } else if (limits) {
-      return usage_error(
-          fmt::format("--bin-length: must be {}, is {}", limits->text(), number_text(*command.bin_length_m)));
-    }
-    if (const auto valid = set.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = tank.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = travel.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = drift.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = nav.validate(); !valid) return tl::unexpected(valid.error());
-    CommandFiles files;
-    files.read("WORLD", command.world);
-    files.read("--poses", command.poses.value_or(""));
-    files.read("--config", parsed.config);
-    files.write("-o", command.output);
-    if (command.poses || command.motion != Motion::kStill) {
-      files.write("the trajectory beside -o,",
-                  std::filesystem::path(command.output).replace_extension(".tum").string());
-    }
-    files.write("--nav", command.nav.value_or(""));
-    if (command.truth) {
-      for (const char* name : {"poses.tum", "ranges.csv", "world.ply", "world.bt", "nav.toml"}) {
-        files.write("--truth", (std::filesystem::path(*command.truth) / name).string());
-      }
-    }
-    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
-    if (const auto folder = check_folder_of(command.output); !folder) return tl::unexpected(folder.error());
-    if (command.nav == "-") return usage_error("--nav -: give the name of a file");
-    if (command.nav) {
-      if (const auto folder = check_folder_of(*command.nav); !folder) return tl::unexpected(folder.error());
-    }
-    return command;
-  });
+  return parse_command(table, args, [&](const Parsed& parsed) { return finish_simulate(command, parsed); });
 }
 
 }  // namespace pingvox::app

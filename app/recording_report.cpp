@@ -5,17 +5,20 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
-#include "calibration_file.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "option_names.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/folder_logs.hpp"
 #include "shell_words.hpp"
 #include "step_report.hpp"
 
@@ -48,7 +51,7 @@ Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& 
   options.nav_offset_s = path.nav_offset_s;
   options.nav_sources = path.nav_sources;
   if (path.calibration) {
-    Result<CalibrationFile> calibration = read_calibration(*path.calibration);
+    Result<CalibrationFile> calibration = read_file(*path.calibration).and_then(read_calibration);
     if (!calibration) return tl::unexpected(calibration.error());
     options.calibration = *std::move(calibration);
   }
@@ -69,6 +72,16 @@ Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions o
   return Recording::open(std::move(logs), std::move(options)).map_error([&](Error error) {
     const std::optional<Format> format = format_of_file(first);
     return advise_on_trajectory(format ? advise_on_log(std::move(error), *format) : std::move(error), navs);
+  });
+}
+
+Result<Recording> open_recording(const RecordingArgs& args) {
+  return recording_options(args.path, args.bag, args.damage).and_then([&](RecordingOptions options) {
+    options.nav_mounts = args.nav_mounts;
+    options.body_from_sonar = args.body_from_sonar;
+    options.nav_salinity = args.nav_salinity;
+    options.head = args.head;
+    return open_recording(input_files(args.logs), std::move(options));
   });
 }
 
@@ -127,6 +140,7 @@ std::string nav_text(const VehiclePath& path, std::size_t damaged) {
   } else if (attitude != position) {
     sources += " and " + on_one_line(position);
   }
+  if (!path.nav->depth.empty()) sources += ", depth by " + on_one_line(path.nav->depth);
   std::string text = fmt::format("{} from {}", counted(path.trajectory.poses().size(), "pose"), sources);
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += ", " + counted(gaps, "gap");
@@ -135,14 +149,102 @@ std::string nav_text(const VehiclePath& path, std::size_t damaged) {
   return text;
 }
 
-std::string frame_text(const VehiclePath::Nav& nav) {
+namespace {
+
+bool follows_log(const MapForecast& forecast, const MapOptions& asked) {
+  return !asked.resolution_m && forecast.range_m;
+}
+
+/// "40 s", "5 minutes", "2.1 hours"
+std::string about_text(double seconds) {
+  constexpr double kMinute_s = 60.0, kHour_s = 3600.0;
+  if (seconds < 2.0 * kMinute_s) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 2.0 * kHour_s) return fmt::format("{:.0f} minutes", seconds / kMinute_s);
+  return fmt::format("{:.1f} hours", seconds / kHour_s);
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console) {
+  std::vector<std::string> all;
+  for (const std::string& log : logs) {
+    std::error_code error;
+    if (log == "-" || !std::filesystem::is_directory(log, error)) {
+      all.push_back(log);
+      continue;
+    }
+    const Result<ByteStream> bag = ByteStream::open(log);
+    if (bag) {
+      all.push_back(log);
+      continue;
+    }
+    const Result<FolderLogs> found = logs_in_folder(log);
+    if (!found) return tl::unexpected(found.error());
+    if (found->logs.empty()) return tl::unexpected(bag.error());
+    std::string text = fmt::format("{}: takes {} in it", log, counted(found->logs.size(), "log"));
+    if (!found->nav.empty()) text += fmt::format("; navigation (--nav): {}", fmt::join(found->nav, ", "));
+    if (!found->others.empty()) text += fmt::format("; left out: {}", fmt::join(found->others, ", "));
+    console.say(text);
+    all.insert(all.end(), found->logs.begin(), found->logs.end());
+  }
+  return all;
+}
+
+std::string resolution_text(const MapForecast& forecast, const MapOptions& asked) {
+  std::string text = fmt::format("{} m", forecast.resolution_m);
+  if (follows_log(forecast, asked)) {
+    text += fmt::format(", by a range of {:.3g} m and a beam {:.3g} degrees wide", *forecast.range_m,
+                        rounded_degrees(forecast.beam_width_rad));
+  }
+  return text;
+}
+
+JsonObject resolution_json(const MapForecast& forecast, const MapOptions& asked) {
+  JsonObject json;
+  if (!follows_log(forecast, asked)) return json.add_null("range_m").add_null("beam_width_deg");
+  return json.add("range_m", *forecast.range_m).add("beam_width_deg", rounded_degrees(forecast.beam_width_rad));
+}
+
+std::string cost_text(const MapForecast& forecast) {
+  constexpr double kLong_s = 30.0, kMuch_bytes = 2e9;
+  const auto& cost = forecast.cost;
+  if (!cost || (cost->seconds < kLong_s && cost->bytes < kMuch_bytes)) return {};
+  return fmt::format(
+      "{:.0f} beams of {:.3g} m in cells of {} m may take up to {} and {}; cells of twice the size (--resolution {}) "
+      "take an eighth of it",
+      cost->beams, forecast.range_m.value_or(0.0), forecast.resolution_m, about_text(cost->seconds),
+      bytes_text(static_cast<std::size_t>(cost->bytes)), 2.0 * forecast.resolution_m);
+}
+
+std::string frame_text(const VehiclePath& path) {
+  assert(path.nav);
+  const VehiclePath::Nav& nav = *path.nav;
   if (nav.position.empty()) return frame_text(nav.attitude);
   if (!nav.origin_fix) {
-    return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position,
-                                   nav.frame_note.empty() ? "" : ": " + nav.frame_note));
+    const std::string note = nav.frame_note.empty() ? "" : ": " + nav.frame_note;
+    if (path.axes == MapAxes::kRightAhead) {
+      return on_one_line(
+          fmt::format("origin where {} began; x right, y ahead as the vehicle was then{}", nav.position, note));
+    }
+    if (!nav.north_by.empty()) {
+      return on_one_line(fmt::format("origin where {} began; x east, y north as far as {} points north{}", nav.position,
+                                     nav.north_by, note));
+    }
+    return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position, note));
   }
   return fmt::format("x east, y north of latitude {:.7f}, longitude {:.7f} degrees", nav.origin_fix->x() / kDegree_rad,
                      nav.origin_fix->y() / kDegree_rad);
+}
+
+std::string frame_text(const RecordingSlam& slam) {
+  const std::string& heading = slam.solution.report.heading;
+  if (!slam.frame_of || (slam.frame_of->position.empty() && !slam.frame_of->origin_fix)) return frame_text(heading);
+  VehiclePath path = still_path();
+  path.nav = slam.frame_of;
+  path.axes = MapAxes::kEastNorth;
+  const std::string text = frame_text(path);
+  return path.nav->north_by == heading ? text
+                                       : fmt::format("{}; north as far as {} points north", text, on_one_line(heading));
 }
 
 std::string frame_text(std::string_view heading) {
@@ -157,6 +259,23 @@ Result<void> check_ranges(const BuildOptions& options) {
                           nearest_m == EchoOptions::kDefaultBlanking_m ? " by default" : "", options.echo.max_range_m));
 }
 
+Result<void> check_reach(const Recording& recording, const VehiclePath& path, const Lattice& lattice) {
+  constexpr int kMaxDepth = 32;
+  constexpr double kKilometre_m = 1000.0;
+  const double reach_m = std::ldexp(lattice.resolution_m(), lattice.depth() - 1);
+  const auto is_outside = [&](const StampedPose& pose) {
+    return pose.map_from_body.translation().cwiseAbs().maxCoeff() > reach_m;
+  };
+  const auto& poses = path.trajectory.poses();
+  if (poses.empty() || !std::ranges::all_of(poses, is_outside)) return {};
+  const std::string name = recording.options().poses ? recording.options().poses->name() : recording.nav_names();
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: the poses are {:.6g} km from the origin, and the map reaches {:.6g} km: {}make them "
+                          "relative to a place near the dive",
+                          name, poses.front().map_from_body.translation().norm() / kKilometre_m, reach_m / kKilometre_m,
+                          lattice.depth() < kMaxDepth ? "use --depth 32 with -o FILE.pvx, or " : ""));
+}
+
 std::string_view gap_advice(const Recording& recording, const VehiclePath& path) {
   const auto& sources = recording.nav().log.sources();
   const bool has_steps = !path.steps.empty() ||
@@ -167,29 +286,29 @@ std::string_view gap_advice(const Recording& recording, const VehiclePath& path)
 
 std::string skipped_text(const MappedLog& mapped, std::string_view unit, const Trajectory& trajectory,
                          std::string_view gap_advice, const Lattice& lattice) {
-  std::string text;
-  const auto& [no_pose, blocked, too_long, outside] =
-      std::tie(mapped.report.no_pose, mapped.report.blocked, mapped.report.too_long, mapped.report.outside);
-  const std::size_t all = mapped.report.beams + no_pose.count + blocked.count + too_long.count;
-  const auto add = [&text, all, unit](const LeftOut& left_out, const std::string& reason, std::string_view advice) {
-    if (left_out.count == 0) return;
-    text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit, reason);
-    if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
-    text += fmt::format(" ({})", advice);
+  using Why = SkippedBeams::Why;
+  const auto advice_on = [&](Why why) -> std::string_view {
+    switch (why) {
+      case Why::kNoPose:
+        return gap_advice;
+      case Why::kBlocked:
+        return "they would record its second echo, or what lies around it";
+      case Why::kTooLong:
+        return "their range may be damaged; a shorter --max-range or a larger --resolution may do";
+      case Why::kOutside:
+        break;
+    }
+    return "lengths are in metres; a larger --resolution reaches farther, and so does --depth 32 with -o FILE.pvx";
   };
-  const auto& poses = trajectory.poses();
-  add(no_pose,
-      fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
-                  trajectory.gaps() > 0 ? ", or in one of their gaps" : ""),
-      gap_advice);
-  add(blocked, "in whose direction the map has an obstacle nearer than --min-range",
-      "they would record its second echo, or what lies around it");
-  add(too_long, "with ten times the range of the others, or of too many cells",
-      "their range may be damaged; a shorter --max-range or a larger --resolution may do");
-  add(outside,
-      fmt::format("outside of the map, which reaches {:.3g} m from its origin",
-                  std::ldexp(lattice.resolution_m(), lattice.depth() - 1)),
-      "lengths are in metres; a larger --resolution reaches farther");
+  const BuildReport& report = mapped.report;
+  const std::size_t all = report.beams + report.no_pose.count + report.blocked.count + report.too_long.count;
+  std::string text;
+  for (const auto& [why, left_out, reason] : skipped_beams(mapped, trajectory, lattice)) {
+    text += fmt::format("{}{} of {} {}s {}", text.empty() ? "" : "; ", left_out.count, all, unit,
+                        with_option_names(reason));
+    if (left_out.first_s) text += fmt::format(", the first at {:.3f} s", *left_out.first_s);
+    text += fmt::format(" ({})", advice_on(why));
+  }
   if (mapped.damaged > 0) {
     text += (text.empty() ? "" : "; ") + damage_text(mapped.damaged, mapped.first_damage) + " (--strict stops there)";
   }
@@ -206,14 +325,36 @@ Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size
   return {};
 }
 
-std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
-  // More than 100 times as long: likely in milliseconds.
+namespace {
+
+/// How long the poses and a log last [s], where the poses last more than 100 times as long: likely in milliseconds.
+std::optional<std::pair<double, double>> odd_durations_s(const Trajectory& trajectory, const BuildReport& report) {
   constexpr double kTooLong = 100.0;
-  if (!report.first_s || !report.last_s) return {};
+  if (!report.first_s || !report.last_s) return std::nullopt;
   const double poses_s = trajectory.poses().back().time_s - trajectory.poses().front().time_s;
   const double log_s = *report.last_s - *report.first_s;
-  if (!(log_s > 0.0 && poses_s > kTooLong * log_s)) return {};
-  return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", poses_s, log_s);
+  if (!(log_s > 0.0 && poses_s > kTooLong * log_s)) return std::nullopt;
+  return std::pair(poses_s, log_s);
+}
+
+}  // namespace
+
+std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
+  const auto lasts_s = odd_durations_s(trajectory, report);
+  if (!lasts_s) return {};
+  return fmt::format("its poses last {:.0f} s, the log {:.0f} s: are their times in seconds?", lasts_s->first,
+                     lasts_s->second);
+}
+
+std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& report) {
+  const auto lasts_s = odd_durations_s(trajectory, report);
+  if (!lasts_s) return {};
+  const auto in_log = std::ranges::count_if(trajectory.poses(), [&](const StampedPose& pose) {
+    return pose.time_s >= *report.first_s && pose.time_s <= *report.last_s;
+  });
+  if (static_cast<double>(in_log) >= lasts_s->second) return {};
+  return fmt::format("its poses last {:.0f} s, the log {:.0f} s, with {} in it: are their times in seconds?",
+                     lasts_s->first, lasts_s->second, counted(static_cast<std::size_t>(in_log), "pose"));
 }
 
 std::string odd_attitudes_text(const Trajectory& trajectory) {

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "json.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/mapping/build_options.hpp"
@@ -21,6 +22,8 @@ namespace pingvox::app {
 Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& bag, Damage damage);
 /// Recording::open, with advice in its errors.
 Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options);
+/// The same of all that a command reads.
+Result<Recording> open_recording(const RecordingArgs& args);
 /// Paths of the command line as files.
 std::vector<InputFile> input_files(const std::vector<std::string>& paths);
 /// Recording::open_log, with advice in its errors.
@@ -40,12 +43,30 @@ std::vector<std::string> warnings_of(const Recording& recording, const VehiclePa
 /// @param damaged  records of the navigation that could not be read
 std::string nav_text(const VehiclePath& path, std::size_t damaged);
 /// What the axes of the map are. REQUIRES a path from navigation.
-std::string frame_text(const VehiclePath::Nav& nav);
+std::string frame_text(const VehiclePath& path);
+std::string frame_text(const RecordingSlam& slam);
+/// Puts the logs of folders in their places, and says which those are; a folder that is one bag stays as it is.
+/// @return as InputFile::open for a folder without a log
+Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console);
+/// "0.25 m, by a range of 50 m and a beam of 3 degrees"
+/// @param asked  by the command line
+std::string resolution_text(const MapForecast& forecast, const MapOptions& asked);
+/// {"range_m": 50, "beam_width_deg": 3}: what a resolution follows, with null where it does not.
+JsonObject resolution_json(const MapForecast& forecast, const MapOptions& asked);
+/// What a map may take, where that is long or much; empty: it is not.
+std::string cost_text(const MapForecast& forecast);
 /// The same of a path that begins at 0, 0 and is turned as a heading says.
 std::string frame_text(std::string_view heading);
 
+/// The first line of a file of a calibration.
+inline constexpr std::string_view kCalibrationComment =
+    "# Calibration for --use-calibration; -sd is the standard deviation of the line above.\n";
+
 /// Checks that --max-range is above --min-range: kBadOption names the options.
 Result<void> check_ranges(const BuildOptions& options);
+
+/// kUnsupported, with how far they are and what helps, where all poses are outside of the map, as in UTM.
+Result<void> check_reach(const Recording& recording, const VehiclePath& path, const Lattice& lattice);
 
 /// What to do where beams have no pose.
 inline constexpr std::string_view kNavMustCover = "--nav must cover the log; --nav-offset corrects its clock";
@@ -63,6 +84,9 @@ Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size
 
 /// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
+/// "its poses last 29900 s, the log 27 s, with 1 pose in it: ..."; empty: nothing is odd. Navigation may well be longer
+/// than a log, but then has poses in it.
+std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& report);
 /// "its poses move but never turn: is the attitude known?"; empty: nothing is odd.
 std::string odd_attitudes_text(const Trajectory& trajectory);
 

@@ -8,9 +8,11 @@
 #include <system_error>
 #include <utility>
 
+#include "base/suggest.hpp"
 #include "mapping_options.hpp"
 #include "option_values.hpp"
-#include "suggest.hpp"
+#include "pingvox/io/bag_fields.hpp"
+#include "pingvox/io/file.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -20,6 +22,31 @@ tl::unexpected<Error> in_command(const OptionTable& table, const Error& error) {
   const bool is_named = error.message.starts_with(table.command + ":");
   if (error.code != Error::Code::kBadOption || is_named) return tl::unexpected(error);
   return tl::unexpected(Error{error.code, fmt::format("{}: {}", table.command, error.message)});
+}
+
+/// The fields of beams as "angle=heading,range=...", or the name of a TOML file with those of beams and navigation.
+Take store_fields(BagArgs& bag) {
+  return [&bag](const std::string& text) -> Result<void> {
+    if (text.find('=') != std::string::npos) {
+      Result<BeamFields> fields = beam_fields_from(text);
+      if (!fields) return tl::unexpected(fields.error());
+      bag.beams.fields = *std::move(fields);
+      return {};
+    }
+    bag.file = text;
+    const Result<FileBytes> file = read_file(text);
+    if (!file) return tl::unexpected(file.error());
+    Result<BagFields> fields = read_bag_fields(*file);
+    if (!fields) return tl::unexpected(fields.error());
+    bag.nav = std::move(fields->nav);
+    if (!fields->beams) return {};
+    if (!bag.beams.name.empty() && bag.beams.name != fields->beams->name) {
+      return usage_error(fmt::format("{}: its [[beams]] are of {}, not of --topic {}", file->name,
+                                     on_one_line(fields->beams->name), bag.beams.name));
+    }
+    bag.beams = *std::move(fields->beams);
+    return {};
+  };
 }
 
 }  // namespace
@@ -63,7 +90,7 @@ Option fields_option(BagArgs& bag) {
       "those that make a message of --topic a beam: angle, range (of the beam, in m) or bin (length of a bin, in m), "
       "intensities; of the angle also unit=rad|deg|grad, turn=ccw|cw and ahead=N",
       "by the type of the message; unit=rad,turn=ccw,ahead=0",
-      [&bag](const std::string& text) { return take_fields(text, bag); }};
+      store_fields(bag)};
   option.only_for = {std::string(kBeamLogs), std::string(kBagScans)};
   return option;
 }

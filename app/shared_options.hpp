@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 
-#include "bag_args.hpp"
 #include "commands.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"

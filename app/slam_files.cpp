@@ -12,10 +12,11 @@
 
 namespace pingvox::app {
 
-Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command) {
+Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, MapAxes axes,
+                                const SlamCommand& command) {
   auto written = write_file(command.output, [&](std::ostream& out) { return write_tum(trajectory, out); });
   if (!written || !command.map) return written;
-  return write_map(map, command.map_format, command.made_by, *command.map);
+  return write_map(map, command.map_format, command.made_by, *command.map, axes);
 }
 
 Result<void> write_covariances(const SlamSolution& solution, const std::string& path) {

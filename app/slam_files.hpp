@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
@@ -11,7 +12,8 @@
 namespace pingvox::app {
 
 /// Writes the trajectory, and the map if one is asked for.
-Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, const SlamCommand& command);
+Result<void> write_slam_results(const Trajectory& trajectory, const OccupancyMap& map, MapAxes axes,
+                                const SlamCommand& command);
 /// Writes the covariances of the poses as CSV (docs/formats.md).
 Result<void> write_covariances(const SlamSolution& solution, const std::string& path);
 

@@ -207,7 +207,7 @@ std::string slam_json(const Recording& recording, const RecordingSlam& slam, con
       .add("submap_loops", json_of(report.pairs.submap_loops))
       .add("velocity", velocity)
       .add("heading", report.heading)
-      .add("frame", frame_text(report.heading))
+      .add("frame", frame_text(slam))
       .add("nav_clock", json_of(*recording.nav_offset()))
       .add("nav_logs", nav_logs_json(recording.nav().clocks))
       .add("nav_others", json_of(inputs.others));
@@ -228,7 +228,9 @@ std::string slam_json(const Recording& recording, const RecordingSlam& slam, con
   }
   if (inputs.mapped) {
     JsonObject mapped;
-    json.add("map", mapped.add("beams", inputs.mapped->beams).add("skipped", inputs.mapped->skipped));
+    json.add("map", mapped.add("beams", inputs.mapped->beams)
+                        .add("skipped", inputs.mapped->skipped)
+                        .add("resolution", inputs.mapped->resolution_m));
   } else {
     json.add_null("map");
   }
@@ -257,7 +259,7 @@ std::string slam_text(const Recording& recording, const RecordingSlam& slam, con
   if (of_beams < report.beams) trajectory += fmt::format("; {} without one", counted(report.beams - of_beams, "beam"));
   if (const std::size_t gaps = solution.trajectory.gaps(); gaps > 0) trajectory += ", " + counted(gaps, "gap");
   text += report_line("trajectory", trajectory);
-  text += report_line("frame", frame_text(report.heading));
+  text += report_line("frame", frame_text(slam));
   if (command.slam.matching == Matching::kPairs) {
     text +=
         report_line("pairs", report.pairs.count == 0 ? "none: the poses come from velocity and headings alone"
@@ -287,6 +289,7 @@ std::string slam_text(const Recording& recording, const RecordingSlam& slam, con
   if (!report.not_observable.empty()) {
     text += report_line("not known", not_known_text(report.not_observable));
   }
+  if (inputs.mapped) text += report_line("cells", inputs.mapped->resolution);
   return text + report_line("seconds", fmt::format("{}; {:.0f} times real time", seconds_text(seconds),
                                                    recorded_s(solution) / seconds.total));
 }

@@ -14,6 +14,8 @@ namespace pingvox::app {
 /// Beams of all logs, on the map and left out of it.
 struct MappedBeams {
   std::size_t beams = 0, skipped = 0;
+  double resolution_m = 0.0;
+  std::string resolution = {};  ///< as text, with its reason
 };
 
 /// What else there is to report.

@@ -46,27 +46,27 @@ class MovedScans : public ScanSource {
 };
 
 Result<void> map_scans(const Trajectory& trajectory, const SlamCommand& command, OccupancyMap& map) {
-  Result<Log> log = ByteStream::open(command.logs.front()).and_then([&](ByteStream stream) {
-    return open_file_log(std::move(stream), command.damage, command.bag.beams);
+  Result<Log> log = ByteStream::open(command.recording.logs.front()).and_then([&](ByteStream stream) {
+    return open_file_log(std::move(stream), command.recording.damage, command.recording.bag.beams);
   });
   if (!log) return tl::unexpected(log.error());
   auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&*log);
-  if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.logs.front()));
+  if (scans == nullptr) return fail(Error::Code::kIo, fmt::format("{}: has changed", command.recording.logs.front()));
   MovedScans moved(std::move(*scans), trajectory);
-  const auto report = build_map(moved, Trajectory::still(Pose::Identity()), BuildOptions{}, map);
+  const auto report = build_map(moved, Trajectory::still(Pose::Identity()), command.build, map);
   return report ? Result<void>() : tl::unexpected(report.error());
 }
 
 }  // namespace
 
 Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> scans, Console& console) {
-  if (command.logs.size() > 1) {
-    return fail(Error::Code::kBadOption,
-                fmt::format("slam: unexpected argument '{}': scans of points are of one log", command.logs[1]));
+  if (command.recording.logs.size() > 1) {
+    return fail(Error::Code::kBadOption, fmt::format("slam: unexpected argument '{}': scans of points are of one log",
+                                                     command.recording.logs[1]));
   }
   const Stopwatch total;
   SlamSeconds seconds;
-  Result<OccupancyMap> map = OccupancyMap::make({.resolution_m = command.map_resolution_m});
+  Result<OccupancyMap> map = OccupancyMap::make(command.map_options);
   if (!map) return tl::unexpected(map.error());
   const Stopwatch read;
   ScanSlam slam;
@@ -78,7 +78,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
       return fail(
           Error::Code::kUnsupported,
           fmt::format("{}: its scans have no poses to begin with: 'pingvox map' maps them along --nav or --poses",
-                      name_of_input(command.logs.front())));
+                      name_of_input(command.recording.logs.front())));
     }
     slam.add(**scan);
   }
@@ -90,7 +90,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   const Result<ScanSlamSolution> solution = slam.solve();
   if (!solution) {
     return fail(solution.error().code,
-                fmt::format("{}: {}", name_of_input(command.logs.front()), solution.error().message));
+                fmt::format("{}: {}", name_of_input(command.recording.logs.front()), solution.error().message));
   }
   seconds.solve = solve.seconds();
   if (command.map) {
@@ -102,7 +102,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   }
   bar.clear();
   const Stopwatch write;
-  const auto written = write_slam_results(solution->trajectory, *map, command);
+  const auto written = write_slam_results(solution->trajectory, *map, MapAxes::kNotTold, command);
   if (!written) return tl::unexpected(written.error());
   if (command.graph) {
     const auto drawn = write_file(*command.graph, [&](std::ostream& out) { return write_g2o(solution->graph, out); });

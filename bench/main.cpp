@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/suggest.hpp"
 #include "app/vectors.hpp"
+#include "base/suggest.hpp"
 #include "bench.hpp"
 #include "speed/draw_ratios.hpp"
 
@@ -91,7 +91,7 @@ Result<Call> parse(const std::vector<std::string>& words) {
       }
       if (call.chosen.size() == before) {
         return fail(Error::Code::kBadOption, fmt::format("there is no '{}'{}; `pingvox bench list` has the names", word,
-                                                         app::did_you_mean(word, known_words())));
+                                                         did_you_mean(word, known_words())));
       }
     }
   }

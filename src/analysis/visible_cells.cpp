@@ -4,10 +4,9 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <string>
 #include <vector>
 
+#include "base/option_errors.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
@@ -97,14 +96,12 @@ class Search {
 }  // namespace
 
 Result<void> ViewOptions::validate() const {
-  std::string bad;
-  if (!(min_range_m >= 0.0)) bad += fmt::format(" min_range_m must be >= 0, is {};", min_range_m);
-  if (!(max_range_m > min_range_m)) bad += fmt::format(" max_range_m must exceed min_range_m, is {};", max_range_m);
-  if (!(height_rad > 0.0 && height_rad <= std::numbers::pi)) {
-    bad += fmt::format(" height_rad must be above 0 and at most pi, is {};", height_rad);
-  }
-  if (!bad.empty()) return fail(Error::Code::kBadOption, "view:" + bad);
-  return {};
+  OptionErrors errors;
+  errors.require("min_range_m", min_range_m, kMinRanges_m);
+  errors.require(max_range_m > min_range_m, "max_range_m", fmt::format("above min_range_m ({})", min_range_m),
+                 max_range_m);
+  errors.require("height_rad", height_rad, kHeights_rad);
+  return errors.result("view");
 }
 
 Result<OccupancyMap> visible_cells(const OccupancyMap& surface, const OccupancyMap& world,

@@ -9,6 +9,8 @@
 #include "device/internal/guarded_recorder.hpp"
 #include "device/internal/link.hpp"
 #include "device/internal/live_source.hpp"
+#include "device/micron_driver.hpp"
+#include "device/ping360_driver.hpp"
 #include "device/read_limit.hpp"
 #include "io/internal/frame_finder.hpp"
 #include "io/internal/ping_frame.hpp"

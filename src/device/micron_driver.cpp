@@ -1,4 +1,4 @@
-#include "pingvox/device/micron_driver.hpp"
+#include "device/micron_driver.hpp"
 
 #include <fmt/core.h>
 
@@ -15,8 +15,6 @@
 
 namespace pingvox {
 namespace {
-
-constexpr double kMinRange_m = 0.5, kMaxRange_m = 300.0;
 
 std::vector<std::uint8_t> ask(SeanetMessage message) {
   return make_seanet_frame(message, SeanetSender::kHost, {});
@@ -46,9 +44,9 @@ MicronSampling micron_sampling(double range_m) {
 
 Result<void> MicronSettings::validate() const {
   OptionErrors errors;
-  errors.require_within("range_m", range_m, kMinRange_m, kMaxRange_m);
+  errors.require_within("range_m", range_m, kRanges_m.low, kRanges_m.high);
   errors.require_within("step", step, 1, 255);
-  errors.require_within("timeout_s", timeout_s, 0.01, 60.0);
+  errors.require_within("timeout_s", timeout_s, kHeadTimeouts_s.low, kHeadTimeouts_s.high);
   if (sector) {
     errors.require_within("left", sector->left, 0, kMicronTurn - 1);
     errors.require_within("right", sector->right, 0, kMicronTurn - 1);

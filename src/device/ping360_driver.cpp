@@ -1,4 +1,4 @@
-#include "pingvox/device/ping360_driver.hpp"
+#include "device/ping360_driver.hpp"
 
 #include <fmt/core.h>
 
@@ -46,9 +46,9 @@ Ping360Sampling ping360_sampling(double range_m) {
 
 Result<void> Ping360Settings::validate() const {
   OptionErrors errors;
-  errors.require_within("range_m", range_m, 0.5, 100.0);
+  errors.require_within("range_m", range_m, kRanges_m.low, kRanges_m.high);
   errors.require_within("step_grad", step_grad, 1, 20);
-  errors.require_within("timeout_s", timeout_s, 0.01, 60.0);
+  errors.require_within("timeout_s", timeout_s, kHeadTimeouts_s.low, kHeadTimeouts_s.high);
   if (sector) {
     errors.require_within("first_grad", sector->first_grad, 0, kTurn_grad - 1);
     errors.require_within("width_grad", sector->width_grad, 1, kTurn_grad - 1);

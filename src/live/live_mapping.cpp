@@ -16,8 +16,10 @@
 #include "live/obstacle_sender.hpp"
 #include "live/open_head.hpp"
 #include "live/recordings.hpp"
+#include "mapping/internal/obstacle_sectors.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
-#include "pingvox/mapping/obstacle_sectors.hpp"
+#include "pingvox/mapping/map_resolution.hpp"
+#include "pingvox/recording/recording.hpp"
 
 namespace pingvox {
 namespace {
@@ -37,6 +39,24 @@ std::uint64_t since_1970_ms() {
 LiveMapping::Clock started(LiveMapping::Clock clock) {
   if (!clock) clock = steady_s;
   return [clock, start_s = clock()] { return clock() - start_s; };
+}
+
+/// As asked, else by the range of the pings; of a replay as `build_map` of its log has it.
+/// @param build  with the beam of the head
+double resolution_of(const LiveOptions& options, const BuildOptions& build) {
+  const LiveHead& head = options.head;
+  if (options.map.resolution_m) return *options.map.resolution_m;
+  if (head.kind != LiveHead::Kind::kReplay) {
+    const double range_m = head.kind == LiveHead::Kind::kMicron ? head.micron.range_m : head.ping360.range_m;
+    return resolution_for(std::min(range_m, build.echo.max_range_m), build.model.width_rad);
+  }
+  InputFile log(head.address);
+  if (log.is_read_once()) return MapOptions::kDefaultResolution_m;
+  const MapForecast forecast =
+      Recording::open({std::move(log)}, {.head = options.beam})
+          .and_then([&](const Recording& recording) { return forecast_map(recording, options.map, build); })
+          .value_or(MapForecast{});
+  return forecast.resolution_m;
 }
 
 ObstacleOptions obstacle_options(const LiveHead& head) {
@@ -187,9 +207,6 @@ class LiveMapping::Run {
 Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
   return detail::without_exceptions([&]() -> Result<LiveMapping> {
     if (const Result<void> valid = options.validate(); !valid) return tl::unexpected(valid.error());
-    Result<OccupancyMap> map = OccupancyMap::make(options.map);
-    if (!map) return tl::unexpected(map.error());
-    auto own_map = std::make_unique<OccupancyMap>(*std::move(map));
     Clock since_start = started(std::move(clock));
     const std::uint64_t start_ms = since_1970_ms();
     Result<std::optional<std::filesystem::path>> record = record_path(options, start_ms);
@@ -206,6 +223,11 @@ Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
     }
     BuildOptions build = options.build;
     build.model = options.beam.apply_to(build.model, (*source)->device());
+    MapOptions map_options = options.map;
+    map_options.resolution_m = resolution_of(options, build);
+    Result<OccupancyMap> map = OccupancyMap::make(map_options);
+    if (!map) return tl::unexpected(map.error());
+    auto own_map = std::make_unique<OccupancyMap>(*std::move(map));
     Result<BeamMapper> mapper = BeamMapper::make(build, *own_map);
     if (!mapper) return tl::unexpected(mapper.error());
     return LiveMapping(

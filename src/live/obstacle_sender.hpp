@@ -5,9 +5,9 @@
 #include <string>
 
 #include "device/internal/link.hpp"
+#include "mapping/internal/obstacle_sectors.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
-#include "pingvox/mapping/obstacle_sectors.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {

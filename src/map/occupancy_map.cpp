@@ -204,11 +204,18 @@ std::size_t bytes_of(const detail::BrickTree& tree) {
   return tree.groups.bytes() + tree.bricks.bytes();
 }
 
+/// Options that tell the resolution.
+MapOptions with_resolution(MapOptions options) {
+  options.resolution_m = options.resolution_m.value_or(MapOptions::kDefaultResolution_m);
+  return options;
+}
+
 }  // namespace
 
 Result<void> MapOptions::validate() const {
   OptionErrors errors;
-  if (const auto lattice = Lattice::make(resolution_m, depth); !lattice) errors.add(lattice.error().message);
+  if (const auto lattice = Lattice::make(resolution_m.value_or(kDefaultResolution_m), depth); !lattice)
+    errors.add(lattice.error().message);
   const float low = clamp.lowest.value(), high = clamp.highest.value();
   if (!(low < 0.0F && high > 0.0F && std::isfinite(low) && std::isfinite(high))) {
     errors.add(fmt::format("clamp must be finite with lowest < 0 < highest log-odds, is {} and {}", low, high));
@@ -226,14 +233,14 @@ Result<OccupancyMap> OccupancyMap::make(const MapOptions& options) {
 }
 
 OccupancyMap::OccupancyMap(const MapOptions& options)
-    : options_(options),
-      lattice_(options.resolution_m, options.depth),
+    : options_(with_resolution(options)),
+      lattice_(*options_.resolution_m, options.depth),
       tree_(std::make_unique<detail::BrickTree>(options.depth)) {
   assert(options.validate());
 }
 
 OccupancyMap::OccupancyMap(const MapOptions& options, std::unique_ptr<detail::BrickTree> tree)
-    : options_(options), lattice_(options.resolution_m, options.depth), tree_(std::move(tree)) {
+    : options_(with_resolution(options)), lattice_(*options_.resolution_m, options.depth), tree_(std::move(tree)) {
   assert(options.validate() && tree_->levels - tree_->extra_levels == options.depth && tree_->pruned);
   tree_->shortcut = detail::shortcut_of(*tree_);
 }

@@ -7,7 +7,7 @@
 #include "base/without_exceptions.hpp"
 #include "mapping/echo_mapper.hpp"
 #include "mapping/stopwatch.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
+#include "sonar/internal/echo_stream.hpp"
 
 namespace pingvox {
 
@@ -42,6 +42,7 @@ class BeamMapper::Stages {
   }
 
   const BuildReport& report() const { return report_; }
+  SweepCoverage coverage() const { return mapper_.coverage(); }
   std::optional<std::size_t> delay_beams() const { return stream_.delay_beams(); }
 
  private:
@@ -93,6 +94,10 @@ Result<void> BeamMapper::finish() {
 
 const BuildReport& BeamMapper::report() const {
   return stages_->report();
+}
+
+SweepCoverage BeamMapper::coverage() const {
+  return stages_->coverage();
 }
 
 std::optional<std::size_t> BeamMapper::delay_beams() const {

@@ -4,26 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/option_errors.hpp"
 #include "mapping/bundle_grid.hpp"
 #include "mapping/internal/beam_tracer.hpp"
+#include "mapping/internal/option_limits.hpp"
 #include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
 Result<void> BeamModelOptions::validate() const {
   OptionErrors errors;
-  if (!(width_rad > 0.0 && width_rad <= std::numbers::pi)) {
-    errors.add(fmt::format("beam width must be in (0, 180] degrees, is {:.6g}", width_rad / kDegree_rad));
-  }
-  if (!(height_rad > 0.0 && height_rad < std::numbers::pi)) {
-    errors.add(fmt::format("beam height must be in (0, 180) degrees, is {:.6g}", height_rad / kDegree_rad));
-  }
-  if (!(free_share > 0.0 && free_share <= 1.0))
-    errors.add(fmt::format("free share must be in (0, 1], is {}", free_share));
+  const auto require_angle = [&errors](const char* name, double angle_rad, const Limits& limits_rad) {
+    if (limits_rad.contain(angle_rad)) return;
+    errors.add(
+        fmt::format("{} must be {} degrees, is {:.6g}", name, limits_rad.text(kDegree_rad), angle_rad / kDegree_rad));
+  };
+  require_angle("beam width", width_rad, kBeamWidths_rad);
+  require_angle("beam height", height_rad, kBeamHeights_rad);
+  errors.require("free share", free_share, kFreeShares);
   if (!(hit > LogOdds(0.0F)) || !std::isfinite(hit.value())) {
-    errors.add(fmt::format("hit must be a probability in (0.5, 1), is {:.6g}", hit.probability()));
+    errors.add(fmt::format("hit must be a probability {}, is {:.6g}", kHits.text(), hit.probability()));
   }
   return errors.result("beam model");
 }

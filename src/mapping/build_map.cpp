@@ -56,6 +56,7 @@ Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_bod
   BuildReport report = report_of(*mapper, source, read_s);
   report.first_s = first_s;
   report.last_s = last_s;
+  report.coverage = mapper->coverage();
   if (progress) progress(report);
   return report;
 }

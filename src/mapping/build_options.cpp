@@ -5,6 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "mapping/internal/option_limits.hpp"
+#include "sonar/internal/option_limits.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -14,7 +17,7 @@ std::string common_errors(const BuildOptions& options) {
   const auto say = [&bad](const std::string& what) { bad += (bad.empty() ? "" : "; ") + what; };
   if (const auto model = options.model.validate(); !model) say(model.error().message);
   if (!(options.miss < LogOdds(0.0F)) || !std::isfinite(options.miss.value())) {
-    say(fmt::format("miss must be a probability in (0, 0.5), is {:.6g}", options.miss.probability()));
+    say(fmt::format("miss must be a probability {}, is {:.6g}", kMisses.text(), options.miss.probability()));
   }
   if (options.threads < 1 || options.threads > 256)
     say(fmt::format("threads must be in 1..256, are {}", options.threads));
@@ -36,8 +39,8 @@ Result<void> BuildOptions::validate() const {
   }
   say(common_errors(*this));
   if (!body_from_sensor.matrix().allFinite()) say("mount is not finite");
-  if (!(sound_speed_ratio > 0.1 && sound_speed_ratio < 10.0)) {
-    say(fmt::format("sound speed must be within a tenth and ten times of what the device assumed, is {} times",
+  if (!kSoundSpeedRatios.contain(sound_speed_ratio)) {
+    say(fmt::format("sound speed must be {} times what the device assumed, is {} times", kSoundSpeedRatios.text(),
                     sound_speed_ratio));
   }
   if (timing == Timing::kByBeam && vote != Vote::kPerBeam) say("beams that are mapped one by one need a vote per beam");
@@ -46,8 +49,9 @@ Result<void> BuildOptions::validate() const {
 
 Result<void> BuildOptions::validate_for_points() const {
   std::string bad = common_errors(*this);
-  if (!(echo.max_range_m > 0.0)) {
-    bad += fmt::format("{}max_range_m must be > 0, is {}", bad.empty() ? "" : "; ", echo.max_range_m);
+  if (!kFarthestRanges_m.contain(echo.max_range_m)) {
+    bad += fmt::format("{}max_range_m must be {}, is {}", bad.empty() ? "" : "; ", kFarthestRanges_m.text(),
+                       echo.max_range_m);
   }
   return result_of(bad);
 }

@@ -54,7 +54,11 @@ EchoStream echo_stream(const BuildOptions& options) {
 }
 
 EchoMapper::EchoMapper(const BuildOptions& options, OccupancyMap& map)
-    : options_(options), map_(&map), scan_(map.lattice(), options.miss), parts_(options.threads) {
+    : options_(options),
+      map_(&map),
+      scan_(map.lattice(), options.miss),
+      parts_(options.threads),
+      coverage_(map.lattice().resolution_m()) {
   for (std::size_t i = 0; i < options.threads; ++i) tracers_.emplace_back(options.model, options.echo.max_range_m);
 }
 
@@ -71,6 +75,7 @@ Result<void> EchoMapper::add(const EchoBeams& heard, std::span<const std::option
     if (report.no_pose.count == no_pose_before_) report.sweeps += heard.ended_sweeps;
     no_pose_before_ = report.no_pose.count;
   }
+  if (heard.ended_sweeps > 0 || options_.timing == Timing::kBySweep) coverage_.end_sweep(heard.ended_sweeps > 0);
   report.skipped = report.no_pose.count + report.outside.count + report.blocked.count + report.too_long.count;
   return {};
 }
@@ -140,8 +145,11 @@ Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<c
     placed.beams.push_back(beam);
     placed.heard.push_back(&one);
   }
-  for (const EchoBeam* const one : placed.heard) {
-    if (!one->echo || one->where == EchoBeam::Where::kBeyond) continue;
+  for (std::size_t n = 0; n < placed.heard.size(); ++n) {
+    const EchoBeam* const one = placed.heard[n];
+    const bool has_echo = one->echo && one->where == EchoBeam::Where::kInRange;
+    coverage_.add(one->time_s, placed.beams[n], options_.model.width_rad, has_echo);
+    if (!has_echo) continue;
     const int threshold = one->echo->threshold;
     ++report.echoes;
     report.min_threshold = std::min(report.min_threshold.value_or(threshold), threshold);

@@ -9,10 +9,11 @@
 #include "mapping/internal/beam_tracer.hpp"
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
+#include "mapping/sweep_coverage_counter.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/build_options.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
+#include "sonar/internal/echo_stream.hpp"
 
 namespace pingvox::detail {
 
@@ -52,6 +53,9 @@ class EchoMapper {
   /// @param report  of the beams so far
   void restart(const BuildReport& report);
 
+  /// What the sweeps heard that have ended.
+  SweepCoverage coverage() const { return coverage_.coverage(); }
+
  private:
   /// Beams that are to be mapped.
   struct Placed {
@@ -77,6 +81,7 @@ class EchoMapper {
   std::size_t no_pose_before_ = 0;       ///< beams left out before this sweep
   std::vector<double> recent_ranges_m_;  ///< of beams before, without those that are too long
   std::size_t too_long_in_row_ = 0;
+  SweepCoverageCounter coverage_;
   Stopwatch watch_;
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "nav/internal/nav_frames.hpp"
+#include "nav/internal/source_names.hpp"
 #include "pingvox/nav/time_span.hpp"
 
 namespace pingvox {
@@ -68,23 +69,6 @@ std::size_t valid_samples_of(const NavSource& source) {
   return static_cast<std::size_t>(std::ranges::count(source.samples, true, &NavSample::valid)) + few_left_out(source);
 }
 
-bool has_part_of(std::string_view name, std::span<const std::string_view> parts) {
-  for (std::size_t from = 0; from <= name.size();) {
-    const std::size_t to = std::min(name.find_first_of("/_-.:", from), name.size());
-    if (std::ranges::find(parts, name.substr(from, to - from)) != parts.end()) return true;
-    from = to + 1;
-  }
-  return false;
-}
-
-/// A goal, a setpoint or a marker, by the names of topic and frame.
-bool is_named_as_other(const NavSource& source) {
-  constexpr auto kParts = std::to_array<std::string_view>(
-      {"goal", "goals", "setpoint", "initialpose", "initial", "target", "waypoint", "waypoints", "clicked", "cmd",
-       "command", "desired", "reference", "marker", "markers", "aruco", "apriltag", "tag", "tags"});
-  return has_part_of(source.name, kParts) || has_part_of(source.child, kParts);
-}
-
 bool never_changes(const NavSource& source) {
   return std::ranges::all_of(source.samples,
                              [&](const NavSample& sample) { return sample.value == source.samples.front().value; });
@@ -102,12 +86,11 @@ bool is_bearing(const NavSource& attitude) {
   });
 }
 
-/// Why a source is not the vehicle's; empty: it may be.
+/// Why a source of something that is not named is not the vehicle's; empty: it may be.
 std::string reason_against(const NavSource& source) {
   if (source.quantity == NavQuantity::kVelocity || source.quantity == NavQuantity::kTurnRate) {
     return is_fixed_frame(source.frame) ? "in the axes of " + source.frame + ", not of the vehicle" : "";
   }
-  if (is_named_as_other(source)) return "a goal or a marker by its name";
   if (is_on_vehicle(source.frame)) return source.frame + " moves with the vehicle";
   return "";
 }
@@ -120,7 +103,7 @@ bool is_candidate(const NavSource& source) {
 /// attitude of something.
 int class_of(const NavSource& source) {
   enum : int { kVehicles, kOfTf, kInFixedFrame, kOfPart, kFixes, kStill, kElsewhere };
-  if (source.subject == NavSubject::kVehicle) {
+  if (is_of_vehicle(source.subject)) {
     if (source.quantity == NavQuantity::kFix) return kFixes;
     return is_on_vehicle(source.child) && !is_vehicle_frame(source.child) ? kOfPart : kVehicles;
   }
@@ -203,6 +186,17 @@ tl::unexpected<Error> no_such_source(const NavLog& log, const NamedSource& named
 }  // namespace
 
 void judge_subjects(std::vector<NavSource>& sources) {
+  std::set<std::string_view> positions;
+  for (const NavSource& source : sources) {
+    if (source.quantity == NavQuantity::kPosition) positions.insert(source.name);
+  }
+  for (NavSource& source : sources) {
+    if (source.subject == NavSubject::kChosen || source.subject == NavSubject::kOther) continue;
+    const std::string_view reason = other_by_name(source, !positions.contains(source.name));
+    if (reason.empty()) continue;
+    source.subject = NavSubject::kOther;
+    source.note = reason;
+  }
   std::map<std::string_view, const NavSource*> places;
   for (const NavSource& source : sources) {
     if (source.subject == NavSubject::kUncertain && source.quantity == NavQuantity::kPosition) {
@@ -313,7 +307,8 @@ Result<NavLog> choose_sources(const NavLog& log, std::span<const NamedSource> na
   for (NavSource& source : sources) {
     if (std::ranges::find(groups, group_of(source.quantity)) == groups.end()) continue;
     const bool is_chosen = std::ranges::any_of(named, [&](const NamedSource& one) { return is_named(source, one); });
-    source.subject = is_chosen ? NavSubject::kVehicle : NavSubject::kOther;
+    source.subject = is_chosen ? NavSubject::kChosen : NavSubject::kOther;
+    source.doubt.clear();
   }
   return NavLog::make(std::move(sources), log.clock());
 }

@@ -119,7 +119,7 @@ void turn_pose(NavSource& source, const PoseAxes& axes) {
 /// @param pose  axes of the pose of the same name, if it has one
 void turn_motion(NavSource& source, const PoseAxes* pose, std::string_view child) {
   const bool is_of_pose = pose != nullptr && !source.frame.empty() && source.frame == child;
-  const bool is_of_body = is_of_pose || source.subject == NavSubject::kVehicle || !is_fixed_frame(source.frame);
+  const bool is_of_body = is_of_pose || is_of_vehicle(source.subject) || !is_fixed_frame(source.frame);
   if (!is_of_body) return;
   const bool is_down = is_of_pose ? pose->is_body_down : axes_of(source.frame) == FrameAxes::kDown;
   if (!is_down) return;
@@ -137,6 +137,11 @@ FrameAxes axes_of(std::string_view frame) {
     if (part == "optical") axes = FrameAxes::kOptical;
   });
   return axes;
+}
+
+bool has_north(const NavSource& position) {
+  constexpr auto kNorth = std::to_array<std::string_view>({"ned", "enu"});
+  return position.frame.empty() || has_part(own_name(position.frame), kNorth);
 }
 
 Eigen::Matrix3d ours_from_optical() {

@@ -14,6 +14,8 @@
 #include "nav/depth_checks.hpp"
 #include "nav/plausible_values.hpp"
 #include "nav/source_steps.hpp"
+#include "nav/time_checks.hpp"
+#include "nav/turn_checks.hpp"
 #include "nav/water_column.hpp"
 #include "pingvox/nav/main_source.hpp"
 
@@ -126,6 +128,7 @@ Result<NavLog> NavLog::make(std::vector<NavSource> sources, NavClock clock) {
     }
     put_in_order(source);
     check_values(source);
+    check_times(source);
   }
   compare_turns(sources);
   compare_depths(sources);

@@ -62,6 +62,7 @@ Result<void> set_depths(NavSource& positions, const NavSource& depth) {
 struct PositionSource {
   NavSource source;  ///< in metres
   std::optional<Eigen::Vector3d> origin_fix;
+  std::string depth = {};  ///< the source that the heights of fixes are by
 };
 
 /// nullopt: the log has no position.
@@ -72,13 +73,15 @@ Result<std::optional<PositionSource>> position_source(const NavLog& log, const N
   if (found->quantity == NavQuantity::kPosition) return PositionSource{*std::move(found), std::nullopt};
   NavSource& fixes = *found;
   const Eigen::Vector3d origin = make_positions(fixes);
+  std::string depth_name;
   if (auto depth = depth_source(log)) {
     if (const auto checked = check_source(*depth); !checked) return tl::unexpected(checked.error());
     std::erase_if(depth->samples, [](const NavSample& sample) { return !sample.valid; });
     if (const auto done = set_depths(fixes, *depth); !done) return tl::unexpected(done.error());
+    depth_name = depth->name;
   }
   if (fixes.samples.empty()) return std::nullopt;
-  return PositionSource{std::move(fixes), origin};
+  return PositionSource{std::move(fixes), origin, std::move(depth_name)};
 }
 
 }  // namespace
@@ -133,7 +136,7 @@ Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {
     const double longest_step_s = std::min(summary_of(*attitude).longest_step_s, summary_of(*position).longest_step_s);
     Result<Trajectory> trajectory = Trajectory::make(std::move(poses), longest_step_s);
     if (!trajectory) return tl::unexpected(trajectory.error());
-    return NavTrajectory{*std::move(trajectory), attitude->name, position->name, (*found)->origin_fix};
+    return NavTrajectory{*std::move(trajectory), attitude->name, position->name, (*found)->origin_fix, (*found)->depth};
   });
 }
 
@@ -149,7 +152,7 @@ Result<NavTrajectory> nav_positions(const NavLog& log, double offset_s) {
     const NavSource& position = (*found)->source;
     Result<Trajectory> trajectory = trajectory_of(position, offset_s, translation);
     if (!trajectory) return tl::unexpected(trajectory.error());
-    return NavTrajectory{*std::move(trajectory), "", position.name, (*found)->origin_fix};
+    return NavTrajectory{*std::move(trajectory), "", position.name, (*found)->origin_fix, (*found)->depth};
   });
 }
 

@@ -11,11 +11,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/median.hpp"
 #include "nav/depth_checks.hpp"
 #include "nav/internal/upright.hpp"
+#include "nav/turn_checks.hpp"
 #include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
@@ -38,6 +40,8 @@ constexpr double kMaxTurnRate_rad_s = 15.0;
 constexpr double kMaxSpeed_m_s = 100.0;
 /// Half way round the Earth: beyond what any local frame, or UTM, has.
 constexpr double kMaxPosition_m = 2e7;
+/// No depth, and no height that a map is made at; Earth-centred positions are beyond it but for near the equator.
+constexpr double kMaxHeight_m = 1e5;
 /// The deepest sea is 10,935 m deep.
 constexpr double kMaxDepth_m = 12'000.0, kMaxPressure_pa = 1.3e8;
 /// Of water, air and electronics; Kelvins are beyond.
@@ -64,8 +68,10 @@ std::array<ValueLimit, 3> limits_of(NavQuantity quantity) {
       return {symmetric("latitude", "rad", "pi/2", kMaxLatitude_rad), angle("longitude"), kFree};
     case NavQuantity::kVelocity:
       return all(symmetric("velocity", "m/s", "100 m/s", kMaxSpeed_m_s));
-    case NavQuantity::kPosition:
-      return all(symmetric("position", "m", "half a turn of the Earth", kMaxPosition_m));
+    case NavQuantity::kPosition: {
+      const ValueLimit across = symmetric("position", "m", "half a turn of the Earth", kMaxPosition_m);
+      return {across, across, symmetric("height", "m", "100 km", kMaxHeight_m)};
+    }
     case NavQuantity::kDepth:
       return first(symmetric("depth", "m", "12 km", kMaxDepth_m));
     case NavQuantity::kPressure:
@@ -87,14 +93,29 @@ std::optional<std::size_t> impossible_number(const std::array<ValueLimit, 3>& li
   return std::nullopt;
 }
 
-/// "latitude of 54.3 rad is beyond pi/2: is it in degrees?"
+/// Whether an angle was a round number of degrees before it was brought to radians.
+bool was_in_degrees(double angle_rad) {
+  constexpr double kStep_deg = 0.01, kRounding = 1e-4;
+  const double steps = angle_rad / kDegree_rad / kStep_deg;
+  return std::fabs(steps - std::round(steps)) < kRounding;
+}
+
+/// "latitude of 54.3 rad is beyond pi/2: is it in degrees?", and where the log has degrees "latitude of 5418 degrees is
+/// beyond pi/2: is it in another unit?"
 std::string text_of(const ValueLimit& limit, double number) {
   constexpr double kMaxDegrees = 400.0;  // gradians, too
+  if (limit.unit.starts_with("rad") && was_in_degrees(number)) {
+    const bool may_be_longitude = limit.name == "latitude" && std::fabs(number) <= std::numbers::pi;
+    return fmt::format("{} of {:.6g} degrees{} is beyond {}: is it {}in another unit?", limit.name,
+                       number / kDegree_rad, limit.unit.substr(3), limit.limit,
+                       may_be_longitude ? "the longitude, or " : "");
+  }
   std::string text = fmt::format("{} of {:.6g} {} is beyond {}", limit.name, number, limit.unit, limit.limit);
   const bool is_angle = limit.unit.starts_with("rad");
   if (is_angle && std::fabs(number) <= kMaxDegrees) {
     return text + (limit.name == "yaw" ? ": is it in degrees, or does it count turns?" : ": is it in degrees?");
   }
+  if (limit.name == "height") return text + ": are positions Earth-centred (ECEF), or in another unit?";
   if (limit.unit == "degrees C" && number > 0.0) return text + ": is it in kelvins?";
   return text + ": is it in another unit?";
 }
@@ -202,18 +223,10 @@ std::string doubt_of_attitude(const NavSource& source) {
   return doubt_of_attitudes(rpy);
 }
 
-bool is_heading(const NavSource& source) {
-  return source.quantity == NavQuantity::kAttitude || source.quantity == NavQuantity::kHeading;
-}
-
-double yaw_in(const NavSource& heading, const NavSample& sample) {
-  return heading.quantity == NavQuantity::kAttitude ? sample.value.z() : sample.value.x();
-}
-
 /// A yaw that reads as degrees and is in radians begins anew within 6.28 degrees, while the vehicle turns on.
 std::string fault_of_wrapping(const NavSource& source) {
   constexpr double kTurn_rad = 2.0 * std::numbers::pi * kDegree_rad, kNearly = 0.85, kMost = 1.02;
-  if (!is_heading(source)) return {};
+  if (!tells_yaw(source)) return {};
   std::vector<double> yaws_rad;
   for (const NavSample& sample : source.samples) {
     if (sample.valid) yaws_rad.push_back(yaw_in(source, sample));
@@ -229,79 +242,6 @@ std::string fault_of_wrapping(const NavSource& source) {
     }
   }
   return {};
-}
-
-bool tells_turns(const NavSource& source) {
-  return is_usable(source) && (is_heading(source) || source.quantity == NavQuantity::kTurnRate);
-}
-
-double turn_between(const NavSource& heading, const NavSample& from, const NavSample& to) {
-  return std::remainder(yaw_in(heading, to) - yaw_in(heading, from), 2.0 * std::numbers::pi);
-}
-
-/// How far a vehicle turned since the first sample [rad].
-class TurnedYaw {
- public:
-  explicit TurnedYaw(const NavSource& source) {
-    double yaw_rad = 0.0;
-    const NavSample* before = nullptr;
-    for (const NavSample& sample : source.samples) {
-      if (!sample.valid) continue;
-      if (before != nullptr) {
-        yaw_rad += is_heading(source) ? turn_between(source, *before, sample)
-                                      : 0.5 * (sample.time_s - before->time_s) * (before->value.z() + sample.value.z());
-      }
-      before = &sample;
-      times_s_.push_back(sample.time_s);
-      yaws_rad_.push_back(yaw_rad);
-    }
-  }
-
-  /// nullopt: it does not cover the time, or has no sample near it.
-  std::optional<double> at(double time_s) const {
-    constexpr double kNear_s = 1.0;
-    const auto after = std::ranges::lower_bound(times_s_, time_s);
-    if (after == times_s_.begin() || after == times_s_.end()) return std::nullopt;
-    const auto i = static_cast<std::size_t>(after - times_s_.begin());
-    const double step_s = times_s_[i] - times_s_[i - 1];
-    if (step_s > kNear_s) return std::nullopt;
-    const double share = (time_s - times_s_[i - 1]) / step_s;
-    return yaws_rad_[i - 1] + share * (yaws_rad_[i] - yaws_rad_[i - 1]);
-  }
-
- private:
-  std::vector<double> times_s_, yaws_rad_;
-};
-
-/// How far a vehicle turns by another source for each radian that it turns by a heading; nullopt: they do not turn
-/// together, or not enough to tell.
-std::optional<double> turn_ratio(const TurnedYaw& other, const NavSource& heading) {
-  constexpr double kStep_s = 1.0, kMaxStep_s = 3.0, kLeast_rad = 0.05, kLeastCorrelation = 0.9;
-  constexpr std::size_t kFewest = 10;
-  double by_heading = 0.0, by_other = 0.0, by_both = 0.0;
-  std::size_t steps = 0;
-  const NavSample* before = nullptr;
-  for (const NavSample& sample : heading.samples) {
-    if (!sample.valid) continue;
-    const double step_s = before != nullptr ? sample.time_s - before->time_s : 0.0;
-    if (before != nullptr && step_s < kStep_s) continue;
-    if (before != nullptr && step_s <= kMaxStep_s) {
-      const auto from = other.at(before->time_s), to = other.at(sample.time_s);
-      if (from && to) {
-        const double turned_rad = turn_between(heading, *before, sample);
-        by_heading += turned_rad * turned_rad;
-        by_other += (*to - *from) * (*to - *from);
-        by_both += turned_rad * (*to - *from);
-        ++steps;
-      }
-    }
-    before = &sample;
-  }
-  const bool is_enough = steps >= kFewest && std::min(by_heading, by_other) >= kLeast_rad * kLeast_rad;
-  if (!is_enough || by_both * by_both < kLeastCorrelation * kLeastCorrelation * by_heading * by_other) {
-    return std::nullopt;
-  }
-  return std::fabs(by_both) / by_heading;
 }
 
 }  // namespace
@@ -322,31 +262,7 @@ void check_values(NavSource& source) {
   }
   // Of one quantity each.
   source.fault = fault_of_turning(source) + fault_of_speed(source) + fault_of_depth(source) + fault_of_wrapping(source);
-  source.doubt = doubt_of_attitude(source);
-}
-
-void compare_turns(std::span<NavSource> sources) {
-  // Degrees to a radian, give or take what scale and mount of a sensor change.
-  constexpr double kLeast = 45.0, kMost = 70.0;
-  for (NavSource& one : sources) {
-    if (!tells_turns(one)) continue;
-    std::optional<TurnedYaw> turned;
-    for (NavSource& heading : sources) {
-      if (&one == &heading || !is_heading(heading) || !is_usable(heading)) continue;
-      if (!turned) turned.emplace(one);
-      const std::optional<double> ratio = turn_ratio(*turned, heading);
-      if (!ratio) continue;
-      const auto fault = [](const NavSource& faulty, const NavSource& other, double times) {
-        return fmt::format("it turns {:.1f} times as far as the {} of {}: is it in degrees{}?", times,
-                           name_of(other.quantity), other.name, is_heading(faulty) ? "" : " per second");
-      };
-      if (*ratio >= kLeast && *ratio <= kMost) {
-        one.fault = fault(one, heading, *ratio);
-        break;
-      }
-      if (*ratio >= 1.0 / kMost && *ratio <= 1.0 / kLeast) heading.fault = fault(heading, one, 1.0 / *ratio);
-    }
-  }
+  if (std::string doubt = doubt_of_attitude(source); !doubt.empty()) source.doubt = std::move(doubt);
 }
 
 }  // namespace pingvox

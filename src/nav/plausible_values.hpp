@@ -17,9 +17,4 @@ bool is_possible(NavQuantity quantity, const Eigen::Vector3d& value);
 /// @param source  in order of time
 void check_values(NavSource& source);
 
-/// Compares how far the vehicle turns by the turn rates and by the attitudes and headings of a log: where one turns as
-/// the other but 57.3 times as far, it is in degrees, and its `fault` says so.
-/// @param sources  each in order of time
-void compare_turns(std::span<NavSource> sources);
-
 }  // namespace pingvox

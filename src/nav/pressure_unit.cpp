@@ -31,9 +31,15 @@ struct Reading {
   std::string text() const { return fmt::format("{}{}", unit, is_gauge ? " above that of air" : ""); }
 };
 
-constexpr std::array kReadings = {Reading{"Pa", 1.0, false},  Reading{"hPa", 1e2, false}, Reading{"kPa", 1e3, false},
-                                  Reading{"bar", 1e5, false}, Reading{"Pa", 1.0, true},   Reading{"hPa", 1e2, true},
-                                  Reading{"kPa", 1e3, true},  Reading{"bar", 1e5, true}};
+constexpr double kDbar_pa = 1e4, kPsi_pa = 6894.757, kMmHg_pa = 133.3224;
+
+// Nobody builds a gauge in mmHg for water.
+constexpr std::array kReadings = {
+    Reading{"Pa", 1.0, false},        Reading{"hPa", 1e2, false},       Reading{"kPa", 1e3, false},
+    Reading{"bar", 1e5, false},       Reading{"dbar", kDbar_pa, false}, Reading{"psi", kPsi_pa, false},
+    Reading{"mmHg", kMmHg_pa, false}, Reading{"Pa", 1.0, true},         Reading{"hPa", 1e2, true},
+    Reading{"kPa", 1e3, true},        Reading{"dbar", kDbar_pa, true},  Reading{"psi", kPsi_pa, true},
+    Reading{"bar", 1e5, true}};
 
 /// Air at sea level in any weather, and at the height of most lakes.
 bool begins_in_air(const Reading& reading, const NumberExtent& numbers) {
@@ -42,28 +48,49 @@ bool begins_in_air(const Reading& reading, const NumberExtent& numbers) {
   return !reading.is_gauge && lowest_pa >= kLowest_pa && lowest_pa <= kMaxInAir_pa;
 }
 
-/// Whether the numbers can have this meaning at all.
-bool is_possible_reading(const Reading& reading, const NumberExtent& numbers) {
-  constexpr double kDeepest_m = 1000.0, kLeastDive_m = 0.3, kWeather_m = 1.0, kThinAir_pa = 50'000.0;
-  const double lowest_m = reading.depth_m(numbers.lowest), highest_m = reading.depth_m(numbers.highest);
-  const bool is_usual_unit = reading.unit_pa == 1.0;
-  if (highest_m > kDeepest_m) return false;
-  if (!reading.is_gauge) {
-    // Air that is so thin is that of aircraft and of high mountains: it stays as thin.
-    const bool is_thin_air = is_usual_unit && reading.pascals(numbers.lowest) >= kThinAir_pa && highest_m <= 0.0;
-    return is_thin_air || begins_in_air(reading, numbers) || reading.pascals(numbers.lowest) > kMaxInAir_pa;
-  }
-  // A gauge is known by a dive and, unless it is in the usual unit, by its zero.
-  return highest_m >= kLeastDive_m && lowest_m >= -kWeather_m && (is_usual_unit || lowest_m < kLeastDive_m);
+/// Whether the pressure of air tells the unit: what is air in a larger one is a dive by a gauge in dbar as well.
+bool is_told_by_air(const Reading& reading, const NumberExtent& numbers) {
+  constexpr double kLargest_pa = 1e3;
+  return begins_in_air(reading, numbers) && reading.unit_pa <= kLargest_pa && reading.unit_pa != kMmHg_pa;
 }
 
-/// Leaves out what goes up and down faster than any vehicle, if that leaves something.
+/// The units of few sensors, which count only where most vehicles go: else no kPa could be told from them.
+bool is_rare(const Reading& reading) {
+  return reading.unit_pa == kDbar_pa || reading.unit_pa == kPsi_pa || reading.unit_pa == kMmHg_pa;
+}
+
+/// Where a recording begins.
+enum class Begin { kAtZeroOfGauge, kAnywhere };
+
+/// Whether the numbers can have this meaning at all. A gauge is known by a dive and, unless it is in Pa or in a rare
+/// unit, by its zero.
+bool is_possible_reading(const Reading& reading, const NumberExtent& numbers, Begin begin) {
+  constexpr double kDeepest_m = 1000.0, kDeepestOfRare_m = 100.0, kLeastDive_m = 0.3, kWeather_m = 1.0,
+                   kThinAir_pa = 50'000.0;
+  const double lowest_m = reading.depth_m(numbers.lowest), highest_m = reading.depth_m(numbers.highest);
+  if (highest_m > (is_rare(reading) ? kDeepestOfRare_m : kDeepest_m)) return false;
+  if (reading.unit_pa == kMmHg_pa && highest_m < kLeastDive_m) return false;
+  if (!reading.is_gauge) {
+    // Air that is so thin is that of aircraft and of high mountains: it stays as thin.
+    const bool is_thin_air =
+        reading.unit_pa == 1.0 && reading.pascals(numbers.lowest) >= kThinAir_pa && highest_m <= 0.0;
+    return is_thin_air || begins_in_air(reading, numbers) || reading.pascals(numbers.lowest) > kMaxInAir_pa;
+  }
+  const bool may_begin_deep = begin == Begin::kAnywhere || reading.unit_pa == 1.0 || is_rare(reading);
+  return highest_m >= kLeastDive_m && lowest_m >= -kWeather_m && (may_begin_deep || lowest_m < kLeastDive_m);
+}
+
+/// Leaves out what goes up and down faster than any vehicle. Where all readings do, that of air may stay.
 void leave_out_too_fast(std::vector<Reading>& readings, const NumberExtent& numbers) {
   constexpr double kFastest_m_s = 1.5;
   const auto is_too_fast = [&](const Reading& reading) {
     return numbers.speed_s * reading.unit_pa / kPascalsPerMetre > kFastest_m_s;
   };
-  if (!std::ranges::all_of(readings, is_too_fast)) std::erase_if(readings, is_too_fast);
+  const bool are_all = std::ranges::all_of(readings, is_too_fast);
+  std::erase_if(readings, [&](const Reading& reading) {
+    const bool may_stay = are_all && (reading.unit_pa == 1.0 || is_told_by_air(reading, numbers));
+    return is_too_fast(reading) && !may_stay;
+  });
 }
 
 /// The readings, each with how far it is off a known depth [m], the best one first; empty: the depth says nothing.
@@ -86,8 +113,12 @@ std::optional<Reading> reading_by_depth(const NavSource& source, const NavSource
   constexpr double kMost_m = 1.5, kTimes = 3.0, kApart_m = 1.0;
   const auto readings = readings_by_depth(source, depth);
   if (readings.empty() || readings[0].first > kMost_m) return std::nullopt;
-  if (readings[1].first < kTimes * readings[0].first + kApart_m) return std::nullopt;
-  return readings[0].second;
+  const auto& [off_m, reading] = readings.front();
+  // mmHg is too rare to make a better fit doubtful.
+  const auto next = std::ranges::find_if(readings.begin() + 1, readings.end(),
+                                         [](const auto& other) { return other.second.unit_pa != kMmHg_pa; });
+  if (next->first < kTimes * off_m + kApart_m) return std::nullopt;
+  return reading;
 }
 
 /// The possible meanings; one: it is that.
@@ -100,12 +131,15 @@ std::vector<Reading> readings_of(const NavSource& source, const NumberExtent& nu
     if (const auto reading = reading_by_depth(source, *depth); reading && is_stated(*reading)) return {*reading};
   }
   std::vector<Reading> possible;
-  std::ranges::copy_if(kReadings, std::back_inserter(possible), [&](const Reading& reading) {
-    return is_stated(reading) && is_possible_reading(reading, numbers);
-  });
-  leave_out_too_fast(possible, numbers);
+  for (const Begin begin : {Begin::kAtZeroOfGauge, Begin::kAnywhere}) {
+    std::ranges::copy_if(kReadings, std::back_inserter(possible), [&](const Reading& reading) {
+      return is_stated(reading) && is_possible_reading(reading, numbers, begin);
+    });
+    leave_out_too_fast(possible, numbers);
+    if (!possible.empty()) break;
+  }
   for (const Reading& reading : possible) {
-    if (begins_in_air(reading, numbers)) return {reading};
+    if (is_told_by_air(reading, numbers)) return {reading};
   }
   const auto is_usual = [](const Reading& reading) { return reading.unit_pa == 1.0 && !reading.is_gauge; };
   const auto usual = std::ranges::find_if(possible, is_usual);
@@ -118,14 +152,14 @@ std::string fault_of(const std::vector<Reading>& possible, const NumberExtent& n
   const std::string range = fmt::format("its numbers, from {:.6g} to {:.6g},", numbers.lowest, numbers.highest);
   if (possible.empty()) {
     return range + " are no pressures of air or water in " +
-           (unit == PressureUnit::kOpen ? "Pa, hPa, kPa or bar" : "Pa");
+           (unit == PressureUnit::kOpen ? "Pa, hPa, kPa, bar, dbar, psi or mmHg" : "Pa");
   }
   std::string text;
   for (const Reading& reading : possible) {
     text += fmt::format("{}{} ({:.1f} to {:.1f} m deep)", text.empty() ? "" : " or ", reading.text(),
                         reading.depth_m(numbers.lowest), reading.depth_m(numbers.highest));
   }
-  return fmt::format("{} may be {}, and no depth of the log says which", range, text);
+  return fmt::format("{} may be {}, and no depth of the log says which: a depth or a stated unit does", range, text);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "pingvox/nav/trajectory_steps.hpp"
+#include "nav/internal/trajectory_steps.hpp"
 
 #include <algorithm>
 #include <cstddef>

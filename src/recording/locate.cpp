@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "io/internal/beams_in_order.hpp"
-#include "pingvox/nav/trajectory_steps.hpp"
+#include "nav/internal/trajectory_steps.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/slam/odometry.hpp"
 

@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/recording/recording.hpp"
-#include "pingvox/slam/picture_turns.hpp"
+#include "slam/internal/picture_turns.hpp"
 #include "sonar/internal/beam_source_decorator.hpp"
 
 namespace pingvox {
@@ -78,18 +80,15 @@ Result<BuildReport> build(const OpenedLog& log, const Trajectory& trajectory, co
 }
 
 /// Why nothing of a log is on the map.
-std::string why_nothing(const MappedLog& mapped) {
-  const BuildReport& report = mapped.report;
+std::string why_nothing(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice) {
   std::string text;
   const auto add_reason = [&text](std::size_t count, std::string_view reason) {
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, reason);
+    text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, reason);
   };
-  add_reason(report.no_pose.count, "outside the time of the poses");
-  add_reason(report.blocked.count,
-             "left out: the map has an obstacle nearer than the blanking range in their direction");
-  add_reason(report.too_long.count, "of a range out of proportion");
-  add_reason(report.outside.count, "outside of the map");
-  add_reason(mapped.damaged, fmt::format("damaged, the first: {}", mapped.first_damage));
+  for (const SkippedBeams& skipped : skipped_beams(mapped, trajectory, lattice)) {
+    add_reason(skipped.left_out.count, skipped.reason);
+  }
+  if (mapped.damaged > 0) add_reason(mapped.damaged, fmt::format("damaged, the first: {}", mapped.first_damage));
   return text.empty() ? "it is empty" : text;
 }
 
@@ -106,6 +105,36 @@ Result<Background> learn_background(const Recording& recording, double range_m) 
   return fail(Error::Code::kUnsupported,
               fmt::format("{}: background_m: needs {} beams of one direction",
                           logs.size() == 1 ? logs.front().name() : "the logs", Background::kMinBeams));
+}
+
+Result<void> subtract_background(const Recording& recording, OpenedLog& log, std::optional<Background>& background) {
+  auto* const beams = std::get_if<std::unique_ptr<BeamSource>>(&log.log);
+  const std::optional<double>& range_m = recording.options().background_m;
+  if (beams == nullptr || !range_m) return {};
+  if (!background) {
+    Result<Background> learned = learn_background(recording, *range_m);
+    if (!learned) return tl::unexpected(learned.error());
+    background = *std::move(learned);
+  }
+  *beams = subtract_background(std::move(*beams), *background);
+  return {};
+}
+
+std::vector<SkippedBeams> skipped_beams(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice) {
+  using Why = SkippedBeams::Why;
+  const BuildReport& report = mapped.report;
+  const auto& poses = trajectory.poses();
+  std::vector<SkippedBeams> all = {
+      {Why::kNoPose, report.no_pose,
+       fmt::format("outside the time of the poses, {:.3f} s to {:.3f} s{}", poses.front().time_s, poses.back().time_s,
+                   trajectory.gaps() > 0 ? ", or in one of their gaps" : "")},
+      {Why::kBlocked, report.blocked, "in whose direction the map has an obstacle nearer than min_range_m"},
+      {Why::kTooLong, report.too_long, "with ten times the range of the others, or of too many cells"},
+      {Why::kOutside, report.outside,
+       fmt::format("outside of the map, which reaches {:.3g} m from its origin",
+                   std::ldexp(lattice.resolution_m(), lattice.depth() - 1))}};
+  std::erase_if(all, [](const SkippedBeams& skipped) { return skipped.left_out.count == 0; });
+  return all;
 }
 
 bool MappedLog::is_nothing() const {
@@ -176,6 +205,7 @@ void add(const BuildReport& log, BuildReport& all) {
   }
   all.cells_freed += log.cells_freed;
   all.cells_hit += log.cells_hit;
+  if (log.coverage.sweeps > all.coverage.sweeps) all.coverage = log.coverage;
   all.seconds.read += log.seconds.read;
   all.seconds.detect += log.seconds.detect;
   all.seconds.trace += log.seconds.trace;
@@ -191,24 +221,21 @@ Result<RecordingMap> build_map(const Recording& recording, const MapOptions& map
 
 Result<RecordingMap> build_map(const Recording& recording, VehiclePath path, const MapOptions& map,
                                const BuildOptions& build, const Progress& progress) {
-  Result<OccupancyMap> made = OccupancyMap::make(map);
+  Result<MapForecast> forecast = forecast_map(recording, map, build);
+  if (!forecast) return tl::unexpected(forecast.error());
+  MapOptions map_options = map;
+  map_options.resolution_m = forecast->resolution_m;
+  Result<OccupancyMap> made = OccupancyMap::make(map_options);
   if (!made) return tl::unexpected(made.error());
-  RecordingMap mapped{*std::move(made), {}, std::move(path), {}};
+  RecordingMap mapped{*std::move(made), *std::move(forecast), {}, std::move(path), {}};
   BuildOptions options = build;
   if (recording.water()) options.sound_speed_ratio = sound_speed_ratio(*recording.water());
   std::optional<Background> background;
   for (std::size_t i = 0; i < recording.logs().size(); ++i) {
-    Result<OpenedLog> log = recording.open_log(i);
+    auto opened = mapped.forecast.opened.extract(i);
+    Result<OpenedLog> log = opened ? std::move(opened.mapped()) : recording.open_log(i);
     if (!log) return tl::unexpected(log.error());
-    if (auto* const beams = std::get_if<std::unique_ptr<BeamSource>>(&log->log);
-        beams != nullptr && recording.options().background_m) {
-      if (!background) {
-        Result<Background> learned = learn_background(recording, *recording.options().background_m);
-        if (!learned) return tl::unexpected(learned.error());
-        background = *std::move(learned);
-      }
-      *beams = subtract_background(std::move(*beams), *background);
-    }
+    if (const auto done = subtract_background(recording, *log, background); !done) return tl::unexpected(done.error());
     Result<MappedLog> done = map_log(recording, *log, mapped.path, options, mapped.map, progress);
     if (!done) return tl::unexpected(done.error());
     add(done->report, mapped.report);
@@ -216,7 +243,8 @@ Result<RecordingMap> build_map(const Recording& recording, VehiclePath path, con
   }
   if (std::ranges::all_of(mapped.logs, &MappedLog::is_nothing)) {
     const MappedLog& first = mapped.logs.front();
-    return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", first.name, why_nothing(first)));
+    return fail(Error::Code::kCorrupt, fmt::format("{}: nothing could be mapped: {}", first.name,
+                                                   why_nothing(first, mapped.path.trajectory, mapped.map.lattice())));
   }
   return mapped;
 }

@@ -16,7 +16,7 @@
 #include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
-#include "pingvox/slam/picture_turns.hpp"
+#include "slam/internal/picture_turns.hpp"
 
 namespace pingvox {
 namespace {
@@ -133,16 +133,21 @@ std::string zones_text(const std::vector<TimeZone>& zones, double zero_s) {
   return zones.size() > kMost ? text + ", or others" : text;
 }
 
-/// @param unknown  why the times do not tell it, for the error
-Result<NavOffset> by_picture(const NavLog& nav, const SonarLog& sonar, const std::string& unknown) {
+/// @param nav_span  of its poses
+/// @param unknown   why the times do not tell it, for the error
+Result<NavOffset> by_picture(const NavLog& nav, const TimeSpan& nav_span, const SonarLog& sonar,
+                             const std::string& unknown) {
   const auto times = times_of(sonar, Want::kTurns);
   if (!times) return tl::unexpected(times.error());
   const Result<ClockOffset> found = clock_offset(*times ? (*times)->changes : std::vector<YawChange>(), nav);
   if (!found) {
-    return fail(Error::Code::kUnsupported,
-                fmt::format("{}: {} and cannot be found: {}: give nav_offset_s, the seconds to add to the times of the "
-                            "navigation (0: one clock)",
-                            sonar.file.name(), unknown, found.error().message));
+    return fail(
+        Error::Code::kUnsupported,
+        fmt::format(
+            "{}: {} and cannot be found: {}: give nav_offset_s, the seconds to add to the times of the "
+            "navigation (0: one clock{})",
+            sonar.file.name(), unknown, found.error().message,
+            *times ? fmt::format("; {:.3f} lets both begin at once", (*times)->span.from_s - nav_span.from_s) : ""));
   }
   return NavOffset{.offset_s = found->offset_s,
                    .deviation_s = found->deviation_s,
@@ -200,18 +205,24 @@ Result<NavOffset> find_nav_offset(const NavLog& nav, const SonarLog& sonar) {
   const Result<std::optional<SonarTimes>> times = times_of(sonar, Want::kSpan, nav_span);
   if (!times || !*times) return kOneClock;  // mapping the log reports the error
   const TimeSpan& span = (*times)->span;
+  constexpr double kTooLate_s = 1e11;
+  if (span.from_s >= kTooLate_s) {
+    return fail(Error::Code::kCorrupt,
+                fmt::format("{}: its times begin at {:.6g} s, thousands of years after 1970: are they in ms, us or ns?",
+                            sonar.file.name(), span.from_s));
+  }
   if (nav.clock() == NavClock::kUnix) {
     auto found = by_dates(*nav_span, sonar, **times);
     if (found) return *std::move(found);
-    return by_picture(nav, sonar, found.error());
+    return by_picture(nav, *nav_span, sonar, found.error());
   }
   if (nav.clock() == NavClock::kBoot) {
-    return by_picture(nav, sonar,
+    return by_picture(nav, *nav_span, sonar,
                       "the offset between its clock and that of the navigation, which counts from the start of a "
                       "device, is not known");
   }
   if (overlaps(span, *nav_span)) return kOneClock;
-  return by_picture(nav, sonar,
+  return by_picture(nav, *nav_span, sonar,
                     fmt::format("does not overlap the navigation in time ({}), so that the offset between their "
                                 "clocks is not known",
                                 apart_text(span, *nav_span)));

@@ -10,6 +10,7 @@
 
 #include "base/median.hpp"
 #include "base/option_errors.hpp"
+#include "sonar/internal/option_limits.hpp"
 
 namespace pingvox {
 namespace {
@@ -67,7 +68,8 @@ Result<void> RecordingOptions::validate() const {
   if (!has_nav && !nav_sources.empty()) errors.add("nav_sources have no effect without nav");
   if (!has_nav && nav_salinity) errors.add("nav_salinity needs nav");
   if (!has_nav && calibration) errors.add("calibration has no effect without nav");
-  if (background_m) errors.require(*background_m > 0.0, "background_m", "above 0", *background_m);
+  if (nav_offset_s) errors.require("nav_offset_s", *nav_offset_s, kNavOffsets_s);
+  if (background_m) errors.require("background_m", *background_m, kBackgroundRanges_m);
   return errors.result("recording");
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/median.hpp"
 #include "io/internal/beams_in_order.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/slam/causal_replay.hpp"
@@ -74,10 +76,35 @@ Result<void> add_beams(const Recording& recording, OpenedLog log, Estimator& est
   return {};
 }
 
+/// Moves the trajectory to where the navigation alone has it, so that maps along both lie on each other: by the median
+/// of where positions say that it is, and by the first pose of dead reckoning, whose errors add up.
+void move_to_path(const Recording& recording, RecordingSlam& slam) {
+  if (recording.options().nav.empty()) return;
+  const Result<VehiclePath> path = recording.path();
+  if (!path || !path->nav || path->axes != MapAxes::kEastNorth) return;
+  std::vector<double> east_m, north_m, up_m;
+  for (const StampedPose& pose : slam.solution.trajectory.poses()) {
+    const std::optional<Pose> there = path->trajectory.at(pose.time_s);
+    if (!there) continue;
+    const Eigen::Vector3d apart_m = there->translation() - pose.map_from_body.translation();
+    east_m.push_back(apart_m.x());
+    north_m.push_back(apart_m.y());
+    up_m.push_back(apart_m.z());
+    if (path->nav->position.empty()) break;
+  }
+  if (east_m.empty()) return;
+  const Eigen::Translation3d move(median(std::move(east_m)), median(std::move(north_m)), median(std::move(up_m)));
+  Trajectory& trajectory = slam.solution.trajectory;
+  std::vector<StampedPose> poses = trajectory.poses();
+  for (StampedPose& pose : poses) pose.map_from_body = move * pose.map_from_body;
+  trajectory = *Trajectory::make(std::move(poses), trajectory.longest_step_s(), trajectory.cuts());
+  slam.frame_of = path->nav;
+}
+
 }  // namespace
 
 VehiclePath RecordingSlam::path() const {
-  VehiclePath path{.trajectory = solution.trajectory};
+  VehiclePath path{.trajectory = solution.trajectory, .axes = MapAxes::kEastNorth};
   if (options.matching == Matching::kPairs) {
     path.sonar_moved_m = sonar_moved_by(solution.calibration);
   } else if (options.calibration) {
@@ -117,6 +144,7 @@ Result<RecordingSlam> slam(const Recording& recording, const SlamOptions& option
   for (const double time_s : times_s) {
     if (!slam.solution.trajectory.at(time_s)) slam.no_pose.add(time_s);
   }
+  move_to_path(recording, slam);
   slam.solve_s = seconds_since(start);
   return slam;
 }

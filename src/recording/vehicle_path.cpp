@@ -2,17 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
+#include "base/median.hpp"
 #include "base/words.hpp"
+#include "nav/internal/nav_frames.hpp"
+#include "nav/internal/trajectory_steps.hpp"
 #include "nav/internal/upright.hpp"
+#include "pingvox/geometry/degree.hpp"
+#include "pingvox/geometry/pose.hpp"
+#include "pingvox/geometry/pose2.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
-#include "pingvox/nav/trajectory_steps.hpp"
 #include "pingvox/slam/odometry.hpp"
 
 namespace pingvox {
@@ -39,24 +46,102 @@ std::string unused_text(const NavLog& nav) {
 
 std::string unused_text(const NavFiles& nav) {
   std::string text = unused_text(nav.log);
+  for (const auto& [file, note] : nav.left_out) text += fmt::format("; {}: {}", file, on_one_line(note));
   for (const auto& [file, note] : nav.not_joined) text += fmt::format("; {}: {}", file, on_one_line(note));
   return text;
 }
 
-/// How the frame of a position was read.
-std::string frame_note_of(const NavLog& nav, const std::string& position) {
+const NavSource* source_of(const NavLog& nav, NavQuantity quantity, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      nav.sources(), [&](const NavSource& source) { return source.name == name && source.quantity == quantity; });
+  return found == nav.sources().end() ? nullptr : &*found;
+}
+
+double yaw_in(const NavSource& source, const NavSample& sample) {
+  return source.quantity == NavQuantity::kAttitude ? sample.value.z() : sample.value.x();
+}
+
+/// The heading or attitude of most samples that does not begin with the device.
+const NavSource* north_source(const NavLog& nav) {
+  const NavSource* most = nullptr;
   for (const NavSource& source : nav.sources()) {
-    if (source.name == position && source.quantity == NavQuantity::kPosition) return source.note;
+    const bool tells_yaw = source.quantity == NavQuantity::kAttitude || source.quantity == NavQuantity::kHeading;
+    if (!tells_yaw || source.frame == kStartFrame || source.subject == NavSubject::kOther || !is_usable(source))
+      continue;
+    if (most == nullptr || source.samples.size() > most->samples.size()) most = &source;
   }
-  return {};
+  return most;
+}
+
+/// By how much a heading is ahead of that of a trajectory: the median. nullopt: they do not agree on how it turns.
+std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource& heading, double offset_s) {
+  constexpr std::size_t kFewest = 10;
+  constexpr double kMostDeviation_rad = 20.0 * kDegree_rad;
+  std::vector<double> ahead_rad;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const NavSample& sample : heading.samples) {
+    const std::optional<Pose> pose = trajectory.at(sample.time_s + offset_s);
+    if (!sample.valid || !pose) continue;
+    ahead_rad.push_back(yaw_in(heading, sample) - rpy_of(pose->rotation()).z());
+    sum += Eigen::Vector2d(std::cos(ahead_rad.back()), std::sin(ahead_rad.back()));
+  }
+  if (ahead_rad.size() < kFewest) return std::nullopt;
+  const double mean_rad = std::atan2(sum.y(), sum.x());
+  for (double& angle_rad : ahead_rad) angle_rad = wrap_angle(angle_rad - mean_rad);
+  const double middle_rad = median(ahead_rad);
+  for (double& angle_rad : ahead_rad) angle_rad = std::abs(angle_rad - middle_rad);
+  if (kMadToDeviation * median(ahead_rad) > kMostDeviation_rad) return std::nullopt;
+  return mean_rad + middle_rad;
+}
+
+/// By how much a trajectory is above the depth: the median; 0 where that is not known.
+double height_above_depth(const Trajectory& trajectory, const NavLog& nav, double offset_s) {
+  const NavSource* const depth = nav.best(NavQuantity::kDepth);
+  std::vector<double> above_m;
+  if (depth == nullptr) return 0.0;
+  for (const NavSample& sample : depth->samples) {
+    const std::optional<Pose> pose = trajectory.at(sample.time_s + offset_s);
+    if (sample.valid && pose) above_m.push_back(pose->translation().z() + sample.value.x());
+  }
+  return above_m.empty() ? 0.0 : median(std::move(above_m));
+}
+
+Trajectory moved(const Trajectory& trajectory, const Pose& move) {
+  std::vector<StampedPose> poses = trajectory.poses();
+  for (StampedPose& pose : poses) pose.map_from_body = move * pose.map_from_body;
+  return *Trajectory::make(std::move(poses), trajectory.longest_step_s(), trajectory.cuts());
 }
 
 VehiclePath::Nav sources_of(const NavTrajectory& made, const NavLog& nav) {
+  std::vector<NavQuantity> quantities(kPathQuantities.begin(), kPathQuantities.end());
+  if (made.origin_fix) quantities.push_back(NavQuantity::kDepth);
+  if (made.origin_fix && made.depth.empty()) quantities.push_back(NavQuantity::kPressure);
   return {.attitude = made.attitude,
           .position = made.position,
           .origin_fix = made.origin_fix,
-          .others = other_sources(nav, kPathQuantities, std::array{made.attitude, made.position}),
-          .frame_note = frame_note_of(nav, made.position)};
+          .others = other_sources(nav, quantities, std::array{made.attitude, made.position, made.depth}),
+          .depth = made.depth};
+}
+
+/// @param offset_s  that was added to the times of the navigation
+VehiclePath path_by(NavTrajectory made, const NavLog& nav, double offset_s) {
+  VehiclePath path{.trajectory = std::move(made.trajectory), .nav = sources_of(made, nav)};
+  const NavSource* const position = source_of(nav, NavQuantity::kPosition, made.position);
+  const NavSource* const attitude = source_of(nav, NavQuantity::kAttitude, made.attitude);
+  if (made.origin_fix || (position != nullptr && has_north(*position))) path.axes = MapAxes::kEastNorth;
+  if (position == nullptr) return path;
+  path.nav->frame_note = position->note;
+  if (position->frame != kStartFrame) return path;
+  path.axes = MapAxes::kRightAhead;
+  const double above_m = height_above_depth(path.trajectory, nav, offset_s);
+  path.trajectory = moved(path.trajectory, Pose(Eigen::Translation3d(0.0, 0.0, -above_m)));
+  const NavSource* const north = attitude != nullptr && attitude->frame == kStartFrame ? north_source(nav) : nullptr;
+  const auto ahead_rad = north != nullptr ? yaw_ahead_of(path.trajectory, *north, offset_s) : std::nullopt;
+  if (!ahead_rad) return path;
+  path.trajectory = moved(path.trajectory, Pose(Eigen::AngleAxisd(*ahead_rad, Eigen::Vector3d::UnitZ())));
+  path.axes = MapAxes::kEastNorth;
+  path.nav->north_by = north->name;
+  return path;
 }
 
 Error named(const std::string& name, Error error) {
@@ -84,7 +169,10 @@ Result<VehiclePath> reckon(const NavFiles& nav, const std::string& names, double
       .position = {},
       .velocity = odometry->velocity,
       .others = other_sources(nav.log, kMotionQuantities, std::array{odometry->heading, odometry->velocity})};
-  return VehiclePath{std::move(odometry->odometry_from_body), std::move(by), sonar_moved_m};
+  return VehiclePath{.trajectory = std::move(odometry->odometry_from_body),
+                     .nav = std::move(by),
+                     .axes = MapAxes::kEastNorth,
+                     .sonar_moved_m = sonar_moved_m};
 }
 
 }  // namespace
@@ -106,10 +194,15 @@ Result<Trajectory> read_trajectory(const InputFile& file) {
 }
 
 Result<VehiclePath> read_path(const InputFile& file) {
-  return read_trajectory(file).map([](const Trajectory& trajectory) {
+  return read_trajectory(file).and_then([&](const Trajectory& trajectory) -> Result<VehiclePath> {
+    std::string doubt;
+    for (const NavSource& source : sources_of_poses(trajectory)) {
+      if (!source.fault.empty()) return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name(), source.fault));
+      if (!source.doubt.empty()) doubt += (doubt.empty() ? "" : "; ") + source.doubt;
+    }
     CutTrajectory cut = cut_at_steps(trajectory);
     return VehiclePath{
-        .trajectory = std::move(cut.trajectory), .steps = std::move(cut.steps), .doubt = doubt_of_poses(trajectory)};
+        .trajectory = std::move(cut.trajectory), .steps = std::move(cut.steps), .doubt = std::move(doubt)};
   });
 }
 
@@ -143,10 +236,7 @@ Result<VehiclePath> path_of(const NavFiles& nav, const std::string& names, doubl
                 "heading");
   }
   return nav_trajectory(nav.log, offset_s)
-      .map([&](NavTrajectory made) {
-        VehiclePath::Nav by = sources_of(made, nav.log);
-        return VehiclePath{std::move(made.trajectory), std::move(by)};
-      })
+      .map([&](NavTrajectory made) { return path_by(std::move(made), nav.log, offset_s); })
       .map_error([&](const Error& error) { return named(names, error); });
 }
 
@@ -163,8 +253,7 @@ Result<VehiclePath> positions_of(const BagContents& contents, const std::string&
     for (const std::string& note : contents.notes) notes += "; " + on_one_line(note);
     return fail(made.error().code, fmt::format("{}: {}{}{}", name, made.error().message, unused_text(*log), notes));
   }
-  VehiclePath::Nav by = sources_of(*made, *log);
-  return VehiclePath{std::move(made->trajectory), std::move(by)};
+  return path_by(*std::move(made), *log, 0.0);
 }
 
 }  // namespace pingvox

@@ -12,7 +12,9 @@
 #include <string>
 #include <utility>
 
+#include "base/option_errors.hpp"
 #include "sonar/internal/beam_source_decorator.hpp"
+#include "sonar/internal/option_limits.hpp"
 
 namespace pingvox {
 namespace {
@@ -87,9 +89,9 @@ class BackgroundSubtractor final : public BeamSourceDecorator {
 }  // namespace
 
 Result<void> BackgroundOptions::validate() const {
-  if (range_m > 0.0 && range_m <= kMaxRange_m) return {};
-  return fail(Error::Code::kBadOption,
-              fmt::format("background: range_m must be in (0, {}], is {}", kMaxRange_m, range_m));
+  OptionErrors errors;
+  errors.require("range_m", range_m, kBackgroundRanges_m);
+  return errors.result("background");
 }
 
 Result<Background> Background::learn(BeamSource& source, const BackgroundOptions& options) {

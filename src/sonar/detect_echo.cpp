@@ -16,6 +16,7 @@
 #include "sonar/cfar.hpp"
 #include "sonar/contrast.hpp"
 #include "sonar/internal/blanking.hpp"
+#include "sonar/internal/option_limits.hpp"
 #include "sonar/near_field.hpp"
 #include "sonar/noise_floor.hpp"
 #include "sonar/ringing_arc.hpp"
@@ -393,7 +394,7 @@ EchoOptions with_min_range(const PolarImage& image, const Sweep& sweep, EchoOpti
 Result<void> EchoOptions::validate() const {
   OptionErrors errors;
   const double nearest = min_range_m.value_or(0.0);
-  errors.require(nearest >= 0.0 && std::isfinite(nearest), "min_range_m", ">= 0", nearest);
+  errors.require("min_range_m", nearest, kNearestRanges_m);
   errors.require(max_range_m > nearest, "max_range_m", fmt::format("greater than min_range_m ({})", nearest),
                  max_range_m);
   const int most = detector == Detector::kCanny ? 2040 : 255;

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/option_errors.hpp"
+#include "sonar/internal/option_limits.hpp"
 
 namespace pingvox {
 namespace {
@@ -94,8 +95,8 @@ PolarImage smooth(const PolarImage& image, const FilterOptions& options) {
 
 Result<void> FilterOptions::validate() const {
   OptionErrors errors;
-  if (kernel < 1 || kernel > 99 || kernel % 2 == 0) errors.add(fmt::format("kernel must be odd, 1..99, is {}", kernel));
-  errors.require(sigma > 0.0 && sigma <= 1000.0, "sigma", "> 0 and <= 1000", sigma);
+  errors.require(kFilterKernels.contain(kernel) && kernel % 2 == 1, "kernel", "odd, " + kFilterKernels.text(), kernel);
+  errors.require("sigma", sigma, kFilterSigmas);
   return errors.result("filter");
 }
 

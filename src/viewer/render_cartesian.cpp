@@ -164,6 +164,11 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
   }
   draw_marker(picture, Marker::kPlus, disc.middle, 7.0, kRing);
   draw_scale_bar(picture, kMargin, footer, {disc.range_m / disc.radius_px, 130.0}, "; bearings in deg");
+  const std::ptrdiff_t head_x =
+      static_cast<std::ptrdiff_t>(picture.width()) - kMargin - label_width("head", kTextScale);
+  draw_label(picture, head_x, footer + 2, "head", kTextScale, kInk);
+  draw_marker(picture, Marker::kPlus, {static_cast<double>(head_x) - 16.0, static_cast<double>(footer) + 9.0}, 7.0,
+              kRing);
   draw_echo_legend(picture, kMargin, footer + kFooterRow, options.style,
                    echoes.empty() ? Marked::kNothing : Marked::kEchoes,
                    sweep.extent == Sweep::Extent::kTurn ? Unrecorded::kHidden : Unrecorded::kShown);

@@ -164,7 +164,7 @@ void draw_bearings(Picture& picture, std::span<const Beam> beams, const Scale& s
 
 Result<void> EchoPictureOptions::validate() const {
   OptionErrors errors;
-  errors.require_within("target_px", target_px, 16, 3072);
+  errors.require("target_px", target_px, kPictureSizes_px);
   errors.require(gamma > 0.0 && std::isfinite(gamma), "gamma", "> 0", gamma);
   return errors.result("echo picture");
 }

@@ -45,9 +45,9 @@ struct ViewAxes {
   std::string_view note;
 };
 
-ViewAxes view_axes(MapView view) {
+ViewAxes view_axes(const MapPictureOptions& options) {
   using enum ViewAxes::Across;
-  switch (view) {
+  switch (options.view) {
     case MapView::kRight:
       return {0, 2, kGrowsRightwards, "from the right"};
     case MapView::kLeft:
@@ -59,6 +59,8 @@ ViewAxes view_axes(MapView view) {
     case MapView::kAbove:
       break;
   }
+  if (options.axes == MapAxes::kEastNorth) return {0, 1, kGrowsRightwards, "from above, north up"};
+  if (options.axes == MapAxes::kRightAhead) return {0, 1, kGrowsRightwards, "from above"};
   return {1, 0, kGrowsLeftwards, "from above"};
 }
 
@@ -165,7 +167,7 @@ std::optional<Corners> shown_corners(const OccupancyMap& map, const MapPictureOp
 
 /// Columns of the shown part, at most `most` along each side.
 Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, std::size_t most) {
-  const ViewAxes axes = view_axes(options.view);
+  const ViewAxes axes = view_axes(options);
   const Lattice& lattice = map.lattice();
   const int levels = lattice.depth();
   const std::optional<Corners> known = shown_corners(map, options);
@@ -268,12 +270,36 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const M
   }
 }
 
-constexpr double kPathWidth = 2.5, kMarkerRadius = 6.0;
-constexpr std::ptrdiff_t kPathSwatch = 40;
+constexpr double kPathWidth = 2.5, kMarkerRadius = 6.0, kEndRadius = 9.0;
+constexpr std::ptrdiff_t kPathSwatch = 120;
 
 void draw_path_marker(Picture& picture, const PathStyle& style, Spot at) {
   draw_marker(picture, style.marker, at, kMarkerRadius + 2.0, kPaper);
   draw_marker(picture, style.marker, at, kMarkerRadius, style.colour);
+}
+
+void draw_path_start(Picture& picture, const PathStyle& style, Spot at) {
+  draw_disc(picture, at, kEndRadius + 1.0, kPaper);
+  draw_marker(picture, Marker::kRing, at, kEndRadius, style.colour);
+}
+
+void draw_path_end(Picture& picture, const PathStyle& style, Spot at) {
+  draw_disc(picture, at, kEndRadius + 1.0, kPaper);
+  draw_disc(picture, at, kEndRadius, style.colour);
+  draw_marker(picture, Marker::kCross, at, 0.55 * kEndRadius, kPaper);
+}
+
+/// The head of an arrow. REQUIRES a way that is no point.
+void draw_path_arrow(Picture& picture, const PathStyle& style, Spot from, Spot to, const Area& within) {
+  constexpr double kLength = 11.0, kHalfWidth = 6.0;
+  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  const double x = (to.x - from.x) / length, y = (to.y - from.y) / length;
+  const Spot back{to.x - kLength * x, to.y - kLength * y};
+  for (const auto& [width, colour] : {std::pair(kPathWidth + 2.0, kPaper), {kPathWidth, style.colour}}) {
+    for (const double side : {-kHalfWidth, kHalfWidth}) {
+      draw_line(picture, {back.x - side * y, back.y + side * x}, to, width, colour, within);
+    }
+  }
 }
 
 /// A line with a white edge, to be seen on walls as well. `spot_of` gives the place in the picture of a point in the
@@ -284,16 +310,17 @@ void draw_path(Picture& picture, const Trajectory& path, const PathStyle& style,
   struct Piece {
     Spot from, to;
   };
-  std::vector<Piece> pieces;
+  std::vector<Piece> pieces, arrows;
   std::vector<Spot> markers;
   double way = 0.0;
+  bool has_arrow = false;  // since the last marker
   const std::vector<StampedPose>& poses = path.poses();
   const auto is_inside = [&](Spot at) {
     return at.x >= static_cast<double>(within.x) && at.x < static_cast<double>(within.right()) &&
            at.y >= static_cast<double>(within.y) && at.y < static_cast<double>(within.bottom());
   };
-  Spot last = spot_of(poses.front().map_from_body.translation());
-  markers.push_back(last);
+  const Spot start = spot_of(poses.front().map_from_body.translation());
+  Spot last = start;
   for (std::size_t n = 1; n < poses.size(); ++n) {
     const Spot next = spot_of(poses[n].map_from_body.translation());
     const bool is_gap = !path.at(0.5 * (poses[n - 1].time_s + poses[n].time_s));
@@ -306,6 +333,10 @@ void draw_path(Picture& picture, const Trajectory& path, const PathStyle& style,
     if (is_gap || way >= kMarkerEvery) {
       markers.push_back(next);
       way = 0.0;
+      has_arrow = false;
+    } else if (!has_arrow && way >= 0.5 * kMarkerEvery && length > 0.0) {
+      arrows.push_back({last, next});
+      has_arrow = true;
     }
     last = next;
   }
@@ -315,17 +346,43 @@ void draw_path(Picture& picture, const Trajectory& path, const PathStyle& style,
   for (const Spot& marker : markers) {
     if (is_inside(marker)) draw_path_marker(picture, style, marker);
   }
+  for (const Piece& arrow : arrows) draw_path_arrow(picture, style, arrow.from, arrow.to, within);
+  if (poses.size() > 1 && is_inside(last)) draw_path_end(picture, style, last);
+  if (is_inside(start)) draw_path_start(picture, style, start);
 }
 
 void draw_path_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const std::vector<MapPath>& paths) {
+  constexpr std::string_view kStart = "start", kEnd = "end";
   for (std::size_t n = 0; n < paths.size(); ++n, top += kFooterRow) {
+    const PathStyle& style = kPathStyles[n];
     const double middle = static_cast<double>(top) + 9.0;
-    const Area row{x, top, kPathSwatch, kFooterRow};
-    draw_line(picture, {static_cast<double>(x) + 2.0, middle}, {static_cast<double>(x + kPathSwatch) - 2.0, middle},
-              kPathWidth, kPathStyles[n].colour, row);
-    draw_path_marker(picture, kPathStyles[n], {static_cast<double>(x) + 0.5 * kPathSwatch, middle});
-    draw_label(picture, x + kPathSwatch + 8, top + 2, paths[n].name, kTextScale, kInk);
+    const std::ptrdiff_t line_x = x + label_width(kStart, kTextScale);
+    draw_label(picture, x, top + 2, kStart, kTextScale, kInk);
+    const Area row{line_x, top - kGap, kPathSwatch, kFooterRow};
+    const auto spot = [&](double share) {
+      return Spot{static_cast<double>(line_x) + share * static_cast<double>(kPathSwatch), middle};
+    };
+    draw_line(picture, spot(0.1), spot(0.9), kPathWidth, style.colour, row);
+    draw_path_marker(picture, style, spot(0.4));
+    draw_path_arrow(picture, style, spot(0.1), spot(0.7), row);
+    draw_path_start(picture, style, spot(0.1));
+    draw_path_end(picture, style, spot(0.9));
+    const std::ptrdiff_t end_x = line_x + kPathSwatch + kGap / 2;
+    draw_label(picture, end_x, top + 2, fmt::format("{}: {}", kEnd, paths[n].name), kTextScale, kInk);
   }
+}
+
+/// An arrow to the north in the upper right corner of an area whose north is up.
+void draw_north(Picture& picture, const Area& area) {
+  constexpr std::ptrdiff_t kWide = 34, kHigh = 66, kApart = 10;
+  const Area patch{area.right() - kWide - kApart, area.y + kApart, kWide, kHigh};
+  picture.fill(patch.x, patch.y, patch.width, patch.height, kPaper);
+  draw_frame(picture, patch, 1, kInk);
+  const double middle = static_cast<double>(patch.x) + 0.5 * kWide;
+  const Spot tip{middle, static_cast<double>(patch.y) + 6.0};
+  draw_line(picture, {middle, tip.y + 34.0}, tip, kPathWidth, kInk, patch);
+  for (const double side : {-7.0, 7.0}) draw_line(picture, {middle + side, tip.y + 12.0}, tip, kPathWidth, kInk, patch);
+  draw_centred(picture, std::lround(middle), patch.bottom() - 22, "N", kInk);
 }
 
 /// Caption: which part of the map is shown.
@@ -342,7 +399,7 @@ std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, c
 
 Result<void> MapPictureOptions::validate() const {
   OptionErrors errors;
-  errors.require_within("target_px", target_px, 16, 3072);
+  errors.require("target_px", target_px, kPictureSizes_px);
   if ((min_z_m && std::isnan(*min_z_m)) || (max_z_m && std::isnan(*max_z_m)) ||
       (min_z_m && max_z_m && *min_z_m >= *max_z_m)) {
     errors.add("min_z_m must be below max_z_m");
@@ -365,7 +422,7 @@ std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& 
 
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
-  const ViewAxes axes = view_axes(options.view);
+  const ViewAxes axes = view_axes(options);
   const Columns columns = columns_of(map, options, options.target_px);
   const std::size_t longer = std::max({columns.across, columns.up, std::size_t{1}});
   // Up to 15% larger than requested rather than half as large; a single cell need not fill the picture.
@@ -413,9 +470,11 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
     draw_label(picture, area.x, area.bottom() + kGap, "nothing is known", kTextScale, kInk);
     return picture;
   }
-  constexpr std::array<std::string_view, 3> kAxes = {"x in m", "y in m", "z in m"};
-  draw_bottom_axis(picture, area, across_ticks, kAxes[axes.across]);
-  draw_left_axis(picture, area, up_ticks, kAxes[axes.up]);
+  const bool is_east_north = options.axes == MapAxes::kEastNorth;
+  const std::array<std::string_view, 3> titles = {is_east_north ? "x in m, east" : "x in m",
+                                                  is_east_north ? "y in m, north" : "y in m", "z in m"};
+  draw_bottom_axis(picture, area, across_ticks, titles[axes.across]);
+  draw_left_axis(picture, area, up_ticks, titles[axes.up]);
 
   const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
   draw_scale_bar(picture, area.x, footer, {metres_per_pixel, 200.0}, "");
@@ -429,6 +488,7 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
               static_cast<double>(area.bottom()) - up_share * static_cast<double>(height)};
     });
   }
+  if (is_east_north && options.view == MapView::kAbove) draw_north(picture, area);
   const double origin_across = across_scale.share_of(0.0), origin_up = up_scale.share_of(0.0);
   const auto is_inside = [](double share) { return share >= 0.0 && share < 1.0; };
   if (is_inside(origin_across) && is_inside(origin_up)) {

@@ -340,7 +340,11 @@ TEST(Bags, AFileNamesTheFieldsOfBeamsAndNavigation) {
       {"map", kBag, "--nav", kBag, "--fields", "driver.toml", "-o", "named.bt", "--device", "micron", "--json"});
   ASSERT_EQ(named.status, 0) << named.err;
   EXPECT_THAT(named.out, HasSubstr(R"("attitude": "/pose", "position": "/pose", "poses": 6)"));
-  EXPECT_EQ(here.read("named.bt"), here.read("known.bt")) << known.err;
+  const auto tree_of = [&here](const char* map) {
+    const std::string bytes = here.read(map);
+    return bytes.substr(bytes.find("\nid "));  // a comment says whether the frame has a north
+  };
+  EXPECT_TRUE(tree_of("named.bt") == tree_of("known.bt")) << known.err;
   const Outcome info = here.call({"info", kBag, "--fields", "driver.toml", "--json"});
   EXPECT_THAT(info.out, HasSubstr(R"("messages": 6, "read_as": "beams")"));
   EXPECT_THAT(info.out, HasSubstr(R"("records": 12)")) << "the depths by their type";

@@ -106,7 +106,7 @@ TEST(NavSources, AClickedGoalIsNotThePath) {
   const Outcome mapped = map_with_itself(here, "goal.mcap");
   ASSERT_EQ(mapped.status, 0) << mapped.err;
   EXPECT_THAT(mapped.out, HasSubstr("poses from /tf:odom:base_link\n"));
-  EXPECT_THAT(mapped.out, HasSubstr("nav others  /goal_pose (3 samples: a goal or a marker by its name)\n"));
+  EXPECT_THAT(mapped.out, HasSubstr("nav others  /goal_pose (3 samples: a goal, command or plan by its name)\n"));
 }
 
 // The pose of a marker in the camera's frame came more often than the odometry.
@@ -226,6 +226,51 @@ TEST(NavSources, TheOrderOfTheLogsDoesNotMatter) {
   EXPECT_THAT(one.out, HasSubstr("from ATT and LOCAL_POSITION_NED\n"));
   EXPECT_THAT(one.out, HasSubstr("nav others  ATTITUDE (30 samples)\n"));
   EXPECT_EQ(here.call({"compare", "one.bt", "other.bt"}).status, 0);
+}
+
+// Commands came more often than the depth of the vehicle: the map was 15 m too low.
+TEST(NavSources, ADepthThatIsACommandIsLeftAside) {
+  const Workplace here;
+  DiveBag bag;
+  bag.topic(2, "/fix", "sensor_msgs/msg/NavSatFix");
+  bag.topic(3, "/imu", "sensor_msgs/msg/Imu");
+  bag.topic(4, "/desired_depth", "std_msgs/msg/Float64");
+  bag.topic(5, "/bar30/depth", "std_msgs/msg/Float64");
+  bag.add_each(3, [](double time_s) { return bags::imu(time_s, "imu_link", {0, 0, 0, 1}, {0, 0, 0}); });
+  bag.add_each(2, [](double time_s) { return bags::nav_sat_fix(time_s, 54.3 + 1e-7 * time_s, 10.1); });
+  bag.add_each(4, [](double) { return bags::Cdr().numbers({20.0}).bytes(); }, 0.02);
+  bag.add_each(5, [](double) { return bags::Cdr().numbers({5.0}).bytes(); });
+  here.write("depth.mcap", std::move(bag).file());
+  const Outcome mapped = map_with_itself(here, "depth.mcap");
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  EXPECT_THAT(mapped.out, HasSubstr("from /imu and /fix, depth by /bar30/depth\n"));
+  EXPECT_THAT(mapped.out,
+              HasSubstr("nav others  /desired_depth (1350 samples: a goal, command or plan by its name)\n"));
+  EXPECT_THAT(map_with_itself(here, "depth.mcap", {"--nav-source", "depth=/desired_depth"}).out,
+              HasSubstr("depth by /desired_depth\n"));
+}
+
+// "398 of 400 beams outside", then an empty map.
+TEST(NavSources, PosesInUtmAreToldWithTheirDistance) {
+  const Workplace here;
+  DiveBag bag;
+  bag.topic(2, "/odom", kOdometry);
+  bag.add_each(2, [](double time_s) {
+    return bags::odometry(time_s, "utm", "base_link", bags::pose_numbers(500'000, 6'010'000, -5, kPi / 3));
+  });
+  here.write("utm.mcap", std::move(bag).file());
+  expect_error(map_with_itself(here, "utm.mcap"), 1,
+               {"utm.mcap: the poses are 6030.76 km from the origin", "--depth 32"});
+  EXPECT_EQ(here.call({"map", "utm.mcap", "--nav", "utm.mcap", "--depth", "32", "-o", "utm.pvx"}).status, 0);
+}
+
+// "no valid position or velocity", but not why.
+TEST(NavSources, ALogWhoseLinesAreSkippedNamesTheFirst) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("nav.csv", "time_s,source,quantity,x,y,z\n0,P,pose,0,0,0\n1,P,pose,0,0,0\n");
+  expect_error(here.call({"map", "tank.csv", "-o", "m.bt", "--nav", "nav.csv"}), 1,
+               {"2 of 2 lines are no samples, the first: line 2: quantity 'pose' is none of"});
 }
 
 }  // namespace

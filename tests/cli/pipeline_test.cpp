@@ -65,7 +65,18 @@ Args map_keys() {
           "map.occupied_cells",
           "map.free_cells",
           "map.bounds.min",
-          "map.bounds.max"};
+          "coverage.beam_width_m",
+          "coverage.coverage",
+          "coverage.moved_m",
+          "coverage.places",
+          "coverage.places_in_one_sweep",
+          "coverage.sweep_s",
+          "coverage.sweeps",
+          "coverage.sweeps_per_place",
+          "coverage.turned_deg",
+          "map.bounds.max",
+          "resolution_from.range_m",
+          "resolution_from.beam_width_deg"};
 }
 
 Args info_log_keys() {

@@ -272,7 +272,8 @@ TEST(Slam, CountsTheBeamsThatAreLeftOutOfTheMap) {
                                      "--map", "out.bt", "--resolution", "0.5", "--matching", "none", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::smatch counts;
-  ASSERT_TRUE(std::regex_search(outcome.out, counts, std::regex(R"("map": \{"beams": (\d+), "skipped": (\d+)\})")))
+  ASSERT_TRUE(std::regex_search(outcome.out, counts,
+                                std::regex(R"("map": \{"beams": (\d+), "skipped": (\d+), "resolution": 0.5\})")))
       << outcome.out;
   const std::string left_out = counts[2];
   EXPECT_GT(std::stoi(left_out), 100);

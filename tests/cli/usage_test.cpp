@@ -7,7 +7,6 @@
 #include <string>
 
 #include "call.hpp"
-#include "suggest.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -371,20 +370,6 @@ TEST(Config, WrongWordsInItAreNamedWithTheFile) {
     expect_error(here.call({"map", "log.csv", "-o", "m.bt", "--config", "c.toml"}), 2, c.texts);
   }
   expect_error(here.call({"map", "log.csv", "-o", "m.bt", "--config", "no.toml"}), 1, {"no.toml"});
-}
-
-TEST(NearestWord, IsTheOneThatWasMeantOrNone) {
-  using app::nearest_word;
-  const Args words = {"--resolution", "--min-range", "--max-range", "--ray", "map", "none"};
-  EXPECT_EQ(nearest_word("--resoluton", words), "--resolution");
-  EXPECT_EQ(nearest_word("--reslution", words), "--resolution");
-  EXPECT_EQ(nearest_word("--min_range", words), "--min-range");
-  EXPECT_EQ(nearest_word("-ray", words), "--ray");
-  EXPECT_EQ(nearest_word("amp", words), "map");
-  EXPECT_EQ(nearest_word("--reso", words), "--resolution");
-  EXPECT_EQ(nearest_word("gaussian", words), std::nullopt);
-  EXPECT_EQ(nearest_word("", words), std::nullopt);
-  EXPECT_EQ(nearest_word(std::string(100'000, 'a'), words), std::nullopt);
 }
 
 }  // namespace

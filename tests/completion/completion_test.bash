@@ -31,9 +31,11 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|simulate|slam|locate|live|emulate|bench" pingvox ""
+offers "map|info|compare|convert|render|simulate|slam|locate|evaluate|live|emulate|bench" pingvox ""
 offers "map" pingvox m
 offers "compare|convert" pingvox co
+offers "evaluate" pingvox ev
+offers "sound-speed|mount-yaw|nav-offset|mount-xy" pingvox evaluate --fit ""
 offers "--help|--version" pingvox -
 offers "--resolution" pingvox map --reso
 offers "ray|fan|cone" pingvox map --beam ""

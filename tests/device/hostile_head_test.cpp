@@ -19,6 +19,7 @@
 #include "device/internal/live_source.hpp"
 #include "device/internal/micron_emulator.hpp"
 #include "device/internal/ping360_emulator.hpp"
+#include "device/ping360_driver.hpp"
 #include "io/internal/frame_finder.hpp"
 #include "io/internal/ping_frame.hpp"
 #include "io/internal/seanet_frame.hpp"

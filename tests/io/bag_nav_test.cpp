@@ -72,7 +72,6 @@ TEST(BagNav, TellsUnitsOfPressureByTheirSize) {
     const auto samples = samples_of("std_msgs/msg/Float64", hex, NavQuantity::kPressure, "/bar30/pressure");
     return samples.empty() ? 0.0 : samples[0].value.x();
   };
-  EXPECT_NEAR(pascals(1.5), 150'000.0, 1e-6);
   EXPECT_NEAR(pascals(101.3), 101'300.0, 1e-6);
   EXPECT_NEAR(pascals(1020.0), 102'000.0, 1e-6);
   EXPECT_NEAR(pascals(150'000.0), 150'000.0, 1e-6);
@@ -355,6 +354,24 @@ TEST(BagNav, OdometryInNedIsTheSamePathAsInEnu) {
               HasSubstr("no valid attitude"));
 }
 
+// At rest it is 9.8 m/s2 upward (REP-145).
+TEST(BagNav, AnAccelerationThatPointsDownIsDoubtful) {
+  const auto doubt_of = [](const char* frame, double upward_m_s2) {
+    bags::Mcap mcap;
+    mcap.topic(1, "/imu", "sensor_msgs/msg/Imu", "");
+    for (int i = 0; i < 30; ++i) {
+      const double time_s = 1000.0 + 0.1 * i;
+      mcap.message(1, bags::nanoseconds(time_s), bags::imu(time_s, frame, {0, 0, 0, 1}, {0, 0, 0}, upward_m_s2));
+    }
+    std::string doubts;
+    for (const NavSource& source : sources_in(mcap)) doubts += source.doubt;
+    return doubts;
+  };
+  EXPECT_THAT(doubt_of("imu_link", -9.8), HasSubstr("its acceleration points down"));
+  EXPECT_EQ(doubt_of("imu_link", 9.8), "");
+  EXPECT_EQ(doubt_of("imu_link_ned", -9.8), "") << "as its name says";
+}
+
 TEST(BagNav, PosesTwistsAndImusInNedAreTurned) {
   bags::Mcap mcap;
   mcap.topic(1, "/pose", "geometry_msgs/msg/PoseStamped", "");
@@ -435,12 +452,12 @@ TEST(BagNav, TurnsADvlThatLooksDown) {
 }
 
 /// Odometry of 40 s, two messages a second, with these stamps, and echoes of a sonar with others.
-BagContents dive_with_stamps(double (*stamp_s)(double), double (*echo_s)(double)) {
+BagContents dive_with_stamps(double (*stamp_s)(double), double (*echo_s)(double), double first_s = 1000.0) {
   bags::Mcap mcap;
   mcap.topic(1, "/odom", "nav_msgs/msg/Odometry", "");
   mcap.topic(2, "/echo", "ping360_sonar_msgs/msg/SonarEcho", "");
   for (int i = 0; i < 80; ++i) {
-    const double time_s = 1000.0 + 0.5 * i;
+    const double time_s = first_s + 0.5 * i;
     mcap.message(1, bags::nanoseconds(time_s),
                  bags::odometry(stamp_s(time_s), "odom", "base_link", bags::pose_numbers(0.1 * i, 0.0, -5.0, 0.0)));
     mcap.message(2, bags::nanoseconds(time_s), bags::sonar_echo(echo_s(time_s), "sonar", 0.0F, 10));
@@ -471,6 +488,42 @@ TEST(BagNav, StampsOfOneTopicThatLagAreNamed) {
               ElementsAre(HasSubstr("messages of /echo are recorded 8.0 s after their stamps, those of /odom 0.0 s")));
   EXPECT_THAT(dive_with_stamps(late, now).nav.notes, SizeIs(1));
   EXPECT_THAT(dive_with_stamps(late, late).nav.notes, SizeIs(0)) << "one clock";
+}
+
+// Kills a vehicle that does all of its dive at once, where the recorder's times are none.
+TEST(BagNav, StampsWithDatesAreTakenWhereTheRecordingHasNone) {
+  const auto date = [](double time_s) { return 1.6e9 + time_s; };
+  const BagContents contents = dive_with_stamps(date, date);
+  EXPECT_THAT(contents.nav.notes, SizeIs(0));
+  for (const NavSource& source : contents.nav.log.sources()) {
+    ASSERT_THAT(source.samples, SizeIs(80));
+    EXPECT_NEAR(source.samples[41].time_s, 1.6e9 + 1020.5, 1e-6);
+  }
+}
+
+// Kills a bag that was played five times as fast, and recorded again, without a word.
+TEST(BagNav, StampsThatGoFasterThanTheRecordingAreNamed) {
+  const auto faster = [](double time_s) { return 1.6e9 + 5.0 * (time_s - 1.7e9); };
+  const auto as_fast = [](double time_s) { return time_s - 1e8; };
+  EXPECT_THAT(dive_with_stamps(faster, faster, 1.7e9).nav.notes,
+              ElementsAre(HasSubstr("the stamps of /odom go 5 times as fast as the recording")));
+  EXPECT_THAT(dive_with_stamps(as_fast, as_fast, 1.7e9).nav.notes, SizeIs(0)) << "played again as it was";
+}
+
+// Kills a pressure that is read as one of several units.
+TEST(BagNav, APressureOfSeveralPossibleUnitsIsNotUsed) {
+  bags::Mcap mcap;
+  mcap.topic(1, "/ctd/pressure", "std_msgs/msg/Float64", "");
+  for (int i = 0; i < 100; ++i) {
+    bags::Bytes message = {0, 1, 0, 0};
+    bags::put(message, 20.0 + 0.01 * i);  // dbar
+    mcap.message(1, 1'000'000'000'000U + static_cast<std::uint64_t>(i) * 1'000'000'000U, message);
+  }
+  mcap.end_chunk();
+  const auto nav = read_nav(FileBytes{"dive.mcap", mcap.closed()});
+  ASSERT_TRUE(nav);
+  ASSERT_THAT(nav->log.sources(), SizeIs(1));
+  EXPECT_THAT(nav->log.sources()[0].fault, HasSubstr("dbar above that of air ("));
 }
 
 }  // namespace

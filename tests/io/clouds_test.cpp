@@ -261,5 +261,28 @@ TEST(XyzCloud, CommasWithinNumbersAreRefused) {
   EXPECT_EQ(cloud_error_of("1.5, 2.5, -3.25, 7\n1.5,2.5,-3.25\n1 2 3 255,0,0\n"), "");
 }
 
+// Kills beams without return that become a wall at the origin.
+TEST(Clouds, SeveralZerosAreBeamsWithoutReturn) {
+  const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nPOINTS 4\nDATA ascii\n";
+  const std::string body = "1 2 3\n0 0 0\n4 5 6\n0 0 0\n";
+  for (const std::string& text : {pcd + body, body}) {
+    const auto all = all_scans({"zeros", bytes_of(text)});
+    ASSERT_EQ(all.items.size(), 1U) << all.error;
+    EXPECT_THAT(all.items[0].points_m, ElementsAre(Vector3d(1, 2, 3), Vector3d(4, 5, 6)));
+    EXPECT_EQ(all.skipped, 2U);
+    EXPECT_EQ(cloud_error_of(text), "") << "usual, as NaN in a PCD";
+  }
+  EXPECT_THAT(cloud_in({"place", bytes_of("1 2 3\n0 0 0\n")}).points_m, testing::SizeIs(2)) << "a single one";
+}
+
+// Kills a comment that names other columns and is not read: times as x, degrees as metres, depths as heights.
+TEST(XyzCloud, ACommentMayNameTheColumns) {
+  EXPECT_THAT(cloud_in({"times", bytes_of("# time x y z\n0.5 1 2 3\n0.6 4 5 6\n")}).points_m,
+              ElementsAre(Vector3d(1, 2, 3), Vector3d(4, 5, 6)));
+  EXPECT_THAT(cloud_error_of("# lon lat depth\n10.1 54.3 12\n"), HasSubstr("its columns are lon, lat, depth"));
+  EXPECT_THAT(cloud_error_of("# easting northing depth\n3 1 2\n"), HasSubstr("only x, y and z in metres are read"));
+  EXPECT_THAT(cloud_in({"words", bytes_of("# made of depths\n1 2 3\n")}).points_m, ElementsAre(Vector3d(1, 2, 3)));
+}
+
 }  // namespace
 }  // namespace pingvox

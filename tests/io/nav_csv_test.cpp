@@ -68,6 +68,34 @@ TEST(NavCsv, LeavesOutLinesThatAreNoSample) {
   EXPECT_EQ(nav->damage[0].first_byte, 29U);
 }
 
+// Another notation skipped all lines, and nothing said which word was not understood.
+TEST(NavCsv, NamesTheFirstWordThatIsNotUnderstood) {
+  const auto note_of = [](std::string_view line) {
+    const auto nav = read_as_csv(fmt::format("time_s,source,quantity,x,y,z,sd_x,sd_y,sd_z,valid\n{}\n", line));
+    return nav && !nav->notes.empty() ? nav->notes.front() : "";
+  };
+  EXPECT_EQ(note_of("2023-11-14T22:13:20,P,position,1,2,3,,,,1"),
+            "1 of 1 lines are no samples, the first: line 2: time_s '2023-11-14T22:13:20' is not a finite number of "
+            "seconds");
+  EXPECT_THAT(note_of("1,P,orientation,1,2,3,,,,1"),
+              testing::HasSubstr("quantity 'orientation' is none of velocity, "));
+  EXPECT_THAT(note_of("1,P,position,1,2,3,,,,ok"), testing::HasSubstr("valid 'ok' is neither 0 nor 1"));
+  EXPECT_THAT(note_of("1,P,position,1,?,3,,,,1"), testing::HasSubstr("y '?' is not a finite number"));
+  EXPECT_EQ(note_of("1,P,position,1,2,3,,,,1"), "");
+}
+
+TEST(NavCsv, TakesNamesInUpperCaseAndDeviationsThatAreNotKnown) {
+  const auto nav = read_as_csv(
+      "time_s,source,quantity,x,y,z,sd_x,sd_y,sd_z,valid\n"
+      "1,P,Position,1,2,3,-1,-1,-1,1\n"
+      "1,G,turn_rate,0.1,0.2,0.3,,,,1\n");
+  ASSERT_TRUE(nav);
+  ASSERT_EQ(nav->log.sources().size(), 2U);
+  EXPECT_TRUE(std::isnan(nav->log.sources()[0].samples.at(0).deviation.x())) << "as ROS has it";
+  EXPECT_EQ(nav->log.sources()[1].quantity, NavQuantity::kTurnRate);
+  EXPECT_TRUE(nav->notes.empty());
+}
+
 TEST(NavCsv, ReadsBackWhatItWrote) {
   NavSource velocity{"DVL 1/194", NavQuantity::kVelocity, {}}, depth{"bar", NavQuantity::kDepth, {}};
   for (int i = 0; i < 100; ++i) {

@@ -294,6 +294,10 @@ TEST(NavFields, RefusesWhatDoesNotFitTheQuantity) {
   NavFields fields = good;
   fields.values.emplace_back("w");
   refused(fields, "velocity must be of 2 or 3 fields, not of 4");
+  refused(fields_of(NavQuantity::kAttitude, {"qw", "qx", "qy", "qz"}), "in the order x, y, z, w: 'qw' is the first");
+  refused(fields_of(NavQuantity::kAttitude, {"yaw", "pitch", "roll"}), "roll, pitch, yaw: 'yaw' is the first");
+  EXPECT_TRUE(fields_of(NavQuantity::kAttitude, {"qx", "qy", "qz", "qw"}).validate());
+  EXPECT_TRUE(fields_of(NavQuantity::kAttitude, {"roll", "pitch", "yaw"}).validate());
   fields = good;
   fields.topic.clear();
   refused(fields, "topic");

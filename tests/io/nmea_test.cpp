@@ -211,5 +211,26 @@ TEST(Nmea, ImpossibleValuesAreDamage) {
   EXPECT_EQ(nav.damage[0].count, 3U);
 }
 
+// Kills 54.3 degrees north that become 0.9.
+TEST(Nmea, DecimalDegreesAreNoPlace) {
+  const NavFile nav = read_as_nmea(
+      "$GPRMC,221320.00,A,54.300000,N,10.100000,E,0.5,90.0,141123,,\n$GPRMC,221321.00,A,54.300000,N,010.100000,E,0.5,"
+      "90.0,141123,,\n$GPRMC,221322.00,A,5418.0000,N,01006.0000,E,0.5,90.0,141123,,\n");
+  EXPECT_EQ(samples_of(nav, "GPRMC").size(), 1U);
+  ASSERT_EQ(nav.damage.size(), 1U);
+  EXPECT_EQ(nav.damage[0].count, 2U);
+  EXPECT_NE(nav.damage[0].what.find("is it in decimal degrees"), std::string_view::npos);
+  const NavFile all = read_as_nmea("$GPRMC,221320.00,A,54.300000,N,10.100000,E,0.5,90.0,141123,,\n");
+  ASSERT_EQ(all.log.sources().size(), 1U);
+  EXPECT_NE(all.log.sources()[0].fault.find("is it in decimal degrees"), std::string::npos);
+}
+
+TEST(Nmea, APlaceIsNotSouthTwice) {
+  const NavFile nav = read_as_nmea("$GPRMC,221320.00,A,-5400.0000,S,01000.0000,E,0.5,90.0,141123,,\n");
+  EXPECT_TRUE(nav.log.sources().empty());
+  ASSERT_EQ(nav.damage.size(), 1U);
+  EXPECT_EQ(nav.damage[0].what, "impossible values");
+}
+
 }  // namespace
 }  // namespace pingvox

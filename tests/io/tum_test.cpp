@@ -41,6 +41,15 @@ TEST(Tum, TakesTabsCommasCarriageReturnsAndBlankLines) {
   EXPECT_EQ(trajectory->poses().size(), 3U);
 }
 
+// EuRoC has the real part first.
+TEST(Tum, RefusesAHeaderWithTheRealPartFirst) {
+  constexpr std::string_view kPose = "1 0 0 0 0 0 0 1\n";
+  for (const std::string_view header : {"#timestamp,p_x,p_y,p_z,q_w,q_x,q_y,q_z\n", "# t x y z qw qx qy qz\n"}) {
+    EXPECT_THAT(tum_error_of(std::string(header) + std::string(kPose)), HasSubstr("names qw before qx"));
+  }
+  EXPECT_EQ(tum_error_of("# timestamp tx ty tz qx qy qz qw\n" + std::string(kPose)), "");
+}
+
 TEST(Tum, NormalisesALittleAndRefusesMore) {
   const auto trajectory = read_as_tum("1 0 0 0 0 0 0 1.0009\n");
   ASSERT_TRUE(trajectory);

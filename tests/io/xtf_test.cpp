@@ -45,6 +45,7 @@ struct Ping {
   float first_rad = 0.0F;              ///< to starboard
   std::vector<std::uint16_t> steps{};  ///< of 0.001 rad, one for each beam
   std::vector<std::uint16_t> times{};  ///< of 0.01 m at 1500 m/s
+  float sound_speed_m_s = 1500.0F;
 };
 
 Bytes ping_packet(const Ping& ping) {
@@ -63,7 +64,7 @@ Bytes ping_packet(const Ping& ping) {
     put(section, 2, static_cast<std::uint16_t>(section.size()), Order::kBig);
   };
   begin(settings, "H0");
-  put(settings, 44, 1500.0F, Order::kBig);
+  put(settings, 44, ping.sound_speed_m_s, Order::kBig);
   put(settings, 114, static_cast<std::uint16_t>(count), Order::kBig);
   begin(times, "R0");
   put(times, 4, 0.01F * 2.0F / 1500.0F, Order::kBig);
@@ -176,6 +177,56 @@ TEST(Xtf, DamageIsToldByItsPlaceAndCostsNoPingBehindIt) {
     ASSERT_EQ(all.items.size(), 2U) << left;
     ASSERT_EQ(all.skipped, 1U);
   }
+}
+
+// Kills a line that spans half the Earth because its receiver had no fix at first.
+TEST(Xtf, APingWithoutAFixIsLeftOut) {
+  Ping none = kDown;
+  none.latitude_deg = none.longitude_deg = 0.0;
+  const Bytes file = xtf_file({ping_packet(none), ping_packet(kDown), ping_packet(kDown)});
+  const auto all = all_scans({"line.xtf", file});
+  ASSERT_EQ(all.items.size(), 2U);
+  EXPECT_EQ(all.items[0].origin_m, Eigen::Vector3d::Zero()) << "the origin is the first place";
+  EXPECT_EQ(all.skipped, 1U);
+  EXPECT_THAT(all_scans({"line.xtf", file}, Damage::kFail).error, HasSubstr("latitude and longitude are 0"));
+}
+
+// Kills a ping that is left out as "impossible", without what is.
+TEST(Xtf, ADamagedPingIsNamedWithItsNumber) {
+  const auto error_of = [](const Ping& ping) {
+    return all_scans({"line.xtf", xtf_file({ping_packet(ping)})}, Damage::kFail).error;
+  };
+  Ping ping = kDown;
+  for (const float wrong_m_s : {0.0F, 4921.0F, 15000.0F}) {
+    ping.sound_speed_m_s = wrong_m_s;
+    EXPECT_THAT(error_of(ping), HasSubstr("a ping with a sound speed of " + std::to_string(std::lround(wrong_m_s))));
+  }
+  ping = kDown;
+  ping.latitude_deg = 6'010'000.0;
+  EXPECT_THAT(error_of(ping), HasSubstr("a ping at 6010000, 7, which is no latitude and longitude"));
+}
+
+// Kills a line of 25 m that becomes 0.4 mm long.
+TEST(Xtf, DegreesInAFileOfMetresAreRefused) {
+  const auto file_of = [](double step, std::uint8_t unit) {
+    std::vector<Bytes> packets;
+    for (int i = 0; i < 20; ++i) {
+      Ping ping = kDown;
+      ping.latitude_deg = 54.3 + step * i;
+      packets.push_back(ping_packet(ping));
+    }
+    Bytes file = xtf_file(packets);
+    file[164] = unit;
+    return file;
+  };
+  const auto opened = open_scans({"line.xtf", file_of(1e-5, 0)});
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error().message,
+              HasSubstr("line.xtf: its positions are in metres by its header and stay within "));
+  EXPECT_THAT(opened.error().message, HasSubstr("are they in degrees"));
+  EXPECT_EQ(all_scans({"line.xtf", file_of(1e-5, 3)}).items.size(), 20U);
+  EXPECT_EQ(all_scans({"line.xtf", file_of(0.5, 0)}).items.size(), 20U) << "a line in a local grid";
+  EXPECT_EQ(all_scans({"line.xtf", file_of(0.0, 0)}).items.size(), 20U) << "a head that stands still";
 }
 
 TEST(Xtf, WithoutAMultibeamIsToldAsSuch) {

@@ -241,7 +241,7 @@ TEST(ScanUpdate, IsRefusedByMapsOfOtherLattices) {
 }
 
 TEST(ScanUpdate, AHitBeatsAMissAndTheStrongestHitCounts) {
-  ScanUpdate scan(Lattice(MapOptions{}.resolution_m));
+  ScanUpdate scan(Lattice(MapOptions::kDefaultResolution_m));
   const Key cell{100, 200, 300};
   for (int round = 0; round < 2; ++round) {
     scan.add_hit(cell, LogOdds(0.3F));
@@ -267,7 +267,7 @@ TEST(ScanUpdate, AHitBeatsAMissAndTheStrongestHitCounts) {
 
 // Kills a brick of 4 x 4 x 4 cells, all of them hit, that gets the evidence of one of them.
 TEST(ScanUpdate, EachCellOfAFullBrickHasItsOwnEvidence) {
-  ScanUpdate scan(Lattice(MapOptions{}.resolution_m));
+  ScanUpdate scan(Lattice(MapOptions::kDefaultResolution_m));
   const auto cell = [](int n) {
     return Key{static_cast<std::uint16_t>(4 + n % 4), static_cast<std::uint16_t>(8 + n / 4 % 4),
                static_cast<std::uint16_t>(12 + n / 16)};

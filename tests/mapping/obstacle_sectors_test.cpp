@@ -1,4 +1,4 @@
-#include "pingvox/mapping/obstacle_sectors.hpp"
+#include "mapping/internal/obstacle_sectors.hpp"
 
 #include <gtest/gtest.h>
 

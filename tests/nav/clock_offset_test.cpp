@@ -31,10 +31,13 @@ TEST(ClockOffset, OfTwoLogsOfOneVehicle) {
   EXPECT_LT(offset->deviation_s, 0.02);
 }
 
-TEST(ClockOffset, TimesThatStepsCannotMoveComeToAnEnd) {
-  const auto changes = *yaw_changes(log_of(wander, 0.0, 90.0, 16.0, 1e17));
-  EXPECT_LE(changes.size(), 100U);
-  EXPECT_FALSE(clock_offset(changes, log_of(wander, 0.0, 90.0, 0.05, 0.0)));
+// Kills steps that go on for ever, as a second is nothing beside such times.
+TEST(ClockOffset, TimesThatStepsCannotMoveAreRefused) {
+  const auto changes = yaw_changes(log_of(wander, 0.0, 90.0, 16.0, 1e17));
+  ASSERT_FALSE(changes);
+  EXPECT_NE(changes.error().message.find("thousands of years after 1970"), std::string::npos);
+  const auto known = *yaw_changes(log_of(wander, 0.0, 90.0, 0.05, 0.0));
+  EXPECT_FALSE(clock_offset(known, log_of(wander, 0.0, 90.0, 16.0, 1e17)));
 }
 
 std::filesystem::path shared(const std::string& name) {

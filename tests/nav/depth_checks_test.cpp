@@ -86,5 +86,41 @@ TEST(DepthChecks, AHeightIsComparedWithTheDepth) {
   EXPECT_EQ(doubt_among({position_of_dive(-1.0)}), "");
 }
 
+// Kills a depth in feet, fathoms or decimetres, and one that points up, beside a pressure that tells another.
+TEST(DepthChecks, ADepthInFeetIsToldByThePressure) {
+  EXPECT_THAT(fault_among({pressure_of_dive(), depth_of_dive(3.2808)}),
+              HasSubstr("it changes 3.28 times as much as that by the pressure of bar30: is it in feet?"));
+  EXPECT_THAT(fault_among({pressure_of_dive(), depth_of_dive(0.5468)}), HasSubstr("is it in fathoms?"));
+  EXPECT_THAT(fault_among({pressure_of_dive(), depth_of_dive(10.0)}), HasSubstr("is it in dm?"));
+  const auto from_above =
+      half_a_minute("depth", NavQuantity::kDepth, [](double time_s) { return Vector3d(10.0 - dive_m(time_s), 0, 0); });
+  EXPECT_THAT(fault_among({pressure_of_dive(), from_above}), HasSubstr("falls as the pressure of bar30 rises"));
+}
+
+NavSource constant(NavQuantity quantity, const Vector3d& value) {
+  return half_a_minute("constant", quantity, [value](double) { return value; });
+}
+
+TEST(DepthChecks, AConstantDepthIsComparedToo) {
+  const NavSource deep = constant(NavQuantity::kPressure, {101'325.0 + 1025.0 * 9.80665 * 5.0, 0, 0});
+  EXPECT_THAT(doubt_among({deep, constant(NavQuantity::kDepth, {50.0, 0, 0})}), HasSubstr("is it in dm?"));
+  EXPECT_THAT(doubt_among({deep, constant(NavQuantity::kDepth, {0.5, 0, 0})}), HasSubstr("is it in another unit?"));
+  EXPECT_EQ(doubt_among({deep, constant(NavQuantity::kDepth, {5.5, 0, 0})}), "");
+  EXPECT_EQ(doubt_among({deep, constant(NavQuantity::kDepth, {15.3, 0, 0})}), "") << "from the zero of a gauge";
+}
+
+// Kills a vehicle at constant depth that is as far above the surface.
+TEST(DepthChecks, AConstantHeightIsComparedWithTheDepth) {
+  const NavSource depth = constant(NavQuantity::kDepth, {5.0, 0, 0});
+  EXPECT_THAT(doubt_among({depth, constant(NavQuantity::kPosition, {1, 2, 5})}),
+              HasSubstr("its z is 5 m above the origin where the depth of constant is 5 m: does it point down?"));
+  EXPECT_EQ(doubt_among({depth, constant(NavQuantity::kPosition, {1, 2, -5})}), "");
+  EXPECT_EQ(doubt_among({depth, constant(NavQuantity::kPosition, {1, 2, 0})}), "");
+}
+
+TEST(DepthChecks, AHeightInFeetIsNamed) {
+  EXPECT_THAT(doubt_among({depth_of_dive(1.0), position_of_dive(3.2808)}), HasSubstr("is it in feet?"));
+}
+
 }  // namespace
 }  // namespace pingvox

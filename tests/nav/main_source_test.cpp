@@ -122,6 +122,54 @@ TEST(MainSource, GoalsMarkersAndPosesOnTheVehicleAreNoPath) {
   }
 }
 
+/// Whether a source of this name and frame is the vehicle's, beside nothing else.
+bool is_taken(const char* name, NavQuantity quantity, const char* child = "") {
+  NavSource source = sampled(name, quantity, 0, 30);
+  source.child = child;
+  const auto log = NavLog::make({source}, NavClock::kUnix);
+  return log->best(quantity) != nullptr;
+}
+
+// Commands came more often than what they ask for, and were taken.
+TEST(MainSource, CommandsAndPlansAreNotTheVehicle) {
+  constexpr auto kDepth = NavQuantity::kDepth, kVelocity = NavQuantity::kVelocity;
+  for (const char* word : {"desired", "cmd", "target", "setpoint", "goal", "ref", "plan", "reference", "max"}) {
+    for (const NavQuantity quantity : {kDepth, kVelocity, kPosition, kAttitude, kFix}) {
+      const std::string name = std::string("/") + word + "_thing";
+      EXPECT_FALSE(is_taken(name.c_str(), quantity)) << name;
+    }
+  }
+  EXPECT_FALSE(is_taken("/cmd_vel", kVelocity));
+  EXPECT_FALSE(is_taken("/rov/desiredDepth2", kDepth));
+  EXPECT_FALSE(is_taken("/tf:map:base_link_cmd", kPosition, "base_link_cmd"));
+  for (const char* name : {"/bar30/depth", "/dvl/twist", "/refinement/odom", "/commander/pose", "ATTITUDE"}) {
+    EXPECT_TRUE(is_taken(name, kDepth)) << name;
+  }
+}
+
+TEST(MainSource, OtherThingsAreNotTheVehicle) {
+  for (const char* name : {"/ship/fix", "/base/fix", "/home/fix", "/buoy1/fix"}) EXPECT_FALSE(is_taken(name, kFix));
+  for (const char* name : {"/rov/usbl/fix", "/gps", "GPS_RAW_INT"}) EXPECT_TRUE(is_taken(name, kFix)) << name;
+  EXPECT_TRUE(is_taken("/base/odom", kPosition)) << "a mobile base";
+  EXPECT_FALSE(is_taken("/dock/pose", kPosition));
+  EXPECT_FALSE(is_taken("/wind/twist", NavQuantity::kVelocity));
+  EXPECT_FALSE(is_taken("/water_depth", NavQuantity::kDepth));
+  EXPECT_FALSE(is_taken("/echosounder/seafloor_depth", NavQuantity::kDepth));
+  EXPECT_FALSE(is_taken("/internal_pressure", NavQuantity::kPressure));
+  EXPECT_TRUE(is_taken("/water/pressure", NavQuantity::kPressure));
+}
+
+// The attitude of a gimbal turned the map by 90 degrees.
+TEST(MainSource, TheAttitudeOfACameraIsNotTheVehicles) {
+  EXPECT_FALSE(is_taken("/camera/imu", kAttitude, "camera_imu_optical_frame"));
+  EXPECT_FALSE(is_taken("/imu", kAttitude, "gimbal_link"));
+  EXPECT_FALSE(is_taken("/imu", kAttitude, "sonar_link"));
+  EXPECT_TRUE(is_taken("/imu", kAttitude, "imu_link"));
+  EXPECT_EQ(path_of({sampled("/camera/odom", kPosition, 0, 30), sampled("/camera/odom", kAttitude, 0, 30)}),
+            "/camera/odom and /camera/odom")
+      << "odometry by a camera";
+}
+
 // The driver of a Micron sends where the head looks as a pose at 0, 0, 0: all beams lay in one direction.
 TEST(MainSource, TheHeadingOfAHeadIsNotTheVehicles) {
   NavSource place = uncertain(sampled("/micron/heading", kPosition, 0, 30), "map");
@@ -199,6 +247,9 @@ TEST(MainSource, OneOfANameIsTakenInsteadOfAllOthers) {
   EXPECT_EQ(path({{"gps"}, {"imu"}}), "gps and imu");
   EXPECT_EQ(path({{"/odom", kPosition}, {"imu", kAttitude}}), "/odom and imu");
   EXPECT_EQ(path({{"/goal_pose"}}), "/goal_pose and /odom") << "also one that is none by itself";
+  const auto chosen = choose_sources(*log, std::vector<NamedSource>{{"/goal_pose"}});
+  const auto again = NavLog::make(chosen->sources(), NavClock::kUnix);
+  EXPECT_EQ(path_sources(*again).position->name, "/goal_pose") << "the choice stays";
   const std::string refused = path({{"/odo"}});
   EXPECT_THAT(refused, HasSubstr("there is no source '/odo', but /goal_pose (position), /odom (position, attitude)"));
   EXPECT_THAT(path({{"imu", kPosition}}), HasSubstr("'imu' of position"));

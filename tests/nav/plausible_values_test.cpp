@@ -54,6 +54,17 @@ TEST(PlausibleValues, ValuesInAnotherUnitAreAFault) {
   };
   EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, all({54.25, 10.0, 0.0}))),
             "latitude of 54.25 rad is beyond pi/2: is it in degrees?");
+  // Of a log in degrees that has another number than is right.
+  const auto in_degrees = [](double latitude_deg) {
+    return [latitude_deg](double) -> Vector3d { return {latitude_deg * std::numbers::pi / 180.0, 0.1, 0.0}; };
+  };
+  EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, in_degrees(5418.0))),
+            "latitude of 5418 degrees is beyond pi/2: is it in another unit?");
+  EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, in_degrees(-122.3))),
+            "latitude of -122.3 degrees is beyond pi/2: is it the longitude, or in another unit?");
+  EXPECT_THAT(fault_of(source_of("odom", NavQuantity::kPosition, 50, all({3'657'000.0, 651'000.0, 5'158'000.0}))),
+              HasSubstr("Earth-centred"));
+  EXPECT_EQ(fault_of(source_of("odom", NavQuantity::kPosition, 50, all({500'000.0, 6'010'000.0, -5.0}))), "") << "UTM";
   EXPECT_THAT(fault_of(source_of("gps", NavQuantity::kFix, 50, all({0.5, 103.8, 0.0}))),
               HasSubstr("longitude of 103.8 rad"));
   EXPECT_THAT(fault_of(source_of("gps", NavQuantity::kFix, 50, all({9.4e6, 1.8e6, 0.0}))),
@@ -215,6 +226,22 @@ TEST(PlausibleValues, AVehicleOnItsBackAllTheTimeIsDoubtful) {
   EXPECT_THAT(doubt_of(source_of("odom", NavQuantity::kAttitude, 150,
                                  [](double time_s) { return Vector3d(3.1 - 0.1 * time_s, 0.02, -0.02); })),
               HasSubstr("rolls over"));
+  // The same with a heading of 90 degrees or so.
+  EXPECT_THAT(doubt_of(source_of("odom", NavQuantity::kAttitude, 100,
+                                 [](double time_s) { return Vector3d(1.9 - 0.04 * time_s, 0.01, 0.02); })),
+              HasSubstr("lies on its side"));
+  // Roll and yaw are swapped.
+  EXPECT_THAT(doubt_of(source_of("odom", NavQuantity::kAttitude, 100,
+                                 [](double time_s) { return Vector3d(0.08 * time_s - 0.6, 0.01, 0.02); })),
+              HasSubstr("roll and yaw swapped"));
+  // It rolls in waves while it turns a little, or dives steeply.
+  EXPECT_EQ(doubt_of(source_of(
+                "odom", NavQuantity::kAttitude, 100,
+                [](double time_s) { return Vector3d(0.7 * std::sin(time_s), 0.0, 0.1 * std::sin(0.2 * time_s)); })),
+            "");
+  EXPECT_EQ(doubt_of(source_of("odom", NavQuantity::kAttitude, 100,
+                               [](double time_s) { return Vector3d(0.0, 0.7, 0.05 * time_s); })),
+            "");
   // It dives head down, loops, or turns over once.
   EXPECT_EQ(doubt_of(source_of("odom", NavQuantity::kAttitude, 100,
                                [](double time_s) { return Vector3d(0.05, 0.02, 0.3 * time_s - 3.0); })),

@@ -22,7 +22,8 @@ struct Sensor {
   double zero_pa = 0.0;  ///< what it calls 0
 };
 constexpr Sensor kPa{1.0, 0.0}, kHpa{1e2, 0.0}, kKpa{1e3, 0.0}, kBar{1e5, 0.0}, kGaugePa{1.0, kAir_pa},
-    kGaugeKpa{1e3, kAir_pa}, kGaugeBar{1e5, kAir_pa};
+    kGaugeHpa{1e2, kAir_pa}, kGaugeKpa{1e3, kAir_pa}, kGaugeBar{1e5, kAir_pa}, kDbar{1e4, 0.0},
+    kGaugeDbar{1e4, kAir_pa}, kPsi{6894.757, 0.0}, kGaugePsi{6894.757, kAir_pa}, kMmHg{133.3224, 0.0};
 
 struct Dive {
   double top_m = 0.0, bottom_m = 0.0;
@@ -60,7 +61,7 @@ std::string told(const Dive& dive, const Sensor& sensor, const NavSource* depth 
 
 TEST(PressureUnit, IsToldByARecordingFromTheSurface) {
   const Dive dive{0.1, 8.0};
-  for (const Sensor& sensor : {kPa, kHpa, kKpa, kBar, kGaugePa, kGaugeBar}) {
+  for (const Sensor& sensor : {kPa, kHpa, kKpa, kGaugePa}) {
     EXPECT_EQ(told(dive, sensor), "") << sensor.unit_pa << " from " << sensor.zero_pa;
   }
 }
@@ -70,7 +71,7 @@ TEST(PressureUnit, IsToldByARecordingThatBeginsDeep) {
   const Dive deep{50.0, 52.0};
   EXPECT_EQ(told(deep, kPa), "");
   EXPECT_EQ(told(deep, kKpa), "");
-  EXPECT_EQ(told(deep, kBar), "");
+  EXPECT_THAT(told(deep, kBar), HasSubstr("may be bar (50.0 to 52.0 m deep) or "));
   EXPECT_EQ(told({0.5, 2.5}, kGaugePa), "");
   EXPECT_EQ(told({2.0, 7.0}, kGaugePa), "");
 }
@@ -78,7 +79,8 @@ TEST(PressureUnit, IsToldByARecordingThatBeginsDeep) {
 TEST(PressureUnit, IsToldByADepthOfTheLog) {
   const Dive deep{50.0, 58.0};
   const NavSource depth = dive_of(deep, NavQuantity::kDepth, kPa);
-  for (const Sensor& sensor : {kPa, kHpa, kKpa, kBar, kGaugePa, kGaugeKpa, kGaugeBar}) {
+  for (const Sensor& sensor :
+       {kPa, kHpa, kKpa, kBar, kGaugePa, kGaugeKpa, kGaugeBar, kDbar, kGaugeDbar, kPsi, kGaugePsi, kMmHg}) {
     EXPECT_EQ(told(deep, sensor, &depth), "") << sensor.unit_pa << " from " << sensor.zero_pa;
   }
 }
@@ -91,6 +93,24 @@ TEST(PressureUnit, ThatCannotBeToldIsAFault) {
   EXPECT_THAT(told({0.1, 8.0}, kGaugeKpa),
               HasSubstr("hPa above that of air (0.0 to 0.8 m deep) or kPa above that of air"));
   EXPECT_THAT(told({0.0, 8.0}, {1e-6, 0.0}), HasSubstr("are no pressures of air or water"));
+}
+
+// Kills dbar and psi that are read as bar ten or fifteen times as deep, or as kPa a tenth as deep.
+TEST(PressureUnit, OfDbarAndPsiIsAskedFor) {
+  const Dive dive{0.1, 6.0};
+  EXPECT_THAT(told(dive, kDbar), HasSubstr("dbar (0.1 to 6.0 m deep) or "));
+  EXPECT_THAT(told(dive, kGaugeDbar), HasSubstr("dbar above that of air (0.1 to 6.0 m deep)"));
+  EXPECT_THAT(told({20.0, 23.0}, kGaugeDbar), HasSubstr("dbar above that of air (20.0 to 23.0 m deep)"));
+  EXPECT_THAT(told(dive, kPsi), HasSubstr("psi (0.1 to 6.0 m deep) or "));
+  EXPECT_THAT(told(dive, kGaugePsi), HasSubstr("psi above that of air (0.1 to 6.0 m deep)"));
+  EXPECT_THAT(told(dive, kMmHg), HasSubstr("mmHg (0.1 to 6.0 m deep)"));
+  EXPECT_THAT(told(dive, kBar), HasSubstr("bar (0.1 to 6.0 m deep) or "));
+  EXPECT_THAT(told(dive, kGaugeBar), HasSubstr("bar above that of air (0.1 to 6.0 m deep)"));
+}
+
+// Kills a gauge that begins deep, in hPa, as kPa at five metres a second.
+TEST(PressureUnit, IsNotWhatIsTooFast) {
+  EXPECT_EQ(told({5.0, 20.0}, kGaugeHpa), "");
 }
 
 TEST(PressureUnit, AStatedOneIsKeptAndItsZeroFound) {
@@ -135,8 +155,8 @@ double slow_depth_m(double top_m, double bottom_m, double time_s) {
 // Kills a unit or a zero that is guessed: a pressure is read right, or said to be unclear; with a depth beside it that
 // tells ten metres from a thousandth of them, it is read right.
 TEST(PressureUnitOfRandomDives, IsNeverWrong) {
-  const std::array<Sensor, 8> sensors = {
-      {{1.0, 0.0}, {1e2, 0.0}, {1e3, 0.0}, {1e5, 0.0}, {1.0, kAir_pa}, {1e2, kAir_pa}, {1e3, kAir_pa}, {1e5, kAir_pa}}};
+  const std::array sensors = {kPa,       kHpa,      kKpa,  kBar,       kGaugePa, kGaugeHpa,
+                              kGaugeKpa, kGaugeBar, kDbar, kGaugeDbar, kPsi,     kGaugePsi};
   int read = 0, unclear = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     std::mt19937_64 random(seed);

@@ -1,6 +1,6 @@
 // Poses that go where no vehicle goes.
 
-#include "pingvox/nav/trajectory_steps.hpp"
+#include "nav/internal/trajectory_steps.hpp"
 
 #include <gtest/gtest.h>
 

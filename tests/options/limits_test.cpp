@@ -7,7 +7,7 @@
 #include <regex>
 #include <string>
 
-#include "pingvox/mapping/obstacle_sectors.hpp"
+#include "mapping/internal/obstacle_sectors.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/sonar.hpp"
 #include "pingvox/sim/tank.hpp"

@@ -40,6 +40,54 @@ TEST(Recording, MapsALogAsItsPartsDoByHand) {
   EXPECT_EQ(mapped->path.nav->velocity, "DVL");
 }
 
+/// Some beams that reach `range_m`, in bins of 5 cm.
+FileBytes beams_of_range(const std::string& name, int range_m) {
+  std::string text = "time_s,bearing_rad,bin_length_m,intensities\n";
+  for (int n = 0; n < 20; ++n) {
+    text += std::to_string(n) + "," + std::to_string(0.1 * n) + ",0.05";
+    for (int bin = 0; bin < 20 * range_m; ++bin) text += bin == 40 ? ",200" : ",1";
+    text += '\n';
+  }
+  return {name, bytes_of(text)};
+}
+
+TEST(Recording, IsMappedInCellsThatFollowRangeAndBeam) {
+  const auto resolution = [](const std::vector<InputFile>& logs, const MapOptions& map = {},
+                             const BuildOptions& build = {}, RecordingOptions options = {}) {
+    const auto mapped = Recording::open(logs, std::move(options)).and_then([&](const Recording& recording) {
+      return build_map(recording, map, build);
+    });
+    EXPECT_TRUE(mapped) << mapped.error().message;
+    EXPECT_EQ(mapped->map.lattice().resolution_m(), mapped->forecast.resolution_m);
+    return mapped->forecast.resolution_m;
+  };
+  const FileBytes near = beams_of_range("near.csv", 5), far = beams_of_range("far.csv", 50);
+  EXPECT_EQ(resolution({near}), 0.05);
+  EXPECT_EQ(resolution({far}), 0.25);
+  EXPECT_EQ(resolution({near, far}), 0.25);
+  EXPECT_EQ(resolution({far, near}), 0.25);
+  EXPECT_EQ(resolution({far}, {.resolution_m = 0.5}), 0.5) << "as asked";
+  BuildOptions build;
+  build.echo.max_range_m = 20.0;
+  EXPECT_EQ(resolution({far}, {}, build), 0.1) << "nothing is mapped beyond";
+  RecordingOptions narrow;
+  narrow.head.beam_width_rad = 1.0 * std::numbers::pi / 180.0;
+  EXPECT_EQ(resolution({far}, {}, {}, narrow), 0.1);
+}
+
+TEST(Recording, TellsWhatItsMapMayTake) {
+  const auto cost = [](int range_m, double cell_m) {
+    const auto forecast = Recording::open({beams_of_range("a.csv", range_m)}).and_then([&](const Recording& recording) {
+      return forecast_map(recording, {.resolution_m = cell_m});
+    });
+    EXPECT_TRUE(forecast && forecast->cost);
+    return *forecast->cost;
+  };
+  EXPECT_EQ(cost(10, 0.05).beams, 20.0);
+  EXPECT_GT(cost(50, 0.05).seconds, 20.0 * cost(10, 0.05).seconds);
+  EXPECT_GT(cost(50, 0.05).bytes, 6.0 * cost(50, 0.1).bytes);
+}
+
 TEST(Recording, CanBeReadAgainAndAgain) {
   const Dive dive = harbour_dive();
   const auto recording = Recording::open({dive.log}, {.nav = {dive.nav}});

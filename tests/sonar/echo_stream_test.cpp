@@ -1,4 +1,4 @@
-#include "pingvox/sonar/echo_stream.hpp"
+#include "sonar/internal/echo_stream.hpp"
 
 #include <gtest/gtest.h>
 

@@ -71,7 +71,7 @@ Sweep sweep_of(std::size_t beams, double gain, std::mt19937_64& random, F&& hear
   return sweep;
 }
 
-std::vector<std::optional<Echo>> echoes_of(const Sweep& sweep, const EchoOptions& options = {}) {
+std::vector<std::optional<Echo>> near_field_echoes_of(const Sweep& sweep, const EchoOptions& options = {}) {
   return detect_echoes(apply_filter(PolarImage(sweep), {}), sweep, options);
 }
 
@@ -95,7 +95,7 @@ TEST(NearWall, WhoseEchoBeginsWithinTheBlankingRangeIsFoundAtAnyGain) {
           heard.add_echo(range_m - 0.45, range_m, 0.4, 0.6);
           heard.add_echo(3.0 * range_m - 0.1, 3.0 * range_m + 0.1, 0.3, 0.35);
         });
-        const auto echoes = echoes_of(sweep, {.threshold = threshold});
+        const auto echoes = near_field_echoes_of(sweep, {.threshold = threshold});
         for (std::size_t n = 0; n < echoes.size(); ++n) {
           SCOPED_TRACE(n);
           ASSERT_TRUE(echoes[n]);
@@ -114,7 +114,7 @@ TEST(NearWall, IsNotHeardByTheBeamsBesideIt) {
     heard.add_ringing(0.8, 0.06);
     if (n >= 18 && n < 22) heard.add_echo(0.7, 0.9, 0.3, 1.0);
   });
-  const auto echoes = echoes_of(sweep);
+  const auto echoes = near_field_echoes_of(sweep);
   for (std::size_t n = 0; n < echoes.size(); ++n) {
     SCOPED_TRACE(n);
     if (n >= 18 && n < 22) {
@@ -200,7 +200,7 @@ TEST(NearWall, IsNotAPartOfTheVehicleThatIsFainterThanTheWallBehind) {
     if (n % 40 < 20) heard.add_echo(0.5, 0.85, 0.2, 0.3);
     heard.add_echo(2.0, 2.15, 0.2, 0.6);
   });
-  const auto echoes = echoes_of(sweep);
+  const auto echoes = near_field_echoes_of(sweep);
   for (const auto& echo : echoes) {
     ASSERT_TRUE(echo);
     EXPECT_NEAR(echo->range_m, 2.1, 0.15);
@@ -215,7 +215,7 @@ TEST(NearWall, ThatIsNearerThanTheBlankingRangeLeavesItsBeamSilent) {
     heard.add_echo(0.5, 0.68, 0.3, 0.8);
     heard.add_echo(2.4, 2.6, 0.15, 0.4);
   });
-  for (const auto& echo : echoes_of(sweep)) EXPECT_FALSE(echo);
+  for (const auto& echo : near_field_echoes_of(sweep)) EXPECT_FALSE(echo);
 }
 
 // Kills ringing that is taken for a near wall, or for something near that hides the walls behind.
@@ -226,7 +226,7 @@ TEST(NearField, OfRingingBeyondTheBlankingRangeHidesNoFainterWalls) {
     heard.add_echo(2.9, 3.0, 0.15, 0.3);
   });
   std::size_t at_wall = 0;
-  for (const auto& echo : echoes_of(sweep)) {
+  for (const auto& echo : near_field_echoes_of(sweep)) {
     if (!echo) continue;
     EXPECT_NEAR(echo->range_m, 3.0, 0.15);
     ++at_wall;
@@ -261,7 +261,7 @@ TEST(NearField, HoldsNoWallsFarBehindTheBlankingRange) {
       heard.set(0, 145, 0.5);
       heard.add_echo(crest_m - 0.3, crest_m, 0.2, 0.4);
     });
-    for (const auto& echo : echoes_of(sweep)) EXPECT_FALSE(echo);
+    for (const auto& echo : near_field_echoes_of(sweep)) EXPECT_FALSE(echo);
   }
 }
 
@@ -279,7 +279,7 @@ Sweep saturated_turn(double wall_amplitude) {
 // Kills speckle in a saturated near field that is taken for a wall before the wall.
 TEST(NearField, ThatIsSaturatedHoldsNoWalls) {
   std::size_t at_wall = 0;
-  for (const auto& echo : echoes_of(saturated_turn(1.2))) {
+  for (const auto& echo : near_field_echoes_of(saturated_turn(1.2))) {
     if (!echo) continue;
     EXPECT_NEAR(echo->range_m, 2.5, 0.15);
     ++at_wall;
@@ -290,7 +290,7 @@ TEST(NearField, ThatIsSaturatedHoldsNoWalls) {
 // Kills beams that free what is before an echo fainter than a near field that may hide its wall.
 TEST(NearField, WithSpeckleSaysNothingAboutWhatIsFainter) {
   std::size_t silent = 0;
-  for (const auto& echo : echoes_of(saturated_turn(0.5))) {
+  for (const auto& echo : near_field_echoes_of(saturated_turn(0.5))) {
     silent += echo ? 0U : 1U;
     if (echo) {
       EXPECT_NEAR(echo->range_m, 2.5, 0.15);
@@ -311,7 +311,7 @@ void hear_arc(std::size_t n, Heard& heard, std::mt19937_64& random) {
 TEST(RingingArc, IsWithinTheMeasuredBlankingRange) {
   std::mt19937_64 random(8);
   const Sweep sweep = sweep_of(200, 1.0, random, [&](std::size_t n, Heard& heard) { hear_arc(n, heard, random); });
-  const auto echoes = echoes_of(sweep, {.min_range_m = std::nullopt});
+  const auto echoes = near_field_echoes_of(sweep, {.min_range_m = std::nullopt});
   std::size_t found = 0;
   for (const auto& echo : echoes) {
     if (!echo) continue;
@@ -328,7 +328,7 @@ TEST(RingingArc, IsNoWallBeforeAHeadThatLooksIntoASector) {
     heard.add_ringing(0.9, 0.08);
     heard.add_echo(0.7, 0.85, 0.1, 0.4);
   });
-  for (const auto& echo : echoes_of(sweep, {.min_range_m = std::nullopt})) {
+  for (const auto& echo : near_field_echoes_of(sweep, {.min_range_m = std::nullopt})) {
     ASSERT_TRUE(echo);
     EXPECT_NEAR(echo->range_m, 0.85, 0.1);
   }
@@ -342,7 +342,7 @@ TEST(RingingArc, IsInNearlyAllDirections) {
     const double range_m = n % 100 < 70 ? 0.85 : 2.5;
     heard.add_echo(range_m - 0.15, range_m, 0.1, 0.4);
   });
-  const auto echoes = echoes_of(sweep, {.min_range_m = std::nullopt});
+  const auto echoes = near_field_echoes_of(sweep, {.min_range_m = std::nullopt});
   std::size_t near = 0;
   for (const auto& echo : echoes) near += echo && echo->range_m < 1.0 ? 1U : 0U;
   EXPECT_GE(near, 130U);

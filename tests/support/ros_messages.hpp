@@ -65,10 +65,18 @@ inline Bytes twist_stamped(double time_s, std::string_view frame, const std::vec
 }
 
 inline Bytes imu(double time_s, std::string_view frame, const std::vector<double>& rotation,
-                 const std::vector<double>& rate) {
+                 const std::vector<double>& rate, double upward_m_s2 = 0.0) {
   Cdr message;
   message.header(time_s, frame).numbers(rotation).numbers(std::vector<double>(9)).numbers(rate);
-  return message.numbers(std::vector<double>(9 + 3 + 9)).bytes();
+  message.numbers(std::vector<double>(9)).numbers({0.0, 0.0, upward_m_s2});
+  return message.numbers(std::vector<double>(9)).bytes();
+}
+
+inline Bytes nav_sat_fix(double time_s, double latitude_deg, double longitude_deg) {
+  Cdr message;
+  message.header(time_s, "gps").number(std::int8_t{0}).number(std::uint16_t{1});
+  message.numbers({latitude_deg, longitude_deg, 0.0}).numbers(std::vector<double>(9));
+  return message.number(std::uint8_t{0}).bytes();
 }
 
 /// A transform of tf.

@@ -15,7 +15,7 @@ using namespace pingvox;
 namespace {
 
 const MapColours kColours{};
-const Rgb kCrossColour{230, 120, 0};
+const Rgb kCrossColour{230, 120, 0}, kArrowColour{40, 44, 52};
 
 /// What is in the frame: around what is known there is always something unknown.
 struct Inside {
@@ -92,6 +92,35 @@ TEST(RenderMap, PutsXUpAndYLeft) {
             "#  . \n");
 }
 
+TEST(RenderMap, PutsNorthUpAndEastToTheRightWhereTheyAreKnown) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    const LogOdds wall = Clamp{}.highest, water = Clamp{}.lowest;
+    for (int x = 200; x < 205; ++x) editor.set(cell(x, 103, 0), 16, wall);   // in the north
+    for (int y = 100; y < 103; ++y) editor.set(cell(204, y, 0), 16, water);  // in the east
+    editor.set(cell(200, 100, 0), 16, wall);                                 // in the south west
+  }
+  constexpr std::string_view kDrawn =
+      "#####\n"
+      "    .\n"
+      "    .\n"
+      "#   .\n";
+  const Picture picture = render_map(map, {.axes = MapAxes::kRightAhead, .target_px = 80});
+  const auto [left, top] = corner_of_known(picture);
+  EXPECT_EQ(as_text(picture, left, top, 5, 4, edge_px(80, 5), kMapLetters), kDrawn);
+  const Picture north = render_map(map, {.axes = MapAxes::kEastNorth, .target_px = 400});
+  const Picture right_ahead = render_map(map, {.axes = MapAxes::kRightAhead, .target_px = 400});
+  EXPECT_GT(count_of(north, kArrowColour), count_of(right_ahead, kArrowColour)) << "an arrow to the north";
+  ASSERT_EQ(north.width(), right_ahead.width());
+  ASSERT_EQ(north.height(), right_ahead.height());
+  std::size_t different = 0;
+  for (std::size_t y = 0; y < north.height(); ++y) {
+    for (std::size_t x = 0; x < north.width(); ++x) different += north.at(x, y) != right_ahead.at(x, y) ? 1 : 0;
+  }
+  EXPECT_LT(different, north.width() * north.height() / 50) << "only by the arrow";
+}
+
 TEST(RenderMap, PutsZUpFromEachSide) {
   OccupancyMap map({.resolution_m = 1.0});
   {
@@ -158,6 +187,11 @@ TEST(RenderMap, DrawsPathsWhereTheyWentAndNotAcrossGaps) {
   EXPECT_EQ(at(106.0, 117.5), line);
   EXPECT_EQ(at(117.5, 110.0), kColours.surely_free) << "a gap";
   EXPECT_EQ(at(110.0, 110.0), kColours.surely_free);
+
+  // The start is a ring, the end a disc.
+  EXPECT_EQ(at(102.5, 102.5), (Rgb{255, 255, 255}));
+  const Rgb beside_end = at(102.5 + 5.0 / static_cast<double>(px), 117.5);
+  EXPECT_EQ(beside_end, line);
 
   // One that leads out of the map makes the picture wider.
   poses.back().map_from_body.translation().x() = 160.0;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/limits.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -12,6 +14,8 @@ namespace pingvox {
 
 /// Field of view of a scanning sonar, which makes full turns about its z axis.
 struct ViewOptions {
+  static constexpr Limits kMinRanges_m{0.0, std::numeric_limits<double>::infinity(), Limits::Ends::kHighOut};
+  static constexpr Limits kHeights_rad{0.0, std::numbers::pi, Limits::Ends::kLowOut};
   double min_range_m = 0.0;
   double max_range_m = std::numeric_limits<double>::infinity();
   double height_rad = 35.0 * kDegree_rad;  ///< vertical beam width, full angle

@@ -26,6 +26,8 @@ class InputFile {
   /// For messages and reports: the path, or the name of the bytes.
   const std::string& name() const;
   bool is_standard_input() const;
+  /// Standard input, or what is no file of bytes, such as a pipe.
+  bool is_read_once() const;
   /// @return kIo naming it when it cannot be opened
   Result<ByteStream> open() const;
 

@@ -6,6 +6,7 @@
 
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -16,6 +17,7 @@ struct MapFile {
   Format format = Format::kPvx;
   OccupancyMap map;
   std::string made_by;  ///< kPvx: free text about how the map was made; else empty
+  MapAxes axes = MapAxes::kNotTold;
 };
 
 /// Reads a map; the format is recognised by content. kCorrupt names the place and the reason.
@@ -24,10 +26,13 @@ Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes =
 
 /// Writes a map in any format of maps and clouds. kUnsupported when the format cannot hold it (.bt and .ot: depth 16
 /// only); the message names one that can.
-Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out);
+/// @param axes  kept in .bt, .ot and .pvx if they are east and north
+Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out,
+                       MapAxes axes = MapAxes::kNotTold);
 
 /// Writes a map to a file, or to standard output for "-"; errors name the file.
-Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, const std::string& path);
+Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, const std::string& path,
+                       MapAxes axes = MapAxes::kNotTold);
 
 /// The same in the format that the suffix names: `write_map(map, "harbour.bt")`.
 /// @return kUnsupported when the suffix is not of a map or cloud

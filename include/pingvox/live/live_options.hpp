@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pingvox/device/micron_driver.hpp"
-#include "pingvox/device/ping360_driver.hpp"
+#include "pingvox/device/head_settings.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/head_options.hpp"

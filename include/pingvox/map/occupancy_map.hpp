@@ -23,7 +23,10 @@ struct MapAccess;
 }
 
 struct MapOptions {
-  double resolution_m = 0.05;  ///< edge of a cell of the finest resolution, > 0
+  static constexpr double kDefaultResolution_m = 0.05;
+  /// Edge of a cell of the finest resolution, > 0. nullopt: of a map of a recording by its range and beam width
+  /// (`forecast_map`), of others the default.
+  std::optional<double> resolution_m = std::nullopt;
   int depth = Lattice::kDefaultDepth;
   Clamp clamp{};
   Thresholds thresholds{};  ///< for classify()

@@ -43,6 +43,9 @@ class BeamMapper {
   /// Report of the beams so far, without those that wait.
   const BuildReport& report() const;
 
+  /// What the sweeps so far heard, without the one that is not complete.
+  SweepCoverage coverage() const;
+
   /// Number of later beams of its sweep that a beam waits for; nullopt: for the end of its sweep.
   std::optional<std::size_t> delay_beams() const;
 

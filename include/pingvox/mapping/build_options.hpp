@@ -7,6 +7,7 @@
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/log_odds.hpp"
 #include "pingvox/mapping/beam_model.hpp"
+#include "pingvox/mapping/sweep_coverage.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/filters.hpp"
@@ -64,6 +65,7 @@ struct BuildReport {
   std::optional<int> min_threshold, max_threshold;  ///< that echoes were detected with; nullopt: no echoes
   std::optional<double> first_s, last_s;            ///< least and greatest time of a beam, mapped or not
   std::uint64_t cells_freed = 0, cells_hit = 0;     ///< cell updates, summed over scans
+  SweepCoverage coverage;                           ///< of beams, when build_map is done; else nothing
   struct Seconds {
     double read = 0, detect = 0, trace = 0, apply = 0;
   } seconds;

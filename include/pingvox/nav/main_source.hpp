@@ -12,9 +12,9 @@
 // Which of several sources of a log tells where the vehicle was.
 namespace pingvox {
 
-/// Looks at sources whose subject is uncertain: they become NavSubject::kOther, with a note that says why, where they
-/// are goals, setpoints or markers by their name, poses in a frame that moves with the vehicle, headings without a
-/// place (as of the head of a sonar), or velocities in a frame that stands still.
+/// Sources become NavSubject::kOther, with a note that says why, where they are goals, commands, plans or of something
+/// else by their name, unless they are chosen. Of those whose subject is uncertain also poses in a frame that moves
+/// with the vehicle, headings without a place (as of the head of a sonar), and velocities in a frame that stands still.
 void judge_subjects(std::vector<NavSource>& sources);
 
 /// The best source of a quantity, as NavLog::best has it.
@@ -50,8 +50,8 @@ struct NamedSource {
   std::optional<NavQuantity> quantity = std::nullopt;
 };
 
-/// Makes the named sources the vehicle's, and the others that could be taken instead NavSubject::kOther: position and
-/// fix, attitude and heading, depth and pressure stand for each other.
+/// Makes the named sources NavSubject::kChosen, and the others that could be taken instead NavSubject::kOther: position
+/// and fix, attitude and heading, depth and pressure stand for each other.
 /// @return kBadOption when there is no such source; the message names all that there are
 Result<NavLog> choose_sources(const NavLog& log, std::span<const NamedSource> named);
 

@@ -60,11 +60,17 @@ struct SourceStep {
 
 /// Whose place, attitude or motion a source tells; those that come first are preferred (main_source.hpp).
 enum class NavSubject {
+  kChosen,      ///< the vehicle's, as the user says: its name does not matter
   kVehicle,     ///< the vehicle's: its log says so, or it is a sensor of the vehicle
   kTransforms,  ///< the vehicle's by tf, in the frame at the root; it repeats what other sources tell, often filtered
   kUncertain,   ///< perhaps the vehicle's: a pose that does not say of what it is, or another one of tf
   kOther        ///< not the vehicle's, or not in a frame that can be used: only where it is chosen by its name
 };
+
+/// Whether it is the vehicle's by its log or by its user.
+constexpr bool is_of_vehicle(NavSubject subject) {
+  return subject == NavSubject::kChosen || subject == NavSubject::kVehicle;
+}
 
 /// The samples of one quantity by one sensor, in order of time.
 struct NavSource {
@@ -109,7 +115,8 @@ class NavLog {
   /// beyond 2 pi, a latitude beyond pi/2) is marked as invalid; where they are not single, the source gets a fault. Of
   /// positions, depths and headings that step faster than a vehicle moves, the samples that are not in the frame of
   /// most
-  /// others become invalid (SourceStep). Sources whose subject is uncertain are looked at (judge_subjects).
+  /// others become invalid (SourceStep). Whose the sources are is looked at (judge_subjects). What is strange about
+  /// them is added as a doubt; one that they have already stays.
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 

@@ -22,6 +22,7 @@ struct NavTrajectory {
   std::string attitude, position;  ///< the names of the sources
   /// The fix at 0, 0, as NavQuantity::kFix has it; nullopt: positions are in metres in the log.
   std::optional<Eigen::Vector3d> origin_fix;
+  std::string depth = {};  ///< name of the source of depth or pressure that the heights are by; empty: there is none
 };
 
 /// The sources are those of `path_sources`. A position in metres is used unchanged; fixes become metres east and north

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/io/bytes.hpp"
+#include "pingvox/result.hpp"
 #include "pingvox/slam/slam_calibration.hpp"
 
 namespace pingvox {
@@ -15,6 +17,12 @@ struct CalibrationFile {
   /// How the sources of navigation were said to be mounted: what the calibration is relative to.
   std::map<std::string, Pose> body_from_source;
 };
+
+/// As TOML: each number and its standard deviation.
+std::string calibration_toml(const CalibrationFile& file);
+/// @return kCorrupt naming the line of what is unknown, missing, there twice or no number; a calibration that cannot be
+///         used is named without a line
+Result<CalibrationFile> read_calibration(const FileBytes& file);
 
 /// What is added to the place of the sonar on the vehicle [m].
 inline Eigen::Vector3d sonar_moved_by(const SlamCalibration& calibration) {

@@ -16,6 +16,7 @@
 #include "pingvox/io/input_file.hpp"
 #include "pingvox/io/nav_fields.hpp"
 #include "pingvox/io/open_log.hpp"
+#include "pingvox/limits.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
@@ -36,6 +37,8 @@
 namespace pingvox {
 
 struct RecordingOptions {
+  static constexpr Limits kNavOffsets_s{-1e10, 1e10};
+
   std::vector<InputFile> nav = {};                            ///< navigation logs, in any order
   std::optional<double> nav_offset_s = std::nullopt;          ///< added to their times; nullopt: to be found
   std::vector<NamedSource> nav_sources = {};                  ///< of them, that are taken instead of others
@@ -111,6 +114,34 @@ class Recording {
 /// @return kBadOption for standard input, which cannot be read once more; kUnsupported when there are too few beams
 Result<Background> learn_background(const Recording& recording, double range_m);
 
+/// Subtracts the background (RecordingOptions::background_m) from an opened log of beams, if it is to be.
+/// @param background  of the recording; nullopt: it is learned, and stays there for the next log
+/// @return as learn_background
+Result<void> subtract_background(const Recording& recording, OpenedLog& log, std::optional<Background>& background);
+
+/// What a map may take at most, as far as that is more or less known.
+struct MapCost {
+  double beams = 0.0, seconds = 0.0, bytes = 0.0;
+};
+
+/// What the beginnings of the logs tell of a map, before they are read.
+struct MapForecast {
+  double resolution_m = MapOptions::kDefaultResolution_m;  ///< as asked, else by `resolution_for`
+  /// The usual range of their beams, at most that of the options: of the log with the longest one; nullopt: no log of
+  /// beams can be looked at.
+  std::optional<double> range_m = std::nullopt;
+  double beam_width_rad = 0.0;                 ///< of that log
+  std::optional<MapCost> cost = std::nullopt;  ///< nullopt: the logs do not tell it, or have beams of too many cells
+  /// Logs that can be opened only once, by their number: opened, and not read yet as far as their users can see.
+  std::map<std::size_t, OpenedLog> opened = {};
+};
+
+/// Looks at the first beams of each log. A log that fails here will fail when it is mapped, where it says why.
+/// @param map  whether it tells the resolution
+/// @return the error of opening a log that can be opened only once
+Result<MapForecast> forecast_map(const Recording& recording, const MapOptions& map = {},
+                                 const BuildOptions& build = {});
+
 /// What was mapped of a log.
 struct MappedLog {
   std::string name;
@@ -126,24 +157,37 @@ struct MappedLog {
   bool is_nothing() const;  ///< no beam or point of it is on the map
 };
 
+/// Beams or points that are not on the map for one reason.
+struct SkippedBeams {
+  enum class Why { kNoPose, kBlocked, kTooLong, kOutside };
+  Why why;
+  LeftOut left_out;    ///< at least one
+  std::string reason;  ///< "outside the time of the poses, 0.000 s to 24.000 s"
+};
+/// What of a log is not on the map along `trajectory`, by reasons; damaged records are not among it.
+std::vector<SkippedBeams> skipped_beams(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice);
+
 /// Adds a log to a map, reading it to its end.
 /// @param build  all but the size of the beam and the mount, which are the recording's
 /// @return kUnsupported when the path is of navigation and the log has no times; errors of build_map
 Result<MappedLog> map_log(const Recording& recording, OpenedLog& log, const VehiclePath& path,
                           const BuildOptions& build, OccupancyMap& map, const Progress& progress = {});
 
-/// Adds what was mapped of another log. First and last time are those of all.
+/// Adds what was mapped of another log. First and last time are those of all; the coverage is that of the log with most
+/// sweeps.
 void add(const BuildReport& log, BuildReport& all);
 
 /// A map of a recording, and how it was made.
 struct RecordingMap {
   OccupancyMap map;
-  BuildReport report;  ///< of all logs together
+  MapForecast forecast;  ///< what its resolution follows
+  BuildReport report;    ///< of all logs together
   VehiclePath path;
   std::vector<MappedLog> logs;
 };
 
 /// Maps all logs of a recording along its path (Recording::path).
+/// @param map    where it does not tell the resolution, that is found by `forecast_map`
 /// @param build  filter, echoes, votes: size of the beam, mount, speed of sound in known water and background are the
 ///               recording's
 /// @return kCorrupt when nothing of any log is on the map; errors of Recording::path and map_log
@@ -162,6 +206,8 @@ struct RecordingSlam {
   double read_s = 0.0, solve_s = 0.0;      ///< of wall time
   std::size_t beams = 0;                   ///< that were read
   LeftOut no_pose = {};                    ///< of these, those outside of the time of the trajectory, or in its gaps
+  /// The navigation in whose frame the trajectory lies (Recording::path); nullopt: its origin is its first pose.
+  std::optional<VehiclePath::Nav> frame_of = std::nullopt;
 
   /// For build_map, with the place of the sonar as it was found.
   VehiclePath path() const;

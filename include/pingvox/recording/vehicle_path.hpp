@@ -8,6 +8,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/io/input_file.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/nav/main_source.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/recording/calibration_file.hpp"
@@ -25,9 +26,13 @@ struct VehiclePath {
     std::string velocity = {};       ///< dead reckoning: its source; there is no position then
     std::optional<Eigen::Vector3d> origin_fix = std::nullopt;  ///< NavTrajectory::origin_fix
     std::vector<OtherSource> others = {};                      ///< sources that were not used
+    std::string depth = {};                                    ///< NavTrajectory::depth
     std::string frame_note = {};  ///< how the frame of the position was read; empty: as it is
+    /// The source of the heading by which dead reckoning of a device was turned to the north; empty: it was not.
+    std::string north_by = {};
   };
   std::optional<Nav> nav = std::nullopt;                    ///< nullopt: it is not from navigation
+  MapAxes axes = MapAxes::kNotTold;                         ///< of the frame of the trajectory
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
   /// Steps of the poses of a file that no vehicle makes, where they are cut. Those of navigation are in its sources.
   std::vector<SourceStep> steps = {};
@@ -50,7 +55,9 @@ bool has_position(const NavLog& nav);
 bool has_turns(const NavLog& nav);
 bool tells_path(const NavLog& nav);
 
-/// The path by navigation. Without a position, but with a velocity, it is dead reckoning.
+/// The path by navigation. Without a position, but with a velocity, it is dead reckoning. Dead reckoning of a device
+/// begins with the vehicle looking along y; where another source tells the heading, it is turned to the north by that;
+/// it is put at the depth where that is known.
 /// @param names        of the files, for messages
 /// @param offset_s     added to the times of the navigation
 /// @param calibration  of its sensors; kBadOption where there are positions, on which it has no effect

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pingvox/io/png.hpp"
+#include "pingvox/limits.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -17,6 +18,9 @@ struct Rgb {
   std::uint8_t red = 0, green = 0, blue = 0;
   friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
 };
+
+/// What the size of a drawing may be, without axes and legend.
+inline constexpr Limits kPictureSizes_px{16.0, 3072.0};
 
 /// An image; (0, 0) is its upper left pixel.
 class Picture {

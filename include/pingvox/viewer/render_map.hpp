@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/viewer/picture.hpp"
@@ -19,7 +20,7 @@ struct MapColours {
   Rgb barely_occupied{74, 96, 168}, surely_occupied{10, 16, 64};
 };
 
-/// Viewpoint. From above, x (ahead) is up and y (left) is left, as on a chart; from a side, z is up.
+/// Viewpoint. From above, what `MapPictureOptions::axes` say is up; from a side, z is up.
 enum class MapView {
   kAbove,
   kRight,   ///< from the right side, x to the right
@@ -39,6 +40,9 @@ struct MapPictureOptions {
   static constexpr std::size_t kMaxPaths = 5;
 
   MapView view = MapView::kAbove;
+  /// Of the map. From above, x is up and y left (ahead and left of the vehicle) where they are not told; else y is up
+  /// and x right, with an arrow that points north where that is known.
+  MapAxes axes = MapAxes::kNotTold;
   std::size_t target_px = 1000;                  ///< approximate length of the longer side of the known part, 16..3072
   std::optional<double> min_z_m = std::nullopt;  ///< only cells above, map frame
   std::optional<double> max_z_m = std::nullopt;  ///< only cells below
@@ -56,8 +60,8 @@ std::optional<Box> shown_part(const OccupancyMap& map, const MapPictureOptions& 
 
 /// A map projected along one axis: each column of cells has the colour of its highest occupancy. A cell is a whole
 /// number of pixels; if the map is too large for that, a pixel is 2, 4, 8 ... cells wide and shows their maximum, so
-/// that no wall is lost. Paths have markers at their start and along them. With axes in metres (map frame), a scale
-/// bar, a legend, and a cross at the origin of the map frame. REQUIRES valid options
+/// that no wall is lost. Paths have marks at their start and end, and along them markers and arrows. With axes in
+/// metres (map frame), a scale bar, a legend, and a cross at the origin of the map frame. REQUIRES valid options
 Picture render_map(const OccupancyMap& map, const MapPictureOptions& options = {});
 
 }  // namespace pingvox

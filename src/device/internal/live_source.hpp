@@ -9,9 +9,8 @@
 
 #include "io/internal/ping_viewer_recorder.hpp"
 #include "io/internal/seanet_recorder.hpp"
+#include "pingvox/device/head_settings.hpp"
 #include "pingvox/device/head_status.hpp"
-#include "pingvox/device/micron_driver.hpp"
-#include "pingvox/device/ping360_driver.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 

@@ -5,7 +5,6 @@
 #include <deque>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
@@ -374,77 +373,6 @@ class BagBeams final : public DeviceLog {
 };
 
 }  // namespace
-
-std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std::string_view> paths) {
-  // Some writers leave only a part of the definition; a common type has another.
-  for (const bool is_common : {false, true}) {
-    std::shared_ptr<const RosLayout> layout = is_common ? shared_layout(topic.type, {}, topic.encoding) : topic.layout;
-    if (!layout) continue;
-    std::vector<std::size_t> fields;
-    bool has_all = true;
-    for (const std::string_view path : paths) {
-      if (path.empty()) break;
-      const std::optional<std::size_t> field = layout->field(path);
-      has_all = has_all && field;
-      fields.push_back(field.value_or(0));
-    }
-    if (!has_all) continue;
-    const bool has_stamp = layout->field("header.stamp.sec").has_value();
-    const std::string stamp = has_stamp ? "header.stamp." : "transforms.header.stamp.";
-    const auto stamp_s = layout->field(stamp + "sec"), stamp_ns = layout->field(stamp + "nanosec");
-    const auto frame = layout->field("header.frame_id"), child = layout->field("child_frame_id");
-    return KnownTopic{0, std::move(layout), std::move(fields), stamp_s, stamp_ns, frame, child};
-  }
-  return std::nullopt;
-}
-
-void UnusableMessages::add(const Unusable& message, std::optional<std::uint64_t> file_byte) {
-  add_damage(kinds_, message.kind, file_byte);
-  if (!first_text_.empty()) return;
-  first_text_ = message.why.empty()
-                    ? first_damage_text(kinds_.front())
-                    : fmt::format("{}{}", file_byte ? fmt::format("byte {}: ", *file_byte) : "", message.why);
-}
-
-std::vector<DamageKind> damage_of(const Bag& bag, const UnusableMessages& unusable) {
-  std::vector<DamageKind> kinds = bag.damage();
-  kinds.insert(kinds.end(), unusable.kinds().begin(), unusable.kinds().end());
-  return kinds;
-}
-
-std::string first_damage_of(const Bag& bag, const UnusableMessages& unusable) {
-  return bag.damage().empty() ? unusable.first_text() : first_damage_text(bag.damage().front());
-}
-
-std::string topics_text(const Bag& bag, bool (*is_of_kind)(const BagTopic&)) {
-  std::set<std::string> names;
-  for (const BagTopic& topic : bag.topics()) {
-    if (is_of_kind(topic)) names.insert(in_ascii(fmt::format("{} ({})", topic.name, topic.type)));
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool (*is_of_kind)(const BagTopic&)) {
-  return fail(Error::Code::kBadOption, fmt::format("{}: holds several topics with {}: {}: choose one with --topic",
-                                                   bag.name(), what, topics_text(bag, is_of_kind)));
-}
-
-std::string note_of_stamps(std::string_view topic) {
-  return fmt::format(
-      "the stamps of {} stand still while its messages are recorded: their times are those of the "
-      "recording",
-      in_ascii(topic));
-}
-
-std::string joined_notes(std::string one, const std::string& other) {
-  if (!one.empty() && !other.empty()) one += "; ";
-  return one + other;
-}
-
-bool is_sonar(const BagTopic& topic) {
-  const std::optional<KnownTopic> known = known_topic(topic, sonar_types());
-  return known && sonar_types()[known->type].holds != SonarType::Holds::kSettings;
-}
 
 Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& topic) {
   if (topic.fields && topic.name.empty()) {

@@ -15,16 +15,15 @@
 #include "base/without_exceptions.hpp"
 #include "io/bags/bag_scans.hpp"
 #include "io/bags/bag_topics.hpp"
+#include "io/bags/nav_messages.hpp"
+#include "io/bags/sonar_messages.hpp"
 #include "io/bags/stamped_queue.hpp"
 #include "io/bags/tf_tree.hpp"
 #include "io/bytes/text.hpp"
 #include "io/internal/frame_finder.hpp"
-#include "io/nav/dvl_a50.hpp"
 #include "io/nav/nav_fields.hpp"
 #include "io/nav/nav_sources.hpp"
-#include "nav/internal/nav_frames.hpp"
 #include "nav/internal/pressure_unit.hpp"
-#include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/io/bag.hpp"
 #include "pingvox/nav/device_clock.hpp"
@@ -35,291 +34,6 @@ namespace {
 
 constexpr std::size_t kMaxFramesOfTopic = 16;
 constexpr std::string_view kTooManyFrames = "message in one of more than 16 frames of a topic";
-
-/// What the messages of a topic so far say about later ones.
-struct TopicState {
-  double altitude_m = 0.0;               ///< the last one that a receiver knew
-  std::vector<DeviceTime> report_times;  ///< of a DVL, where they have a time of the device
-  std::vector<NavOrigin> origins;        ///< of its messages, the first one's first
-  std::vector<MessageTime> times;        ///< of its messages
-  StampWatch stamps;
-};
-
-/// Where the samples of one message go.
-class Samples {
- public:
-  Samples(NavSources& sources, const std::string& name, double time_s, TopicState& state, const NavOrigin& origin)
-      : sources_(sources), name_(name), time_s_(time_s), state_(state), origin_(origin) {}
-
-  /// Adds a position by dead reckoning and its attitude.
-  void add_dead_reckoning(const Eigen::Vector3d& position_m, const Eigen::Vector3d& attitude) {
-    add(NavQuantity::kPosition, position_m, true);
-    add(NavQuantity::kAttitude, attitude, true);
-  }
-
-  /// A report of a DVL in its own format, which contains the delay of the message.
-  void add(const A50Report& report) {
-    const double time_s = time_s_ - report.latency_s;
-    if (report.made_s) state_.report_times.push_back({time_s, *report.made_s});
-    add_a50_report(sources_, name_, time_s, report);
-  }
-
-  /// Degrees; NaN for an altitude that is not known. The last one is taken then, so that the height does not jump.
-  void add_fix(double latitude_deg, double longitude_deg, double altitude_m, bool valid) {
-    if (std::isfinite(altitude_m)) state_.altitude_m = altitude_m;
-    add(NavQuantity::kFix, {latitude_deg * kDegree_rad, longitude_deg * kDegree_rad, state_.altitude_m}, valid);
-  }
-
-  void add(NavQuantity quantity, const Eigen::Vector3d& value, bool valid = true) {
-    NavSample sample;
-    sample.time_s = time_s_;
-    sample.value = value;
-    sample.valid = valid;
-    sources_.add(name_, quantity, sample, origin_);
-  }
-
- private:
-  NavSources& sources_;
-  const std::string& name_;
-  double time_s_;
-  TopicState& state_;
-  const NavOrigin& origin_;
-};
-
-/// Three numbers from the field of the first on.
-Eigen::Vector3d three(const RosFields& message, std::size_t first) {
-  return {message.number(first), message.number(first + 1), message.number(first + 2)};
-}
-
-/// An attitude from x, y, z, w, if it is one.
-void add_attitude(const RosFields& message, std::size_t first, bool valid, Samples& samples) {
-  const auto rpy = rpy_of_quaternion(
-      {message.number(first), message.number(first + 1), message.number(first + 2), message.number(first + 3)});
-  if (rpy) samples.add(NavQuantity::kAttitude, *rpy, valid);
-}
-
-void add_imu(const RosFields& message, Samples& samples) {
-  const bool has_attitude = message.number(7) != -1.0;  // of the covariance
-  add_attitude(message, 0, has_attitude, samples);
-  samples.add(NavQuantity::kTurnRate, three(message, 4));
-}
-
-void add_pose(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kPosition, three(message, 0));
-  add_attitude(message, 3, true, samples);
-}
-
-void add_velocity(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kVelocity, three(message, 0));
-}
-
-void add_twist(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kVelocity, three(message, 0));
-  samples.add(NavQuantity::kTurnRate, three(message, 3));
-}
-
-void add_fix(const RosFields& message, Samples& samples) {
-  samples.add_fix(message.number(0), message.number(1), message.number(2), message.number(3) >= 0.0);
-}
-
-void add_xsens_fix(const RosFields& message, Samples& samples) {
-  samples.add_fix(message.number(0), message.number(1), 0.0, message.number(2) > 0.0);
-}
-
-/// In the unit of its driver, which tell_pressures finds.
-void add_pressure(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kPressure, {message.number(0), 0.0, 0.0});
-}
-
-void add_depth_pressure_temperature(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
-  samples.add(NavQuantity::kPressure, {message.number(1), 0.0, 0.0});
-  samples.add(NavQuantity::kTemperature, {message.number(2), 0.0, 0.0});
-}
-
-void add_temperature(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kTemperature, {message.number(0), 0.0, 0.0});
-}
-
-void add_range(const RosFields& message, Samples& samples) {
-  const double range_m = message.number(0);
-  samples.add(NavQuantity::kRange, {range_m, 0.0, 0.0}, range_m >= message.number(1) && range_m <= message.number(2));
-}
-
-/// From the axes of a DVL that looks ahead (x left, y up, z ahead) to forward, right, down.
-Eigen::Matrix3d frd_from_looking_ahead() {
-  Eigen::Matrix3d r;
-  r << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return r;
-}
-
-/// Of Water Linked's A50 and A125, whose drivers pass its numbers on: x forward, y right, z down when it looks down.
-void add_dvl_velocity(const RosFields& message, const Eigen::Matrix3d& frd_from_dvl, Samples& samples) {
-  const bool valid = message.number(3) != 0.0;
-  samples.add(NavQuantity::kVelocity, from_ned::body(frd_from_dvl * three(message, 0)), valid);
-  const double altitude_m = message.number(4);
-  samples.add(NavQuantity::kRange, {altitude_m, 0.0, 0.0}, valid && altitude_m > 0.0);
-}
-
-/// Its dead reckoning in the axes that it had at its last reset; angles in degrees.
-void add_dvl_position(const RosFields& message, const Eigen::Matrix3d& frd_from_dvl, Samples& samples) {
-  const Eigen::Vector3d rpy = three(message, 3) * kDegree_rad;
-  const Eigen::Matrix3d turned = pose_from_rpy(Eigen::Vector3d::Zero(), rpy.x(), rpy.y(), rpy.z()).rotation();
-  samples.add_dead_reckoning(from_ned::world(frd_from_dvl * three(message, 0)),
-                             from_ned::attitude(rpy_of(frd_from_dvl * turned * frd_from_dvl.transpose())));
-}
-
-void add_dvl(const RosFields& message, Samples& samples) {
-  add_dvl_velocity(message, Eigen::Matrix3d::Identity(), samples);
-}
-
-void add_dvl_ahead(const RosFields& message, Samples& samples) {
-  add_dvl_velocity(message, frd_from_looking_ahead(), samples);
-}
-
-void add_reckoning(const RosFields& message, Samples& samples) {
-  add_dvl_position(message, Eigen::Matrix3d::Identity(), samples);
-}
-
-void add_reckoning_ahead(const RosFields& message, Samples& samples) {
-  add_dvl_position(message, frd_from_looking_ahead(), samples);
-}
-
-void add_json(const RosFields& message, Samples& samples) {
-  const auto members = json_members(message.text(0));
-  if (!members) return;
-  if (const A50Reading report = a50_report(*members)) samples.add(*report);
-}
-
-/// As MAVLink's ATTITUDE: of a forward-right-down body in north-east-down.
-void add_ned_attitude(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kAttitude, from_ned::attitude(three(message, 0)));
-  samples.add(NavQuantity::kTurnRate, from_ned::body(three(message, 3)));
-}
-
-void add_odometry(const RosFields& message, Samples& samples) {
-  add_pose(message, samples);
-  samples.add(NavQuantity::kVelocity, three(message, 7));
-}
-
-/// Of Sonardyne's USBL: x east, y north, z up.
-void add_usbl(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kPosition, three(message, 0), message.number(3) != 0.0);
-}
-
-void add_depth(const RosFields& message, Samples& samples) {
-  samples.add(NavQuantity::kDepth, {message.number(0), 0.0, 0.0});
-}
-
-/// What `header.frame_id` of a type of message is.
-enum class FrameId {
-  kNotUsed,      ///< the driver's axes are known
-  kOfPose,       ///< that a pose is in, of something
-  kOfOdometry,   ///< that the vehicle's pose is in; `child_frame_id` is the vehicle, and what its twist is in
-  kOfSensor,     ///< of a sensor on the vehicle
-  kOfTwist,      ///< that a velocity is in, which may be another one than the vehicle's
-  kOfTransforms  ///< of tf: of each of them
-};
-
-struct NavType {
-  RosType type;
-  void (*add)(const RosFields& message, Samples& samples);  ///< nullptr: of transforms
-  FrameId frame_id = FrameId::kNotUsed;
-};
-
-NavOrigin origin_of(FrameId frame_id, const KnownTopic& topic, const RosMessage& message) {
-  const std::string frame(topic.frame_of(message)), child(topic.child_of(message));
-  switch (frame_id) {
-    case FrameId::kOfPose:
-      return {NavSubject::kUncertain, frame, {}};
-    case FrameId::kOfOdometry:
-      return {NavSubject::kVehicle, frame, child};
-    case FrameId::kOfSensor:
-      return {NavSubject::kVehicle, {}, frame};
-    case FrameId::kOfTwist:
-      return {NavSubject::kUncertain, {}, frame};
-    case FrameId::kNotUsed:
-    case FrameId::kOfTransforms:
-      break;
-  }
-  return {};
-}
-
-/// Of messages that are read by the fields that a user named: a frame that does not stand still is that of a sensor.
-NavOrigin origin_by_name(const KnownTopic& topic, const RosMessage& message) {
-  const bool is_of_pose = topic.child || is_fixed_frame(topic.frame_of(message));
-  NavOrigin origin = origin_of(is_of_pose ? FrameId::kOfOdometry : FrameId::kOfSensor, topic, message);
-  if (!topic.child && is_of_pose) origin.child = origin.frame;
-  return origin;
-}
-
-constexpr std::array<std::string_view, 10> kTransformFields = {
-    "transforms.header.frame_id",         "transforms.child_frame_id",          "transforms.transform.translation.x",
-    "transforms.transform.translation.y", "transforms.transform.translation.z", "transforms.transform.rotation.x",
-    "transforms.transform.rotation.y",    "transforms.transform.rotation.z",    "transforms.transform.rotation.w"};
-
-constexpr std::array kNavTypes = {
-    NavType{{"Imu",
-             {"orientation.x", "orientation.y", "orientation.z", "orientation.w", "angular_velocity.x",
-              "angular_velocity.y", "angular_velocity.z", "orientation_covariance"}},
-            add_imu,
-            FrameId::kOfSensor},
-    NavType{{"PoseStamped",
-             {"pose.position.x", "pose.position.y", "pose.position.z", "pose.orientation.x", "pose.orientation.y",
-              "pose.orientation.z", "pose.orientation.w"}},
-            add_pose,
-            FrameId::kOfPose},
-    NavType{{"PoseWithCovarianceStamped",
-             {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
-              "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w"}},
-            add_pose,
-            FrameId::kOfPose},
-    NavType{{"TwistStamped",
-             {"twist.linear.x", "twist.linear.y", "twist.linear.z", "twist.angular.x", "twist.angular.y",
-              "twist.angular.z"}},
-            add_twist,
-            FrameId::kOfTwist},
-    NavType{{"TwistWithCovarianceStamped", {"twist.twist.linear.x", "twist.twist.linear.y", "twist.twist.linear.z"}},
-            add_velocity,
-            FrameId::kOfTwist},
-    NavType{{"NavSatFix", {"latitude", "longitude", "altitude", "status.status"}}, add_fix},
-    // Its driver writes the latitude into `lon` and the longitude into `lat`: so in the recordings on the lake of
-    // Ratzeburg (53.8 N, 10.8 E; NilsKompe/Bluerov2), the only ones that are known.
-    NavType{{"Xsens700Position", {"lon", "lat", "fixind"}, "", "monsun_msgs/"}, add_xsens_fix},
-    NavType{{"FluidPressure", {"fluid_pressure"}}, add_pressure},
-    NavType{{"Temperature", {"temperature"}}, add_temperature},
-    NavType{{"Range", {"range", "min_range", "max_range"}}, add_range},
-    NavType{{"DVL", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
-    // Those of SOLAQUA look ahead, at the net.
-    NavType{{"DVLVelocity",
-             {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"},
-             "",
-             "sensors/"},
-            add_dvl_ahead},
-    NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}, "", "sensors/"},
-            add_reckoning_ahead},
-    NavType{{"DVLVelocity", {"velocity.x", "velocity.y", "velocity.z", "velocity_valid", "altitude", "fom"}}, add_dvl},
-    NavType{{"DVLPosition", {"x", "y", "z", "roll", "pitch", "yaw", "t_last_reset"}}, add_reckoning},
-    NavType{{"Attitude", {"roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed"}}, add_ned_attitude},
-    NavType{{"DepthTemperature", {"depth", "pressure", "temperature"}}, add_depth_pressure_temperature},
-    NavType{{"Odometry",
-             {"pose.pose.position.x", "pose.pose.position.y", "pose.pose.position.z", "pose.pose.orientation.x",
-              "pose.pose.orientation.y", "pose.pose.orientation.z", "pose.pose.orientation.w", "twist.twist.linear.x",
-              "twist.twist.linear.y", "twist.twist.linear.z"}},
-            add_odometry,
-            FrameId::kOfOdometry},
-    NavType{{"TFMessage", kTransformFields, "tf"}, nullptr, FrameId::kOfTransforms},
-    NavType{{"TFMessage", kTransformFields, "tf_static"}, nullptr, FrameId::kOfTransforms},
-    NavType{{"tfMessage", kTransformFields, "tf"}, nullptr, FrameId::kOfTransforms},
-    NavType{{"SonardyneUSBL2", {"east", "north", "depth", "connected"}}, add_usbl},
-    NavType{{"String", {"data"}, "dvl/json_data"}, add_json},
-    NavType{{"Float64", {"data"}, "depth"}, add_depth},
-    NavType{{"Float32", {"data"}, "depth"}, add_depth},
-    NavType{{"Float64", {"data"}, "pressure"}, add_pressure},
-    NavType{{"Float32", {"data"}, "pressure"}, add_pressure},
-    NavType{{"Float64", {"data"}, "temperature"}, add_temperature},
-    NavType{{"Float32", {"data"}, "temperature"}, add_temperature},
-};
 
 /// Gathers the topics and the navigation of a bag.
 class BagSurvey {
@@ -347,7 +61,7 @@ class BagSurvey {
       return {};
     }
     ++records_;
-    const NavType* const type = topic.readers.empty() ? &kNavTypes[topic.known->type] : nullptr;
+    const NavType* const type = topic.readers.empty() ? &nav_types()[topic.known->type] : nullptr;
     if (type != nullptr && type->frame_id == FrameId::kOfTransforms) {
       add_transforms(message, topic);
       return {};
@@ -366,7 +80,8 @@ class BagSurvey {
     const MessageTime time{topic.known->time_of(message_, message.time_s), message.time_s};
     topic.state.times.push_back(time);
     topic.state.stamps.add(time);
-    Samples samples(sources_, *name, time.stamp_s, topic.state, origin);
+    if (const auto stamp_s = topic.known->stamp_of(message_)) note_span(topic, {*stamp_s, message.time_s});
+    NavSamples samples(sources_, *name, time.stamp_s, topic.state, origin);
     type->add(RosFields(message_, topic.known->fields), samples);
     return {};
   }
@@ -380,11 +95,13 @@ class BagSurvey {
     use_recorded_times(sources);
     tell_pressures(sources, named_by_fields());
     for (const auto& [name, tree] : trees_) std::ranges::move(tree.paths(name), std::back_inserter(sources));
+    doubt_accelerations(sources);
     turn_frames(sources);
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
     NavFile nav{*std::move(log), records_, damage()};
     if (std::string note = lag_note(); !note.empty()) nav.notes.push_back(std::move(note));
+    if (std::string note = speed_note(); !note.empty()) nav.notes.push_back(std::move(note));
     BagContents contents{std::move(summaries_), std::move(nav), {}};
     add_mounts(contents);
     return contents;
@@ -395,10 +112,38 @@ class BagSurvey {
     std::size_t summary;
     std::optional<KnownTopic> known, scans;
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
-    TopicState state;
+    NavTopicState state;
     std::optional<KnownTopic> stamped = std::nullopt;  ///< of a sonar, where its messages have stamps
     std::vector<double> lags_s = {};                   ///< how long after their stamps its messages were recorded
+    std::optional<std::pair<MessageTime, MessageTime>> span = std::nullopt;  ///< first and last, with their own stamps
   };
+
+  static void note_span(Topic& topic, const MessageTime& time) {
+    if (!topic.span) topic.span.emplace(time, time);
+    topic.span->second = time;
+  }
+
+  /// Where stamps that are not used, as they are far from the recording, go faster or slower than it: a bag that was
+  /// played at another speed and recorded again. Empty: nowhere.
+  std::string speed_note() const {
+    constexpr std::size_t kFewest = 10;
+    constexpr double kFar_s = 60.0, kShortest_s = 2.0, kLeast = 0.9, kMost = 1.1;
+    for (const Topic& topic : topics_) {
+      if (!topic.span || topic.state.times.size() < kFewest || topic.state.stamps.mostly_stand_still()) continue;
+      const auto& [first, last] = *topic.span;
+      const double stamped_s = last.stamp_s - first.stamp_s, recorded_s = last.recorded_s - first.recorded_s;
+      const bool are_far = std::fabs(first.stamp_s - first.recorded_s) > kFar_s;
+      const bool are_dates = first.stamp_s >= kFirstDate_s && first.recorded_s >= kFirstDate_s;
+      if (!are_far || !are_dates || std::min(stamped_s, recorded_s) < kShortest_s) continue;
+      const double times = stamped_s / recorded_s;
+      if (times >= kLeast && times <= kMost) continue;
+      return fmt::format(
+          "the stamps of {} go {:.3g} times as fast as the recording, whose times are used: was it played at another "
+          "speed and recorded again? Then all speeds are wrong",
+          in_ascii(summaries_[topic.summary].name), times);
+    }
+    return {};
+  }
 
   /// Notes how long after its stamp a message of a sonar was recorded.
   void note_lag(const BagMessage& message, Topic& topic) {
@@ -416,7 +161,7 @@ class BagSurvey {
   /// of the two clocks is wrong, or one of the two topics was stamped late. Empty: nowhere.
   std::string lag_note() const {
     constexpr std::size_t kFewest = 10;
-    constexpr double kApart_s = 2.0;
+    constexpr double kApart_s = 2.0, kYears_s = 1e8;
     for (const Topic& sonar : topics_) {
       if (sonar.lags_s.size() < kFewest || sonar.state.stamps.stand_still()) continue;
       const double sonar_s = median(sonar.lags_s);
@@ -425,7 +170,9 @@ class BagSurvey {
         std::vector<double> lags_s;
         for (const MessageTime& time : nav.state.times) lags_s.push_back(time.recorded_s - time.stamp_s);
         const double nav_s = median(std::move(lags_s));
-        if (std::fabs(sonar_s - nav_s) <= kApart_s) continue;
+        // Of a recorder without dates: the stamps of both are used.
+        const bool are_stamps = std::max(sonar_s, nav_s) < -kYears_s;
+        if (are_stamps || std::fabs(sonar_s - nav_s) <= kApart_s) continue;
         return fmt::format(
             "messages of {} are recorded {:.1f} s after their stamps, those of {} {:.1f} s after: if one "
             "of the clocks is wrong, beams and path do not belong together",
@@ -447,6 +194,20 @@ class BagSurvey {
         const std::size_t count = source.samples.size();
         for (std::size_t i = 0; i < count; ++i) source.samples[i].time_s = times[i * times.size() / count].recorded_s;
         source.note = joined_notes(source.note, note_of_stamps(name));
+      }
+    }
+  }
+
+  /// Doubts the attitudes of Imus whose acceleration points down, but for those whose frame says that z does.
+  void doubt_accelerations(std::span<NavSource> sources) const {
+    constexpr std::size_t kFewest = 10, kMost = 20;
+    for (const Topic& topic : topics_) {
+      const NavTopicState& state = topic.state;
+      if (state.downward < kFewest || state.downward < kMost * state.upward) continue;
+      for (NavSource& source : sources) {
+        if (source.name != summaries_[topic.summary].name || source.quantity != NavQuantity::kAttitude) continue;
+        if (axes_of(source.child) == FrameAxes::kDown) continue;
+        source.doubt = "its acceleration points down by its attitude: are its axes north, east, down?";
       }
     }
   }
@@ -488,7 +249,7 @@ class BagSurvey {
           rotation_of_quaternion({transform.number(5), transform.number(6), transform.number(7), transform.number(8)});
       if (rotation) {
         Pose pose(*rotation);
-        pose.translation() = three(transform, 2);
+        pose.translation() = vector_at(transform, 2);
         tree.add(without_slash(transform.text(0)), without_slash(transform.text(1)),
                  known.time_of(message_, message.time_s), pose,
                  is_static ? TfTree::Link::kStatic : TfTree::Link::kMoving);
@@ -547,7 +308,7 @@ class BagSurvey {
       const auto [place, is_new] = places_.try_emplace(topic.name, summaries_.size());
       Result<std::vector<NavReader>> readers = readers_of(topic);
       if (!readers) return tl::unexpected(readers.error());
-      std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, kNavTypes) : topic_with(topic, {});
+      std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, nav_types()) : topic_with(topic, {});
       std::optional<KnownTopic> scans = scan_topic(topic);
       if (is_new) summaries_.push_back(summary_of(topic, known.has_value(), scans.has_value()));
       topics_.push_back({place->second, std::move(known), std::move(scans), *std::move(readers), {}});

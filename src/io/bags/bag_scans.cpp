@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/bags/sonar_messages.hpp"
 #include "io/bags/stamped_queue.hpp"
 #include "io/bytes/byte_reader.hpp"
 #include "io/bytes/scalar.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,7 +21,7 @@ namespace pingvox {
 /// renamed more often than messages.
 struct RosType {
   std::string_view name;
-  std::array<std::string_view, 10> fields;  ///< empty ones are none
+  std::array<std::string_view, 11> fields;  ///< empty ones are none
   std::string_view topic_end = {};          ///< end of the topic's name, for numbers that only it explains
   std::string_view package = {};            ///< for fields that mean something else in one package; empty: any
 };
@@ -45,10 +44,7 @@ class RosFields {
 };
 
 /// The name of a frame without the '/' that old drivers begin it with.
-inline std::string_view without_slash(std::string_view frame) {
-  while (frame.starts_with('/')) frame.remove_prefix(1);
-  return frame;
-}
+std::string_view without_slash(std::string_view frame);
 
 /// A topic of a known type.
 struct KnownTopic {
@@ -62,14 +58,11 @@ struct KnownTopic {
   std::string_view frame_of(const RosMessage& message) const { return name_in(message, frame); }
   std::string_view child_of(const RosMessage& message) const { return name_in(message, child); }
 
-  /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording, else the
-  /// recording's time.
-  double time_of(const RosMessage& message, double recorded_s) const {
-    constexpr double kNear_s = 60.0;
-    if (!stamp_s || !stamp_ns) return recorded_s;
-    const double time_s = message.number(*stamp_s) + message.number(*stamp_ns) * 1e-9;
-    return std::fabs(time_s - recorded_s) <= kNear_s ? time_s : recorded_s;
-  }
+  /// nullopt: the message has none.
+  std::optional<double> stamp_of(const RosMessage& message) const;
+  /// When the message, or a transform in it, was made: its stamp, if that is within a minute of the recording or has a
+  /// date where the recording has none; else the recording's time.
+  double time_of(const RosMessage& message, double recorded_s) const;
 
  private:
   static std::string_view name_in(const RosMessage& message, std::optional<std::size_t> field) {
@@ -147,8 +140,5 @@ tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool
 std::string note_of_stamps(std::string_view topic);
 /// Two notes as one, of which each may be empty.
 std::string joined_notes(std::string one, const std::string& other);
-
-/// Whether messages of the topic are beams.
-bool is_sonar(const BagTopic& topic);
 
 }  // namespace pingvox

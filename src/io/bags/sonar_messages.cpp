@@ -180,10 +180,10 @@ Beams laser_beam_with_ranges(const RosFields& message, SonarSettings& settings) 
                    fmt::format("range_max {:.6g} does not fit ranges up to {:.6g}", message.number(2), last_m));
   }
   // A range is that of the middle of a bin or of its end.
-  constexpr double kMiddle = 0.75, kMostBefore = 1e4;
+  constexpr double kMiddle = 0.75, kMaxBinsBefore = 1e4;
   const double before = std::round(first_m / *step_m - kMiddle);
   if (!(before >= 1.0)) return beams;
-  if (before > kMostBefore) return no_beam(kImpossible);
+  if (before > kMaxBinsBefore) return no_beam(kImpossible);
   Beam& beam = beams->front();
   beam.bin_length_m = *step_m;
   beam.intensities.insert(beam.intensities.begin(), static_cast<std::size_t>(before), std::uint8_t{0});
@@ -307,6 +307,11 @@ std::optional<AngleUnit> unit_of(const BeamFields& fields) {
     if (std::fabs(std::fabs(fields.angle_unit_rad) / radians_of(unit) - 1.0) < kSame) return unit;
   }
   return std::nullopt;
+}
+
+bool is_sonar(const BagTopic& topic) {
+  const std::optional<KnownTopic> known = known_topic(topic, sonar_types());
+  return known && sonar_types()[known->type].holds != SonarType::Holds::kSettings;
 }
 
 }  // namespace pingvox

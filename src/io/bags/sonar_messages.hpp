@@ -41,6 +41,9 @@ struct SonarType {
 /// Those that we know.
 std::span<const SonarType> sonar_types();
 
+/// Whether messages of the topic are beams.
+bool is_sonar(const BagTopic& topic);
+
 /// A message of a driver that we do not know, not turned.
 Beams beam_of_fields(const RosFields& message, const BeamFields& fields);
 /// The unit that is stated of it; nullopt: another one.

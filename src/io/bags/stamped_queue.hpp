@@ -55,8 +55,8 @@ class StampedQueue {
     if (!items_.empty() && items_.back().second.stamp_s != time.stamp_s) known_ = items_.size();
     items_.emplace_back(std::move(item), time);
     watch_.add(time);
-    constexpr std::size_t kMostHeld = 4096;
-    if (watch_.stand_still() || items_.size() > kMostHeld) known_ = items_.size();
+    constexpr std::size_t kMaxItems = 4096;
+    if (watch_.stand_still() || items_.size() > kMaxItems) known_ = items_.size();
   }
   /// No more are added.
   void end() { known_ = items_.size(); }

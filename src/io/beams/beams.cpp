@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -67,18 +68,41 @@ Result<std::unique_ptr<ScanSource>> open_any_scans(FileBytes file, Damage damage
   return wrong_format(file.name, "a log of scans", format);
 }
 
-/// A source whose error names the file when memory runs out.
+/// A source whose error names the file when memory runs out, and whose note names beams longer than any head hears.
 class GuardedBeams final : public BeamSourceDecorator {
  public:
   GuardedBeams(std::string name, std::unique_ptr<BeamSource> source)
       : BeamSourceDecorator(std::move(source)), name_(std::move(name)) {}
 
   Result<std::optional<Beam>> next() override {
-    return detail::without_exceptions(name_, [&] { return source().next(); });
+    Result<std::optional<Beam>> beam = detail::without_exceptions(name_, [&] { return source().next(); });
+    if (beam && *beam) look_at(**beam);
+    return beam;
+  }
+
+  std::string note() const override {
+    std::string own = BeamSourceDecorator::note();
+    if (2 * long_beams_ <= beams_) return own;  // else damaged numbers
+    return fmt::format(
+        "{}{}most beams are longer than {:.0f} m, as one of {:.6g} m with bins of {:.6g} m: are lengths in metres?",
+        own, own.empty() ? "" : "; ", kHeard_m, range_m_, bin_length_m_);
   }
 
  private:
+  void look_at(const Beam& beam) {
+    ++beams_;
+    const double range_m = beam.bin_length_m * static_cast<double>(beam.intensities.size());
+    if (range_m <= kHeard_m) return;
+    ++long_beams_;
+    range_m_ = range_m;
+    bin_length_m_ = beam.bin_length_m;
+  }
+
+  static constexpr double kHeard_m = 310.0;  ///< a SeaKing, with another speed of sound
+
   std::string name_;
+  std::size_t beams_ = 0, long_beams_ = 0;
+  double range_m_ = 0.0, bin_length_m_ = 0.0;  ///< of a long one
 };
 
 /// The same of scans.

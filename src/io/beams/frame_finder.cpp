@@ -39,6 +39,7 @@ std::optional<FrameFinder::Frame> FrameFinder::next() {
       start_ += check.size;
       position_ += check.size;
       in_damage_ = false;
+      between_from_.reset();
       broken_until_ = 0;
       return frame;
     }
@@ -52,13 +53,18 @@ void FrameFinder::pass(const FrameCheck& check) {
     // What looks like a frame within a broken one is part of its damage.
     if (position_ >= broken_until_) add_damage(damage_, check.why, position_);
     broken_until_ = std::max(broken_until_, position_ + check.size);
+    between_from_.reset();
   } else if (!in_damage_) {
-    add_damage(damage_, kBetween, position_);
+    between_from_ = position_;
   }
   in_damage_ = true;
   const std::size_t passed = check.verdict == FrameCheck::Verdict::kBroken ? 1 : check.size;
   start_ += passed;
   position_ += passed;
+  if (between_from_ && position_ - *between_from_ >= least_between_) {
+    add_damage(damage_, kBetween, between_from_);
+    between_from_.reset();
+  }
 }
 
 void add_damage(std::vector<DamageKind>& kinds, std::string_view what, std::optional<std::uint64_t> at_byte) {

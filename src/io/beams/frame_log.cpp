@@ -118,7 +118,10 @@ class RawCapture final : public FrameContainer {
 class FrameLog final : public DeviceLog {
  public:
   FrameLog(std::unique_ptr<FrameContainer> container, const FrameProtocol& protocol, Damage damage)
-      : container_(std::move(container)), protocol_(protocol), damage_(damage), finder_(protocol.check) {
+      : container_(std::move(container)),
+        protocol_(protocol),
+        damage_(damage),
+        finder_(protocol.check, protocol.least_between) {
     set_first(read());
   }
 
@@ -167,7 +170,7 @@ class FrameLog final : public DeviceLog {
     const Result<std::optional<FrameContainer::Piece>> piece = container_->next();
     if (!piece) return tl::unexpected(piece.error());
     if (*piece) {
-      places_.forget_before(finder_.position());
+      places_.forget_before(finder_.settled());
       places_.add(**piece);
       finder_.push((*piece)->bytes);
     } else {
@@ -206,7 +209,8 @@ class FrameLog final : public DeviceLog {
 }  // namespace
 
 const FrameProtocol& ping_protocol() {
-  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, ping_head_of};
+  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, ping_head_of,
+                                          kLeastPingFrame};
   return kPing;
 }
 

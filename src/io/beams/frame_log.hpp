@@ -47,6 +47,8 @@ struct FrameProtocol {
   const DeviceProfile* (*device_of)(std::span<const std::uint8_t> frame);
   /// The head's number on the line.
   unsigned (*head_of)(std::span<const std::uint8_t> frame);
+  /// Fewer bytes between two frames are noise of the line, and no damage; 1: there is no noise.
+  std::size_t least_between = 1;
 };
 
 const FrameProtocol& ping_protocol();

@@ -71,7 +71,11 @@ struct HeadPose {
   double roll_rad, pitch_rad, heading_rad;
 };
 
-std::optional<HeadPose> head_pose(Bytes packet, bool has_degrees) {
+/// A value or, in a few words, why a ping has none.
+template <class T>
+using OrReason = tl::expected<T, std::string>;
+
+OrReason<HeadPose> head_pose(Bytes packet, bool has_degrees) {
   const double unit = has_degrees ? kDegree_rad : 1.0;
   HeadPose head;
   head.place = {little<double>(packet, 160) * unit, little<double>(packet, 168) * unit, little<float>(packet, 216)};
@@ -80,10 +84,21 @@ std::optional<HeadPose> head_pose(Bytes packet, bool has_degrees) {
   head.heading_rad = little<float>(packet, 212) * kDegree_rad;
   const bool is_finite = head.place.allFinite() && std::isfinite(head.pitch_rad) && std::isfinite(head.roll_rad) &&
                          std::isfinite(head.heading_rad);
-  constexpr double kMaxPosition_m = 1e8;
-  const double most = has_degrees ? std::numbers::pi : kMaxPosition_m;
-  if (!is_finite || head.place.cwiseAbs().head<2>().maxCoeff() > most || std::fabs(head.place.z()) > kMaxSounding_m) {
-    return std::nullopt;
+  if (!is_finite) return tl::unexpected(std::string("a ping whose position or attitude is no number"));
+  constexpr double kMaxPosition_m = 1e8, kPole_deg = 90.0, kHalfTurn_deg = 180.0;
+  const double first = head.place.x() / unit, second = head.place.y() / unit;
+  // What a receiver sends before its first fix.
+  if (has_degrees && first == 0.0 && second == 0.0) {
+    return tl::unexpected(std::string("a ping without a position: latitude and longitude are 0"));
+  }
+  const bool is_place = has_degrees ? std::fabs(first) <= kPole_deg && std::fabs(second) <= kHalfTurn_deg
+                                    : std::max(std::fabs(first), std::fabs(second)) <= kMaxPosition_m;
+  if (!is_place) {
+    return tl::unexpected(fmt::format("a ping at {:.7g}, {:.7g}, which is no {}", first, second,
+                                      has_degrees ? "latitude and longitude in degrees" : "northing and easting"));
+  }
+  if (std::fabs(head.place.z()) > kMaxSounding_m) {
+    return tl::unexpected(fmt::format("a ping with a heave of {:.6g} m", head.place.z()));
   }
   return head;
 }
@@ -109,34 +124,44 @@ struct Sections {
   }
 };
 
-/// The points of a ping in the frame of the head, ahead, to port, up; nullopt: damaged.
-std::optional<std::vector<Eigen::Vector3d>> points_of(Bytes ping) {
+/// The points of a ping in the frame of the head, ahead, to port, up.
+OrReason<std::vector<Eigen::Vector3d>> points_of(Bytes ping) {
   constexpr std::size_t kSettings = 116, kTimes = 8, kAngles = 36;
+  constexpr double kSlowest_m_s = 1000.0, kFastest_m_s = 2000.0;
   const auto [settings, times, angles] = Sections::of(ping);
-  if (settings.size() < kSettings) return std::nullopt;
-  const std::size_t count = big<std::uint16_t>(settings, 114);
-  if (times.size() < kTimes + 2 * count || angles.size() < kAngles + 2 * count) return std::nullopt;
+  const std::size_t count = settings.size() < kSettings ? 0 : big<std::uint16_t>(settings, 114);
+  if (settings.size() < kSettings || times.size() < kTimes + 2 * count || angles.size() < kAngles + 2 * count) {
+    return tl::unexpected(std::string("a ping without all of its sections H0, R0 and A2"));
+  }
   const double sound_speed_m_s = big<float>(settings, 44);
   const double tick_s = big<float>(times, 4), step_rad = big<float>(angles, 8);
   double angle_rad = big<float>(angles, 4);  // to starboard of straight down
-  if (!(sound_speed_m_s > 1000.0 && sound_speed_m_s < 2000.0) || !(tick_s > 0.0) || !std::isfinite(step_rad) ||
-      !std::isfinite(angle_rad)) {
-    return std::nullopt;
+  if (!(sound_speed_m_s > kSlowest_m_s && sound_speed_m_s < kFastest_m_s)) {
+    return tl::unexpected(fmt::format("a ping with a sound speed of {:.6g} m/s", sound_speed_m_s));
   }
+  if (!(tick_s > 0.0)) return tl::unexpected(fmt::format("a ping that counts times in {:.6g} s", tick_s));
   std::vector<Eigen::Vector3d> points_m;
   for (std::size_t i = 0; i < count; ++i) {
     angle_rad += step_rad * big<std::uint16_t>(angles, kAngles + 2 * i);
     const double range_m = tick_s * big<std::uint16_t>(times, kTimes + 2 * i) * sound_speed_m_s / 2.0;
-    if (!(range_m <= kMaxSounding_m) || !(std::fabs(angle_rad) <= std::numbers::pi)) return std::nullopt;
+    if (!(range_m <= kMaxSounding_m)) return tl::unexpected(fmt::format("a ping with a range of {:.6g} m", range_m));
+    if (!(std::fabs(angle_rad) <= std::numbers::pi)) {
+      return tl::unexpected(fmt::format("a ping with an angle of {:.6g} rad", angle_rad));
+    }
     if (range_m > 0.0) points_m.emplace_back(0.0, -range_m * std::sin(angle_rad), -range_m * std::cos(angle_rad));
   }
   return points_m;
 }
 
+bool has_degrees(Bytes file) {
+  constexpr std::uint16_t kLatitudeLongitude = 3;
+  return little<std::uint16_t>(file, 164) == kLatitudeLongitude;
+}
+
 class XtfSource final : public ScanSource {
  public:
   XtfSource(FileBytes file, Damage damage)
-      : file_(std::move(file)), damage_(damage), has_degrees_(little<std::uint16_t>(file_.view(), 164) == 3) {}
+      : file_(std::move(file)), damage_(damage), has_degrees_(has_degrees(file_.view())) {}
 
   Result<std::optional<PointScan>> next() override {
     while (place_ < file_.bytes.size()) {
@@ -152,12 +177,12 @@ class XtfSource final : public ScanSource {
       place_ += packet->size();
       if ((*packet)[2] != kQinsyR2Sonic) continue;
       const std::size_t number = pings_++;
-      std::optional<PointScan> scan = scan_of(*packet);
+      OrReason<PointScan> scan = scan_of(*packet);
       if (scan) {
         scan->number = number;
-        return scan;
+        return *std::move(scan);
       }
-      if (const auto left_out = leave_out(at, "a ping with impossible values"); !left_out) {
+      if (const auto left_out = leave_out(at, scan.error()); !left_out) {
         return tl::unexpected(left_out.error());
       }
     }
@@ -175,11 +200,12 @@ class XtfSource final : public ScanSource {
     return handle_damage(damage_, skipped_, file_.name, fmt::format("byte {}", at), reason);
   }
 
-  std::optional<PointScan> scan_of(Bytes packet) {
-    if (packet.size() < kPingHeader) return std::nullopt;
-    const std::optional<HeadPose> head = head_pose(packet, has_degrees_);
-    const auto points_m = points_of(packet.subspan(kPingHeader));
-    if (!head || !points_m) return std::nullopt;
+  OrReason<PointScan> scan_of(Bytes packet) {
+    if (packet.size() < kPingHeader) return tl::unexpected(std::string("a ping without a whole header"));
+    const OrReason<HeadPose> head = head_pose(packet, has_degrees_);
+    if (!head) return tl::unexpected(head.error());
+    const OrReason<std::vector<Eigen::Vector3d>> points_m = points_of(packet.subspan(kPingHeader));
+    if (!points_m) return tl::unexpected(points_m.error());
     if (!origin_) origin_ = Eigen::Vector3d(head->place.x(), head->place.y(), 0.0);
     const Eigen::Vector3d moved = head->place - *origin_;
     const Eigen::Vector3d position_m =
@@ -216,6 +242,31 @@ std::string types_in(Bytes file) {
   return text.empty() ? "none" : text;
 }
 
+/// Where the positions of a file in metres are latitudes and longitudes in degrees: all are some, and a survey of ten
+/// pings moves by no more than centimetres. Empty: nowhere.
+std::string fault_of_unit(Bytes file) {
+  constexpr double kLeast_m = 0.05, kPole = 90.0, kHalfTurn = 180.0;
+  constexpr std::size_t kFewest = 10;
+  if (has_degrees(file)) return {};
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t place = kFileHeader; place < file.size();) {
+    const std::optional<Bytes> packet = packet_at(file, place);
+    place = packet ? place + packet->size() : find_packet(file, place + 1);
+    if (!packet || (*packet)[2] != kQinsyR2Sonic || packet->size() < kPingHeader) continue;
+    const OrReason<HeadPose> head = head_pose(*packet, false);
+    if (!head) continue;
+    places.emplace_back(head->place.x(), head->place.y());
+    if (std::fabs(places.back().x()) > kPole || std::fabs(places.back().y()) > kHalfTurn) return {};
+    if ((places.back() - places.front()).norm() > kLeast_m) return {};
+  }
+  const bool moves = std::ranges::any_of(places, [&](const Eigen::Vector2d& place) { return place != places.front(); });
+  if (places.size() < kFewest || !moves) return {};
+  return fmt::format(
+      "its positions are in metres by its header and stay within {:.6g} m of {:.6g}, {:.6g}: are they in "
+      "degrees (unit 3)?",
+      kLeast_m, places.front().x(), places.front().y());
+}
+
 }  // namespace
 
 bool looks_like_xtf(Bytes bytes) {
@@ -229,6 +280,9 @@ Result<std::unique_ptr<ScanSource>> open_xtf(FileBytes file, Damage damage) {
                 fmt::format("{}: is an XTF file without pings of an R2Sonic multibeam (packets of type 65): its "
                             "packets are of type {}",
                             file.name, types));
+  }
+  if (const std::string fault = fault_of_unit(file.view()); !fault.empty()) {
+    return fail(Error::Code::kCorrupt, fmt::format("{}: {}", file.name, fault));
   }
   return std::make_unique<XtfSource>(std::move(file), damage);
 }

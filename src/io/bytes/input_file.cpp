@@ -1,5 +1,7 @@
 #include "pingvox/io/input_file.hpp"
 
+#include <system_error>
+
 namespace pingvox {
 
 const std::string& InputFile::name() const {
@@ -10,6 +12,12 @@ const std::string& InputFile::name() const {
 bool InputFile::is_standard_input() const {
   const auto* const path = std::get_if<std::string>(&from_);
   return path != nullptr && *path == "-";
+}
+
+bool InputFile::is_read_once() const {
+  const auto* const path = std::get_if<std::string>(&from_);
+  std::error_code error;
+  return path != nullptr && (*path == "-" || std::filesystem::is_other(std::filesystem::status(*path, error)));
 }
 
 Result<ByteStream> InputFile::open() const {

@@ -66,6 +66,7 @@ class CloudSource : public ScanSource {
     PointScan scan;
     scan.origin_m = origin_m_;
     if (const auto read = read_points(scan.points_m); !read) return tl::unexpected(read.error());
+    leave_out_zeros(scan.points_m);
     return scan;
   }
   std::size_t skipped() const final { return skipped_.count; }
@@ -89,6 +90,16 @@ class CloudSource : public ScanSource {
   }
 
  private:
+  /// Scanners write 0, 0, 0 for a beam without return; a single one may be a place.
+  void leave_out_zeros(std::vector<Eigen::Vector3d>& points_m) {
+    const auto is_zero = [](const Eigen::Vector3d& point_m) { return point_m.isZero(0.0); };
+    const auto zeros = static_cast<std::size_t>(std::ranges::count_if(points_m, is_zero));
+    if (zeros < 2 || zeros == points_m.size()) return;
+    std::erase_if(points_m, is_zero);
+    if (skipped_.count == 0) skipped_.first = fmt::format("{} points are 0, 0, 0: beams without return", zeros);
+    skipped_.count += zeros;
+  }
+
   std::string name_;
   Damage damage_;
   NanPoint nan_;

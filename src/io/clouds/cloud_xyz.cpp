@@ -1,9 +1,10 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/bytes/text.hpp"
 #include "io/clouds/cloud.hpp"
@@ -21,6 +22,40 @@ bool names_xyz(std::string_view line) {
     const auto word = cut_word(line);
     return word && word->size() == 1 && (word->front() | 0x20) == name.front();
   });
+}
+
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  constexpr std::size_t kMost = 64;
+  while (const auto word = cut_word(line)) {
+    if (words.size() == kMost) break;
+    std::string& lower = words.emplace_back(*word);
+    std::ranges::transform(lower, lower.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; });
+  }
+  return words;
+}
+
+/// The names of the columns in the last comment before the first point: as many as that has numbers, of which the
+/// first three are known. Empty: there is none.
+std::vector<std::string> column_names_of(std::string_view text) {
+  constexpr auto kKnown =
+      std::to_array<std::string_view>({"x", "y", "z", "time", "timestamp", "t", "lon", "longitude", "lat", "latitude",
+                                       "easting", "northing", "east", "north", "depth", "range", "bearing"});
+  Lines lines(text);
+  std::vector<std::string> names;
+  for (auto line = lines.next(); line; line = lines.next()) {
+    const std::string_view content = trim(*line);
+    if (content.empty()) continue;
+    if (!content.starts_with('#')) {
+      if (words_of(content).size() != names.size()) names.clear();
+      break;
+    }
+    names = words_of(trim(content, "# \t"));
+  }
+  const auto is_known = [&](const std::string& name) { return std::ranges::find(kKnown, name) != kKnown.end(); };
+  const bool are_names = names.size() >= 3 && std::all_of(names.begin(), names.begin() + 3, is_known);
+  return are_names ? names : std::vector<std::string>();
 }
 
 /// A line of one whole number, as PTS begins: how many points follow.
@@ -99,6 +134,18 @@ Result<std::unique_ptr<ScanSource>> open_xyz(FileBytes file, Damage damage, cons
                 fmt::format("{}: \"{}\" has a comma between blanks: commas of decimals and of thousands are not read, "
                             "only points",
                             file.name, printable(word)));
+  }
+  if (const std::vector<std::string> names = column_names_of(text_of(file.view())); !names.empty()) {
+    constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      const auto named = std::ranges::find(names, kAxes[axis]);
+      if (named == names.end()) {
+        return fail(Error::Code::kUnsupported,
+                    fmt::format("{}: its columns are {} by its comment: only x, y and z in metres are read, z up",
+                                file.name, printable(fmt::format("{}", fmt::join(names, ", ")))));
+      }
+      cloud.xyz[axis].word = static_cast<std::size_t>(named - names.begin());
+    }
   }
   return text_cloud(std::move(file), start.points, cloud, damage, origin_m.value_or(Eigen::Vector3d::Zero()));
 }

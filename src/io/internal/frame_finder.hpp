@@ -55,7 +55,10 @@ using CheckFrame = FrameCheck (*)(const FrameBytes& at);
 /// the last push.
 class FrameFinder {
  public:
-  explicit FrameFinder(CheckFrame check) : check_(check) {}
+  /// @param least_between  bytes between two frames, fewer of which are no damage: fewer than a frame has are noise of
+  ///                       the line, as of a transceiver that is switched on
+  explicit FrameFinder(CheckFrame check, std::size_t least_between = 1)
+      : check_(check), least_between_(least_between) {}
 
   struct Frame {
     std::uint64_t at;                     ///< position in the stream [bytes]
@@ -74,6 +77,8 @@ class FrameFinder {
   const std::vector<DamageKind>& damage() const { return damage_; }
   /// Position in the stream up to which bytes were processed.
   std::uint64_t position() const { return position_; }
+  /// Position before which no damage will be found any more.
+  std::uint64_t settled() const { return between_from_.value_or(position_); }
 
   static constexpr std::string_view kBetween = "bytes between frames";
   static constexpr std::string_view kCutOff = "cut off at the end";
@@ -82,12 +87,14 @@ class FrameFinder {
   void pass(const FrameCheck& check);
 
   CheckFrame check_;
+  std::size_t least_between_;
   std::vector<std::uint8_t> bytes_;
-  std::size_t start_ = 0;           ///< of the unprocessed bytes, in bytes_
-  std::uint64_t position_ = 0;      ///< the same in the stream
-  bool in_damage_ = false;          ///< the last bytes were no frame
-  std::uint64_t broken_until_ = 0;  ///< end that the last damaged frame claims
-  PrefixSums sums_;                 ///< of bytes_, once there is damage
+  std::size_t start_ = 0;                      ///< of the unprocessed bytes, in bytes_
+  std::uint64_t position_ = 0;                 ///< the same in the stream
+  bool in_damage_ = false;                     ///< the last bytes were no frame
+  std::optional<std::uint64_t> between_from_;  ///< the first of them, while they are too few to be damage
+  std::uint64_t broken_until_ = 0;             ///< end that the last damaged frame claims
+  PrefixSums sums_;                            ///< of bytes_, once there is damage
   bool ended_ = false;
   std::vector<DamageKind> damage_;
 };

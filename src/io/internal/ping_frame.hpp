@@ -13,6 +13,9 @@
 // The Ping protocol of Blue Robotics, as used by scanning sonars (docs/formats.md).
 namespace pingvox {
 
+/// A frame has at least its header and checksum.
+inline constexpr std::size_t kLeastPingFrame = 10;
+
 /// For FrameFinder: checks a frame, its checksum and the length of its message. No frame of a Ping360 has a payload of
 /// more than 4096 bytes; longer ones are damage.
 FrameCheck check_ping_frame(const FrameBytes& at);

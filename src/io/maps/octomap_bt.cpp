@@ -252,11 +252,11 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
   return BtTreeReader(file, header.tree_at, *map).read(header.nodes);
 }
 
-Result<void> write_bt(const OccupancyMap& map, std::ostream& out) {
+Result<void> write_bt(const OccupancyMap& map, MapAxes axes, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".bt"); !fits) return fits;
   TreeWords tree(map);
   // One block; no ByteWriter, as the format has no checksum.
-  out << octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m());
+  out << octomap_header(kBtFirstLine, tree.nodes(), map.lattice().resolution_m(), axes);
   const std::span<std::uint16_t> words = tree.words();
   if constexpr (std::endian::native != std::endian::little) {
     for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(word >> 8 | word << 8);

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "pingvox/io/bytes.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -15,6 +16,6 @@ Result<OccupancyMap> read_bt(const FileBytes& file, std::size_t memory_limit_byt
 
 /// Writes the same bytes as liboctomap's OcTree::writeBinary: leaves rounded to occupied or free, and pruned. Leaves
 /// between the map's thresholds are omitted, since the format cannot hold them.
-Result<void> write_bt(const OccupancyMap& map, std::ostream& out);
+Result<void> write_bt(const OccupancyMap& map, MapAxes axes, std::ostream& out);
 
 }  // namespace pingvox

@@ -10,6 +10,7 @@
 namespace pingvox {
 namespace {
 
+constexpr std::string_view kEastNorthComment = "# x east, y north";
 constexpr std::string_view kWhitespace = " \t\r\n\v\f";
 
 /// Words and lines of the header, which precedes binary data.
@@ -76,13 +77,23 @@ Result<OctomapHeader> read_octomap_header(const FileBytes& file, std::string_vie
   return header;
 }
 
-std::string octomap_header(std::string_view first_line, std::uint64_t nodes, double resolution_m) {
+MapAxes octomap_axes(const FileBytes& file) {
+  Lines lines(text_of(file.view()));
+  while (const std::optional<std::string_view> line = lines.next()) {
+    if (*line == kEastNorthComment) return MapAxes::kEastNorth;
+    if (*line == "data") break;
+  }
+  return MapAxes::kNotTold;
+}
+
+std::string octomap_header(std::string_view first_line, std::uint64_t nodes, double resolution_m, MapAxes axes) {
   std::string resolution = fmt::format("{:g}", resolution_m);
   if (number_in(resolution) != resolution_m) resolution = fmt::format("{}", resolution_m);
   return fmt::format(
-      "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid OcTree\nsize {}\nres {}\n"
+      "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n{}id OcTree\nsize {}\nres "
+      "{}\n"
       "data\n",
-      first_line, nodes, resolution);
+      first_line, axes == MapAxes::kEastNorth ? fmt::format("{}\n", kEastNorthComment) : "", nodes, resolution);
 }
 
 Result<OccupancyMap> empty_octomap(const FileBytes& file, double resolution_m, std::size_t memory_limit_bytes) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "pingvox/io/bytes.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -27,7 +28,10 @@ inline constexpr std::string_view kOtFirstLine = "# Octomap OcTree file";
 Result<OctomapHeader> read_octomap_header(const FileBytes& file, std::string_view first_line);
 
 /// Text of the header, equal to liboctomap's unless the resolution needs more than six digits.
-std::string octomap_header(std::string_view first_line, std::uint64_t nodes, double resolution_m);
+/// @param axes  of those that are east and north a comment says so
+std::string octomap_header(std::string_view first_line, std::uint64_t nodes, double resolution_m, MapAxes axes);
+/// What a comment in the header says of the axes.
+MapAxes octomap_axes(const FileBytes& file);
 
 /// An empty map of this resolution. kCorrupt when it is invalid.
 Result<OccupancyMap> empty_octomap(const FileBytes& file, double resolution_m, std::size_t memory_limit_bytes);

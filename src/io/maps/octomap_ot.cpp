@@ -96,10 +96,10 @@ Result<OccupancyMap> read_ot(const FileBytes& file, std::size_t memory_limit_byt
   return map;
 }
 
-Result<void> write_ot(const OccupancyMap& map, std::ostream& out) {
+Result<void> write_ot(const OccupancyMap& map, MapAxes axes, std::ostream& out) {
   if (const auto fits = check_octomap_depth(map, ".ot"); !fits) return fits;
   ByteWriter writer(out);
-  writer.put(octomap_header(kOtFirstLine, map.counts().nodes(), map.lattice().resolution_m()));
+  writer.put(octomap_header(kOtFirstLine, map.counts().nodes(), map.lattice().resolution_m(), axes));
   if (const auto root = map.root()) write_ot_node(*root, writer);
   return writer.finish();
 }

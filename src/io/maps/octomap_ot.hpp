@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "pingvox/io/bytes.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -14,6 +15,6 @@ namespace pingvox {
 Result<OccupancyMap> read_ot(const FileBytes& file, std::size_t memory_limit_bytes);
 
 /// Writes the same bytes as liboctomap's OcTree::write.
-Result<void> write_ot(const OccupancyMap& map, std::ostream& out);
+Result<void> write_ot(const OccupancyMap& map, MapAxes axes, std::ostream& out);
 
 }  // namespace pingvox

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::string_view kMagic = "PINGVOXM";
 constexpr std::uint32_t kVersion = 1;
+/// Behind the text that says how the map was made.
+constexpr std::string_view kEastNorth = "\nx east, y north\n";
 constexpr std::size_t kHeaderBytes = 64;
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kInnerBytes = 2, kLeafBytes = 4;
@@ -41,7 +43,7 @@ Result<Header> read_header(const FileBytes& file, std::size_t memory_limit_bytes
   const unsigned parents = *reader.read<std::uint8_t>();
   header.root = *reader.read<std::uint8_t>();
   const unsigned reserved = *reader.read<std::uint8_t>() | *reader.read<std::uint32_t>();
-  header.options.resolution_m = *reader.read<double>();
+  header.options.resolution_m = reader.read<double>();
   // validate() rejects NaN.
   header.options.clamp.lowest = LogOdds(*reader.read<float>());
   header.options.clamp.highest = LogOdds(*reader.read<float>());
@@ -165,11 +167,17 @@ Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) 
   const std::size_t tree_at = kHeaderBytes + header->made_by_bytes;
   const auto done = PvxTreeReader(file, *header, tree_at, *map).read(*header);
   if (!done) return tl::unexpected(done.error());
-  return MapFile{Format::kPvx, *std::move(map),
-                 std::string(text_of(bytes.subspan(kHeaderBytes, header->made_by_bytes)))};
+  std::string_view made_by = text_of(bytes.subspan(kHeaderBytes, header->made_by_bytes));
+  MapAxes axes = MapAxes::kNotTold;
+  if (made_by.ends_with(kEastNorth)) {
+    made_by.remove_suffix(kEastNorth.size());
+    axes = MapAxes::kEastNorth;
+  }
+  return MapFile{Format::kPvx, *std::move(map), std::string(made_by), axes};
 }
 
-Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, std::ostream& out) {
+Result<void> write_pvx(const OccupancyMap& map, std::string_view text, MapAxes axes, std::ostream& out) {
+  const std::string made_by = std::string(text) + std::string(axes == MapAxes::kEastNorth ? kEastNorth : "");
   if (made_by.size() > std::numeric_limits<std::uint32_t>::max()) {
     return fail(Error::Code::kUnsupported, "the text that says how the map was made is longer than 4 GiB");
   }
@@ -185,7 +193,7 @@ Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, std::o
   writer.put(static_cast<std::uint8_t>(state_of(root)));
   writer.put(std::uint8_t{0});
   writer.put(std::uint32_t{0});
-  writer.put(options.resolution_m);
+  writer.put(map.lattice().resolution_m());
   writer.put(options.clamp.lowest.value());
   writer.put(options.clamp.highest.value());
   writer.put(options.thresholds.lower.value());

@@ -6,6 +6,7 @@
 
 #include "pingvox/io/bytes.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/map/map_axes.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -14,6 +15,6 @@ namespace pingvox {
 /// kCorrupt: any damage.
 Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes);
 
-Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, std::ostream& out);
+Result<void> write_pvx(const OccupancyMap& map, std::string_view made_by, MapAxes axes, std::ostream& out);
 
 }  // namespace pingvox

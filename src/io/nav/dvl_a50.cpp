@@ -8,6 +8,7 @@
 #include <map>
 
 #include "io/bytes/text.hpp"
+#include "nav/internal/nav_frames.hpp"
 #include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
@@ -234,12 +235,15 @@ A50Reading a50_serial_report(std::string_view line) {
 }
 
 void add_a50_report(NavSources& sources, const std::string& name, double time_s, const A50Report& report) {
+  const bool is_reckoned = report.kind == A50Report::Kind::kPosition;
+  const NavOrigin origin{
+      .subject = NavSubject::kVehicle, .frame = std::string(is_reckoned ? kStartFrame : ""), .child = {}};
   const auto add = [&](NavQuantity quantity, const Eigen::Vector3d& value, bool valid) {
     NavSample sample;
     sample.time_s = time_s;
     sample.value = value;
     sample.valid = valid;
-    return sources.add(name, quantity, sample);
+    return sources.add(name, quantity, sample, origin);
   };
   if (report.kind == A50Report::Kind::kVelocity) {
     NavSample* const velocity = add(NavQuantity::kVelocity, from_ned::body(report.velocity_m_s), report.valid);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -21,6 +22,10 @@ namespace {
 constexpr std::string_view kClockLine = "# clock: ";
 constexpr std::array<std::string_view, 10> kColumns = {"time_s", "source", "quantity", "x",    "y",
                                                        "z",      "sd_x",   "sd_y",     "sd_z", "valid"};
+constexpr std::array kQuantities = {NavQuantity::kVelocity,   NavQuantity::kAttitude, NavQuantity::kHeading,
+                                    NavQuantity::kTurnRate,   NavQuantity::kDepth,    NavQuantity::kPosition,
+                                    NavQuantity::kFix,        NavQuantity::kRange,    NavQuantity::kPressure,
+                                    NavQuantity::kTemperature};
 enum NavColumn : std::size_t { kTime, kSource, kQuantity, kX, kY, kZ, kSdX, kSdY, kSdZ, kValid };
 constexpr std::size_t kNone = kColumns.size();
 
@@ -59,33 +64,67 @@ struct NamedSample {
 
 constexpr std::string_view kNoSample = "line that is no sample", kNotValid = "line whose valid is neither 0 nor 1";
 
-/// The error is the kind of damage.
-tl::expected<NamedSample, std::string_view> sample_in(std::string_view line, const std::vector<std::size_t>& columns) {
+struct NoSample {
+  std::string_view kind;  ///< of damage
+  std::string what;       ///< "quantity 'orientation' is none of velocity, attitude ..."
+};
+
+tl::unexpected<NoSample> no_sample(std::string what, std::string_view kind = kNoSample) {
+  return tl::unexpected(NoSample{kind, std::move(what)});
+}
+
+tl::unexpected<NoSample> not_a_number(std::string_view column, std::string_view text) {
+  return no_sample(fmt::format("{} '{}' is not a finite number{}", column, printable(text),
+                               column == kColumns[kTime] ? " of seconds" : ""));
+}
+
+/// As name_of has it, or "Turn_Rate".
+std::optional<NavQuantity> quantity_in(std::string_view text) {
+  std::string name;
+  for (const char c : text) name += c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return nav_quantity_of(name);
+}
+
+std::string names_of_quantities() {
+  std::string names;
+  for (const NavQuantity quantity : kQuantities)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(quantity));
+  return names;
+}
+
+tl::expected<NamedSample, NoSample> sample_in(std::string_view line, const std::vector<std::size_t>& columns) {
   std::array<std::string_view, kColumns.size()> fields;
   for (const std::size_t column : columns) {
     const auto field = cut_field(line, ',');
-    if (!field) return tl::unexpected(kNoSample);
+    if (!field) return no_sample("it has fewer columns than the first line");
     if (column != kNone) fields[column] = *field;
   }
-  if (!line.empty()) return tl::unexpected(kNoSample);
+  if (!line.empty()) return no_sample("it has more columns than the first line");
   NamedSample named;
   const auto time_s = number_in(fields[kTime]);
-  const auto quantity = nav_quantity_of(fields[kQuantity]);
-  if (!time_s || !quantity || fields[kSource].empty()) return tl::unexpected(kNoSample);
+  if (!time_s) return not_a_number(kColumns[kTime], fields[kTime]);
+  const auto quantity = quantity_in(fields[kQuantity]);
+  if (!quantity) {
+    return no_sample(fmt::format("quantity '{}' is none of {}", printable(fields[kQuantity]), names_of_quantities()));
+  }
+  if (fields[kSource].empty()) return no_sample("source is empty");
   named.source = fields[kSource];
   named.quantity = *quantity;
   named.sample.time_s = *time_s;
   for (int i = 0; i < numbers_of(*quantity); ++i) {
-    const auto value = number_in(fields[kX + static_cast<std::size_t>(i)]);
-    if (!value) return tl::unexpected(kNoSample);
+    const std::size_t x = kX + static_cast<std::size_t>(i), sd_x = kSdX + static_cast<std::size_t>(i);
+    const auto value = number_in(fields[x]);
+    if (!value) return not_a_number(kColumns[x], fields[x]);
     named.sample.value[i] = *value;
-    const std::string_view deviation = fields[kSdX + static_cast<std::size_t>(i)];
-    if (deviation.empty()) continue;
-    const auto number = number_in(deviation);
-    if (!number || *number < 0.0) return tl::unexpected(kNoSample);
-    named.sample.deviation[i] = *number;
+    if (fields[sd_x].empty()) continue;
+    const auto number = number_in(fields[sd_x]);
+    if (!number) return not_a_number(kColumns[sd_x], fields[sd_x]);
+    // Below 0 stands for "not known", as ROS has it.
+    if (*number >= 0.0) named.sample.deviation[i] = *number;
   }
-  if (fields[kValid] != "" && fields[kValid] != "0" && fields[kValid] != "1") return tl::unexpected(kNotValid);
+  if (fields[kValid] != "" && fields[kValid] != "0" && fields[kValid] != "1") {
+    return no_sample(fmt::format("valid '{}' is neither 0 nor 1", printable(fields[kValid])), kNotValid);
+  }
   named.sample.valid = fields[kValid] != "0";
   return named;
 }
@@ -114,15 +153,23 @@ NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
   Lines lines(text);
   const auto columns = csv_columns_in(lines.next_with_content().value_or(""));
   NavSources sources;
+  std::size_t skipped = 0;
+  std::string first_skipped;
   for (std::size_t at = text.size() - lines.left(); const auto line = lines.next_with_content();
        at = text.size() - lines.left()) {
     const auto named = sample_in(*line, columns);
     if (!named) {
-      add_damage(reading.damage, named.error(), at);
+      add_damage(reading.damage, named.error().kind, at);
+      if (++skipped == 1) first_skipped = fmt::format("line {}: {}", lines.number(), named.error().what);
       continue;
     }
     sources.add(named->source, named->quantity, named->sample);
     ++reading.records;
+  }
+  constexpr std::size_t kMany = 10;  // not a damaged line, but another notation
+  if (skipped * kMany >= skipped + reading.records && skipped > 0) {
+    reading.notes.push_back(
+        fmt::format("{} of {} lines are no samples, the first: {}", skipped, skipped + reading.records, first_skipped));
   }
   reading.sources = sources.take();
   tell_pressures(reading.sources);

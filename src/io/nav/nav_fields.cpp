@@ -65,6 +65,20 @@ bool holds(double a, std::string_view comparison, double b) {
   return a < b || a > b;  // !=, but nothing is known of NaN
 }
 
+/// What the names of fields say against their order; empty: nothing.
+std::string fault_of_order(const NavFields& fields) {
+  if (fields.quantity != NavQuantity::kAttitude) return {};
+  const std::string &first = fields.values.front(), &last = fields.values.back();
+  if (fields.values.size() == 4 && first.ends_with('w') && !last.ends_with('w')) {
+    return fmt::format("the fields of a quaternion must be in the order x, y, z, w: '{}' is the first", first);
+  }
+  const auto names = [](const std::string& field, std::string_view angle) { return field.find(angle) != field.npos; };
+  if (fields.values.size() == 3 && names(first, "yaw") && names(last, "roll")) {
+    return fmt::format("the fields of an attitude must be in the order roll, pitch, yaw: '{}' is the first", first);
+  }
+  return {};
+}
+
 }  // namespace
 
 bool has_frame(NavQuantity quantity) {
@@ -89,6 +103,7 @@ Result<void> NavFields::validate() const {
                            least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most),
                            values.size()));
   }
+  if (const std::string order = fault_of_order(*this); !order.empty()) return bad(order);
   const std::size_t numbers = std::min<std::size_t>(values.size(), 3);
   if (spread.size() > 1 && spread.size() != numbers) {
     return bad(fmt::format("deviations must be of 1 or {} fields, not of {}", numbers, spread.size()));
@@ -273,7 +288,7 @@ void NavReader::add(const RosMessage& message, const KnownTopic& topic, double r
   sample.value = value_in(message);
   sample.deviation = deviation_in(message);
   sample.valid = is_valid(message);
-  sources.add(source, quantity_, sample, frame_ == Frame::kByName ? origin : NavOrigin());
+  sources.add(source, quantity_, sample, frame_ == Frame::kByName ? origin : NavOrigin{NavSubject::kChosen, {}, {}});
 }
 
 }  // namespace pingvox

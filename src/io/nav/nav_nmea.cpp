@@ -215,18 +215,40 @@ bool is_possible_angle(std::optional<double> number, double limit_deg) {
   return std::fmod(size, kDegrees) < kMinutes && size <= limit_deg * kDegrees;
 }
 
-/// Whether places and directions are some.
-bool is_possible(const Sentence& sentence) {
-  constexpr double kPole_deg = 90.0, kHalfTurn_deg = 180.0, kTurn_deg = 360.0;
-  const auto is_place = [&](std::size_t first) {
-    return is_possible_angle(sentence.number(first), kPole_deg) &&
-           is_possible_angle(sentence.number(first + 2), kHalfTurn_deg);
-  };
-  if (sentence.is("GGA")) return is_place(2);
-  if (sentence.is("RMC")) return is_place(3);
-  if (sentence.is("GLL")) return is_place(1);
+constexpr std::string_view kImpossibleValues = "impossible values",
+                           kDecimalDegrees =
+                               "latitude with less than three digits before the point: is it in decimal "
+                               "degrees instead of ddmm.mmm?";
+
+/// Whether degrees and minutes have too few digits for that.
+bool is_in_decimal_degrees(std::string_view latitude) {
+  constexpr std::size_t kFewest = 3;  // ddmm, without a leading zero
+  const std::size_t sign = latitude.starts_with('-') || latitude.starts_with('+') ? 1 : 0;
+  const std::size_t digits = std::min(latitude.find('.'), latitude.size()) - sign;
+  return number_in(latitude).value_or(0.0) != 0.0 && digits < kFewest;
+}
+
+/// What is wrong with a place of four fields; empty: nothing.
+std::string_view fault_of_place(const Sentence& sentence, std::size_t first) {
+  constexpr double kPole_deg = 90.0, kHalfTurn_deg = 180.0;
+  const std::optional<double> latitude = sentence.number(first), longitude = sentence.number(first + 2);
+  if (is_in_decimal_degrees(sentence.field(first))) return kDecimalDegrees;
+  if (!is_possible_angle(latitude, kPole_deg) || !is_possible_angle(longitude, kHalfTurn_deg)) return kImpossibleValues;
+  // Both a sign and a letter.
+  const bool is_twice_south = latitude.value_or(0.0) < 0.0 && sentence.field(first + 1) == "S";
+  const bool is_twice_west = longitude.value_or(0.0) < 0.0 && sentence.field(first + 3) == "W";
+  return is_twice_south || is_twice_west ? kImpossibleValues : std::string_view();
+}
+
+/// What is wrong with the place or direction of a sentence; empty: nothing.
+std::string_view fault_of(const Sentence& sentence) {
+  constexpr double kTurn_deg = 360.0;
+  if (sentence.is("GGA")) return fault_of_place(sentence, 2);
+  if (sentence.is("RMC")) return fault_of_place(sentence, 3);
+  if (sentence.is("GLL")) return fault_of_place(sentence, 1);
   const bool is_heading = sentence.is("HDT") || sentence.is("HDM") || sentence.is("THS") || sentence.is("HDG");
-  return !is_heading || std::fabs(sentence.number(1).value_or(0.0)) <= kTurn_deg;
+  const bool is_possible = !is_heading || std::fabs(sentence.number(1).value_or(0.0)) <= kTurn_deg;
+  return is_possible ? std::string_view() : kImpossibleValues;
 }
 
 class NmeaNav {
@@ -313,16 +335,25 @@ NavReading read_nmea(std::span<const std::uint8_t> bytes) {
   const std::string_view text = text_of(bytes);
   Clock clock(text);
   if (clock.has_date()) reading.clock = NavClock::kUnix;
-  NmeaNav nav;
+  NmeaNav nav, decimal;
   reading.records = for_each_sentence(text, reading.damage, [&](const Sentence& sentence, std::size_t at) {
     const double time_s = clock.time_of(sentence).value_or(0.0);
-    if (is_possible(sentence)) {
+    if (const std::string_view fault = fault_of(sentence); fault.empty()) {
       nav.add(sentence, time_s);
     } else {
-      add_damage(reading.damage, "impossible values", at);
+      if (fault == kDecimalDegrees) decimal.add(sentence, time_s);
+      add_damage(reading.damage, fault, at);
     }
   });
   reading.sources = nav.take();
+  for (NavSource& source : decimal.take()) {
+    const bool has_others = std::ranges::any_of(reading.sources, [&](const NavSource& other) {
+      return other.quantity == source.quantity && other.name == source.name;
+    });
+    if (has_others) continue;
+    source.fault = kDecimalDegrees;
+    reading.sources.push_back(std::move(source));
+  }
   if (clock.has_time()) return reading;
   std::size_t samples = 0;
   for (const NavSource& source : reading.sources) samples += source.samples.size();

@@ -58,6 +58,20 @@ double longest_step_in(std::string_view text) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// Whether a comment before the poses names the columns of a quaternion with w first, as EuRoC's do.
+bool names_w_first(std::string_view text) {
+  Lines lines(text);
+  for (auto line = lines.next(); line && line->starts_with('#'); line = lines.next()) {
+    std::string letters;
+    for (const char c : *line) {
+      if (c != '_') letters += c;
+    }
+    const std::size_t w = letters.find("qw"), x = letters.find("qx");
+    if (w < x && x != std::string::npos) return true;
+  }
+  return false;
+}
+
 /// With nine decimals, as usual, or more if needed to be read back exactly.
 std::string time_text(double time_s) {
   std::string text = fmt::format("{:.9f}", time_s);
@@ -89,6 +103,9 @@ Result<Trajectory> read_tum(const FileBytes& file) {
     const auto corrupt = [&](std::string_view what) {
       return fail(Error::Code::kCorrupt, fmt::format("{}: line {}: {}", file.name, lines.number(), what));
     };
+    if (names_w_first(text_of(file.view()))) {
+      return fail(Error::Code::kCorrupt, fmt::format("{}: its header names qw before qx: {}", file.name, kLayout));
+    }
     std::vector<StampedPose> poses;
     while (const auto line = lines.next_with_content()) {
       const tl::expected<StampedPose, std::string> pose = pose_in(*line);

@@ -9,6 +9,12 @@
 // What the names of ROS frames say (REP-103, REP-105): "world_ned", "base_link_frd", "bluerov2/odom", "camera_optical".
 namespace pingvox {
 
+/// Frame of the dead reckoning of a device: it begins at 0, x right and y ahead of the vehicle as it was then.
+inline constexpr std::string_view kStartFrame = "local_start";
+/// Whether x of a position is east and y north: its frame says so, or it is not named, which stands for the frame of
+/// NavQuantity::kPosition.
+bool has_north(const NavSource& position);
+
 /// How the axes of a frame point, by its name.
 enum class FrameAxes {
   kNotNamed,  ///< as ROS has them by default: x east or ahead, y north or left, z up

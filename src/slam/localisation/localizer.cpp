@@ -16,10 +16,10 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/geometry/random.hpp"
-#include "pingvox/sonar/echo_stream.hpp"
 #include "slam/localisation/beam_likelihood.hpp"
 #include "slam/localisation/particles.hpp"
 #include "slam/localisation/pose_search.hpp"
+#include "sonar/internal/echo_stream.hpp"
 
 namespace pingvox {
 namespace {

@@ -12,7 +12,7 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/pose2.hpp"
-#include "pingvox/slam/picture_turns.hpp"
+#include "slam/internal/picture_turns.hpp"
 #include "slam/odometry/trajectory_gaps.hpp"
 #include "slam/sweeps/level_head.hpp"
 

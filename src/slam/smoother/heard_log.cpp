@@ -32,7 +32,9 @@ Result<void> HeardLog::add(const NavLog& log) {
     for (NavSource source : log.sources()) {
       if (source.subject == NavSubject::kOther) continue;
       for (NavSample& sample : source.samples) sample.time_s += options_.nav_offset_s;
-      add_samples(source, source_in(sources_, source.name, source.quantity));
+      NavSource& to = source_in(sources_, source.name, source.quantity);
+      if (to.samples.empty()) to.subject = source.subject;
+      add_samples(source, to);
     }
     return {};
   });

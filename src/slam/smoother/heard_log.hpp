@@ -5,9 +5,9 @@
 
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
-#include "pingvox/slam/picture_turns.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/sweep.hpp"
+#include "slam/internal/picture_turns.hpp"
 #include "slam/sweeps/heard_sweep.hpp"
 
 namespace pingvox {

@@ -7,23 +7,11 @@
 #include <tuple>
 #include <utility>
 
-#include "base/median.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
 
 namespace pingvox {
 namespace {
-
-constexpr double kFastest_m_s = 30.0;
-
-/// Median over the samples.
-double usual_speed_m_s(const VelocitySource& velocity) {
-  std::vector<double> speeds_m_s;
-  for (std::size_t i = 0; i < velocity.ahead.size(); ++i) {
-    speeds_m_s.push_back(std::hypot(velocity.ahead.values()[i], velocity.left.values()[i]));
-  }
-  return median(std::move(speeds_m_s));
-}
 
 /// The time that is common to all that is needed.
 Result<TimeSpan> common_span(std::span<const double> beam_times_s, const Navigation& navigation) {
@@ -119,11 +107,6 @@ Result<Navigation> navigation_of(MotionSources sources, const SlamOptions& optio
                 fmt::format("the navigation has no valid {}", !velocity && headings.empty() ? "velocity and no heading"
                                                               : !velocity                   ? "velocity over ground"
                                                                                             : "heading or attitude"));
-  }
-  if (const double speed_m_s = usual_speed_m_s(*velocity); !(speed_m_s < kFastest_m_s)) {
-    return fail(Error::Code::kUnsupported, fmt::format("the velocity of {} is {:.3g} m/s in the median: no vehicle "
-                                                       "that a scanning sonar follows is as fast",
-                                                       velocity->name, speed_m_s));
   }
   if (options.calibration && options.calibration->velocity != velocity->name) {
     return fail(Error::Code::kBadOption, fmt::format("the calibration is of the velocity of {}, not of {}",

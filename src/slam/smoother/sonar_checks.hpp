@@ -5,8 +5,8 @@
 
 #include "nav/internal/navigation.hpp"
 #include "pingvox/nav/clock_offset.hpp"
-#include "pingvox/slam/picture_turns.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
+#include "slam/internal/picture_turns.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
 #include "slam/smoother/slam_solver.hpp"
 

@@ -1,4 +1,4 @@
-#include "pingvox/slam/picture_turns.hpp"
+#include "slam/internal/picture_turns.hpp"
 
 #include <algorithm>
 #include <array>

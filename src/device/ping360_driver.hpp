@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pingvox/device/receiver_gain.hpp"
-#include "pingvox/result.hpp"
+#include "pingvox/device/head_settings.hpp"
 
 namespace pingvox {
 
@@ -24,24 +23,6 @@ struct Ping360Sampling {
 /// Sampling that Ping Viewer chooses for a range: up to 1200 samples, in steps of at least 2 us. REQUIRES a range of
 /// 0.5 m to 100 m.
 Ping360Sampling ping360_sampling(double range_m);
-
-/// How a head is driven. Its angles are of 400 a turn, clockwise; 200 is ahead.
-struct Ping360Settings {
-  using Gain = ReceiverGain;
-  /// Turned to and fro, from the first angle clockwise.
-  struct Sector {
-    int first_grad = 0;  ///< 0..399
-    int width_grad = 0;  ///< 1..399
-  };
-
-  double range_m = 10.0;                        ///< 0.5..100
-  Gain gain = Gain::kNormal;                    ///< of the receiver
-  int step_grad = 1;                            ///< from ping to ping, 1..20
-  std::optional<Sector> sector = std::nullopt;  ///< nullopt: full turns
-  double timeout_s = 4.0;                       ///< for an answer, 0.01..60; a head that turns far takes seconds
-
-  Result<void> validate() const;  ///< kBadOption names every broken field at once
-};
 
 /// The host's side of the dialogue with a Ping360: asks who is there, then for one ping after the other, and repeats
 /// what is not answered. It has no line and no clock of its own: the caller carries the messages.

@@ -1,4 +1,4 @@
-#include "bag_args.hpp"
+#include "pingvox/io/bag_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -9,23 +9,22 @@
 #include <string_view>
 #include <utility>
 
-#include "console.hpp"
-#include "option_values.hpp"
+#include "base/option_text.hpp"
+#include "base/words.hpp"
+#include "io/internal/toml_file.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/io/file.hpp"
-#include "suggest.hpp"
-#include "toml_file.hpp"
 
-namespace pingvox::app {
+namespace pingvox {
 namespace {
 
-enum class Turn { kCounterClockwise, kClockwise };
-constexpr std::array kTurns = {Choice<Turn>{"ccw", Turn::kCounterClockwise}, Choice<Turn>{"cw", Turn::kClockwise}};
+enum class AngleTurn { kCounterClockwise, kClockwise };
+constexpr std::array kAngleTurns = {Choice<AngleTurn>{"ccw", AngleTurn::kCounterClockwise},
+                                    Choice<AngleTurn>{"cw", AngleTurn::kClockwise}};
 constexpr std::array kAngleUnits = {Choice<double>{"rad", 1.0}, Choice<double>{"deg", kDegree_rad},
                                     Choice<double>{"grad", std::numbers::pi / 200.0}};
-constexpr std::array kTimeUnits = {Choice<double>{"s", 1.0}, Choice<double>{"ms", 1e-3}, Choice<double>{"us", 1e-6},
-                                   Choice<double>{"ns", 1e-9}};
-constexpr std::array kFrames = {
+constexpr std::array kFieldTimeUnits = {Choice<double>{"s", 1.0}, Choice<double>{"ms", 1e-3},
+                                        Choice<double>{"us", 1e-6}, Choice<double>{"ns", 1e-9}};
+constexpr std::array kFieldFrames = {
     Choice<NavFields::Frame>{"enu", NavFields::Frame::kEnu}, Choice<NavFields::Frame>{"flu", NavFields::Frame::kEnu},
     Choice<NavFields::Frame>{"ned", NavFields::Frame::kNed}, Choice<NavFields::Frame>{"frd", NavFields::Frame::kNed}};
 
@@ -52,7 +51,7 @@ constexpr std::array kNavUnits = {NavUnit{"m", "m", 1.0},
                                   NavUnit{"Pa", "bar", 1e5},
                                   NavUnit{"C", "C", 1.0}};
 
-std::string_view unit_of(NavQuantity quantity) {
+std::string_view standard_unit_of(NavQuantity quantity) {
   switch (quantity) {
     case NavQuantity::kVelocity:
       return "m/s";
@@ -75,23 +74,24 @@ std::string_view unit_of(NavQuantity quantity) {
 }
 
 Result<double> unit_from(NavQuantity quantity, const std::string& word) {
-  Args known;
+  std::vector<std::string> known;
   for (const NavUnit& unit : kNavUnits) {
-    if (unit.standard != unit_of(quantity)) continue;
+    if (unit.standard != standard_unit_of(quantity)) continue;
     if (unit.word == word) return unit.size;
     known.emplace_back(unit.word);
   }
-  return usage_error(fmt::format("must be {}, not '{}'", fmt::join(known, " or "), on_one_line(word)));
+  return fail(Error::Code::kBadOption,
+              fmt::format("must be {}, not '{}'", fmt::join(known, " or "), on_one_line(word)));
 }
 
 Result<NavQuantity> quantity_from(const std::string& name) {
   if (const auto quantity = nav_quantity_of(name)) return *quantity;
-  Args known;
+  std::vector<std::string> known;
   for (int i = 0; i <= static_cast<int>(NavQuantity::kTemperature); ++i) {
     known.emplace_back(name_of(static_cast<NavQuantity>(i)));
   }
-  return usage_error(
-      fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "), on_one_line(name), did_you_mean(name, known)));
+  return fail(Error::Code::kBadOption, fmt::format("must be {}, not '{}'{}", fmt::join(known, " or "),
+                                                   on_one_line(name), did_you_mean(name, known)));
 }
 
 /// Words with commas between them; blanks around them are left out.
@@ -122,18 +122,20 @@ class BeamKeys {
     } else if (key == "unit") {
       return choice_value(kAngleUnits, value).map([&](double unit) { unit_rad_ = unit; });
     } else if (key == "turn") {
-      return choice_value(kTurns, value).map([&](Turn turn) { sense_ = turn == Turn::kClockwise ? -1.0 : 1.0; });
+      return choice_value(kAngleTurns, value).map([&](AngleTurn turn) {
+        sense_ = turn == AngleTurn::kClockwise ? -1.0 : 1.0;
+      });
     } else if (key == "ahead") {
       return number_from<double>(value).map([&](double ahead) { fields_.ahead = ahead; });
     } else {
-      return usage_error("must be one of angle, range, bin, intensities, unit, turn, ahead");
+      return fail(Error::Code::kBadOption, "must be one of angle, range, bin, intensities, unit, turn, ahead");
     }
     return {};
   }
 
   Result<BeamFields> finish() {
     if (fields_.angle.empty() || fields_.length.empty() || fields_.intensities.empty()) {
-      return usage_error("must name the fields of angle, range or bin, and intensities");
+      return fail(Error::Code::kBadOption, "must name the fields of angle, range or bin, and intensities");
     }
     fields_.angle_unit_rad = sense_ * unit_rad_;
     return fields_;
@@ -144,22 +146,8 @@ class BeamKeys {
   double unit_rad_ = 1.0, sense_ = 1.0;
 };
 
-/// "angle=heading,unit=deg,turn=cw,range=max_range,intensities=data"
-Result<BeamFields> beam_fields_from(std::string_view text) {
-  BeamKeys keys;
-  for (const std::string& part : list_from(text)) {
-    const std::size_t equals = std::min(part.find('='), part.size());
-    const std::string key = part.substr(0, equals), value = part.substr(std::min(equals + 1, part.size()));
-    if (value.empty()) return usage_error(fmt::format("'{}': must be KEY=VALUE", part));
-    if (const auto taken = keys.take(key, value); !taken) {
-      return usage_error(fmt::format("'{}': {}", key, taken.error().message));
-    }
-  }
-  return keys.finish();
-}
-
 /// The section [[beams]].
-Result<BeamTopic> beams_of(const std::string& file, const TomlSection& section) {
+Result<BeamTopic> beam_topic_of(const std::string& file, const TomlSection& section) {
   BeamTopic beams;
   BeamKeys keys;
   for (const auto& [key, value] : section.values) {
@@ -188,7 +176,7 @@ void take_if_there(TomlKeys& keys, std::string_view name, Parse parse, Use use) 
 }
 
 /// A section [[nav]].
-Result<NavFields> nav_of(const std::string& file, const TomlSection& section) {
+Result<NavFields> nav_fields_of(const std::string& file, const TomlSection& section) {
   NavFields fields;
   fields.stated_in = fmt::format("{}: line {}", file, section.line);
   TomlKeys keys(file, section);
@@ -211,7 +199,7 @@ Result<NavFields> nav_of(const std::string& file, const TomlSection& section) {
     keys.refuse(keys.line_of("frame"), "frame", fmt::format("{} has none", name_of(fields.quantity)));
   }
   take_if_there(
-      keys, "frame", [](const std::string& frame) { return choice_value(kFrames, frame); },
+      keys, "frame", [](const std::string& frame) { return choice_value(kFieldFrames, frame); },
       [&](NavFields::Frame frame) { fields.frame = frame; });
   if (keys.has("sd") && keys.has("variance")) keys.refuse(keys.line_of("variance"), "variance", "excludes sd");
   take_if_there(keys, "sd", list, [&](const auto& paths) { fields.spread = paths; });
@@ -223,61 +211,54 @@ Result<NavFields> nav_of(const std::string& file, const TomlSection& section) {
   if (keys.has("time-unit") && !keys.has("time")) keys.refuse(keys.line_of("time-unit"), "time-unit", "needs time");
   take_if_there(keys, "time", word, [&](const std::string& path) { fields.time = path; });
   take_if_there(
-      keys, "time-unit", [](const std::string& unit) { return choice_value(kTimeUnits, unit); },
+      keys, "time-unit", [](const std::string& unit) { return choice_value(kFieldTimeUnits, unit); },
       [&](double unit_s) { fields.time_unit_s = unit_s; });
   if (const auto whole = keys.finish(); !whole) return tl::unexpected(whole.error());
   if (const auto valid = fields.validate(); !valid) return toml_error(file, section.line, valid.error().message);
   return fields;
 }
 
-Result<void> take_file(const std::string& path, BagArgs& bag) {
-  const Result<FileBytes> file = read_file(path);
-  if (!file) return tl::unexpected(file.error());
-  const Result<std::vector<TomlSection>> sections = read_toml(*file);
+}  // namespace
+
+Result<BeamFields> beam_fields_from(std::string_view text) {
+  BeamKeys keys;
+  for (const std::string& part : list_from(text)) {
+    const std::size_t equals = std::min(part.find('='), part.size());
+    const std::string key = part.substr(0, equals), value = part.substr(std::min(equals + 1, part.size()));
+    if (value.empty()) return fail(Error::Code::kBadOption, fmt::format("'{}': must be KEY=VALUE", part));
+    if (const auto taken = keys.take(key, value); !taken) {
+      return fail(Error::Code::kBadOption, fmt::format("'{}': {}", key, taken.error().message));
+    }
+  }
+  return keys.finish();
+}
+
+Result<BagFields> read_bag_fields(const FileBytes& file) {
+  const Result<std::vector<TomlSection>> sections = read_toml(file);
   if (!sections) return tl::unexpected(sections.error());
-  bag.nav.clear();
-  std::optional<BeamTopic> beams;
+  BagFields bag;
   for (const TomlSection& section : *sections) {
     if (section.name.empty() && section.values.empty()) continue;
-    if (section.name == "beams" && beams) {
-      return toml_error(file->name, section.line, "[[beams]]: is there twice: one file is for one sonar");
+    if (section.name == "beams" && bag.beams) {
+      return toml_error(file.name, section.line, "[[beams]]: is there twice: one file is for one sonar");
     }
     if (section.name == "beams") {
-      Result<BeamTopic> found = beams_of(file->name, section);
+      Result<BeamTopic> found = beam_topic_of(file.name, section);
       if (!found) return tl::unexpected(found.error());
-      beams = *std::move(found);
+      bag.beams = *std::move(found);
     } else if (section.name == "nav") {
-      Result<NavFields> fields = nav_of(file->name, section);
+      Result<NavFields> fields = nav_fields_of(file.name, section);
       if (!fields) return tl::unexpected(fields.error());
       bag.nav.push_back(*std::move(fields));
     } else {
-      return toml_error(file->name, section.line,
+      return toml_error(file.name, section.line,
                         section.name.empty() ? "keys must be below [[beams]] or [[nav]]"
                                              : fmt::format("[[{}]]: is unknown: must be [[beams]] or [[nav]]",
                                                            on_one_line(section.name)));
     }
   }
-  if (!beams && bag.nav.empty()) return toml_error(file->name, 1, "has neither [[beams]] nor [[nav]]");
-  if (!beams) return {};
-  if (!bag.beams.name.empty() && bag.beams.name != beams->name) {
-    return usage_error(fmt::format("{}: its [[beams]] are of {}, not of --topic {}", file->name,
-                                   on_one_line(beams->name), bag.beams.name));
-  }
-  bag.beams = *std::move(beams);
-  return {};
+  if (!bag.beams && bag.nav.empty()) return toml_error(file.name, 1, "has neither [[beams]] nor [[nav]]");
+  return bag;
 }
 
-}  // namespace
-
-Result<void> take_fields(const std::string& text, BagArgs& bag) {
-  if (text.find('=') == std::string::npos) {
-    bag.file = text;
-    return take_file(text, bag);
-  }
-  Result<BeamFields> fields = beam_fields_from(text);
-  if (!fields) return tl::unexpected(fields.error());
-  bag.beams.fields = *std::move(fields);
-  return {};
-}
-
-}  // namespace pingvox::app
+}  // namespace pingvox

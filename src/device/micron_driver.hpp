@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pingvox/device/receiver_gain.hpp"
-#include "pingvox/result.hpp"
+#include "pingvox/device/head_settings.hpp"
 
 namespace pingvox {
 
@@ -22,23 +21,6 @@ struct MicronSampling {
 
 /// Up to 400 bins, of which a line at 115,200 baud brings 25 a second. REQUIRES a range of 0.5 m to 300 m.
 MicronSampling micron_sampling(double range_m);
-
-/// How a head is driven. Its angles are of 6400 a turn, clockwise; 3200 is ahead.
-struct MicronSettings {
-  using Gain = ReceiverGain;
-  /// Turned to and fro, from `left` clockwise to `right`.
-  struct Sector {
-    int left = 0, right = 0;  ///< 0..6399
-  };
-
-  double range_m = 10.0;                        ///< 0.5..300; of a Micron 75
-  Gain gain = Gain::kNormal;                    ///< of the receiver
-  int step = 16;                                ///< from line to line, 1..255
-  std::optional<Sector> sector = std::nullopt;  ///< nullopt: full turns
-  double timeout_s = 2.0;                       ///< for an answer, 0.01..60
-
-  Result<void> validate() const;  ///< kBadOption names every broken field at once
-};
 
 /// The host's side of the dialogue with a SeaNet head, a Micron or MiniKing: waits until the head says that it is
 /// there, asks whether it answers a request with one line or two, sends its parameters, and then asks for one line

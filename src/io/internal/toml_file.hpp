@@ -11,7 +11,7 @@
 #include "pingvox/result.hpp"
 
 /// TOML files of keys and of tables, none within another.
-namespace pingvox::app {
+namespace pingvox {
 
 struct TomlValue {
   std::string text;  ///< numbers and truth values as TOML writes them, lists with commas between their items
@@ -57,4 +57,4 @@ class TomlKeys {
   std::optional<Error> error_;
 };
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -1,4 +1,4 @@
-#include "toml_file.hpp"
+#include "io/internal/toml_file.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <utility>
 
-#include "console.hpp"
-#include "option_values.hpp"
+#include "base/option_text.hpp"
+#include "base/words.hpp"
 
-namespace pingvox::app {
+namespace pingvox {
 namespace {
 
 std::size_t line_of_node(const toml::node& node) {
@@ -18,12 +18,12 @@ std::size_t line_of_node(const toml::node& node) {
 }
 
 /// nullopt: dates, tables and lists in lists, which no file of ours has.
-std::optional<TomlValue> value_from(const toml::node& node) {
+std::optional<TomlValue> toml_value_from(const toml::node& node) {
   TomlValue value;
   value.line = line_of_node(node);
   if (const toml::array* list = node.as_array()) {
     for (const toml::node& item : *list) {
-      const auto text = item.is_array() ? std::nullopt : value_from(item);
+      const auto text = item.is_array() ? std::nullopt : toml_value_from(item);
       if (!text) return std::nullopt;
       value.items.push_back(text->text);
     }
@@ -53,7 +53,7 @@ Result<TomlSection> section_from(const std::string& file, std::string_view name,
   for (const auto& [key, node] : table) {
     const bool is_section = name.empty() && (node.is_table() || node.is_array_of_tables());
     if (is_section) continue;
-    const std::optional<TomlValue> value = value_from(node);
+    const std::optional<TomlValue> value = toml_value_from(node);
     if (!value) {
       return toml_error(
           file, line_of_node(node),
@@ -142,4 +142,4 @@ Result<void> TomlKeys::finish() {
   return error_ ? Result<void>(tl::unexpected(*error_)) : Result<void>();
 }
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "json.hpp"
+#include "pingvox/mapping/sweep_coverage.hpp"
+#include "pingvox/recording/evaluate.hpp"
+
+/// What is said of how far a map can be believed.
+namespace pingvox::app {
+
+/// One sentence: "predicts 93 % of the echoes it can judge (81 % of all) within 0.1 m", or "cannot be judged: ...".
+std::string verdict_text(const Evaluation& evaluation);
+
+/// "28 sweeps of 19.3 s each, in which the vehicle makes 0.0 m and turns by 0 degrees"
+std::string movement_text(const SweepCoverage& sweeps);
+
+/// "47, heard by 28 sweeps each (median), 2.1 % by one only"
+std::string places_text(const SweepCoverage& sweeps);
+JsonObject coverage_json(const SweepCoverage& sweeps);
+
+/// Why a map of these sweeps cannot be good, in plain words; empty: nothing tells that.
+std::vector<std::string> coverage_warnings(const SweepCoverage& sweeps);
+
+}  // namespace pingvox::app

@@ -1,0 +1,85 @@
+#include <array>
+#include <string>
+#include <utility>
+
+#include "command_files.hpp"
+#include "mapping_options.hpp"
+#include "option_table.hpp"
+#include "option_values.hpp"
+#include "parse_commands.hpp"
+#include "shared_options.hpp"
+
+namespace pingvox::app {
+namespace {
+
+constexpr std::array kFits = {Choice<FitParameter>{"sound-speed", FitParameter::kSoundSpeed},
+                              Choice<FitParameter>{"mount-yaw", FitParameter::kMountYaw},
+                              Choice<FitParameter>{"nav-offset", FitParameter::kNavOffset},
+                              Choice<FitParameter>{"mount-xy", FitParameter::kMountXy}};
+
+}  // namespace
+
+Result<Command> evaluate_command(const Args& args) {
+  EvaluateCommand command;
+  BuildArgs build;
+  OccupancyArgs occupancy;
+  OptionTable::Group map_options = map_group(build);
+  map_options.options.push_back(threads_option(build.build.threads));
+  for (Option& option : occupancy_options(occupancy)) {
+    if (option.name != "--cut-depth") map_options.options.push_back(std::move(option));
+  }
+  const OptionTable table{
+      "evaluate",
+      "Says how well a map of these logs can be believed, without ground truth: keeps echoes out of the map, predicts\n"
+      "them by the map of the other sweeps, and counts how many come from where the map has a wall. The options are\n"
+      "those of 'map'; no map is written.",
+      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
+      {{"Evaluation",
+        {{"--folds", 0, "N", "parts that sweeps are dealt into; each is compared with the map of the others, 2..1000",
+          "5", within({2.0, 1000.0}, store_number(command.evaluation.folds))},
+         choice(
+             "--fit", kFits,
+             "also search the value with which most echoes are predicted, with its standard deviation; takes some 20 "
+             "times as long",
+             command.fit, "nothing"),
+         json_option(command.output_options),
+         quiet_option(command.output_options),
+         choice("--progress", kProgress, "show the progress on standard error; auto: on a terminal",
+                command.output_options.progress)}},
+       std::move(map_options),
+       sensor_group(build),
+       echo_group(build.echoes, WaterOfNav::kYes),
+       {"Input",
+        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+      {"pingvox evaluate tank.csv", "pingvox evaluate dive.csv --poses dive.tum --resolution 0.1 --json",
+       "pingvox evaluate dive.db3 --nav dive.db3"},
+      "Exit status: 0 done, 1 failed, 2 invalid usage. A map that is bad is no failure: see the verdict."};
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
+    command.limited = parsed.limited;
+    if (const auto valid = occupancy.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = build.echoes.validate(build.navs); !valid) return tl::unexpected(valid.error());
+    build.map.thresholds = occupancy.apply_to(build.map.thresholds);
+    command.evaluation.map = build.map;
+    command.evaluation.build = build.build_options();
+    command.head = build.head;
+    command.background_m = build.echoes.background_m;
+    command.nav_salinity = build.echoes.nav_salinity;
+    if (const auto valid = command.evaluation.map.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_options(command.evaluation.build); !valid) return tl::unexpected(valid.error());
+    const Result<PathArgs> path = build.path();
+    if (!path) return tl::unexpected(path.error());
+    command.path = *path;
+    if (command.fit == FitParameter::kNavOffset && path->navs.empty() && !path->poses) {
+      return usage_error("--fit nav-offset: needs --nav or --poses, whose clock it is");
+    }
+    CommandFiles files;
+    files.read("LOG", command.logs);
+    files.read("--config", parsed.config);
+    files.read("--fields", command.bag.file);
+    build.name_files(files);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+    return command;
+  });
+}
+
+}  // namespace pingvox::app
