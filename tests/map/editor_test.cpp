@@ -241,7 +241,7 @@ TEST(ScanUpdate, IsRefusedByMapsOfOtherLattices) {
 }
 
 TEST(ScanUpdate, AHitBeatsAMissAndTheStrongestHitCounts) {
-  ScanUpdate scan(Lattice(MapOptions::kDefaultResolution_m));
+  ScanUpdate scan{Lattice(MapOptions::kDefaultResolution_m)};
   const Key cell{100, 200, 300};
   for (int round = 0; round < 2; ++round) {
     scan.add_hit(cell, LogOdds(0.3F));
