@@ -267,7 +267,7 @@ TEST(ScanUpdate, AHitBeatsAMissAndTheStrongestHitCounts) {
 
 // Kills a brick of 4 x 4 x 4 cells, all of them hit, that gets the evidence of one of them.
 TEST(ScanUpdate, EachCellOfAFullBrickHasItsOwnEvidence) {
-  ScanUpdate scan(Lattice(MapOptions::kDefaultResolution_m));
+  ScanUpdate scan{Lattice(MapOptions::kDefaultResolution_m)};
   const auto cell = [](int n) {
     return Key{static_cast<std::uint16_t>(4 + n % 4), static_cast<std::uint16_t>(8 + n / 4 % 4),
                static_cast<std::uint16_t>(12 + n / 16)};
