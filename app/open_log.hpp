@@ -27,9 +27,9 @@ Result<Log> open_file_log(ByteStream stream, Damage damage, const BeamTopic& top
 /// Reads a file that may be a log. Of a ROS bag it reads only the beginning, which is enough to identify the format: a
 /// bag may consist of several files, so it is opened by its path later.
 Result<FileBytes> read_input(const std::string& path);
-/// A file that was read by `read_input(path)`, to be read by a recording.
+/// The file at `path` for a recording, by what `read_input` returned.
 InputFile input_file(FileBytes file, const std::string& path);
-/// The log in a file that was read by `read_input(path)`. @see open_file_log
+/// The log in the file at `path`, by what `read_input` returned. @see open_file_log
 Result<Log> open_input(FileBytes file, const std::string& path, Damage damage, const BeamTopic& topic);
 
 /// Whether a bag has messages that are read as `use`.

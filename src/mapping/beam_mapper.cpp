@@ -14,11 +14,11 @@ namespace pingvox {
 /// Passes beams to echo detection, and then with their poses to the map.
 class BeamMapper::Stages {
  public:
-  Stages(const BuildOptions& options, OccupancyMap& map)
+  Stages(const BuildOptions& options, OccupancyMap& map, CountSweeps count)
       : sound_speed_ratio_(options.sound_speed_ratio),
         empty_stream_(detail::echo_stream(options)),
         stream_(empty_stream_),
-        mapper_(options, map) {}
+        mapper_(options, map, count) {}
 
   Result<void> add(Beam beam, const std::optional<Pose>& map_from_body) {
     watch_.skip();
@@ -68,10 +68,10 @@ class BeamMapper::Stages {
   detail::Stopwatch watch_;
 };
 
-Result<BeamMapper> BeamMapper::make(const BuildOptions& options, OccupancyMap& map) {
+Result<BeamMapper> BeamMapper::make(const BuildOptions& options, OccupancyMap& map, CountSweeps count) {
   return detail::without_exceptions([&]() -> Result<BeamMapper> {
     if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-    return BeamMapper(std::make_unique<Stages>(options, map));
+    return BeamMapper(std::make_unique<Stages>(options, map, count));
   });
 }
 

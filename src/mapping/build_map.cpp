@@ -34,7 +34,7 @@ void move_scan(const Pose& map_from_sensor, PointScan& scan) {
 
 Result<BuildReport> build_map(BeamSource& source, const Trajectory& map_from_body, const BuildOptions& options,
                               OccupancyMap& map, const Progress& progress) {
-  Result<BeamMapper> mapper = BeamMapper::make(options, map);
+  Result<BeamMapper> mapper = BeamMapper::make(options, map, CountSweeps::kYes);
   if (!mapper) return tl::unexpected(mapper.error());
   double read_s = 0.0;
   std::optional<double> first_s, last_s;

@@ -53,12 +53,9 @@ EchoStream echo_stream(const BuildOptions& options) {
           options.timing == Timing::kBySweep ? EchoStream::Wait::kForSweep : EchoStream::Wait::kForNeighbours};
 }
 
-EchoMapper::EchoMapper(const BuildOptions& options, OccupancyMap& map)
-    : options_(options),
-      map_(&map),
-      scan_(map.lattice(), options.miss),
-      parts_(options.threads),
-      coverage_(map.lattice().resolution_m()) {
+EchoMapper::EchoMapper(const BuildOptions& options, OccupancyMap& map, CountSweeps count)
+    : options_(options), map_(&map), scan_(map.lattice(), options.miss), parts_(options.threads) {
+  if (count == CountSweeps::kYes) coverage_.emplace(map.lattice().resolution_m());
   for (std::size_t i = 0; i < options.threads; ++i) tracers_.emplace_back(options.model, options.echo.max_range_m);
 }
 
@@ -75,7 +72,9 @@ Result<void> EchoMapper::add(const EchoBeams& heard, std::span<const std::option
     if (report.no_pose.count == no_pose_before_) report.sweeps += heard.ended_sweeps;
     no_pose_before_ = report.no_pose.count;
   }
-  if (heard.ended_sweeps > 0 || options_.timing == Timing::kBySweep) coverage_.end_sweep(heard.ended_sweeps > 0);
+  if (coverage_ && (heard.ended_sweeps > 0 || options_.timing == Timing::kBySweep)) {
+    coverage_->end_sweep(heard.ended_sweeps > 0);
+  }
   report.skipped = report.no_pose.count + report.outside.count + report.blocked.count + report.too_long.count;
   return {};
 }
@@ -148,7 +147,7 @@ Result<EchoMapper::Placed> EchoMapper::place(const EchoBeams& heard, std::span<c
   for (std::size_t n = 0; n < placed.heard.size(); ++n) {
     const EchoBeam* const one = placed.heard[n];
     const bool has_echo = one->echo && one->where == EchoBeam::Where::kInRange;
-    coverage_.add(one->time_s, placed.beams[n], options_.model.width_rad, has_echo);
+    if (coverage_) coverage_->add(one->time_s, placed.beams[n], options_.model.width_rad, has_echo);
     if (!has_echo) continue;
     const int threshold = one->echo->threshold;
     ++report.echoes;

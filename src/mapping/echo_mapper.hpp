@@ -42,7 +42,7 @@ EchoStream echo_stream(const BuildOptions& options);
 class EchoMapper {
  public:
   /// REQUIRES valid options. `map` has to outlive this.
-  EchoMapper(const BuildOptions& options, OccupancyMap& map);
+  EchoMapper(const BuildOptions& options, OccupancyMap& map, CountSweeps count = CountSweeps::kNo);
 
   /// @param map_from_body  of each beam; nullopt: not known, and the beam is left out and counted
   /// @return kLimit when the map would grow too large, or each of the first beams; the map keeps what it had got.
@@ -53,8 +53,8 @@ class EchoMapper {
   /// @param report  of the beams so far
   void restart(const BuildReport& report);
 
-  /// What the sweeps heard that have ended.
-  SweepCoverage coverage() const { return coverage_.coverage(); }
+  /// What the sweeps heard that have ended; empty without CountSweeps::kYes.
+  SweepCoverage coverage() const { return coverage_ ? coverage_->coverage() : SweepCoverage{}; }
 
  private:
   /// Beams that are to be mapped.
@@ -81,7 +81,7 @@ class EchoMapper {
   std::size_t no_pose_before_ = 0;       ///< beams left out before this sweep
   std::vector<double> recent_ranges_m_;  ///< of beams before, without those that are too long
   std::size_t too_long_in_row_ = 0;
-  SweepCoverageCounter coverage_;
+  std::optional<SweepCoverageCounter> coverage_;
   Stopwatch watch_;
 };
 

@@ -98,21 +98,18 @@ Result<Evaluation> evaluate(const Recording& recording, const EvaluateOptions& o
 Result<Evaluation> evaluate(const Recording& recording, const VehiclePath& path, const EvaluateOptions& options,
                             const std::function<void(double)>& progress) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-  Result<MapForecast> forecast = forecast_map(recording, options.map, options.build);
-  if (!forecast) return tl::unexpected(forecast.error());
-  const Result<HeldOutEchoes> echoes = recording_echoes(recording, path, options.build, *forecast);
-  if (!echoes) return tl::unexpected(echoes.error());
-  const double cell_m = forecast->resolution_m;
-  MapOptions map = options.map;
-  map.resolution_m = cell_m;
+  const Result<RecordingEchoes> read = recording_echoes(recording, path, options.map, options.build);
+  if (!read) return tl::unexpected(read.error());
+  const HeldOutEchoes& echoes = read->echoes;
+  const double cell_m = read->cell_m;
   Evaluation found;
   found.resolution_m = cell_m;
-  found.folds = std::min(options.folds, echoes->sweeps());
-  found.tolerance_m = std::max(kNear_m, cell_m);
-  found.sweeps = echoes->coverage(path.trajectory, cell_m);
+  found.folds = std::min(options.folds, echoes.sweeps());
+  found.tolerance_m = read->tolerance_m();
+  found.sweeps = echoes.coverage(path.trajectory, cell_m);
   found.beams = found.sweeps.beams;
   const Result<std::vector<JudgedEcho>> judged =
-      echoes->judge(path.trajectory, map, {.folds = options.folds, .tolerance_m = found.tolerance_m}, progress);
+      echoes.judge(path.trajectory, read->map, {.folds = options.folds, .tolerance_m = found.tolerance_m}, progress);
   if (!judged) return tl::unexpected(judged.error());
   for (const JudgedEcho& echo : *judged) count(echo, cell_m, found.all);
   found.by_range = parts_by_range(*judged, cell_m);

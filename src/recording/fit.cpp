@@ -105,12 +105,11 @@ std::optional<double> best_of(const Curve& curve, std::size_t part) {
 /// Search of one parameter.
 class Fitting {
  public:
-  Fitting(HeldOutEchoes echoes, const Trajectory& trajectory, const MapOptions& map, FitParameter parameter,
+  Fitting(const RecordingEchoes& read, const Trajectory& trajectory, FitParameter parameter,
           const std::function<void(double)>& progress)
-      : echoes_(std::move(echoes)), trajectory_(trajectory), map_(map), axes_(axes_of(parameter)), progress_(progress) {
-    constexpr double kLeast_m = 0.1;
+      : echoes_(read.echoes), trajectory_(trajectory), map_(read.map), axes_(axes_of(parameter)), progress_(progress) {
     at_.folds = 2;
-    at_.tolerance_m = std::max(kLeast_m, *map_.resolution_m);
+    at_.tolerance_m = read.tolerance_m();
     for (const FitAxis& axis : axes_) at_.*axis.member = axis.middle;
   }
 
@@ -189,9 +188,9 @@ class Fitting {
     return Estimate{*best, std::hypot(std::sqrt((kParts - 1.0) / kParts * squares), 0.5 * finest)};
   }
 
-  HeldOutEchoes echoes_;
+  const HeldOutEchoes& echoes_;
   const Trajectory& trajectory_;
-  MapOptions map_;  ///< with their resolution
+  const MapOptions& map_;
   std::vector<FitAxis> axes_;
   const std::function<void(double)>& progress_;
   HeldOutOptions at_;
@@ -203,19 +202,15 @@ class Fitting {
 Result<Fit> fit(const Recording& recording, const VehiclePath& path, FitParameter parameter,
                 const EvaluateOptions& options, const std::function<void(double)>& progress) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-  Result<MapForecast> forecast = forecast_map(recording, options.map, options.build);
-  if (!forecast) return tl::unexpected(forecast.error());
-  MapOptions map = options.map;
-  map.resolution_m = forecast->resolution_m;
-  Result<HeldOutEchoes> echoes = recording_echoes(recording, path, options.build, *forecast);
-  if (!echoes) return tl::unexpected(echoes.error());
+  const Result<RecordingEchoes> read = recording_echoes(recording, path, options.map, options.build);
+  if (!read) return tl::unexpected(read.error());
   constexpr std::size_t kFewSweeps = 4;
-  if (echoes->sweeps() < kFewSweeps) {
+  if (read->echoes.sweeps() < kFewSweeps) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: {} are too few to fit anything, {} are needed", recording.logs().front().name(),
-                            counted(echoes->sweeps(), "sweep"), kFewSweeps));
+                            counted(read->echoes.sweeps(), "sweep"), kFewSweeps));
   }
-  return Fitting(*std::move(echoes), path.trajectory, map, parameter, progress).find();
+  return Fitting(*read, path.trajectory, parameter, progress).find();
 }
 
 }  // namespace pingvox

@@ -7,10 +7,19 @@
 
 namespace pingvox {
 
-/// The echoes of all logs of a recording, read as build_map does.
-/// @param forecast  of the recording; its opened logs are read
+/// The echoes of a recording, and the maps that they are compared with.
+struct RecordingEchoes {
+  HeldOutEchoes echoes;
+  MapOptions map;       ///< with its resolution
+  double cell_m = 0.0;  ///< this resolution
+
+  /// Echoes that near to where they are predicted count: 0.1 m, or a cell where that is more.
+  double tolerance_m() const;
+};
+
+/// Of all logs, read as build_map does.
 /// @return kUnsupported for logs of scans, and when the path is of navigation and a log has no times; errors of reading
-Result<HeldOutEchoes> recording_echoes(const Recording& recording, const VehiclePath& path, const BuildOptions& build,
-                                       MapForecast& forecast);
+Result<RecordingEchoes> recording_echoes(const Recording& recording, const VehiclePath& path, const MapOptions& map,
+                                         const BuildOptions& build);
 
 }  // namespace pingvox

@@ -12,6 +12,7 @@
 #include "io/internal/beams_in_order.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/slam/causal_replay.hpp"
+#include "recording/move_trajectory.hpp"
 
 namespace pingvox {
 namespace {
@@ -95,9 +96,7 @@ void move_to_path(const Recording& recording, RecordingSlam& slam) {
   if (east_m.empty()) return;
   const Eigen::Translation3d move(median(std::move(east_m)), median(std::move(north_m)), median(std::move(up_m)));
   Trajectory& trajectory = slam.solution.trajectory;
-  std::vector<StampedPose> poses = trajectory.poses();
-  for (StampedPose& pose : poses) pose.map_from_body = move * pose.map_from_body;
-  trajectory = *Trajectory::make(std::move(poses), trajectory.longest_step_s(), trajectory.cuts());
+  trajectory = moved(trajectory, Pose(move));
   slam.frame_of = path->nav;
 }
 

@@ -21,6 +21,7 @@
 #include "pingvox/io/tum.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/slam/odometry.hpp"
+#include "recording/move_trajectory.hpp"
 
 namespace pingvox {
 namespace {
@@ -104,12 +105,6 @@ double height_above_depth(const Trajectory& trajectory, const NavLog& nav, doubl
     if (sample.valid && pose) above_m.push_back(pose->translation().z() + sample.value.x());
   }
   return above_m.empty() ? 0.0 : median(std::move(above_m));
-}
-
-Trajectory moved(const Trajectory& trajectory, const Pose& move) {
-  std::vector<StampedPose> poses = trajectory.poses();
-  for (StampedPose& pose : poses) pose.map_from_body = move * pose.map_from_body;
-  return *Trajectory::make(std::move(poses), trajectory.longest_step_s(), trajectory.cuts());
 }
 
 VehiclePath::Nav sources_of(const NavTrajectory& made, const NavLog& nav) {

@@ -22,9 +22,10 @@ namespace pingvox {
 /// Between two calls the map may be read: its parents are up to date and it is pruned.
 class BeamMapper {
  public:
-  /// @param map  has to outlive the mapper
+  /// @param map    has to outlive the mapper
+  /// @param count  whether `coverage` is wanted: it takes memory for each echo
   /// @return kBadOption when the options do not validate, kNoMemory when memory ran out
-  static Result<BeamMapper> make(const BuildOptions& options, OccupancyMap& map);
+  static Result<BeamMapper> make(const BuildOptions& options, OccupancyMap& map, CountSweeps count = CountSweeps::kNo);
   BeamMapper(BeamMapper&&) noexcept;
   BeamMapper& operator=(BeamMapper&&) noexcept;
   ~BeamMapper();
@@ -43,7 +44,7 @@ class BeamMapper {
   /// Report of the beams so far, without those that wait.
   const BuildReport& report() const;
 
-  /// What the sweeps so far heard, without the one that is not complete.
+  /// What the sweeps so far heard, without the one that is not complete; empty without CountSweeps::kYes.
   SweepCoverage coverage() const;
 
   /// Number of later beams of its sweep that a beam waits for; nullopt: for the end of its sweep.

@@ -4,6 +4,9 @@
 
 namespace pingvox {
 
+/// Whether a mapper counts what its sweeps heard (SweepCoverage).
+enum class CountSweeps { kNo, kYes };
+
 /// How often the sweeps of a recording heard each place, and how far the head moved meanwhile: what a map can be made
 /// of. A place is a column of half a metre, or of four cells where that is more; an echo is from all places that its
 /// beam is wide.
