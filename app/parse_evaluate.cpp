@@ -30,7 +30,7 @@ Result<Command> evaluate_command(const Args& args) {
   }
   const OptionTable table{
       "evaluate",
-      "Says how well a map of these logs can be believed, without ground truth: keeps echoes out of the map, predicts\n"
+      "Says how far a map of these logs can be trusted, without ground truth: keeps echoes out of the map, predicts\n"
       "them by the map of the other sweeps, and counts how many come from where the map has a wall. The options are\n"
       "those of 'map'; no map is written.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},

@@ -95,7 +95,7 @@ Result<Command> map_command(const Args& args) {
        "pingvox map dive.db3 -o net.bt --nav dive.db3", "pingvox map scans.graph -o scans.bt --resolution 0.1",
        "pingvox map multibeam.ply -o bottom.ot --origin 0,0,-0.5", "pingvox map - -o - < tank.csv > tank.bt"},
       "Point scans and clouds have no beam: only the options of the map (except --vote), --ray, --max-range and, for\n"
-      "clouds, --origin apply; for scans in ROS bags also --topic, --mount, and what tells the poses.\n"
+      "clouds, --origin apply; for scans in ROS bags also --topic, --mount, and the options of poses.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     const Result<Format> output_as = output_format(output, asked_format, kMapFormats);

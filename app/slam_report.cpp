@@ -162,7 +162,7 @@ std::string not_known_text(const std::vector<std::string>& names) {
     std::string text = is_harmonic ? "deviation" + name.substr(name.find(' ')) : name;
     if (std::ranges::find(shown, text) == shown.end()) shown.push_back(std::move(text));
   }
-  return on_one_line(fmt::format("{}: the recording hardly tells", fmt::join(shown, ", ")));
+  return on_one_line(fmt::format("{}: hardly observable in this recording", fmt::join(shown, ", ")));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@
 
 #include "base/median.hpp"
 #include "nav/depth_checks.hpp"
+#include "nav/internal/source_yaw.hpp"
 #include "nav/internal/upright.hpp"
-#include "nav/turn_checks.hpp"
 #include "pingvox/geometry/degree.hpp"
 
 namespace pingvox {
@@ -226,10 +226,10 @@ std::string doubt_of_attitude(const NavSource& source) {
 /// A yaw that reads as degrees and is in radians begins anew within 6.28 degrees, while the vehicle turns on.
 std::string fault_of_wrapping(const NavSource& source) {
   constexpr double kTurn_rad = 2.0 * std::numbers::pi * kDegree_rad, kNearly = 0.85, kMost = 1.02;
-  if (!tells_yaw(source)) return {};
+  if (!has_yaw(source)) return {};
   std::vector<double> yaws_rad;
   for (const NavSample& sample : source.samples) {
-    if (sample.valid) yaws_rad.push_back(yaw_in(source, sample));
+    if (sample.valid) yaws_rad.push_back(yaw_of(source, sample));
   }
   if (yaws_rad.size() < 4) return {};
   const auto [least, most] = std::ranges::minmax(yaws_rad);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "nav/internal/source_yaw.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 
@@ -20,11 +21,11 @@ namespace {
 constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 
 bool tells_turns(const NavSource& source) {
-  return is_usable(source) && (tells_yaw(source) || source.quantity == NavQuantity::kTurnRate);
+  return is_usable(source) && (has_yaw(source) || source.quantity == NavQuantity::kTurnRate);
 }
 
 double turn_between(const NavSource& heading, const NavSample& from, const NavSample& to) {
-  return std::remainder(yaw_in(heading, to) - yaw_in(heading, from), kFullTurn_rad);
+  return std::remainder(yaw_of(heading, to) - yaw_of(heading, from), kFullTurn_rad);
 }
 
 /// How far a vehicle turned since the first sample [rad].
@@ -37,8 +38,8 @@ class TurnedYaw {
     for (const NavSample& sample : source.samples) {
       if (!sample.valid) continue;
       if (before != nullptr) {
-        yaw_rad += tells_yaw(source) ? turn_between(source, *before, sample)
-                                     : 0.5 * (sample.time_s - before->time_s) * (before->value.z() + sample.value.z());
+        yaw_rad += has_yaw(source) ? turn_between(source, *before, sample)
+                                   : 0.5 * (sample.time_s - before->time_s) * (before->value.z() + sample.value.z());
       }
       before = &sample;
       times_s_.push_back(sample.time_s);
@@ -161,7 +162,7 @@ void compare_with_path(const NavSource& position, std::span<NavSource> sources) 
   if (course.samples.size() < kFewest) return;
   const TurnedYaw turned(course, kNear_s);
   for (NavSource& heading : sources) {
-    if (!tells_yaw(heading) || !may_be_vehicles(heading) || !heading.doubt.empty()) continue;
+    if (!has_yaw(heading) || !may_be_vehicles(heading) || !heading.doubt.empty()) continue;
     if (never_turns(heading)) {
       const bool is_together = heading.samples.size() >= kFewest &&
                                heading.samples.front().time_s < course.samples.back().time_s &&
@@ -177,14 +178,6 @@ void compare_with_path(const NavSource& position, std::span<NavSource> sources) 
 
 }  // namespace
 
-bool tells_yaw(const NavSource& source) {
-  return source.quantity == NavQuantity::kAttitude || source.quantity == NavQuantity::kHeading;
-}
-
-double yaw_in(const NavSource& heading, const NavSample& sample) {
-  return heading.quantity == NavQuantity::kAttitude ? sample.value.z() : sample.value.x();
-}
-
 void compare_turns(std::span<NavSource> sources) {
   // Degrees to a radian, give or take what scale and mount of a sensor change.
   constexpr double kLeast = 45.0, kMost = 70.0;
@@ -192,7 +185,7 @@ void compare_turns(std::span<NavSource> sources) {
     if (!tells_turns(one)) continue;
     std::optional<TurnedYaw> turned;
     for (NavSource& heading : sources) {
-      if (&one == &heading || !tells_yaw(heading) || !is_usable(heading)) continue;
+      if (&one == &heading || !has_yaw(heading) || !is_usable(heading)) continue;
       if (!turned) turned.emplace(one);
       const std::optional<TurnRatio> found = turn_ratio(*turned, heading);
       if (!found) continue;
@@ -203,7 +196,7 @@ void compare_turns(std::span<NavSource> sources) {
       const double ratio = std::fabs(found->ratio);
       const auto fault = [](const NavSource& faulty, const NavSource& other, double times) {
         return fmt::format("it turns {:.1f} times as far as the {} of {}: is it in degrees{}?", times,
-                           name_of(other.quantity), other.name, tells_yaw(faulty) ? "" : " per second");
+                           name_of(other.quantity), other.name, has_yaw(faulty) ? "" : " per second");
       };
       if (ratio >= kLeast && ratio <= kMost) {
         one.fault = fault(one, heading, ratio);

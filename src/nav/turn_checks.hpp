@@ -6,10 +6,6 @@
 
 namespace pingvox {
 
-/// Whether it tells a yaw, and that of one of its samples [rad].
-bool tells_yaw(const NavSource& source);
-double yaw_in(const NavSource& heading, const NavSample& sample);
-
 /// Compares how the vehicle turns by the turn rates, the attitudes and headings, and the positions of a log. Where one
 /// turns as the other but 57.3 times as far, it is in degrees, and its `fault` says so. Where a heading turns against
 /// the turn rate, another heading or the path, or stands still while the path turns, its `doubt` says so.

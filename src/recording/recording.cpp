@@ -35,7 +35,7 @@ Result<std::optional<Water>> water_of(const RecordingOptions& options, const Nav
   const std::optional<WaterAround> around = water_around(nav);
   if (!around) {
     return fail(Error::Code::kUnsupported,
-                "nav_salinity: the navigation tells no temperature of the water" + other_temperatures(nav));
+                "nav_salinity: the navigation has no temperature of the water" + other_temperatures(nav));
   }
   const Water water{around->temperature_c, *options.nav_salinity, around->depth_m};
   if (const auto valid = water.validate(); !valid) return tl::unexpected(valid.error());

@@ -11,6 +11,7 @@
 #include "base/median.hpp"
 #include "base/words.hpp"
 #include "nav/internal/nav_frames.hpp"
+#include "nav/internal/source_yaw.hpp"
 #include "nav/internal/trajectory_steps.hpp"
 #include "nav/internal/upright.hpp"
 #include "pingvox/geometry/degree.hpp"
@@ -58,16 +59,11 @@ const NavSource* source_of(const NavLog& nav, NavQuantity quantity, const std::s
   return found == nav.sources().end() ? nullptr : &*found;
 }
 
-double yaw_in(const NavSource& source, const NavSample& sample) {
-  return source.quantity == NavQuantity::kAttitude ? sample.value.z() : sample.value.x();
-}
-
 /// The heading or attitude of most samples that does not begin with the device.
 const NavSource* north_source(const NavLog& nav) {
   const NavSource* most = nullptr;
   for (const NavSource& source : nav.sources()) {
-    const bool tells_yaw = source.quantity == NavQuantity::kAttitude || source.quantity == NavQuantity::kHeading;
-    if (!tells_yaw || source.frame == kStartFrame || source.subject == NavSubject::kOther || !is_usable(source))
+    if (!has_yaw(source) || source.frame == kStartFrame || source.subject == NavSubject::kOther || !is_usable(source))
       continue;
     if (most == nullptr || source.samples.size() > most->samples.size()) most = &source;
   }
@@ -83,7 +79,7 @@ std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource
   for (const NavSample& sample : heading.samples) {
     const std::optional<Pose> pose = trajectory.at(sample.time_s + offset_s);
     if (!sample.valid || !pose) continue;
-    ahead_rad.push_back(yaw_in(heading, sample) - rpy_of(pose->rotation()).z());
+    ahead_rad.push_back(yaw_of(heading, sample) - rpy_of(pose->rotation()).z());
     sum += Eigen::Vector2d(std::cos(ahead_rad.back()), std::sin(ahead_rad.back()));
   }
   if (ahead_rad.size() < kFewest) return std::nullopt;

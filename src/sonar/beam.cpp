@@ -17,7 +17,7 @@ Result<void> validate(const Beam& beam) {
   if (!(beam.bin_length_m > 0.0)) return corrupt(fmt::format("bin length {} m is not > 0", beam.bin_length_m));
   const double range_m = static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
   if (!(range_m <= kMaxBeamRange_m)) {
-    return corrupt(fmt::format("a range of {:.6g} m is none of a scanning sonar", range_m));
+    return corrupt(fmt::format("a range of {:.6g} m is too long for a scanning sonar", range_m));
   }
   return {};
 }

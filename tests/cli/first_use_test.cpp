@@ -83,7 +83,7 @@ TEST(FirstUse, ThresholdsOnAMapWithoutProbabilitiesAreRefused) {
 TEST(FirstUse, TheFirstDamagedRecordIsNamedByEachCommand) {
   const Workplace here;
   here.write("a.csv", turns_csv(40) + "40,0,0.1,5\n41,0,20000,1\n42,0,1,-\n");
-  const std::string where = "damaged records, the first: line 43: a range of 20000 m is none of a scanning sonar";
+  const std::string where = "damaged records, the first: line 43: a range of 20000 m is too long for a scanning sonar";
   EXPECT_THAT(here.call({"map", "a.csv", "-o", "a.bt"}).err, HasSubstr(where + " (--strict stops there)"));
   EXPECT_THAT(here.call({"info", "a.csv"}).out, HasSubstr("2 " + where));
   EXPECT_THAT(here.call({"convert", "a.csv", "-o", "b.csv"}).out, HasSubstr("skipped 2 " + where));

@@ -154,7 +154,7 @@ TEST(BagAngles, ARangeThatNoHeadHearsIsRefused) {
     auto echoes = turns_of(0.0, 0.1, kTurn, 20);
     for (EchoMessage& echo : echoes) echo.range_m = range_m;
     EXPECT_THAT(beams_in(bag_of(echoes)).error,
-                HasSubstr(fmt::format("a range of {:.6g} m is none of a scanning sonar", range_m)));
+                HasSubstr(fmt::format("a range of {:.6g} m is too long for a scanning sonar", range_m)));
   }
 }
 

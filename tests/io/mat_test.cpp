@@ -242,7 +242,7 @@ TEST(Mat, BinsThatAreTooLongAreDamage) {
   EXPECT_THAT(
       all_beams({"a.mat", mat5_writer::file({mat5_writer::parsed_data(records, kLittle)}, kLittle)}, Damage::kFail)
           .error,
-      HasSubstr("a range of 800 m is none of a scanning sonar"));
+      HasSubstr("a range of 800 m is too long for a scanning sonar"));
 }
 
 }  // namespace

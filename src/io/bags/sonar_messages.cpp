@@ -31,7 +31,7 @@ Beams beam_of(double bin_length_m, std::vector<std::uint8_t> intensities) {
   if (intensities.size() < 2) return no_beam(kNoSamples);
   const double range_m = bin_length_m * static_cast<double>(intensities.size());
   if (!(range_m > 0.0 && range_m <= kMaxBeamRange_m)) {
-    return no_beam(kImpossible, fmt::format("a range of {:.6g} m is none of a scanning sonar", range_m));
+    return no_beam(kImpossible, fmt::format("a range of {:.6g} m is too long for a scanning sonar", range_m));
   }
   return std::vector{Beam{0.0, 0.0, bin_length_m, std::move(intensities)}};
 }

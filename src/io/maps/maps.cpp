@@ -36,7 +36,7 @@ Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes) 
   }
   const std::string what = format               ? std::string(description_of(*format))
                            : file.bytes.empty() ? "empty"
-                                                : "of no kind that we know";
+                                                : "of unknown content";
   return fail(Error::Code::kUnsupported, fmt::format("{}: not a map (.bt, .ot or .pvx) but {}", file.name, what));
 }
 

@@ -141,7 +141,7 @@ Result<TriangleMesh> read_stl_text(const FileBytes& file) {
     } else if (*word == "facet" || *word == "solid" || *word == "endsolid") {
       words.skip_line();  // a normal, a name
     } else if (*word != "outer" && *word != "loop" && *word != "endfacet") {
-      return corrupt(file.name, words.place(), fmt::format("'{}' belongs in no STL file", printable(*word)));
+      return corrupt(file.name, words.place(), fmt::format("unknown word '{}' in an STL file", printable(*word)));
     }
   }
   if (corners != 0) return corrupt(file.name, words.place(), "the file ends within a facet");

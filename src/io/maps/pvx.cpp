@@ -95,7 +95,7 @@ class PvxTreeReader {
       ++leaves_;
       return builder_.add(key, depth, *belief, at);
     }
-    if (state != kInner) return damage_error(file_, at, "a child of no kind that there is");
+    if (state != kInner) return damage_error(file_, at, "unknown node type");
     if (depth == levels_) return damage_error(file_, at, "an inner node below the last level");
     const auto word = reader_.read<std::uint16_t>();
     if (!word) return damage_error(file_, at, "the tree needs more bytes than the header says");

@@ -235,8 +235,8 @@ Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
   }
   if (odometry_.tells() && !tells_enough()) {
     return fail(Error::Code::kUnsupported,
-                fmt::format("there is no velocity over ground, and the sonar does not tell how the vehicle "
-                            "moved: {} of {} sweeps match those before them",
+                fmt::format("there is no velocity over ground, and motion cannot be estimated from the sonar: "
+                            "{} of {} sweeps match those before them",
                             odometry_.matched(), all_sweeps_ - 1));
   }
   begin_at_origin(poses_);

@@ -190,8 +190,8 @@ Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::s
   if (!odometry.tells) {
     const bool are_too_few = headings.empty() && odometry.matched < kMatchesAlone;
     return fail(Error::Code::kUnsupported,
-                fmt::format("there is no valid velocity over ground{}, and the sonar does not tell how the vehicle "
-                            "moved: {} of {} sweeps match those before them{}",
+                fmt::format("there is no valid velocity over ground{}, and motion cannot be estimated from the sonar: "
+                            "{} of {} sweeps match those before them{}",
                             headings.empty() ? " and no heading" : "", odometry.matched, sweeps.size() - 1,
                             are_too_few ? fmt::format(" (without a heading, {} have to)", kMatchesAlone) : ""));
   }
