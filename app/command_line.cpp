@@ -40,6 +40,8 @@ constexpr std::array kCommands = {
     CommandName{"slam", "estimate the trajectory of the vehicle from beams and navigation, and map", &slam_command},
     CommandName{"locate", "find the vehicle in a known map", &locate_command},
     CommandName{"evaluate", "say how well a map predicts echoes that were kept out of it", &evaluate_command},
+    CommandName{"merge", "add maps, also moved and of other cells", &merge_command},
+    CommandName{"query", "look up points, rays, the nearest obstacle or a region in a map", &query_command},
     CommandName{"live", "record and map with a sonar while it runs", &live_command},
     CommandName{"emulate", "stand in for a sonar or navigation device, by simulation", &emulate_command},
     CommandName{"bench", "measure speed and accuracy, where pingvox-bench is installed", &bench_command},

@@ -121,7 +121,6 @@ JsonObject nav_json(const Recording& recording, const VehiclePath& path,
 std::string report_json(const Totals& totals, const Recording& recording, const VehiclePath& path,
                         const OccupancyMap& map, const JsonObject& resolution_from) {
   const BuildReport& report = totals.report;
-  const MapCounts counts = map.counts();
   JsonObject seconds;
   seconds.add("read", round_to_us(report.seconds.read))
       .add("detect", round_to_us(report.seconds.detect))
@@ -129,15 +128,6 @@ std::string report_json(const Totals& totals, const Recording& recording, const 
       .add("apply", round_to_us(report.seconds.apply))
       .add("write", round_to_us(totals.write_s))
       .add("total", round_to_us(totals.total_s));
-  JsonObject held;
-  held.add("resolution", map.lattice().resolution_m())
-      .add("depth", map.lattice().depth())
-      .add("leaves", counts.leaves)
-      .add("inner", counts.inner)
-      .add("memory_bytes", map.memory_bytes())
-      .add("occupied_cells", counts.occupied_cells)
-      .add("free_cells", counts.free_cells)
-      .add("bounds", bounds_json(map.bounds()));
   std::vector<JsonObject> other_beams;
   for (const auto& used : totals.used_beams | std::views::drop(1)) {
     other_beams.push_back(beam_json(used.model).add("log", used.log));
@@ -160,7 +150,7 @@ std::string report_json(const Totals& totals, const Recording& recording, const 
       .add("cells_freed", report.cells_freed)
       .add("cells_hit", report.cells_hit)
       .add("seconds", seconds)
-      .add("map", held)
+      .add("map", map_json(map, map.counts()))
       .add("resolution_from", resolution_from);
   if (report.coverage.sweeps > 0) json.add("coverage", coverage_json(report.coverage));
   if (!other_beams.empty()) json.add("other_beams", other_beams);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/live/live_options.hpp"
+#include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/head_options.hpp"
@@ -258,6 +260,30 @@ struct EvaluateCommand {
   std::vector<LimitedOption> limited;
 };
 
+struct MergeCommand {
+  OutputOptions output_options;
+  std::vector<std::string> maps;       ///< at least one
+  std::map<std::string, Pose> at;      ///< where the maps of these names lie in the result; the others as they are
+  std::optional<double> resolution_m;  ///< nullopt: that of the map with the largest cells
+  std::string output;                  ///< "-" is standard output
+  Format format = Format::kBt;
+  std::string made_by;  ///< the command line, written into the file
+};
+
+/// What is asked of a map, for each of some places.
+enum class Question { kPoint, kRay, kNearest, kClearance, kRegion };
+
+struct QueryCommand {
+  OutputOptions output_options;
+  std::string map;
+  Question question = Question::kPoint;
+  std::vector<std::vector<double>> places;                       ///< the numbers of each
+  bool reads_places = false;                                     ///< more of them, a line each, from standard input
+  double max_range_m = std::numeric_limits<double>::infinity();  ///< of rays, and of what is near
+  UnknownCells unknown = UnknownCells::kPass;                    ///< to rays
+  OccupancyArgs occupancy;
+};
+
 struct LiveCommand {
   OutputOptions output_options;
   LiveOptions live;
@@ -287,9 +313,9 @@ struct BenchCommand {
   std::vector<std::string> args;
 };
 
-using Command =
-    std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand, SimulateCommand,
-                 SlamCommand, LocateCommand, EvaluateCommand, LiveCommand, EmulateCommand, BenchCommand>;
+using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
+                             SimulateCommand, SlamCommand, LocateCommand, EvaluateCommand, MergeCommand, QueryCommand,
+                             LiveCommand, EmulateCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -300,6 +326,8 @@ Result<int> run(const SimulateCommand& command, Console& console);
 Result<int> run(const SlamCommand& command, Console& console);
 Result<int> run(const LocateCommand& command, Console& console);
 Result<int> run(const EvaluateCommand& command, Console& console);
+Result<int> run(const MergeCommand& command, Console& console);
+Result<int> run(const QueryCommand& command, Console& console);
 Result<int> run(const LiveCommand& command, Console& console);
 Result<int> run(const EmulateCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);

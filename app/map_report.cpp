@@ -16,6 +16,18 @@ JsonObject bounds_json(const std::optional<Box>& bounds) {
   return json.add("min", bounds->min).add("max", bounds->max);
 }
 
+JsonObject map_json(const OccupancyMap& map, const MapCounts& counts) {
+  JsonObject json;
+  return json.add("resolution", map.lattice().resolution_m())
+      .add("depth", map.lattice().depth())
+      .add("leaves", counts.leaves)
+      .add("inner", counts.inner)
+      .add("memory_bytes", map.memory_bytes())
+      .add("occupied_cells", counts.occupied_cells)
+      .add("free_cells", counts.free_cells)
+      .add("bounds", bounds_json(map.bounds()));
+}
+
 std::string bounds_text(const std::optional<Box>& bounds) {
   if (!bounds) return "nothing is known";
   const auto& [min, max] = *bounds;

@@ -14,6 +14,9 @@ namespace pingvox::app {
 /// {"min": [x, y, z], "max": [x, y, z]}, with null for both corners when there is no box.
 JsonObject bounds_json(const std::optional<Box>& bounds);
 
+/// {"resolution": 0.05, "depth": 16, "occupied_cells": ...}
+JsonObject map_json(const OccupancyMap& map, const MapCounts& counts);
+
 /// "-1.2 -3.4 0 .. 1.2 3.4 0.5 m", or "nothing is known".
 std::string bounds_text(const std::optional<Box>& bounds);
 

@@ -136,22 +136,6 @@ Take store_clamp(Clamp& target) {
   };
 }
 
-/// "SOURCE=x,y,z,roll,pitch,yaw": how a source of navigation is mounted, once for each.
-Take store_nav_mounts(std::map<std::string, Pose>& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos || equals == 0) {
-      return usage_error(fmt::format("'{}': must be SOURCE=X,Y,Z,R,P,Y", text));
-    }
-    Pose mount;
-    if (auto taken = store_mount(mount)(text.substr(equals + 1)); !taken) return taken;
-    if (!target.emplace(text.substr(0, equals), mount).second) {
-      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
-    }
-    return {};
-  };
-}
-
 /// As in "ping360 2 x 25, micron 3 x 35": width and height of the beam of each device [degrees].
 std::string beam_sizes() {
   std::string sizes;
@@ -169,6 +153,21 @@ Take store_mount(Pose& target) {
     const Result<Pose> mount = mount_from(text);
     if (!mount) return tl::unexpected(mount.error());
     target = *mount;
+    return {};
+  };
+}
+
+Take store_pose_of(std::map<std::string, Pose>& target, std::string name) {
+  return [&target, name = std::move(name)](const std::string& text) -> Result<void> {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0) {
+      return usage_error(fmt::format("'{}': must be {}=X,Y,Z,R,P,Y", text, name));
+    }
+    Pose pose;
+    if (auto taken = store_mount(pose)(text.substr(equals + 1)); !taken) return taken;
+    if (!target.emplace(text.substr(0, equals), pose).second) {
+      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
+    }
     return {};
   };
 }
@@ -229,7 +228,7 @@ Option nav_mount_option(std::map<std::string, Pose>& body_from_source) {
                 "SOURCE=X,Y,Z,R,P,Y",
                 "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
                 "0,0,0,0,0,0",
-                store_nav_mounts(body_from_source),
+                store_pose_of(body_from_source, "SOURCE"),
                 Repeats::kEachCounts};
   option.only_with = {{"--nav"}};
   return option;

@@ -79,6 +79,9 @@ Result<void> check_options(BuildOptions options);
 Option mount_option(Pose& target);
 /// "x,y,z,roll,pitch,yaw", metres and degrees.
 Take store_mount(Pose& target);
+/// "NAME=x,y,z,roll,pitch,yaw", once for each.
+/// @param name  of what, for the error: "SOURCE"
+Take store_pose_of(std::map<std::string, Pose>& target, std::string name);
 /// --nav: navigation logs.
 Option nav_option(Args& targets, std::string help);
 /// --nav-source, without the condition that there is --nav.

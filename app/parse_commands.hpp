@@ -17,6 +17,8 @@ Result<Command> render_command(const std::vector<std::string>& args);
 Result<Command> locate_command(const std::vector<std::string>& args);
 Result<Command> evaluate_command(const std::vector<std::string>& args);
 Result<Command> slam_command(const std::vector<std::string>& args);
+Result<Command> merge_command(const std::vector<std::string>& args);
+Result<Command> query_command(const std::vector<std::string>& args);
 Result<Command> live_command(const std::vector<std::string>& args);
 Result<Command> emulate_command(const std::vector<std::string>& args);
 Result<Command> simulate_command(const std::vector<std::string>& args);

@@ -236,11 +236,7 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
   if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
   if (const auto folder = check_folder_of(typed.output); !folder) return tl::unexpected(folder.error());
   if (const auto file = check_is_file(typed.output); !file) return tl::unexpected(file.error());
-  command.made_by = "pingvox " PINGVOX_VERSION " live";
-  for (const std::string& word : args) {
-    command.made_by += ' ';
-    command.made_by += quote_for_shell(word);
-  }
+  command.made_by = command_text("live", args);
   return command;
 }
 

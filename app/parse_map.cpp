@@ -135,11 +135,7 @@ Result<Command> map_command(const Args& args) {
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     if (const auto folder = check_folder_of(output); !folder) return tl::unexpected(folder.error());
     command.output = output;
-    command.made_by = "pingvox " PINGVOX_VERSION " map";
-    for (const std::string& word : args) {
-      command.made_by += ' ';
-      command.made_by += quote_for_shell(word);
-    }
+    command.made_by = command_text("map", args);
     return command;
   });
 }

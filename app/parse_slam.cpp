@@ -151,11 +151,7 @@ Result<Command> finish_slam(SlamCommand command, const SlamArgs& typed, const Pa
     if (const auto folder = check_folder_of(file); !folder) return tl::unexpected(folder.error());
   }
   command.output = typed.output;
-  command.made_by = "pingvox " PINGVOX_VERSION " slam";
-  for (const std::string& word : args) {
-    command.made_by += ' ';
-    command.made_by += quote_for_shell(word);
-  }
+  command.made_by = command_text("slam", args);
   return command;
 }
 

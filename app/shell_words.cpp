@@ -14,6 +14,13 @@ std::string quote_for_shell(const std::string& word) {
   return out + "'";
 }
 
+std::string command_text(std::string_view command, const std::vector<std::string>& args) {
+  std::string text = "pingvox " PINGVOX_VERSION " ";
+  text += command;
+  for (const std::string& word : args) text += ' ' + quote_for_shell(word);
+  return text;
+}
+
 Result<std::vector<std::string>> split_shell_words(std::string_view text) {
   std::vector<std::string> words;
   std::string word;
